@@ -1,0 +1,62 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "src/geometry/point.h"
+
+namespace spillway {
+
+/// A closed axis-parallel box. Default-constructed it is empty (lo > hi on every axis).
+template <int D>
+requires SupportedDimension<D>
+struct Box {
+  Point<D> lo = filled(std::numeric_limits<double>::infinity());
+  Point<D> hi = filled(-std::numeric_limits<double>::infinity());
+
+  bool operator==(const Box&) const = default;
+
+  [[nodiscard]] bool empty() const { return lo[0] > hi[0]; }
+
+  void expand(const Point<D>& p) {
+    for (int k = 0; k < D; ++k) {
+      lo[k] = std::min(lo[k], p[k]);
+      hi[k] = std::max(hi[k], p[k]);
+    }
+  }
+
+  void expand(const Box& other) {
+    for (int k = 0; k < D; ++k) {
+      lo[k] = std::min(lo[k], other.lo[k]);
+      hi[k] = std::max(hi[k], other.hi[k]);
+    }
+  }
+
+  [[nodiscard]] bool contains(const Point<D>& p) const {
+    for (int k = 0; k < D; ++k) {
+      if (p[k] < lo[k] || p[k] > hi[k]) return false;
+    }
+    return true;
+  }
+
+  /// Length along one axis, rounded to the nearest double; 0 for an empty box.
+  [[nodiscard]] double extent(int axis) const { return empty() ? 0.0 : hi[axis] - lo[axis]; }
+
+  /// The axis of the largest extent, the lowest one among equals.
+  [[nodiscard]] int longest_axis() const {
+    int axis = 0;
+    for (int k = 1; k < D; ++k) {
+      if (extent(k) > extent(axis)) axis = k;
+    }
+    return axis;
+  }
+
+ private:
+  static constexpr Point<D> filled(double value) {
+    Point<D> p{};
+    p.fill(value);
+    return p;
+  }
+};
+
+}  // namespace spillway

@@ -1,0 +1,145 @@
+#include "src/geometry/circumsphere.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/geometry/determinants.h"
+#include "src/geometry/predicates.h"
+
+namespace spillway {
+namespace {
+
+// The names are those of docs/algorithm.md ("Certified balls").
+constexpr double kRoundoff = 0x1p-53;      // u
+constexpr double kGamma = 16 * kRoundoff;  // above all relative errors of monomials
+constexpr double kUnderflow = 0x1p-700;    // above all that underflow can lose
+constexpr double kSmallestSafe = 0x1p-150;
+constexpr double kLargestSafe = 0x1p150;
+constexpr double kLargestCentre = 0x1p400;
+constexpr double kErrorSlack = 1 + 0x1p-40;   // for the roundings of the error bound itself
+constexpr double kRadiusSlack = 1 + 0x1p-48;  // 1 + 32u, for those of may_meet
+
+// A determinant, rounded, and the sum of the absolute values of its monomials, rounded.
+struct Rounded {
+  double value;
+  double magnitude;
+
+  Rounded& operator+=(const Rounded& other) {
+    value += other.value;
+    magnitude += other.magnitude;
+    return *this;
+  }
+  friend Rounded operator*(double factor, const Rounded& r) {
+    return {factor * r.value, std::abs(factor) * r.magnitude};
+  }
+};
+
+Rounded minor(double a, double b, double c, double d) {
+  const double ad = a * d;
+  const double bc = b * c;
+  return {ad - bc, std::abs(ad) + std::abs(bc)};
+}
+
+// The circumcentre is numerator / denominator, component by component.
+template <int D>
+struct Quotient {
+  std::array<Rounded, D> numerator;
+  Rounded denominator;
+};
+
+Quotient<2> circumcentre(const Vectors<2, 2, double>& a) {
+  const double s0 = squared_length(a[0]);
+  const double s1 = squared_length(a[1]);
+  return {{minor(s0, a[0][1], s1, a[1][1]), minor(a[0][0], s0, a[1][0], s1)},
+          2 * minor(a[0][0], a[0][1], a[1][0], a[1][1])};
+}
+
+Quotient<3> circumcentre(const Vectors<3, 3, double>& a) {
+  Quotient<3> q{};
+  for (int i = 0; i < 3; ++i) {
+    const auto& b = a[(i + 1) % 3];
+    const auto& c = a[(i + 2) % 3];
+    const std::array<Rounded, 3> cross{minor(b[1], b[2], c[1], c[2]), minor(b[2], b[0], c[2], c[0]),
+                                       minor(b[0], b[1], c[0], c[1])};
+    const double s = squared_length(a[i]);
+    for (int k = 0; k < 3; ++k) q.numerator[k] += s * cross[k];
+    if (i == 0) {
+      for (int k = 0; k < 3; ++k) q.denominator += 2 * a[0][k] * cross[k];
+    }
+  }
+  return q;
+}
+
+}  // namespace
+
+template <int D>
+CertifiedBall<D> certified_ball(const std::array<Point<D>, D + 1>& simplex) {
+  CertifiedBall<D> ball{.anchor = simplex[0], .centre = {}};
+  Vectors<D, D, double> edges;
+  double longest = 0;
+  for (int i = 0; i < D; ++i) {
+    for (int k = 0; k < D; ++k) {
+      edges[i][k] = simplex[i + 1][k] - simplex[0][k];
+      longest = std::max(longest, std::abs(edges[i][k]));
+    }
+  }
+  const Quotient<D> q = circumcentre(edges);
+  const double denominator = std::abs(q.denominator.value);
+  const double denominator_error = kGamma * q.denominator.magnitude + kUnderflow;
+  double numerator_error = 0;
+  double farthest = 0;
+  for (int k = 0; k < D; ++k) {
+    ball.centre[k] = q.numerator[k].value / q.denominator.value;
+    numerator_error = std::max(numerator_error, kGamma * q.numerator[k].magnitude + kUnderflow);
+    farthest = std::max(farthest, std::abs(ball.centre[k]));
+  }
+  // Written so that NaN fails.
+  const bool proved = longest >= kSmallestSafe && longest <= kLargestSafe &&
+                      denominator > 2 * denominator_error && farthest <= kLargestCentre;
+  if (!proved) return ball;
+
+  ball.error = kErrorSlack * ((numerator_error + farthest * denominator_error) /
+                                  (denominator - denominator_error) +
+                              4 * kRoundoff * farthest);
+  double squared_radius = 0;
+  for (int k = 0; k < D; ++k) {
+    const double most = std::abs(ball.centre[k]) + ball.error;
+    squared_radius += most * most;
+  }
+  ball.squared_radius = kRadiusSlack * squared_radius;
+  return ball;
+}
+
+template <int D>
+bool may_meet(const CertifiedBall<D>& ball, const Box<D>& box) {
+  if (box.empty()) return false;
+  double squared_distance = 0;
+  for (int k = 0; k < D; ++k) {
+    const double below = (box.lo[k] - ball.anchor[k]) - ball.centre[k];
+    const double above = ball.centre[k] - (box.hi[k] - ball.anchor[k]);
+    const double gap = std::max(0.0, std::max(below, above) - ball.error);
+    squared_distance += gap * gap;
+  }
+  return !(squared_distance > ball.squared_radius);
+}
+
+template <int D>
+bool half_space_meets(const std::array<Point<D>, D>& facet, const Box<D>& box) {
+  if (box.empty()) return false;
+  std::array<Point<D>, D + 1> simplex;
+  std::copy(facet.begin(), facet.end(), simplex.begin());
+  for (int corner = 0; corner < (1 << D); ++corner) {
+    for (int k = 0; k < D; ++k) simplex[D][k] = (corner >> k & 1) != 0 ? box.hi[k] : box.lo[k];
+    if (orientation<D>(simplex) >= 0) return true;
+  }
+  return false;
+}
+
+template CertifiedBall<2> certified_ball<2>(const std::array<Point<2>, 3>&);
+template CertifiedBall<3> certified_ball<3>(const std::array<Point<3>, 4>&);
+template bool may_meet<2>(const CertifiedBall<2>&, const Box<2>&);
+template bool may_meet<3>(const CertifiedBall<3>&, const Box<3>&);
+template bool half_space_meets<2>(const std::array<Point<2>, 2>&, const Box<2>&);
+template bool half_space_meets<3>(const std::array<Point<3>, 3>&, const Box<3>&);
+
+}  // namespace spillway

@@ -1,0 +1,45 @@
+#pragma once
+// Circumspheres that prove something. A rounded circumcentre proves nothing by itself; here it
+// carries a bound on its own error, so that "cannot meet" is a theorem and everything else is
+// "may meet": rounding can delay a decision but never falsify one.
+// The bounds are derived in docs/algorithm.md ("Certified balls").
+
+#include <array>
+#include <limits>
+
+#include "src/geometry/box.h"
+#include "src/geometry/point.h"
+
+namespace spillway {
+
+/// The circumsphere of a simplex with a bound on its rounding errors, kept relative to one of the
+/// simplex's own vertices so that large offsets cost no accuracy.
+template <int D>
+requires SupportedDimension<D>
+struct CertifiedBall {
+  Point<D> anchor;  ///< the simplex's first vertex: the origin of `centre`
+  Point<D> centre;  ///< circumcentre minus anchor, rounded
+  /// At least the true squared radius; for a well-shaped simplex by a factor of about 1 + 1e-13.
+  double squared_radius = std::numeric_limits<double>::infinity();
+  /// The true circumcentre is within this distance of `centre` on every axis; infinite (and
+  /// squared_radius with it) when the simplex is degenerate, too ill-conditioned, not finite or out
+  /// of the range that the proof covers.
+  double error = std::numeric_limits<double>::infinity();
+};
+
+/// The certified circumsphere of a simplex of any orientation.
+template <int D>
+CertifiedBall<D> certified_ball(const std::array<Point<D>, D + 1>& simplex);
+
+/// False only if the closed circumsphere certainly has no point in common with the closed box, or
+/// if the box is empty. Sides of the box may be infinite.
+template <int D>
+bool may_meet(const CertifiedBall<D>& ball, const Box<D>& box);
+
+/// True if and only if the closed half-space beyond `facet` has a point in common with the box.
+/// `facet` is listed so that orientation(facet, p) is positive for p beyond. Exact. True if the
+/// facet's points do not span a hyperplane; false for an empty box. The box must be finite.
+template <int D>
+bool half_space_meets(const std::array<Point<D>, D>& facet, const Box<D>& box);
+
+}  // namespace spillway

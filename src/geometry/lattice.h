@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "src/geometry/point.h"
+
+namespace spillway {
+
+/// The affine map from integer coordinates to output coordinates: world = integer * scale + offset,
+/// evaluated in double in exactly this way (one multiplication, one addition, each rounded to
+/// nearest). Axes are x, y, z. Integers are held as doubles and are exact below 2^53.
+struct Lattice {
+  std::array<double, 3> scale{1, 1, 1};
+  std::array<double, 3> offset{0, 0, 0};
+
+  bool operator==(const Lattice&) const = default;
+
+  [[nodiscard]] double to_world(int axis, double integer) const {
+    return integer * scale[axis] + offset[axis];
+  }
+  [[nodiscard]] Point<3> to_world(const Point<3>& integers) const {
+    return {to_world(0, integers[0]), to_world(1, integers[1]), to_world(2, integers[2])};
+  }
+
+  /// The integer whose world coordinate is exactly `world`; nothing when there is none.
+  [[nodiscard]] std::optional<double> to_integer(int axis, double world) const;
+
+  /// Whether the first `dimensions` axes have one scale, so that the Delaunay triangulation of the
+  /// integers is that of the scaled points.
+  [[nodiscard]] bool isotropic(int dimensions) const;
+};
+
+/// Integer shifts that bring coordinates on `other` to coordinates on `base`:
+/// other integer k is base integer k + shift. Nothing when the scales differ or when the offsets do
+/// not differ by a whole number of steps (to 1e-6 of a step).
+std::optional<std::array<double, 3>> lattice_shift(const Lattice& base, const Lattice& other);
+
+}  // namespace spillway

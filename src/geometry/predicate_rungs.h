@@ -1,0 +1,135 @@
+#pragma once
+// The rungs of the predicates, each of which is right or says nothing: a floating-point filter,
+// exact 128-bit integers, exact big integers. predicates.cpp climbs them; tests compare them.
+// Bounds are derived in docs/algorithm.md ("Predicates").
+//
+// A predicate P (Orientation<D> or InSphere<D>) is a determinant of differences of points.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "src/geometry/determinants.h"
+
+namespace spillway::rungs {
+
+/// Unit roundoff of double: half a unit in the last place of 1.
+inline constexpr double kRoundoff = 0x1p-53;
+
+/// Largest coordinate differences between which filters are proved: within, no intermediate result
+/// overflows, and what underflow loses is negligible.
+inline constexpr double kSmallestSafe = 0x1p-150;
+inline constexpr double kLargestSafe = 0x1p150;
+
+__extension__ using Int128 = __int128;
+
+/// Orientation of points p0, ..., pD: differences are taken to p0.
+template <int D>
+struct Orientation {
+  static constexpr int kDimension = D;
+  static constexpr int kVectors = D;
+  static constexpr int kOrigin = 0;
+  /// Differences up to this size fit the determinant into 128 bits.
+  static constexpr double kLargestInteger = D == 2 ? 0x1p62 : 0x1p41;
+
+  template <typename T>
+  static T determinant(const Vectors<D, D, T>& v) {
+    return orientation_determinant<D>(v);
+  }
+  /// The filter's error bound, from the largest difference along each axis.
+  static double error_bound(const std::array<double, D>& m) {
+    if constexpr (D == 2) return 2 * 5 * kRoundoff * (m[0] * m[1]);
+    return 6 * 9 * kRoundoff * (m[0] * m[1] * m[D - 1]);
+  }
+};
+
+/// In-sphere test of points p0, ..., pD and the query p(D+1): differences are taken to the query.
+template <int D>
+struct InSphere {
+  static constexpr int kDimension = D;
+  static constexpr int kVectors = D + 1;
+  static constexpr int kOrigin = D + 1;
+  static constexpr double kLargestInteger = D == 2 ? 0x1p30 : 0x1p24;
+
+  template <typename T>
+  static T determinant(const Vectors<D, D + 1, T>& v) {
+    return in_sphere_determinant<D>(v);
+  }
+  static double error_bound(const std::array<double, D>& m) {
+    if constexpr (D == 2) return 6 * 12 * kRoundoff * (m[0] * m[1] * squared_length(m));
+    return 24 * 18 * kRoundoff * (m[0] * m[1] * m[D - 1] * squared_length(m));
+  }
+};
+
+/// The points of one evaluation: the predicate's vectors plus their origin.
+template <typename P>
+using Points = std::array<Point<P::kDimension>, P::kVectors + 1>;
+
+template <typename T>
+int sign(const T& value) {
+  return value > 0 ? 1 : value < 0 ? -1 : 0;
+}
+
+/// The number of the point that becomes vector i.
+template <typename P>
+constexpr int source(int i) {
+  return P::kOrigin == 0 ? i + 1 : i;
+}
+
+/// Rung 1: double arithmetic with an error bound. Never answers 0.
+template <typename P>
+std::optional<int> filtered(const Points<P>& points) {
+  constexpr int D = P::kDimension;
+  Vectors<D, P::kVectors, double> v;
+  std::array<double, D> largest{};
+  for (int i = 0; i < P::kVectors; ++i) {
+    for (int k = 0; k < D; ++k) {
+      v[i][k] = points[source<P>(i)][k] - points[P::kOrigin][k];
+      largest[k] = std::max(largest[k], std::abs(v[i][k]));
+    }
+  }
+  for (int k = 0; k < D; ++k) {
+    if (!(largest[k] >= kSmallestSafe && largest[k] <= kLargestSafe)) return std::nullopt;
+  }
+  const double determinant = P::determinant(v);
+  const double bound = P::error_bound(largest);
+  if (determinant > bound) return 1;
+  if (determinant < -bound) return -1;
+  return std::nullopt;
+}
+
+/// Whether difference == a - b without any rounding.
+inline bool exact_difference(double a, double b, double difference) {
+  const double b_rounded = a - difference;
+  const double a_rounded = difference + b_rounded;
+  return (a - a_rounded) + (b_rounded - b) == 0;
+}
+
+/// Rung 2: exact, for differences that are small enough integers, as those of LiDAR lattices are.
+template <typename P>
+std::optional<int> integer(const Points<P>& points) {
+  constexpr int D = P::kDimension;
+  Vectors<D, P::kVectors, Int128> v;
+  for (int i = 0; i < P::kVectors; ++i) {
+    for (int k = 0; k < D; ++k) {
+      const double a = points[source<P>(i)][k];
+      const double b = points[P::kOrigin][k];
+      const double difference = a - b;
+      if (!(std::abs(difference) <= P::kLargestInteger)) return std::nullopt;
+      const auto whole = static_cast<std::int64_t>(difference);
+      if (static_cast<double>(whole) != difference) return std::nullopt;
+      if (!exact_difference(a, b, difference)) return std::nullopt;
+      v[i][k] = whole;
+    }
+  }
+  return sign(P::determinant(v));
+}
+
+/// Rung 3: exact for all finite doubles, by big integers. Throws Error if a coordinate is not
+/// finite.
+template <typename P>
+int exact(const Points<P>& points);
+
+}  // namespace spillway::rungs

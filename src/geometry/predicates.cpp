@@ -1,0 +1,66 @@
+#include "src/geometry/predicates.h"
+
+#include <algorithm>
+
+#include "src/geometry/predicate_rungs.h"
+
+namespace spillway {
+namespace {
+
+template <typename P>
+int climb(const rungs::Points<P>& points) {
+  if (const auto answer = rungs::filtered<P>(points)) return *answer;
+  if (const auto answer = rungs::integer<P>(points)) return *answer;
+  return rungs::exact<P>(points);
+}
+
+// Breaks the tie of D+2 cospherical points. The in-sphere determinant is linear in the lifted
+// coordinates: a vertex's has as its coefficient the orientation of the simplex with that vertex
+// replaced by the query, and the query's has minus the orientation of the simplex, which is
+// positive. Since the eps^k differ by orders of magnitude, the first coefficient that is not 0
+// decides.
+template <int D>
+int break_tie(const std::array<Point<D>, D + 1>& simplex, const Point<D>& p) {
+  if (std::find(simplex.begin(), simplex.end(), p) != simplex.end()) return 0;
+  std::array<int, D + 1> largest_first;
+  for (int i = 0; i <= D; ++i) largest_first[i] = i;
+  std::sort(largest_first.begin(), largest_first.end(),
+            [&simplex](int a, int b) { return simplex[a] > simplex[b]; });
+  for (const int i : largest_first) {
+    if (p > simplex[i]) break;
+    std::array<Point<D>, D + 1> replaced = simplex;
+    replaced[i] = p;
+    if (const int coefficient = climb<rungs::Orientation<D>>(replaced)) return coefficient;
+  }
+  return -1;
+}
+
+}  // namespace
+
+template <int D>
+int orientation(const std::array<Point<D>, D + 1>& simplex) {
+  return climb<rungs::Orientation<D>>(simplex);
+}
+
+template <int D>
+int side_of_sphere(const std::array<Point<D>, D + 1>& simplex, const Point<D>& p) {
+  rungs::Points<rungs::InSphere<D>> points;
+  std::copy(simplex.begin(), simplex.end(), points.begin());
+  points[D + 1] = p;
+  return climb<rungs::InSphere<D>>(points);
+}
+
+template <int D>
+int in_sphere(const std::array<Point<D>, D + 1>& simplex, const Point<D>& p) {
+  const int side = side_of_sphere<D>(simplex, p);
+  return side != 0 ? side : break_tie<D>(simplex, p);
+}
+
+template int orientation<2>(const std::array<Point<2>, 3>&);
+template int orientation<3>(const std::array<Point<3>, 4>&);
+template int side_of_sphere<2>(const std::array<Point<2>, 3>&, const Point<2>&);
+template int side_of_sphere<3>(const std::array<Point<3>, 4>&, const Point<3>&);
+template int in_sphere<2>(const std::array<Point<2>, 3>&, const Point<2>&);
+template int in_sphere<3>(const std::array<Point<3>, 4>&, const Point<3>&);
+
+}  // namespace spillway

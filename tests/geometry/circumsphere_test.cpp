@@ -1,0 +1,265 @@
+#include "src/geometry/circumsphere.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <limits>
+
+#include "src/geometry/determinants.h"
+#include "src/geometry/predicates.h"
+#include "tests/geometry/point_families.h"
+
+namespace spillway {
+namespace {
+
+using Rational = boost::multiprecision::cpp_rational;
+using testing::Hard;
+using testing::Random;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// The circumsphere in exact rational arithmetic.
+template <int D>
+struct ExactSphere {
+  std::array<Rational, D> centre;
+  Rational squared_radius = 0;
+
+  // By Cramer's rule on 2 (p_i - p_0) . c = |p_i - p_0|^2.
+  explicit ExactSphere(const std::array<Point<D>, D + 1>& simplex) {
+    Vectors<D, D, Rational> rows;
+    for (int i = 0; i < D; ++i) {
+      for (int k = 0; k < D; ++k)
+        rows[i][k] = Rational(simplex[i + 1][k]) - Rational(simplex[0][k]);
+    }
+    const Rational determinant = orientation_determinant<D>(rows);
+    for (int k = 0; k < D; ++k) {
+      Vectors<D, D, Rational> replaced = rows;
+      for (int i = 0; i < D; ++i) replaced[i][k] = squared_length(rows[i]) / 2;
+      const Rational relative = orientation_determinant<D>(replaced) / determinant;
+      squared_radius += relative * relative;
+      centre[k] = relative + Rational(simplex[0][k]);
+    }
+  }
+
+  [[nodiscard]] bool meets(const Box<D>& box) const {
+    Rational squared_distance = 0;
+    for (int k = 0; k < D; ++k) {
+      Rational gap = 0;
+      if (centre[k] < Rational(box.lo[k])) gap = Rational(box.lo[k]) - centre[k];
+      if (centre[k] > Rational(box.hi[k])) gap = centre[k] - Rational(box.hi[k]);
+      squared_distance += gap * gap;
+    }
+    return squared_distance <= squared_radius;
+  }
+};
+
+template <int D>
+Box<D> box_of(const Point<D>& a, const Point<D>& b) {
+  Box<D> box;
+  box.expand(a);
+  box.expand(b);
+  return box;
+}
+
+// A box that touches the rounded circumsphere of a ball from outside, up to the relative distance
+// `slack`, at a face, an edge or a corner.
+template <int D>
+Box<D> touching_box(const CertifiedBall<D>& ball, double slack, Random& random) {
+  std::array<double, D> direction;
+  double length = 0;
+  do {
+    for (double& d : direction) d = random.integer(0, 2) == 0 ? 0 : random.uniform(-1, 1);
+    length = std::sqrt(squared_length(direction));
+  } while (length == 0);
+  const double radius = std::sqrt(ball.squared_radius) * (1 + slack);
+  Point<D> near;
+  Point<D> far;
+  for (int k = 0; k < D; ++k) {
+    const double size = radius * random.uniform(0, 3);
+    near[k] = ball.anchor[k] + (ball.centre[k] + direction[k] / length * radius);
+    far[k] = direction[k] > 0 ? near[k] + size : near[k] - size;
+    if (direction[k] == 0) near[k] += radius * random.uniform(0, 0.1);
+  }
+  return box_of<D>(near, far);
+}
+
+// A simplex with every edge between about 0.5 and 2 and no small angle.
+template <int D>
+std::array<Point<D>, D + 1> well_shaped(Random& random, double scale, double offset) {
+  std::array<Point<D>, D + 1> simplex{};
+  for (int k = 0; k < D; ++k) simplex[k + 1][k] = 1;
+  for (auto& point : simplex) {
+    for (double& c : point) c = (c + random.uniform(-0.1, 0.1)) * scale + offset;
+  }
+  return simplex;
+}
+
+template <typename Dimension>
+class CertifiedBallTest : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(CertifiedBallTest, Dimensions);
+
+TYPED_TEST(CertifiedBallTest, BoundsHoldAgainstRationalArithmetic) {
+  constexpr int D = TypeParam::value;
+  for (const Hard family : testing::kAllHard) {
+    SCOPED_TRACE(testing::name_of(family));
+    for (const auto& group : testing::hard_groups<D>(family, 200, 21)) {
+      const auto simplex = testing::simplex_of<D>(group);
+      const CertifiedBall<D> ball = certified_ball<D>(simplex);
+      if (ball.error == kInfinity) continue;
+      ASSERT_NE(orientation<D>(simplex), 0);
+      const ExactSphere<D> exact(simplex);
+      EXPECT_LE(exact.squared_radius, Rational(ball.squared_radius));
+      for (int k = 0; k < D; ++k) {
+        const Rational rounded = Rational(ball.anchor[k]) + Rational(ball.centre[k]);
+        EXPECT_LE(abs(exact.centre[k] - rounded), Rational(ball.error));
+      }
+    }
+  }
+}
+
+TYPED_TEST(CertifiedBallTest, FalseIsAProofForTouchingBoxes) {
+  constexpr int D = TypeParam::value;
+  Random random(22);
+  std::size_t proofs = 0;
+  for (const Hard family : testing::kAllHard) {
+    SCOPED_TRACE(testing::name_of(family));
+    for (const auto& group : testing::hard_groups<D>(family, 150, 23)) {
+      const auto simplex = testing::simplex_of<D>(group);
+      const CertifiedBall<D> ball = certified_ball<D>(simplex);
+      if (ball.error == kInfinity) continue;
+      const ExactSphere<D> exact(simplex);
+      for (const double slack : {-1e-14, -1e-16, 0.0, 1e-16, 1e-15, 3e-15, 1e-14, 1e-13, 1e-11}) {
+        const Box<D> box = touching_box<D>(ball, slack, random);
+        if (may_meet<D>(ball, box)) continue;
+        ++proofs;
+        EXPECT_FALSE(exact.meets(box)) << "slack " << slack;
+      }
+    }
+  }
+  EXPECT_GT(proofs, 500U);
+}
+
+TYPED_TEST(CertifiedBallTest, ItsOwnVerticesMayMeet) {
+  constexpr int D = TypeParam::value;
+  for (const auto& group : testing::hard_groups<D>(Hard::kCospherical, 500, 24)) {
+    const auto simplex = testing::simplex_of<D>(group);
+    const CertifiedBall<D> ball = certified_ball<D>(simplex);
+    for (const auto& vertex : simplex) EXPECT_TRUE(may_meet<D>(ball, box_of<D>(vertex, vertex)));
+  }
+}
+
+TYPED_TEST(CertifiedBallTest, IsTightForWellShapedSimplices) {
+  constexpr int D = TypeParam::value;
+  Random random(25);
+  for (const double offset : {0.0, 1.0, 5e6}) {
+    for (int trial = 0; trial < 500; ++trial) {
+      const double scale = random.uniform(0.5, 100);
+      const auto simplex = well_shaped<D>(random, scale, offset);
+      const CertifiedBall<D> ball = certified_ball<D>(simplex);
+      const double radius = std::sqrt(ball.squared_radius);
+      EXPECT_LT(ball.error, 1e-13 * radius);
+      const ExactSphere<D> exact(simplex);
+      EXPECT_LT(static_cast<double>(Rational(ball.squared_radius) / exact.squared_radius - 1),
+                1e-12);
+      // Boxes around an offset are rounded to its unit in the last place.
+      const double slack = 1e-12 + offset * 0x1p-50 / radius;
+      EXPECT_FALSE(may_meet<D>(ball, touching_box<D>(ball, slack, random)));
+    }
+  }
+}
+
+TYPED_TEST(CertifiedBallTest, DegenerateAndExtremeSimplicesMayMeetAnything) {
+  constexpr int D = TypeParam::value;
+  Point<D> far_away;
+  far_away.fill(1e308);
+  const Box<D> box = box_of<D>(far_away, far_away);
+  std::array<Point<D>, D + 1> flat{};
+  for (int i = 0; i <= D; ++i) flat[i].fill(i);
+  EXPECT_TRUE(may_meet<D>(certified_ball<D>(flat), box));
+  EXPECT_TRUE(may_meet<D>(certified_ball<D>({}), box));
+  for (const double extreme : {1e-320, 1e-200, 1e200, 1e308, kInfinity, kNan}) {
+    std::array<Point<D>, D + 1> simplex{};
+    for (int k = 0; k < D; ++k) simplex[k + 1][k] = extreme;
+    EXPECT_TRUE(may_meet<D>(certified_ball<D>(simplex), box)) << extreme;
+  }
+}
+
+TYPED_TEST(CertifiedBallTest, InfiniteAndEmptyBoxesAreUnderstood) {
+  constexpr int D = TypeParam::value;
+  Random random(26);
+  const CertifiedBall<D> ball = certified_ball<D>(well_shaped<D>(random, 1, 0));
+  EXPECT_FALSE(may_meet<D>(ball, Box<D>{}));
+  Box<D> half_space;
+  half_space.lo.fill(-kInfinity);
+  half_space.hi.fill(kInfinity);
+  EXPECT_TRUE(may_meet<D>(ball, half_space));
+  half_space.lo[0] = 10;
+  EXPECT_FALSE(may_meet<D>(ball, half_space));
+  half_space.lo[0] = -1;
+  EXPECT_TRUE(may_meet<D>(ball, half_space));
+}
+
+// The facet x_0 = 0 through the origin, listed so that larger x_0 is beyond.
+template <int D>
+std::array<Point<D>, D> facet_beyond_zero() {
+  std::array<Point<D>, D> facet{};
+  for (int i = 1; i < D; ++i) facet[i][i] = 1;
+  Point<D> beyond{};
+  beyond[0] = 1;
+  std::array<Point<D>, D + 1> simplex;
+  std::copy(facet.begin(), facet.end(), simplex.begin());
+  simplex[D] = beyond;
+  if (orientation<D>(simplex) < 0) std::swap(facet[0], facet[1]);
+  return facet;
+}
+
+TYPED_TEST(CertifiedBallTest, HalfSpaceIsClosedAndExact) {
+  constexpr int D = TypeParam::value;
+  const auto facet = facet_beyond_zero<D>();
+  Box<D> box;
+  box.lo.fill(-5);
+  box.hi.fill(5);
+  EXPECT_TRUE(half_space_meets<D>(facet, box));
+  box.hi[0] = 0;
+  EXPECT_TRUE(half_space_meets<D>(facet, box));
+  box.hi[0] = -std::numeric_limits<double>::denorm_min();
+  EXPECT_FALSE(half_space_meets<D>(facet, box));
+  EXPECT_FALSE(half_space_meets<D>(facet, Box<D>{}));
+}
+
+TYPED_TEST(CertifiedBallTest, HalfSpaceOfADegenerateFacetMeetsEverything) {
+  constexpr int D = TypeParam::value;
+  Box<D> box;
+  box.lo.fill(3);
+  box.hi.fill(4);
+  EXPECT_TRUE(half_space_meets<D>(std::array<Point<D>, D>{}, box));
+}
+
+TYPED_TEST(CertifiedBallTest, HalfSpaceMeetsABoxIfAnyOfItsPointsIsBeyond) {
+  constexpr int D = TypeParam::value;
+  Random random(27);
+  int misses = 0;
+  for (const auto& group : testing::hard_groups<D>(Hard::kSmallLattice, 2000, 28)) {
+    auto simplex = testing::simplex_of<D>(group);
+    std::array<Point<D>, D> facet;
+    std::copy_n(simplex.begin(), D, facet.begin());
+    const Box<D> box = box_of<D>(group[D], group[D + 1]);
+    bool any = false;
+    for (int sample = 0; sample < 20; ++sample) {
+      for (int k = 0; k < D; ++k) {
+        simplex[D][k] = static_cast<double>(random.integer(static_cast<std::int64_t>(box.lo[k]),
+                                                           static_cast<std::int64_t>(box.hi[k])));
+      }
+      any = any || orientation<D>(simplex) >= 0;
+    }
+    misses += half_space_meets<D>(facet, box) ? 0 : 1;
+    if (any) {
+      EXPECT_TRUE(half_space_meets<D>(facet, box));
+    }
+  }
+  EXPECT_GT(misses, 100);
+}
+
+}  // namespace
+}  // namespace spillway
