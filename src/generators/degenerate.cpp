@@ -1,0 +1,251 @@
+// Families where general position fails: grids, cocircular points, repeated points, flat sets, and
+// sets that strain the coordinates. Described in docs/generators.md.
+
+#include <array>
+#include <cmath>
+
+#include "src/generators/families.h"
+#include "src/generators/random.h"
+
+namespace spillway {
+namespace {
+
+/// Row by row through a square or cube of `side` points an axis.
+struct Grid {
+  std::uint64_t side;
+  int dimension;
+
+  Point<3> operator()(std::uint64_t i) const {
+    const std::uint64_t row = i / side;
+    const std::uint64_t layer = row / side;
+    const double x = static_cast<double>(i % side);
+    if (dimension == 2) return {x, static_cast<double>(row), 0};
+    return {x, static_cast<double>(row % side), static_cast<double>(layer)};
+  }
+};
+
+/// The smallest side with side^dimension >= count.
+std::uint64_t grid_side(std::uint64_t count, int dimension) {
+  const auto n = static_cast<double>(count);
+  auto side = static_cast<std::uint64_t>(dimension == 2 ? std::sqrt(n) : std::cbrt(n));
+  side = side > 2 ? side - 2 : 1;  // the rounded root may be too large by one
+  const auto holds_all = [&](std::uint64_t s) {
+    const auto square = static_cast<unsigned __int128>(s) * s;
+    return (dimension == 2 ? square : square * s) >= count;
+  };
+  while (!holds_all(side)) ++side;
+  return side;
+}
+
+/// A Gaussian integer.
+struct Gaussian {
+  std::int64_t re, im;
+
+  Gaussian operator*(const Gaussian& o) const {
+    return {re * o.re - im * o.im, re * o.im + im * o.re};
+  }
+};
+
+/// All integer points of the circle whose radius is the product of the first few primes of the form
+/// 4k + 1. Such a prime is norm(g) for a Gaussian integer g, and the product over the primes of one
+/// of g^2, |g|^2, conj(g)^2 each, times a unit, runs through the 4 * 3^primes points.
+class IntegerCircle {
+ public:
+  static constexpr int kMostPrimes = 10;  ///< the radius stays below 2^50
+
+  explicit IntegerCircle(int primes) : primes_(primes) {
+    for (int k = 0; k < primes; ++k) {
+      radius_ *= norm(kFactors[k]);
+      count_ *= 3;
+    }
+  }
+
+  [[nodiscard]] std::int64_t radius() const { return radius_; }
+  [[nodiscard]] std::uint64_t count() const { return 4 * count_; }
+  /// Points with re > 0 and one of the two with re = 0.
+  [[nodiscard]] std::uint64_t half_count() const { return 2 * count_; }
+
+  /// Point number `index` < count(). Numbers below half_count() are never opposite each other, so
+  /// that half() runs through all points of the half circle re >= 0 (but one).
+  [[nodiscard]] Gaussian point(std::uint64_t index) const {
+    constexpr std::array<Gaussian, 4> kUnits = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+    Gaussian product = kUnits[index / count_];
+    std::uint64_t digits = index % count_;
+    for (int k = 0; k < primes_; ++k, digits /= 3) {
+      const Gaussian g = kFactors[k];
+      const Gaussian conjugate = {g.re, -g.im};
+      switch (digits % 3) {
+        case 0:
+          product = product * g * g;
+          break;
+        case 1:
+          product = product * g * conjugate;
+          break;
+        default:
+          product = product * conjugate * conjugate;
+      }
+    }
+    return product;
+  }
+
+  [[nodiscard]] Gaussian half(std::uint64_t index) const {
+    const Gaussian p = point(index);
+    return p.re < 0 ? Gaussian{-p.re, -p.im} : p;
+  }
+
+ private:
+  static constexpr std::int64_t norm(const Gaussian& g) { return g.re * g.re + g.im * g.im; }
+
+  // Of norm 5, 13, 17, 29, 37, 41, 53, 61, 73, 89.
+  static constexpr std::array<Gaussian, kMostPrimes> kFactors = {
+      {{2, 1}, {3, 2}, {4, 1}, {5, 2}, {6, 1}, {5, 4}, {7, 2}, {6, 5}, {8, 3}, {8, 5}}};
+
+  int primes_;
+  std::int64_t radius_ = 1;
+  std::uint64_t count_ = 1;
+};
+
+/// Has no factor in common with the numbers of points of integer circles, 2^a 3^b: multiplication
+/// by it permutes them and scatters neighbours.
+constexpr std::uint64_t kScatter = 1000003;
+
+/// Even points: exactly on the circle, as long as there are new ones. All others: rounded to
+/// doubles.
+struct Circle {
+  std::uint64_t seed;
+  IntegerCircle circle;
+
+  Circle(std::uint64_t the_seed, std::uint64_t count)
+      : seed(the_seed), circle(enough_primes(count / 2 + 1)) {}
+
+  static int enough_primes(std::uint64_t points) {
+    int primes = 1;
+    while (primes < IntegerCircle::kMostPrimes && IntegerCircle(primes).count() < points) ++primes;
+    return primes;
+  }
+
+  Point<3> operator()(std::uint64_t i) const {
+    if (i % 2 == 0 && i / 2 < circle.count()) {
+      const Gaussian p = circle.point((i / 2 * kScatter + seed % circle.count()) % circle.count());
+      return {static_cast<double>(p.re), static_cast<double>(p.im), 0};
+    }
+    const auto [u, v, s] = Random::of_point(seed, i).in_disc();
+    const auto radius = static_cast<double>(circle.radius());
+    return {radius * ((u * u - v * v) / s), radius * (2 * u * v / s), 0};
+  }
+};
+
+/// The same on a sphere. Two angles with rational cosines and sines, both of an integer circle of
+/// radius r, give a point of the integer sphere of radius r^2.
+struct Sphere {
+  std::uint64_t seed;
+  IntegerCircle circle{5};
+
+  Point<3> operator()(std::uint64_t i) const {
+    const std::uint64_t count = circle.half_count() * circle.count();
+    const auto radius = static_cast<double>(circle.radius());
+    if (i % 2 == 0 && i / 2 < count) {
+      const std::uint64_t index = (i / 2 * kScatter + seed % count) % count;
+      const Gaussian latitude = circle.half(index / circle.count());
+      const Gaussian longitude = circle.point(index % circle.count());
+      return {static_cast<double>(latitude.re * longitude.re),
+              static_cast<double>(latitude.re * longitude.im),
+              static_cast<double>(latitude.im * circle.radius())};
+    }
+    const auto [u, v, s] = Random::of_point(seed, i).in_disc();
+    const double factor = radius * radius * (2 * std::sqrt(1 - s));
+    return {u * factor, v * factor, radius * radius * (1 - 2 * s)};
+  }
+};
+
+/// Sixteen clusters a millionth of their distance wide.
+struct Clusters {
+  std::uint64_t seed;
+  int dimension;
+
+  Point<3> operator()(std::uint64_t i) const {
+    constexpr std::uint64_t kClusters = 16;
+    Random centre = Random::of_point(~seed, i % kClusters);
+    Random offset = Random::of_point(seed, i);
+    Point<3> p{};
+    for (int k = 0; k < dimension; ++k) p[k] = 1e6 * centre.uniform() + offset.uniform();
+    return p;
+  }
+};
+
+/// About sqrt(n) integer points, each many times.
+struct Duplicates {
+  std::uint64_t seed;
+  int dimension;
+  std::uint64_t sites;
+
+  Point<3> operator()(std::uint64_t i) const {
+    const std::uint64_t site = Random::of_point(seed, i).bits() % sites;
+    Random random = Random::of_point(~seed, site);
+    Point<3> p{};
+    for (int k = 0; k < dimension; ++k) p[k] = static_cast<double>(random.below(1 << 20));
+    return p;
+  }
+};
+
+struct Collinear {
+  std::uint64_t seed;
+  int dimension;
+
+  Point<3> operator()(std::uint64_t i) const {
+    const auto t = static_cast<double>(Random::of_point(seed, i).below(1 << 28));
+    return {3 * t, -2 * t, dimension == 3 ? 5 * t : 0};
+  }
+};
+
+struct Coplanar {
+  std::uint64_t seed;
+  int dimension;
+
+  Point<3> operator()(std::uint64_t i) const {
+    Random random = Random::of_point(seed, i);
+    const auto x = static_cast<double>(random.below(1 << 24));
+    const auto y = static_cast<double>(random.below(1 << 24));
+    return {x, y, dimension == 3 ? 2 * x - 3 * y + 7 : 0};
+  }
+};
+
+/// A square kilometre far from the origin, as doubles that were never quantised.
+struct Utm {
+  std::uint64_t seed;
+  int dimension;
+
+  Point<3> operator()(std::uint64_t i) const {
+    Random random = Random::of_point(seed, i);
+    Point<3> p = {500000 + 1000 * random.uniform(), 4100000 + 1000 * random.uniform(), 0};
+    if (dimension == 3) p[2] = 200 * random.uniform();
+    return p;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<PointGenerator> make_degenerate(const GeneratorOptions& options) {
+  const auto [family, count, dimension, seed] = options;
+  switch (family) {
+    case Family::kLattice:
+      return make_indexed(options, Grid{grid_side(count, dimension), dimension}, Lattice{});
+    case Family::kCircle:
+      if (dimension == 2) return make_indexed(options, Circle(seed, count));
+      return make_indexed(options, Sphere{seed});
+    case Family::kClusters:
+      return make_indexed(options, Clusters{seed, dimension});
+    case Family::kDuplicates:
+      return make_indexed(options, Duplicates{seed, dimension, grid_side(count, 2)}, Lattice{});
+    case Family::kCollinear:
+      return make_indexed(options, Collinear{seed, dimension}, Lattice{});
+    case Family::kCoplanar:
+      return make_indexed(options, Coplanar{seed, dimension}, Lattice{});
+    case Family::kUtm:
+      return make_indexed(options, Utm{seed, dimension});
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace spillway

@@ -1,0 +1,64 @@
+#include "src/generators/generators.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "src/error.h"
+#include "src/generators/families.h"
+
+namespace spillway {
+namespace {
+
+constexpr std::array<const char*, 13> kNames = {
+    "uniform", "normal",   "bubbles",    "ellipsoid", "lines",    "lattice", "circle",
+    "terrain", "clusters", "duplicates", "collinear", "coplanar", "utm"};
+static_assert(kNames.size() == static_cast<std::size_t>(Family::kUtm) + 1);
+
+}  // namespace
+
+std::vector<std::string> family_names() { return {kNames.begin(), kNames.end()}; }
+
+Family family_by_name(std::string_view name) {
+  const auto found = std::find(kNames.begin(), kNames.end(), name);
+  if (found == kNames.end()) {
+    throw UsageError(fmt::format("there is no family of points called '{}'; choose one of {}", name,
+                                 fmt::join(kNames, ", ")));
+  }
+  return static_cast<Family>(found - kNames.begin());
+}
+
+std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options) {
+  if (options.dimension != 2 && options.dimension != 3) {
+    throw UsageError(
+        fmt::format("cannot generate points of dimension {}; choose 2 or 3", options.dimension));
+  }
+  if (options.family == Family::kTerrain) return make_terrain(options);
+  auto generator = make_distribution(options);
+  return generator ? std::move(generator) : make_degenerate(options);
+}
+
+template <int D>
+std::vector<Point<D>> generate_points(const GeneratorOptions& options) {
+  GeneratorOptions of_dimension = options;
+  of_dimension.dimension = D;
+  const auto generator = make_generator(of_dimension);
+  std::array<Point<3>, 1024> block;
+  std::vector<Point<D>> all;
+  all.reserve(options.count);
+  while (const std::size_t n = generator->next(block)) {
+    for (std::size_t i = 0; i < n; ++i) {
+      Point<D> p;
+      std::copy_n(block[i].begin(), D, p.begin());
+      all.push_back(p);
+    }
+  }
+  return all;
+}
+
+template std::vector<Point<2>> generate_points<2>(const GeneratorOptions&);
+template std::vector<Point<3>> generate_points<3>(const GeneratorOptions&);
+
+}  // namespace spillway

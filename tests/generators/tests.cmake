@@ -1,0 +1,7 @@
+spillway_test(generators_test unit
+  SOURCES
+    generators/distributions_test.cpp
+    generators/degenerate_test.cpp
+    generators/every_family_test.cpp
+    generators/terrain_test.cpp
+  LIBS spillway_generators)
