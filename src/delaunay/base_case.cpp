@@ -1,0 +1,47 @@
+#include "src/delaunay/base_case.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "src/delaunay/affine_basis.h"
+
+namespace spillway {
+namespace {
+
+template <int D>
+std::vector<Duplicate> find_duplicates(const BaseCaseInput<D>& input) {
+  std::vector<VertexId> order(input.points.size());
+  std::iota(order.begin(), order.end(), VertexId{0});
+  std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
+    return input.points[a] != input.points[b] ? input.points[a] < input.points[b]
+                                              : input.input_index[a] < input.input_index[b];
+  });
+  std::vector<Duplicate> duplicates;
+  VertexId kept = 0;
+  for (const VertexId i : order) {
+    if (i == order.front() || input.points[i] != input.points[kept]) {
+      kept = i;
+    } else {
+      duplicates.push_back({input.first_vertex + i, input.first_vertex + kept});
+    }
+  }
+  std::sort(duplicates.begin(), duplicates.end());
+  return duplicates;
+}
+
+}  // namespace
+
+template <int D>
+BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input) {
+  const std::vector<VertexId> basis = affine_basis<D>(input.points);
+  if (basis.size() == D + 1) return cgal_base_case<D>(input, basis);
+  BaseCase<D> result;
+  result.duplicates = find_duplicates(input);
+  result.dimension = static_cast<int>(basis.size()) - 1;
+  return result;
+}
+
+template BaseCase<2> triangulate_base_case<2>(const BaseCaseInput<2>&);
+template BaseCase<3> triangulate_base_case<3>(const BaseCaseInput<3>&);
+
+}  // namespace spillway

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "src/delaunay/triangulation.h"
+
+namespace spillway {
+
+/// The points of one base case: point i is vertex first_vertex + i, and of equal points the one of
+/// the lowest input index is kept.
+template <int D>
+struct BaseCaseInput {
+  std::span<const Point<D>> points;
+  std::span<const VertexId> input_index;
+  VertexId first_vertex = 0;
+};
+
+/// The triangulation of one base case: a single block, its neighbours all inside it.
+template <int D>
+struct BaseCase {
+  std::vector<Simplex<D>> simplices;  ///< finite and infinite; none if dimension < D
+  std::vector<std::uint32_t> hull;    ///< indices of the infinite simplices
+  std::vector<Duplicate> duplicates;  ///< sorted
+  int dimension = -1;                 ///< of the points' affine hull
+};
+
+/// Triangulates any finite points sequentially: none, one, all equal, collinear, coplanar or in
+/// general position.
+template <int D>
+BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input);
+
+/// A kernel: triangulates points that span D dimensions. `basis` has the places of D+1 affinely
+/// independent ones.
+template <int D>
+BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const VertexId> basis);
+
+}  // namespace spillway

@@ -1,0 +1,168 @@
+// The base case by CGAL's incremental Delaunay triangulations: the only file of the engine that
+// includes CGAL. What differs between 2D and 3D stands in CgalTraits.
+
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
+#include <CGAL/Spatial_sort_traits_adapter_3.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
+
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+
+#include "src/delaunay/base_case.h"
+
+namespace spillway {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// What a CGAL vertex knows of ours. Vertices are fresh until a point has been given to them.
+struct VertexInfo {
+  VertexId id = kNoVertex;
+};
+
+/// A CGAL cell's number in the block.
+using CellIndex = std::uint32_t;
+
+template <int D>
+struct CgalTraits;
+
+template <>
+struct CgalTraits<2> {
+  using CgalPoint = Kernel::Point_2;
+  using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<VertexInfo, Kernel>;
+  using CellBase = CGAL::Triangulation_face_base_with_info_2<CellIndex, Kernel>;
+  using Tds = CGAL::Triangulation_data_structure_2<VertexBase, CellBase>;
+  using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, Tds>;
+  template <typename PointMap>
+  using SortTraits = CGAL::Spatial_sort_traits_adapter_2<Kernel, PointMap>;
+
+  static CgalPoint point(const Point<2>& p) { return {p[0], p[1]}; }
+  static auto all_cells(Delaunay& d) { return d.all_face_handles(); }
+  static auto start(const Delaunay::Vertex_handle& v) { return v->face(); }
+};
+
+template <>
+struct CgalTraits<3> {
+  using CgalPoint = Kernel::Point_3;
+  using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<VertexInfo, Kernel>;
+  using CellBase =
+      CGAL::Triangulation_cell_base_with_info_3<CellIndex, Kernel,
+                                                CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+  using Tds = CGAL::Triangulation_data_structure_3<VertexBase, CellBase>;
+  using Delaunay = CGAL::Delaunay_triangulation_3<Kernel, Tds>;
+  template <typename PointMap>
+  using SortTraits = CGAL::Spatial_sort_traits_adapter_3<Kernel, PointMap>;
+
+  static CgalPoint point(const Point<3>& p) { return {p[0], p[1], p[2]}; }
+  static auto all_cells(Delaunay& d) { return d.all_cell_handles(); }
+  static auto start(const Delaunay::Vertex_handle& v) { return v->cell(); }
+};
+
+/// Builds the triangulation, giving each vertex the number of its point (its place, not yet counted
+/// from first_vertex).
+template <int D>
+class Inserter {
+  using Traits = CgalTraits<D>;
+  using Entry = std::pair<typename Traits::CgalPoint, VertexId>;
+
+ public:
+  Inserter(const BaseCaseInput<D>& input, typename Traits::Delaunay& delaunay)
+      : input_(input), delaunay_(delaunay) {}
+
+  /// The basis comes first: as long as all points are collinear or coplanar, CGAL's location takes
+  /// linear time. The others follow in spatial order.
+  void insert_all(std::span<const VertexId> basis) {
+    for (const VertexId i : basis) insert(Traits::point(input_.points[i]), i);
+    std::vector<Entry> entries;
+    entries.reserve(input_.points.size());
+    for (VertexId i = 0; i < input_.points.size(); ++i) {
+      if (std::find(basis.begin(), basis.end(), i) == basis.end()) {
+        entries.emplace_back(Traits::point(input_.points[i]), i);
+      }
+    }
+    using PointMap = CGAL::First_of_pair_property_map<Entry>;
+    CGAL::spatial_sort(entries.begin(), entries.end(),
+                       typename Traits::template SortTraits<PointMap>());
+    for (const auto& [point, i] : entries) insert(point, i);
+  }
+
+  /// The points that were left out, sorted.
+  [[nodiscard]] std::vector<Duplicate> duplicates() const {
+    // A vertex's last owner is the kept one: follow each replacement to it, the latest first.
+    std::vector<Duplicate> result;
+    std::unordered_map<VertexId, VertexId> owner;
+    for (auto drop = drops_.rbegin(); drop != drops_.rend(); ++drop) {
+      const auto known = owner.find(drop->kept);
+      const VertexId kept = known == owner.end() ? drop->kept : known->second;
+      owner.emplace(drop->dropped, kept);
+      result.push_back({input_.first_vertex + drop->dropped, input_.first_vertex + kept});
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+  }
+
+ private:
+  void insert(const typename Traits::CgalPoint& point, VertexId i) {
+    const auto vertex =
+        last_ == nullptr ? delaunay_.insert(point) : delaunay_.insert(point, Traits::start(last_));
+    last_ = vertex;
+    VertexId& owner = vertex->info().id;
+    if (owner == kNoVertex) {
+      owner = i;
+    } else if (input_.input_index[i] < input_.input_index[owner]) {
+      drops_.push_back({owner, i});
+      owner = i;
+    } else {
+      drops_.push_back({i, owner});
+    }
+  }
+
+  const BaseCaseInput<D>& input_;
+  typename Traits::Delaunay& delaunay_;
+  typename Traits::Delaunay::Vertex_handle last_;
+  std::vector<Duplicate> drops_;  ///< in order of insertion; `kept` may itself be dropped later
+};
+
+}  // namespace
+
+template <int D>
+BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const VertexId> basis) {
+  using Traits = CgalTraits<D>;
+  typename Traits::Delaunay delaunay;
+  Inserter<D> inserter(input, delaunay);
+  inserter.insert_all(basis);
+  for (const auto vertex : delaunay.finite_vertex_handles()) {
+    vertex->info().id += input.first_vertex;
+  }
+  delaunay.infinite_vertex()->info().id = kInfiniteVertex;
+
+  BaseCase<D> result;
+  result.dimension = D;
+  result.duplicates = inserter.duplicates();
+  CellIndex count = 0;
+  for (const auto cell : Traits::all_cells(delaunay)) cell->info() = count++;
+  result.simplices.reserve(count);
+  for (const auto cell : Traits::all_cells(delaunay)) {
+    Simplex<D>& simplex = result.simplices.emplace_back();
+    for (int i = 0; i <= D; ++i) {
+      simplex.vertices[i] = cell->vertex(i)->info().id;
+      simplex.neighbours[i] = cell->neighbor(i)->info();
+    }
+    if (simplex.infinite()) result.hull.push_back(cell->info());
+  }
+  return result;
+}
+
+template BaseCase<2> cgal_base_case<2>(const BaseCaseInput<2>&, std::span<const VertexId>);
+template BaseCase<3> cgal_base_case<3>(const BaseCaseInput<3>&, std::span<const VertexId>);
+
+}  // namespace spillway

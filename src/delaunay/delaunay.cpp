@@ -1,0 +1,158 @@
+#include "src/delaunay/delaunay.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "src/delaunay/base_case.h"
+#include "src/delaunay/finality.h"
+#include "src/delaunay/merge.h"
+#include "src/delaunay/schedule.h"
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+
+namespace spillway {
+namespace {
+
+/// Base cases about this size keep CGAL's structures in a core's caches; smaller ones lose more to
+/// merging, larger ones to memory (docs/performance.md has the measurements).
+template <int D>
+constexpr std::size_t kCacheSizedBaseCase = D == 2 ? 32'768 : 65'536;
+
+/// A border with more than this share of a part's points is triangulated at once: dividing it again
+/// would not make it smaller.
+constexpr double kLargestDividedBorder = 0.5;
+
+/// So many base cases that a border is divided into, to have something to do for every thread.
+constexpr std::size_t kBorderBaseCases = 4;
+constexpr std::size_t kSmallestBorderBaseCase = 4'096;
+
+/// The default: the number of parts is a power of two, with room for cuts that miss the middle.
+template <int D>
+std::size_t default_base_case_size(std::size_t points) {
+  constexpr double kSlack = 1.1;
+  const std::size_t parts = std::bit_floor(
+      std::max<std::size_t>(1, (points + kCacheSizedBaseCase<D> / 2) / kCacheSizedBaseCase<D>));
+  return static_cast<std::size_t>(std::ceil(static_cast<double>(points) / parts * kSlack));
+}
+
+/// Algorithm 1 on one array of points.
+template <int D>
+class Run {
+ public:
+  Run(std::vector<Point<D>> points, const DelaunayOptions& options) : options_(options) {
+    result_.points = std::move(points);
+    result_.input_index.resize(result_.points.size());
+    std::iota(result_.input_index.begin(), result_.input_index.end(), VertexId{0});
+  }
+
+  Triangulation<D> triangulate(std::size_t base_case_size, Task& task) && {
+    task.before.resize(1);
+    const Part<D> root =
+        divide<D>(result_.points, result_.input_index,
+                  {base_case_size, options_.division, options_.children}, task.before.data());
+    result_.blocks.resize(root.block + 1);
+    marks_.resize(root.block + 1);
+    duplicates_.resize(root.block + 1);
+    base_case_size_ = base_case_size;
+    PartSurface surface = triangulate_part(root, task);
+    result_.dimension = surface.dimension;
+    result_.hull = std::move(surface.hull);
+    for (const auto& some : duplicates_) {
+      result_.duplicates.insert(result_.duplicates.end(), some.begin(), some.end());
+    }
+    return std::move(result_);
+  }
+
+ private:
+  PartSurface triangulate_part(const Part<D>& part, Task& task) {
+    task.points = part.size();
+    return part.leaf() ? triangulate_leaf(part, task) : triangulate_node(part, task);
+  }
+
+  PartSurface triangulate_leaf(const Part<D>& part, Task& task) {
+    task.kind = "base_case";
+    const Stopwatch watch(task.seconds);
+    BaseCase<D> leaf = triangulate_base_case<D>(
+        {.points = std::span(result_.points).subspan(part.begin, part.size()),
+         .input_index = std::span(result_.input_index).subspan(part.begin, part.size()),
+         .first_vertex = part.begin});
+    PartSurface surface;
+    surface.dimension = leaf.dimension;
+    if (leaf.dimension < D) {
+      std::vector<VertexId> dropped;
+      for (const Duplicate& duplicate : leaf.duplicates) dropped.push_back(duplicate.dropped);
+      std::vector<VertexId> all(part.size());
+      std::iota(all.begin(), all.end(), part.begin);
+      std::set_difference(all.begin(), all.end(), dropped.begin(), dropped.end(),
+                          std::back_inserter(surface.vertices));
+    }
+    for (const std::uint32_t i : leaf.hull) surface.hull.push_back({part.block, i});
+    marks_[part.block].assign(leaf.simplices.size(), Mark::kInterior);
+    result_.blocks[part.block].simplices = std::move(leaf.simplices);
+    duplicates_[part.block] = std::move(leaf.duplicates);
+    return surface;
+  }
+
+  PartSurface triangulate_node(const Part<D>& part, Task& task) {
+    task.kind = "node";
+    task.children.resize(part.children.size());
+    std::vector<PartSurface> surfaces(part.children.size());
+    TaskGroup group;
+    for (std::size_t c = 0; c < part.children.size(); ++c) {
+      group.run([&, c] { surfaces[c] = triangulate_part(part.children[c], task.children[c]); });
+    }
+    group.wait();
+    return merge<D>(
+        result_, marks_, part, surfaces,
+        [this](std::vector<Point<D>> points, std::size_t part_size, Task& border_task) {
+          return triangulate_border(std::move(points), part_size, border_task);
+        },
+        task);
+  }
+
+  Triangulation<D> triangulate_border(std::vector<Point<D>> points, std::size_t part_size,
+                                      Task& task) const {
+    const auto count = static_cast<double>(points.size());
+    std::size_t base_case_size = points.size();
+    if (count <= kLargestDividedBorder * static_cast<double>(part_size)) {
+      base_case_size =
+          std::clamp(points.size() / kBorderBaseCases,
+                     std::min(kSmallestBorderBaseCase, base_case_size_), base_case_size_);
+    }
+    return Run(std::move(points), options_).triangulate(base_case_size, task);
+  }
+
+  const DelaunayOptions& options_;
+  std::size_t base_case_size_ = 0;
+  Triangulation<D> result_;
+  std::vector<BlockMarks> marks_;                   ///< by block
+  std::vector<std::vector<Duplicate>> duplicates_;  ///< by block
+};
+
+}  // namespace
+
+template <int D>
+Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOptions& options) {
+  if (points.size() > kMaxVertices) {
+    throw Error("more than " + std::to_string(kMaxVertices) +
+                " points: too many for one triangulation in memory");
+  }
+  const std::size_t base_case_size = options.base_case_size == 0
+                                         ? default_base_case_size<D>(points.size())
+                                         : options.base_case_size;
+  Triangulation<D> result;
+  Task unused;
+  with_threads(options.threads == 0 ? available_threads() : options.threads, [&] {
+    result = Run<D>({points.begin(), points.end()}, options)
+                 .triangulate(base_case_size, options.tasks == nullptr ? unused : *options.tasks);
+  });
+  return result;
+}
+
+template Triangulation<2> delaunay<2>(std::span<const Point<2>>, const DelaunayOptions&);
+template Triangulation<3> delaunay<3>(std::span<const Point<3>>, const DelaunayOptions&);
+
+}  // namespace spillway

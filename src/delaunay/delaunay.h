@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "src/delaunay/divide.h"
+#include "src/delaunay/triangulation.h"
+
+namespace spillway {
+
+struct Task;
+
+/// How `delaunay` does its work. None of it changes the set of simplices.
+struct DelaunayOptions {
+  unsigned threads = 0;  ///< 0: as many as the machine has
+  std::size_t base_case_size =
+      0;  ///< largest number of points in one base case; 0: chosen by D and n
+  DivisionScheme division = DivisionScheme::kLongestExtent;
+  unsigned children = 2;  ///< parts that are merged at a time
+  Task* tasks = nullptr;  ///< if set, receives the tree of tasks with their durations
+};
+
+/// The Delaunay triangulation of all points, exact, ties broken as src/geometry/predicates.h says:
+/// Algorithm 1 of Funke and Sanders, "Parallel d-D Delaunay Triangulations in Shared and
+/// Distributed Memory" (ALENEX 2017). Points must be finite. Equal points become one vertex,
+/// numbered as the first of them in the input. The simplices and their order depend on points,
+/// base_case_size, division and children, never on threads. Throws Error for more than kMaxVertices
+/// points.
+template <int D>
+Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOptions& options = {});
+
+}  // namespace spillway

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "src/geometry/box.h"
+#include "src/geometry/point.h"
+
+namespace spillway {
+
+struct Task;
+
+/// Which axis a division cuts (Funke, Sanders 2017, section 3: "constant", "cyclic" and "dynamic").
+enum class DivisionScheme {
+  kLongestExtent,  ///< the longest side of the points' tight box
+  kCyclingAxis,    ///< x, y, (z,) x, ... by depth
+  kConstantAxis,   ///< always x
+};
+
+struct DivideOptions {
+  std::size_t leaf_size = 0;  ///< parts of at most so many points are not divided further
+  DivisionScheme scheme = DivisionScheme::kLongestExtent;
+  unsigned children = 2;  ///< parts made of one part at a time, at least 2
+};
+
+/// A node of the k-d tree over an array of points.
+template <int D>
+struct Part {
+  VertexId begin = 0;  ///< its points are [begin, end) of the array
+  VertexId end = 0;
+  Box<D> box;                  ///< tight around them
+  std::uint32_t block = 0;     ///< its number in post-order: children before parents
+  std::vector<Part> children;  ///< none for a leaf
+
+  [[nodiscard]] std::size_t size() const { return end - begin; }
+  [[nodiscard]] bool leaf() const { return children.empty(); }
+};
+
+/// Divides the points into a k-d tree and puts them, with their input indices, into its order. Cuts
+/// compare coordinates with a value taken from a sample, so equal points always stay together; a
+/// part is a leaf when it has at most leaf_size points or when all its points are equal. Where the
+/// scheme's axis has no extent the longest one is cut. The result doesn't depend on the number of
+/// threads. If `task` is set, it receives the tree of divisions with their durations.
+template <int D>
+Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
+               const DivideOptions& options, Task* task = nullptr);
+
+}  // namespace spillway

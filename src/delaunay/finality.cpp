@@ -1,0 +1,91 @@
+#include "src/delaunay/finality.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+
+#include "src/geometry/circumsphere.h"
+#include "src/parallel/parallel.h"
+
+namespace spillway {
+namespace {
+
+/// Simplices that a task of the border search looks at before it shares its work.
+constexpr std::size_t kBorderBatch = 512;
+
+template <int D, typename Meets>
+bool any_leaf_meets(const Part<D>& part, const Meets& meets) {
+  if (!meets(part.box)) return false;
+  if (part.leaf()) return true;
+  return std::any_of(part.children.begin(), part.children.end(),
+                     [&](const Part<D>& child) { return any_leaf_meets(child, meets); });
+}
+
+}  // namespace
+
+template <int D>
+bool may_be_changed(const Simplex<D>& simplex, std::span<const Point<D>> points,
+                    std::span<const Part<D>* const> others) {
+  const auto meets_others = [&](const auto& meets) {
+    return std::any_of(others.begin(), others.end(),
+                       [&](const Part<D>* other) { return any_leaf_meets(*other, meets); });
+  };
+  const int infinite_place = simplex.infinite_place();
+  if (infinite_place < 0) {
+    std::array<Point<D>, D + 1> corners;
+    for (int i = 0; i <= D; ++i) corners[i] = points[simplex.vertices[i]];
+    const CertifiedBall<D> ball = certified_ball<D>(corners);
+    return meets_others([&](const Box<D>& box) { return may_meet<D>(ball, box); });
+  }
+  // Bring the infinite vertex to the end by an even permutation: the rest is the facet as
+  // half_space_meets wants it.
+  std::array<Point<D>, D> facet;
+  std::array<VertexId, D + 1> vertices = simplex.vertices;
+  if (infinite_place != D) {
+    std::swap(vertices[infinite_place], vertices[D]);
+    std::swap(vertices[0], vertices[1]);
+  }
+  for (int i = 0; i < D; ++i) facet[i] = points[vertices[i]];
+  return meets_others([&](const Box<D>& box) { return half_space_meets<D>(facet, box); });
+}
+
+template <int D>
+std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
+                                   std::span<const SimplexId> hull,
+                                   std::span<const Part<D>* const> others,
+                                   std::span<BlockMarks> marks) {
+  const auto mark = [&](SimplexId id) { return std::atomic_ref<Mark>(marks[id.block][id.index]); };
+  std::mutex mutex;
+  std::vector<SimplexId> border;  // guarded by `mutex`
+  parallel_work_queue(
+      std::vector<SimplexId>(hull.begin(), hull.end()), kBorderBatch,
+      [&](std::span<const SimplexId> candidates, std::vector<SimplexId>& found) {
+        std::vector<SimplexId> mine;
+        for (const SimplexId id : candidates) {
+          if (mark(id).load(std::memory_order_relaxed) != Mark::kInterior) continue;
+          if (!may_be_changed<D>(triangulation.simplex(id), triangulation.points, others)) continue;
+          if (mark(id).exchange(Mark::kBorder, std::memory_order_relaxed) != Mark::kInterior) {
+            continue;
+          }
+          mine.push_back(id);
+          for (int i = 0; i <= D; ++i) found.push_back(triangulation.neighbour(id, i));
+        }
+        const std::lock_guard lock(mutex);
+        border.insert(border.end(), mine.begin(), mine.end());
+      });
+  std::sort(border.begin(), border.end());
+  return border;
+}
+
+template bool may_be_changed<2>(const Simplex<2>&, std::span<const Point<2>>,
+                                std::span<const Part<2>* const>);
+template bool may_be_changed<3>(const Simplex<3>&, std::span<const Point<3>>,
+                                std::span<const Part<3>* const>);
+template std::vector<SimplexId> find_border<2>(const Triangulation<2>&, std::span<const SimplexId>,
+                                               std::span<const Part<2>* const>,
+                                               std::span<BlockMarks>);
+template std::vector<SimplexId> find_border<3>(const Triangulation<3>&, std::span<const SimplexId>,
+                                               std::span<const Part<3>* const>,
+                                               std::span<BlockMarks>);
+
+}  // namespace spillway

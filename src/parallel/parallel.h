@@ -1,0 +1,76 @@
+#pragma once
+// The seam to the thread library (oneTBB): nothing else in the engine includes its headers. With
+// one thread everything runs in the calling thread, in order.
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace spillway {
+
+/// Number of processors this process may use.
+unsigned available_threads();
+
+/// Runs `work` with at most so many threads for all loops and groups inside. An exception of any
+/// worker is thrown here.
+void with_threads(unsigned threads, const std::function<void()>& work);
+
+/// Tasks that run beside each other. Inside with_threads(1, ...), run() does the work at once.
+class TaskGroup {
+ public:
+  TaskGroup();
+  ~TaskGroup();
+  TaskGroup(const TaskGroup&) = delete;
+  TaskGroup& operator=(const TaskGroup&) = delete;
+
+  void run(std::function<void()> work);
+
+  /// Waits for all tasks, lends a hand meanwhile, and throws what one of them threw.
+  void wait();
+
+ private:
+  struct Tasks;
+  std::unique_ptr<Tasks> tasks_;
+};
+
+/// Number of grains that [0, count) falls into.
+inline std::size_t grain_count(std::size_t count, std::size_t grain) {
+  return (count + grain - 1) / grain;
+}
+
+/// Calls body(grain_number, begin, end) for consecutive ranges of `grain` items (the last may be
+/// shorter) that cover [0, count). The ranges don't depend on the number of threads, so results
+/// kept by grain number are deterministic. A single grain runs in the calling thread.
+void parallel_for(
+    std::size_t count, std::size_t grain,
+    const std::function<void(std::size_t grain_number, std::size_t begin, std::size_t end)>& body);
+
+/// Works off a set of items that grows as it is worked on: calls body(items, found) for batches of
+/// items, each thread pushing what it finds to its own `found`, until nothing is left. Batches keep
+/// to about `batch` items; the order is unspecified.
+template <typename Item, typename Body>
+void parallel_work_queue(std::vector<Item> items, std::size_t batch, const Body& body) {
+  TaskGroup group;
+  std::function<void(std::vector<Item>)> work = [&](std::vector<Item> todo) {
+    std::vector<Item> found;
+    while (!todo.empty()) {
+      while (todo.size() > 2 * batch) {
+        std::vector<Item> share(todo.end() - static_cast<std::ptrdiff_t>(batch), todo.end());
+        todo.resize(todo.size() - batch);
+        group.run([&work, share = std::move(share)] { work(share); });
+      }
+      found.clear();
+      body(std::span<const Item>(todo), found);
+      std::swap(todo, found);
+    }
+  };
+  work(std::move(items));
+  group.wait();
+}
+
+}  // namespace spillway

@@ -1,0 +1,224 @@
+// The contract: for every input one triangulation, CGAL's, whatever the options.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "src/delaunay/delaunay.h"
+#include "src/generators/generators.h"
+#include "tests/delaunay/cgal_oracle.h"
+
+namespace spillway {
+namespace {
+
+template <int D>
+std::vector<std::array<VertexId, D + 1>> finite_simplices(const Triangulation<D>& t) {
+  std::vector<std::array<VertexId, D + 1>> simplices;
+  t.for_each_simplex([&](SimplexId, const Simplex<D>& simplex) {
+    if (simplex.infinite()) return;
+    auto& s = simplices.emplace_back();
+    for (int i = 0; i <= D; ++i) s[i] = t.input_index[simplex.vertices[i]];
+    std::sort(s.begin(), s.end());
+  });
+  std::sort(simplices.begin(), simplices.end());
+  return simplices;
+}
+
+/// Triangulates in several ways and compares each with CGAL's set of simplices.
+template <int D>
+void expect_equal_to_cgal(const std::vector<Point<D>>& points,
+                          const std::vector<DelaunayOptions>& ways) {
+  const auto expected = cgal_simplices<D>(points);
+  const std::size_t hull_facets = cgal_hull_facets<D>(points);
+  for (const DelaunayOptions& options : ways) {
+    SCOPED_TRACE(testing::Message()
+                 << points.size() << " points, base case " << options.base_case_size << ", "
+                 << options.threads << " threads, " << options.children << " children, division "
+                 << static_cast<int>(options.division));
+    const Triangulation<D> t = delaunay<D>(points, options);
+    ASSERT_TRUE(finite_simplices(t) == expected)
+        << t.finite_count() << " simplices, CGAL has " << expected.size();
+    EXPECT_EQ(t.hull.size(), hull_facets);
+    if (points.size() <= 3000) {
+      EXPECT_THAT(verify(t), testing::IsEmpty());
+    }
+  }
+}
+
+const std::vector<DelaunayOptions> kManyWays = {
+    {.threads = 1, .base_case_size = 10},
+    {.threads = 2, .base_case_size = 10, .children = 8},
+    {.threads = 4, .base_case_size = 25, .division = DivisionScheme::kCyclingAxis},
+    {.threads = 2, .base_case_size = 40, .division = DivisionScheme::kConstantAxis, .children = 3},
+    {.threads = 4, .base_case_size = 300, .children = 4},
+};
+
+struct FamilyCase {
+  Family family;
+  int dimension;
+};
+
+std::uint64_t large_count(const FamilyCase& tested) {
+  if (tested.family == Family::kCollinear) return 2'000;  // CGAL takes quadratic time
+  if (tested.dimension == 2) return 100'000;
+  return tested.family == Family::kLines ? 1'000 : 30'000;  // which have n^2/4 tetrahedra
+}
+
+class DelaunayOfFamily : public testing::TestWithParam<FamilyCase> {};
+
+TEST_P(DelaunayOfFamily, EqualsCgalForSmallSets) {
+  for (const std::uint64_t n : {0, 1, 2, 3, 4, 5, 7, 12, 30, 100, 500, 2000}) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const GeneratorOptions generate{GetParam().family, n, GetParam().dimension, seed};
+      SCOPED_TRACE(testing::Message() << "seed " << seed);
+      if (GetParam().dimension == 2) {
+        expect_equal_to_cgal<2>(generate_points<2>(generate), kManyWays);
+      } else if (n <= 100 || seed == 1) {
+        expect_equal_to_cgal<3>(generate_points<3>(generate), kManyWays);
+      }
+    }
+  }
+}
+
+TEST_P(DelaunayOfFamily, EqualsCgalForLargeSets) {
+  const std::uint64_t n = large_count(GetParam());
+  const GeneratorOptions generate{GetParam().family, n, GetParam().dimension, 7};
+  const std::vector<DelaunayOptions> ways = {{.threads = 2},
+                                             {.threads = 1, .base_case_size = 3000},
+                                             {.threads = 4, .base_case_size = 500, .children = 4}};
+  if (GetParam().dimension == 2) {
+    expect_equal_to_cgal<2>(generate_points<2>(generate), ways);
+  } else {
+    expect_equal_to_cgal<3>(generate_points<3>(generate), ways);
+  }
+}
+
+std::vector<FamilyCase> all_cases() {
+  std::vector<FamilyCase> cases;
+  for (int dimension : {2, 3}) {
+    for (const std::string& name : family_names()) {
+      cases.push_back({family_by_name(name), dimension});
+    }
+  }
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, DelaunayOfFamily, testing::ValuesIn(all_cases()),
+                         [](const auto& tested) {
+                           return family_names()[static_cast<std::size_t>(tested.param.family)] +
+                                  std::to_string(tested.param.dimension) + "d";
+                         });
+
+/// Degenerate sets that no generator makes.
+template <typename Dimension>
+class DelaunayOfDegenerateSet : public testing::Test {
+ protected:
+  static constexpr int kD = Dimension::value;
+  using Points = std::vector<Point<kD>>;
+
+  static Points random_integers(std::size_t n, std::array<int, 3> extent, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    Points points(n);
+    for (auto& p : points) {
+      for (int k = 0; k < kD; ++k) {
+        p[k] = static_cast<double>(random() % static_cast<std::uint64_t>(extent[k]));
+      }
+    }
+    return points;
+  }
+};
+
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(DelaunayOfDegenerateSet, Dimensions);
+
+TYPED_TEST(DelaunayOfDegenerateSet, EqualsCgalOnTinyLatticesWithDuplicates) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const int side = 2 + static_cast<int>(seed % 5);
+    expect_equal_to_cgal<TestFixture::kD>(
+        TestFixture::random_integers(5 + 3 * seed, {side, side, side}, seed), kManyWays);
+  }
+}
+
+TYPED_TEST(DelaunayOfDegenerateSet, EqualsCgalWhenPartsAreSingleLinesOrPlanes) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    expect_equal_to_cgal<TestFixture::kD>(TestFixture::random_integers(300, {3, 40, 40}, seed),
+                                          kManyWays);
+    expect_equal_to_cgal<TestFixture::kD>(TestFixture::random_integers(300, {2, 2, 300}, seed),
+                                          kManyWays);
+  }
+}
+
+TYPED_TEST(DelaunayOfDegenerateSet, EqualsCgalAtHugeOffsets) {
+  auto points = TestFixture::random_integers(2000, {50, 50, 50}, 5);
+  for (auto& p : points) {
+    for (double& x : p) x = x * 0.125 + 4'123'456'789.0;
+  }
+  expect_equal_to_cgal<TestFixture::kD>(points, kManyWays);
+}
+
+TYPED_TEST(DelaunayOfDegenerateSet, EqualsCgalOnTightClustersFarApart) {
+  auto points = TestFixture::random_integers(2000, {1000, 1000, 1000}, 6);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (double& x : points[i]) x = x * 1e-9 + static_cast<double>(i % 7) * 1000;
+  }
+  expect_equal_to_cgal<TestFixture::kD>(points, kManyWays);
+}
+
+TYPED_TEST(DelaunayOfDegenerateSet, HasNoSimplicesIfAllPointsLieOnOneLine) {
+  std::vector<Point<TestFixture::kD>> points(200);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].fill(static_cast<double>(i / 2));
+  for (const DelaunayOptions& options : kManyWays) {
+    const auto t = delaunay<TestFixture::kD>(points, options);
+    EXPECT_EQ(t.dimension, 1);
+    EXPECT_EQ(t.finite_count(), 0U);
+    EXPECT_EQ(t.vertex_count(), 100U);
+  }
+}
+
+TYPED_TEST(DelaunayOfDegenerateSet, SurvivesAllPointsEqual) {
+  const std::vector<Point<TestFixture::kD>> points(100);
+  for (const DelaunayOptions& options : kManyWays) {
+    const auto t = delaunay<TestFixture::kD>(points, options);
+    EXPECT_EQ(t.dimension, 0);
+    EXPECT_EQ(t.vertex_count(), 1U);
+    ASSERT_EQ(t.duplicates.size(), 99U);
+    EXPECT_EQ(t.input_index[t.duplicates.front().kept], 0U);
+  }
+}
+
+TYPED_TEST(DelaunayOfDegenerateSet, KeepsTheFirstOfEqualPoints) {
+  const auto points = TestFixture::random_integers(1000, {6, 6, 6}, 3);
+  const auto t = delaunay<TestFixture::kD>(points, {.base_case_size = 20});
+  for (const Duplicate& d : t.duplicates) {
+    const auto first = std::find(points.begin(), points.end(), t.points[d.kept]);
+    EXPECT_EQ(t.input_index[d.kept], static_cast<VertexId>(first - points.begin()));
+    EXPECT_EQ(t.points[d.kept], t.points[d.dropped]);
+  }
+  EXPECT_THAT(verify(t), testing::IsEmpty());
+}
+
+TYPED_TEST(DelaunayOfDegenerateSet, ListsTheSameSimplicesInTheSameOrderForAnyThreadCount) {
+  const auto points = TestFixture::random_integers(20000, {400, 400, 400}, 9);
+  const auto once = delaunay<TestFixture::kD>(points, {.threads = 1, .base_case_size = 500});
+  for (const unsigned threads : {2U, 4U}) {
+    const auto again =
+        delaunay<TestFixture::kD>(points, {.threads = threads, .base_case_size = 500});
+    ASSERT_EQ(once.blocks.size(), again.blocks.size());
+    EXPECT_EQ(once.input_index, again.input_index);
+    EXPECT_EQ(once.hull, again.hull);
+    for (std::size_t b = 0; b < once.blocks.size(); ++b) {
+      ASSERT_EQ(once.blocks[b].simplices.size(), again.blocks[b].simplices.size());
+      for (std::size_t i = 0; i < once.blocks[b].simplices.size(); ++i) {
+        ASSERT_EQ(once.blocks[b].simplices[i].vertices, again.blocks[b].simplices[i].vertices);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spillway

@@ -1,0 +1,77 @@
+#include "src/parallel/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+
+#include "src/delaunay/hash.h"
+
+namespace spillway {
+namespace {
+
+class Parallel : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Parallel, ForCoversEveryItemOnceInFixedGrains) {
+  with_threads(GetParam(), [] {
+    std::vector<std::atomic<int>> visits(1003);
+    std::vector<std::size_t> begins(grain_count(visits.size(), 10));
+    parallel_for(visits.size(), 10, [&](std::size_t g, std::size_t begin, std::size_t end) {
+      begins[g] = begin;
+      for (std::size_t i = begin; i < end; ++i) ++visits[i];
+    });
+    for (const auto& visit : visits) EXPECT_EQ(visit, 1);
+    for (std::size_t g = 0; g < begins.size(); ++g) EXPECT_EQ(begins[g], 10 * g);
+  });
+}
+
+TEST_P(Parallel, WorkQueueReachesEverythingThatItemsLeadTo) {
+  with_threads(GetParam(), [] {
+    constexpr int kCount = 100'000;
+    std::vector<std::atomic<bool>> reached(kCount);
+    parallel_work_queue(std::vector<int>{1}, 16,
+                        [&](std::span<const int> items, std::vector<int>& found) {
+                          for (const int i : items) {
+                            if (i >= kCount || reached[i].exchange(true)) continue;
+                            found.push_back(2 * i);
+                            found.push_back(2 * i + 1);
+                          }
+                        });
+    for (int i = 1; i < kCount; ++i) EXPECT_TRUE(reached[i]);
+  });
+}
+
+TEST_P(Parallel, ErrorsOfWorkersReachTheCaller) {
+  const auto fail_in_group = [] {
+    TaskGroup group;
+    for (int i = 0; i < 8; ++i) {
+      group.run([i] {
+        if (i == 5) throw std::runtime_error("five");
+      });
+    }
+    group.wait();
+  };
+  EXPECT_THROW(with_threads(GetParam(), fail_in_group), std::runtime_error);
+}
+
+TEST_P(Parallel, IndexFindsAllItemsInsertedAtOnceInspiteOfEqualHashes) {
+  with_threads(GetParam(), [] {
+    constexpr std::size_t kCount = 20'000;
+    ConcurrentIndex index(kCount);
+    const auto hash = [](std::size_t i) { return mix64(i / 3); };
+    parallel_for(kCount, 100, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        index.insert(hash(i), static_cast<std::uint32_t>(i));
+      }
+    });
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      EXPECT_EQ(index.find(hash(i), [&](std::uint32_t item) { return item == i; }), i);
+    }
+    EXPECT_EQ(index.find(hash(0), [](std::uint32_t) { return false; }), ConcurrentIndex::kNotFound);
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 4));
+
+}  // namespace
+}  // namespace spillway
