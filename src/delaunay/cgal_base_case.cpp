@@ -1,6 +1,10 @@
 // The base case by CGAL's incremental Delaunay triangulations: the only file of the engine that
 // includes CGAL. What differs between 2D and 3D stands in CgalTraits.
 
+#include "src/delaunay/kernel_arena.h"
+// CGAL's way to choose the allocator of its containers.
+#define CGAL_ALLOCATOR(T) spillway::KernelAllocator<T>
+
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -137,6 +141,7 @@ class Inserter {
 template <int D>
 BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const VertexId> basis) {
   using Traits = CgalTraits<D>;
+  const KernelArena arena;
   typename Traits::Delaunay delaunay;
   Inserter<D> inserter(input, delaunay);
   inserter.insert_all(basis);

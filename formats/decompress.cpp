@@ -1,0 +1,142 @@
+#include "formats/decompress.h"
+
+#include <fmt/format.h>
+#include <zstd.h>
+
+#include <boost/iostreams/categories.hpp>
+#include <boost/iostreams/filter/bzip2.hpp>
+#include <boost/iostreams/filter/gzip.hpp>
+#include <boost/iostreams/filtering_streambuf.hpp>
+#include <ios>
+#include <string_view>
+#include <vector>
+
+#include "formats/bytes.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+constexpr std::size_t kCompressedBuffer = std::size_t{128} << 10;
+
+[[noreturn]] void fail(const InputSource& source, std::string_view format) {
+  throw Error(
+      fmt::format("{}: the {} data is corrupt or ends early, before byte {}; get a fresh copy",
+                  source.name(), format, source.position()));
+}
+
+/// Gives an InputSource to Boost.Iostreams.
+class SourceDevice {
+ public:
+  using char_type = char;
+  using category = boost::iostreams::source_tag;
+
+  explicit SourceDevice(InputSource& source) : source_(&source) {}
+
+  std::streamsize read(char* buffer, std::streamsize count) {
+    const std::span bytes(reinterpret_cast<std::byte*>(buffer), static_cast<std::size_t>(count));
+    const std::size_t got = source_->read(bytes);
+    return got == 0 ? -1 : static_cast<std::streamsize>(got);
+  }
+
+ private:
+  InputSource* source_;
+};
+
+/// Gzip and bzip2, through Boost.Iostreams.
+class BoostInput : public InputFile {
+ public:
+  BoostInput(InputSource& source, Compression compression)
+      : source_(source), format_(compression == Compression::kGzip ? "gzip" : "bzip2") {
+    if (compression == Compression::kGzip) {
+      stream_.push(boost::iostreams::gzip_decompressor(), kCompressedBuffer);
+    } else {
+      stream_.push(boost::iostreams::bzip2_decompressor(), kCompressedBuffer);
+    }
+    stream_.push(SourceDevice(source), kCompressedBuffer);
+  }
+
+  std::size_t read(std::span<std::byte> buffer) override {
+    try {
+      const auto got = stream_.sgetn(reinterpret_cast<char*>(buffer.data()),
+                                     static_cast<std::streamsize>(buffer.size()));
+      return static_cast<std::size_t>(got);
+    } catch (const std::ios_base::failure&) {
+      fail(source_, format_);
+    }
+  }
+
+  [[nodiscard]] std::optional<std::uint64_t> size() const override { return std::nullopt; }
+  [[nodiscard]] const std::string& name() const override { return source_.name(); }
+
+ private:
+  InputSource& source_;
+  std::string_view format_;
+  boost::iostreams::filtering_streambuf<boost::iostreams::input> stream_;
+};
+
+/// Zstandard, through its own library: Boost's filter takes truncated data for complete.
+class ZstdInput : public InputFile {
+ public:
+  explicit ZstdInput(InputSource& source)
+      : source_(source), context_(ZSTD_createDCtx()), compressed_(kCompressedBuffer) {}
+
+  std::size_t read(std::span<std::byte> buffer) override {
+    ZSTD_outBuffer out{buffer.data(), buffer.size(), 0};
+    while (out.pos < out.size) {
+      if (in_.pos == in_.size && !output_pending_ && !refill()) break;
+      const std::size_t full = out.pos;
+      frame_left_ = ZSTD_decompressStream(context_.get(), &out, &in_);
+      if (ZSTD_isError(frame_left_) != 0) fail(source_, "zstd");
+      output_pending_ = frame_left_ != 0 && out.pos == out.size && out.pos > full;
+    }
+    return out.pos;
+  }
+
+  [[nodiscard]] std::optional<std::uint64_t> size() const override { return std::nullopt; }
+  [[nodiscard]] const std::string& name() const override { return source_.name(); }
+
+ private:
+  struct Free {
+    void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
+  };
+
+  /// False at the end of the data, which must be the end of a frame.
+  bool refill() {
+    const std::size_t got = source_.read(compressed_);
+    if (got == 0 && frame_left_ != 0) fail(source_, "zstd");
+    in_ = {compressed_.data(), got, 0};
+    return got > 0;
+  }
+
+  InputSource& source_;
+  std::unique_ptr<ZSTD_DCtx, Free> context_;
+  std::vector<std::byte> compressed_;
+  ZSTD_inBuffer in_{nullptr, 0, 0};
+  std::size_t frame_left_ = 1;   // 0 once a frame is complete; a file without any frame is corrupt
+  bool output_pending_ = false;  // the last call filled the buffer and may have had more to give
+};
+
+}  // namespace
+
+Compression compression_of_name(const std::string& path) {
+  if (path.ends_with(".gz")) return Compression::kGzip;
+  if (path.ends_with(".bz2")) return Compression::kBzip2;
+  if (path.ends_with(".zst")) return Compression::kZstd;
+  return Compression::kNone;
+}
+
+Compression compression_of_content(std::span<const std::byte> first_bytes) {
+  const std::string_view text = as_text(first_bytes);
+  if (text.starts_with("\x1f\x8b")) return Compression::kGzip;
+  if (text.starts_with("BZh")) return Compression::kBzip2;
+  if (text.starts_with("\x28\xb5\x2f\xfd")) return Compression::kZstd;
+  return Compression::kNone;
+}
+
+std::unique_ptr<InputFile> decompressed(InputSource& source, Compression compression) {
+  if (compression == Compression::kZstd) return std::make_unique<ZstdInput>(source);
+  return std::make_unique<BoostInput>(source, compression);
+}
+
+}  // namespace spillway

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "formats/input_source.h"
+
+namespace spillway {
+
+enum class Compression { kNone, kGzip, kBzip2, kZstd };
+
+/// The compression that a file name's extension (.gz, .bz2, .zst) promises.
+Compression compression_of_name(const std::string& path);
+
+/// The compression whose magic number `first_bytes` begins with.
+Compression compression_of_content(std::span<const std::byte> first_bytes);
+
+/// A stream of what `source` holds compressed; several compressed streams one after another count
+/// as one. Its size is unknown. Throws Error on reading if the data is corrupt, ends early or is
+/// followed by something else. `source` must outlive the result.
+std::unique_ptr<InputFile> decompressed(InputSource& source, Compression compression);
+
+}  // namespace spillway

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace spillway {
+
+/// The fields of one line of a text mesh, separated by blanks and tabs.
+class Fields {
+ public:
+  explicit Fields(std::string_view line) : rest_(line) {}
+
+  /// Whether no field is left.
+  [[nodiscard]] bool at_end();
+
+  /// The next field; empty at the end.
+  std::string_view word();
+
+  /// The next field as a double, rounded to nearest; nothing if it is missing or no number.
+  std::optional<double> number();
+
+  /// The next field as a signed or unsigned integer; nothing if it is missing, no integer or out of
+  /// the type's range.
+  std::optional<std::int64_t> integer();
+  std::optional<std::uint64_t> count();
+
+ private:
+  std::string_view rest_;
+};
+
+/// All of `text` as an unsigned integer, or nothing.
+std::optional<std::uint64_t> parse_count(std::string_view text);
+
+}  // namespace spillway

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/file_system.h"
+
+namespace spillway {
+
+/// An input file whose first bytes can be looked at before they are read, so that a pipe's format
+/// can be recognised, and that knows how far it has been read.
+class InputSource : public InputFile {
+ public:
+  explicit InputSource(std::unique_ptr<InputFile> file) : file_(std::move(file)) {}
+
+  /// The first `count` bytes, fewer if the file is shorter. Only before the first read().
+  std::span<const std::byte> peek(std::size_t count);
+
+  std::size_t read(std::span<std::byte> buffer) override;
+
+  /// Reads and drops bytes; false if the file ends before.
+  bool skip(std::uint64_t count);
+
+  [[nodiscard]] std::optional<std::uint64_t> size() const override { return file_->size(); }
+  [[nodiscard]] const std::string& name() const override { return file_->name(); }
+
+  /// Number of bytes read so far.
+  [[nodiscard]] std::uint64_t position() const { return position_; }
+
+  /// The share of the file that has been read, from 0 to 1; nothing for pipes.
+  [[nodiscard]] std::optional<double> fraction_read() const;
+
+ private:
+  std::unique_ptr<InputFile> file_;
+  std::vector<std::byte> peeked_;
+  std::size_t peeked_read_ = 0;  // bytes of peeked_ that read() has given out
+  std::uint64_t position_ = 0;
+};
+
+}  // namespace spillway

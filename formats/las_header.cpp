@@ -1,0 +1,240 @@
+#include "formats/las_header.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "formats/bytes.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+/// The fields that only reading needs.
+struct Layout {
+  std::size_t header_size;
+  std::uint64_t offset_to_points;
+  std::uint32_t vlr_count;
+};
+
+[[noreturn]] void fail(const InputSource& source, const std::string& what) {
+  throw Error(fmt::format("{}: {}", source.name(), what));
+}
+
+/// Text up to the first NUL, on one line, without blanks at its end.
+std::string clean_text(std::string_view text) {
+  std::string result(text.substr(0, text.find('\0')));
+  std::replace_if(
+      result.begin(), result.end(),
+      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');
+  result.erase(result.find_last_not_of(' ') + 1);
+  return result;
+}
+
+std::vector<std::byte> read_public_header(InputSource& source) {
+  std::vector<std::byte> bytes(kLasHeaderSize);
+  const std::size_t got = source.read(bytes);
+  if (!as_text(std::span(bytes).first(got)).starts_with("LASF")) {
+    fail(source, "this is no LAS file: it does not begin with LASF; name its format");
+  }
+  if (got < kLasHeaderSize) {
+    fail(source, fmt::format("the file ends at byte {}, within the header of {} bytes; get a "
+                             "complete copy",
+                             got, kLasHeaderSize));
+  }
+  const auto header_size = load<std::uint16_t>(&bytes[las_field::kHeaderSize]);
+  const auto major = std::to_integer<int>(bytes[las_field::kVersionMajor]);
+  const auto minor = std::to_integer<int>(bytes[las_field::kVersionMinor]);
+  if (major != 1 || minor > 4) {
+    fail(source, fmt::format("the header says LAS version {}.{}, but only 1.0 to 1.4 are read; "
+                             "convert the file",
+                             major, minor));
+  }
+  const std::size_t least = minor < 4 ? kLasHeaderSize : kLas14HeaderSize;
+  if (header_size < least) {
+    fail(source, fmt::format("the header says it has {} bytes, but LAS 1.{} needs {}; the file is "
+                             "corrupt",
+                             header_size, minor, least));
+  }
+  bytes.resize(header_size);
+  const std::size_t rest = source.read(std::span(bytes).subspan(kLasHeaderSize));
+  if (rest < header_size - kLasHeaderSize) {
+    fail(source, fmt::format("the file ends at byte {}, within the header of {} bytes; get a "
+                             "complete copy",
+                             source.position(), header_size));
+  }
+  return bytes;
+}
+
+void check_point_format(const InputSource& source, unsigned format, std::size_t record_length) {
+  if ((format & 0x80U) != 0) {
+    fail(source,
+         "the points are compressed (LAZ), and this version reads LAS only; decompress the "
+         "file first, with laszip or pdal translate");
+  }
+  if (format >= kLasRecordLengths.size()) {
+    fail(source, fmt::format("the header says point format {}, but only 0 to 10 exist; the file is "
+                             "corrupt",
+                             format));
+  }
+  if (record_length < kLasRecordLengths[format]) {
+    fail(source, fmt::format("the header says point records of {} bytes, but format {} needs {}; "
+                             "the file is corrupt",
+                             record_length, format, kLasRecordLengths[format]));
+  }
+}
+
+std::uint64_t point_count(const InputSource& source, std::span<const std::byte> bytes,
+                          int point_format) {
+  const std::uint64_t legacy = load<std::uint32_t>(&bytes[las_field::kLegacyCount]);
+  if (std::to_integer<int>(bytes[las_field::kVersionMinor]) < 4) return legacy;
+  const auto count = load<std::uint64_t>(&bytes[las_field::kCount]);
+  if (count == 0) return legacy;
+  if (point_format < 6 && legacy != 0 && legacy != count) {
+    fail(source, fmt::format("the header gives two numbers of points, {} and {}; the file is "
+                             "corrupt",
+                             legacy, count));
+  }
+  return count;
+}
+
+Lattice read_lattice(const InputSource& source, std::span<const std::byte> bytes) {
+  constexpr double kLargest = 2147483648.0;
+  Lattice lattice;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto scale = load<double>(&bytes[las_field::kScale + axis * sizeof(double)]);
+    const auto offset = load<double>(&bytes[las_field::kOffset + axis * sizeof(double)]);
+    if (!(scale > 0) || !std::isfinite(kLargest * scale + std::abs(offset))) {
+      fail(source, fmt::format("the header has scale {} and offset {} for {}, but a scale is a "
+                               "positive number and an offset a finite one; the file is corrupt",
+                               scale, offset, "xyz"[axis]));
+    }
+    lattice.scale[axis] = scale;
+    lattice.offset[axis] = offset;
+  }
+  return lattice;
+}
+
+Box<3> read_extent(std::span<const std::byte> bytes) {
+  Box<3> extent;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::byte* bounds = &bytes[las_field::kBounds + axis * 2 * sizeof(double)];
+    extent.hi[axis] = load<double>(bounds);
+    extent.lo[axis] = load<double>(bounds + sizeof(double));
+    const double length = extent.hi[axis] - extent.lo[axis];
+    if (!(length >= 0 && std::isfinite(length))) return {};
+  }
+  return extent;
+}
+
+/// "EPSG:n" from the keys of a GeoTIFF directory, or nothing.
+std::string crs_of_geotiff_keys(std::span<const std::byte> keys) {
+  constexpr std::size_t kEntry = 4 * sizeof(std::uint16_t);
+  constexpr std::uint16_t kGeographicType = 2048;
+  constexpr std::uint16_t kProjectedCsType = 3072;
+  constexpr std::uint16_t kUserDefined = 32767;
+  std::uint16_t geographic = 0;
+  std::uint16_t projected = 0;
+  for (std::size_t at = kEntry; at + kEntry <= keys.size(); at += kEntry) {
+    const auto key = load<std::uint16_t>(&keys[at]);
+    const auto location = load<std::uint16_t>(&keys[at + 2]);
+    const auto value = load<std::uint16_t>(&keys[at + 6]);
+    if (location != 0 || value == kUserDefined) continue;
+    if (key == kGeographicType) geographic = value;
+    if (key == kProjectedCsType) projected = value;
+  }
+  const std::uint16_t code = projected != 0 ? projected : geographic;
+  return code != 0 ? fmt::format("EPSG:{}", code) : "";
+}
+
+/// Reads the variable length records up to the points; returns the coordinate system.
+std::string read_vlrs(InputSource& source, const Layout& layout) {
+  constexpr std::uint16_t kWkt = 2112;
+  constexpr std::uint16_t kGeotiffKeys = 34735;
+  std::string wkt;
+  std::string epsg;
+  std::array<std::byte, kLasVlrHeaderSize> header;
+  std::vector<std::byte> content;
+  for (std::uint32_t i = 0; i < layout.vlr_count; ++i) {
+    const std::uint64_t start = source.position();
+    if (start + header.size() > layout.offset_to_points || source.read(header) < header.size()) {
+      fail(source, fmt::format("variable length record {} at byte {} does not end before the "
+                               "points; the file is corrupt",
+                               i, start));
+    }
+    const std::string user = clean_text(as_text(std::span(header).subspan(2, 16)));
+    const auto record = load<std::uint16_t>(&header[18]);
+    content.resize(load<std::uint16_t>(&header[20]));
+    if (source.position() + content.size() > layout.offset_to_points ||
+        source.read(content) < content.size()) {
+      fail(source, fmt::format("variable length record {} at byte {} does not end before the "
+                               "points; the file is corrupt",
+                               i, start));
+    }
+    if (user != "LASF_Projection") continue;
+    if (record == kWkt) wkt = clean_text(as_text(content));
+    if (record == kGeotiffKeys) epsg = crs_of_geotiff_keys(content);
+  }
+  return wkt.empty() ? epsg : wkt;
+}
+
+/// Checks that the file can hold the records and points before any of them is read.
+void check_size(const InputSource& source, const Layout& layout, const LasHeader& header) {
+  if (layout.offset_to_points < layout.header_size) {
+    fail(source, fmt::format("the header says the points begin at byte {}, within the header of {} "
+                             "bytes; the file is corrupt",
+                             layout.offset_to_points, layout.header_size));
+  }
+  const std::uint64_t space = layout.offset_to_points - layout.header_size;
+  if (layout.vlr_count > space / kLasVlrHeaderSize) {
+    fail(source, fmt::format("the header says {} variable length records, but the {} bytes before "
+                             "the points cannot hold them; the file is corrupt",
+                             layout.vlr_count, space));
+  }
+  const std::optional<std::uint64_t> size = source.size();
+  if (!size) return;
+  if (layout.offset_to_points > *size) {
+    fail(source, fmt::format("the header says the points begin at byte {}, but the file ends at "
+                             "byte {}; get a complete copy",
+                             layout.offset_to_points, *size));
+  }
+  const std::uint64_t room = (*size - layout.offset_to_points) / header.record_length;
+  if (header.count > room) {
+    fail(source, fmt::format("the header says {} points of {} bytes, but the file ends at byte {}, "
+                             "after {} of them; get a complete copy",
+                             header.count, header.record_length, *size, room));
+  }
+}
+
+}  // namespace
+
+LasHeader read_las_header(InputSource& source) {
+  const std::vector<std::byte> bytes = read_public_header(source);
+  const Layout layout{bytes.size(), load<std::uint32_t>(&bytes[las_field::kOffsetToPoints]),
+                      load<std::uint32_t>(&bytes[las_field::kVlrCount])};
+  LasHeader header;
+  header.version = fmt::format("1.{}", std::to_integer<int>(bytes[las_field::kVersionMinor]));
+  header.record_length = load<std::uint16_t>(&bytes[las_field::kRecordLength]);
+  const auto format = std::to_integer<unsigned>(bytes[las_field::kPointFormat]);
+  check_point_format(source, format, header.record_length);
+  header.point_format = static_cast<int>(format);
+  header.count = point_count(source, bytes, header.point_format);
+  header.lattice = read_lattice(source, bytes);
+  header.extent = read_extent(bytes);
+  header.software =
+      clean_text(as_text(std::span(bytes).subspan(las_field::kSoftware, kLasTextField)));
+  check_size(source, layout, header);
+  header.crs = read_vlrs(source, layout);
+  if (!source.skip(layout.offset_to_points - source.position())) {
+    fail(source, fmt::format("the file ends at byte {}, before the points; get a complete copy",
+                             source.position()));
+  }
+  return header;
+}
+
+}  // namespace spillway

@@ -1,0 +1,69 @@
+#pragma once
+// The header of LAS files, as docs/formats-points.md ("LAS") describes it. Source: ASPRS, "LAS
+// Specification 1.4 - R15" (2019), tables 3 to 17, and the specifications of 1.0 to 1.3.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "formats/input_source.h"
+#include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
+
+namespace spillway {
+
+/// Where the fields of the public header block lie.
+namespace las_field {
+inline constexpr std::size_t kSignature = 0;
+inline constexpr std::size_t kGlobalEncoding = 6;
+inline constexpr std::size_t kVersionMajor = 24;
+inline constexpr std::size_t kVersionMinor = 25;
+inline constexpr std::size_t kSystemIdentifier = 26;
+inline constexpr std::size_t kSoftware = 58;
+inline constexpr std::size_t kHeaderSize = 94;
+inline constexpr std::size_t kOffsetToPoints = 96;
+inline constexpr std::size_t kVlrCount = 100;
+inline constexpr std::size_t kPointFormat = 104;
+inline constexpr std::size_t kRecordLength = 105;
+inline constexpr std::size_t kLegacyCount = 107;
+inline constexpr std::size_t kLegacyByReturn = 111;
+inline constexpr std::size_t kScale = 131;
+inline constexpr std::size_t kOffset = 155;
+inline constexpr std::size_t kBounds = 179;  // max x, min x, max y, min y, max z, min z
+inline constexpr std::size_t kCount = 247;   // from 1.4
+inline constexpr std::size_t kByReturn = 255;
+}  // namespace las_field
+
+inline constexpr std::size_t kLasHeaderSize = 227;    ///< of LAS 1.0 to 1.2
+inline constexpr std::size_t kLas14HeaderSize = 375;  ///< of LAS 1.4
+inline constexpr std::size_t kLasTextField = 32;      ///< bytes of an identifier in the header
+inline constexpr std::size_t kLasVlrHeaderSize = 54;
+
+/// Shortest record of each point format, in bytes; longer ones carry extra bytes at their end.
+inline constexpr std::array<std::size_t, 11> kLasRecordLengths = {20, 28, 26, 34, 57, 63,
+                                                                  30, 36, 38, 59, 67};
+
+/// In a record: x, y, z as int32, and the byte that holds the withheld flag in every format.
+inline constexpr std::size_t kLasFlagByte = 15;
+
+/// The bit of kLasFlagByte that marks a point as withheld.
+constexpr unsigned las_withheld_mask(int point_format) { return point_format < 6 ? 0x80 : 0x04; }
+
+/// What a checked header says.
+struct LasHeader {
+  std::string version;  ///< "1.0" to "1.4"
+  int point_format = 0;
+  std::size_t record_length = 0;
+  std::uint64_t count = 0;  ///< of point records
+  Lattice lattice;
+  Box<3> extent;         ///< empty if the header's bounds are not ordered
+  std::string crs;       ///< WKT, or "EPSG:n", or empty
+  std::string software;  ///< generating software
+};
+
+/// Reads everything before the first point record. Throws Error, before anything is allocated, if a
+/// field contradicts another one or the size of the file, or if the file is compressed (LAZ).
+LasHeader read_las_header(InputSource& source);
+
+}  // namespace spillway

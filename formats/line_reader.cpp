@@ -1,0 +1,55 @@
+#include "formats/line_reader.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <span>
+
+#include "src/error.h"
+
+namespace spillway {
+
+bool LineReader::next(std::string_view& line) {
+  std::size_t searched = 0;
+  const char* line_end = nullptr;
+  while (true) {
+    const char* from = buffer_.data() + begin_ + searched;
+    const std::size_t unsearched = end_ - begin_ - searched;
+    line_end = static_cast<const char*>(std::memchr(from, '\n', unsearched));
+    if (line_end != nullptr) break;
+    searched = end_ - begin_;
+    if (!refill()) break;
+  }
+  if (line_end == nullptr && begin_ == end_) return false;
+  ++number_;
+  const char* const start = buffer_.data() + begin_;
+  const std::size_t length = line_end != nullptr ? line_end - start : end_ - begin_;
+  begin_ += length + (line_end != nullptr ? 1 : 0);
+  line = {start, length};
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  if (number_ == 1 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+  return true;
+}
+
+bool LineReader::refill() {
+  std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+  end_ -= begin_;
+  begin_ = 0;
+  const std::span<char> space = std::span(buffer_).subspan(end_);
+  if (space.empty()) {
+    throw Error(fmt::format("{}: line {} is longer than {} bytes; this is no text file of points",
+                            file_.name(), number_ + 1, kLongestLine));
+  }
+  const std::size_t got = file_.read(std::as_writable_bytes(space));
+  end_ += got;
+  return got > 0;
+}
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  std::string result = "\"";
+  for (const char c : text.substr(0, kLongest)) result += c >= ' ' && c <= '~' ? c : '?';
+  return result + (text.size() > kLongest ? "...\"" : "\"");
+}
+
+}  // namespace spillway

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/file_system.h"
+
+namespace spillway {
+
+/// Lines of a text file, read in big chunks. A line ends with LF or CR LF or the end of the file; a
+/// UTF-8 byte order mark before the first one is dropped. Memory is constant: a line longer than
+/// kLongestLine is an Error.
+class LineReader {
+ public:
+  static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
+
+  /// `file` must outlive the reader.
+  explicit LineReader(InputFile& file) : file_(file), buffer_(kLongestLine + 2) {}
+
+  /// Sets `line` to the next one without its end, valid until the next call; false at the end.
+  bool next(std::string_view& line);
+
+  /// Number of the line that next() gave last, counted from 1.
+  [[nodiscard]] std::uint64_t number() const { return number_; }
+
+ private:
+  /// Moves the unread bytes to the front and fills up behind them; false if there was nothing more.
+  bool refill();
+
+  InputFile& file_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0;  // the unread bytes are [begin_, end_)
+  std::size_t end_ = 0;
+  std::uint64_t number_ = 0;
+};
+
+/// Text for messages: at most some 60 characters, nothing that is not printable, in quotes.
+std::string quoted(std::string_view text);
+
+}  // namespace spillway

@@ -1,0 +1,28 @@
+#pragma once
+// What Spillway adds to formats that know comments: see docs/formats-meshes.md ("Notes").
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/mesh.h"
+
+namespace spillway {
+
+/// The notes that describe a mesh, one a comment line, without the comment sign:
+/// "spillway dimension 2", "spillway lattice sx sy sz ox oy oz", "crs ..." (several of these if the
+/// text is long).
+std::vector<std::string> mesh_notes(const MeshHeader& header);
+
+/// Takes the lattice or (a part of) the coordinate system from a comment. False if it is a note on
+/// a lattice that gives none; any other comment is passed over.
+bool read_mesh_note(std::string_view comment, MeshHeader& header);
+
+/// The lattice of six numbers: scale x, y, z, offset x, y, z. Nothing unless all are finite and
+/// the scales are positive.
+std::optional<Lattice> lattice_of(std::span<const double> numbers);
+
+/// A coordinate system in one line: each line break or control character becomes a blank.
+std::string one_line(std::string text);
+
+}  // namespace spillway

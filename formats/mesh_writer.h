@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/file_system.h"
+#include "formats/mesh.h"
+
+namespace spillway {
+
+/// Writes one mesh: first all vertices, in blocks of any size, then all simplices, then finish().
+/// Numbers must add up to the header's counts. Nothing appears under the final name before
+/// finish(); a writer that is destroyed without it leaves nothing behind.
+class MeshWriter {
+ public:
+  virtual ~MeshWriter() = default;
+
+  /// Appends vertices. `input_index` has one entry a vertex if the header says has_input_index and
+  /// is empty otherwise.
+  virtual void write_vertices(std::span<const Point<3>> vertices,
+                              std::span<const std::uint64_t> input_index) = 0;
+
+  /// Appends simplices: dimension+1 vertex numbers each, counted from 0, positively oriented.
+  virtual void write_simplices(std::span<const std::uint64_t> corners) = 0;
+
+  /// Completes the file and gives it its final name. Throws Error if anything is missing.
+  virtual void finish() = 0;
+};
+
+/// The mesh formats, by the names `--output-format` and `--input-format` take.
+enum class MeshFormat { kPly, kPlyAscii, kObj, kOff, kVtu, kNpy };
+
+/// All names of mesh formats, as the command line lists them: "ply", "ply-ascii", "obj", ...
+std::vector<std::string> mesh_format_names();
+
+/// The format called `format_name`, or, if that is empty, the one of the path's extension.
+/// Throws UsageError that lists what there is if neither names a format.
+MeshFormat mesh_format(const std::string& path, const std::string& format_name);
+
+/// Opens `path` ("-": standard output) for a mesh. Throws Error if the format cannot hold it (OBJ
+/// and OFF hold no tetrahedra; npy needs two files and so no pipe) or the file cannot be created.
+std::unique_ptr<MeshWriter> open_mesh_writer(FileSystem& files, const std::string& path,
+                                             MeshFormat format, const MeshHeader& header);
+
+}  // namespace spillway

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "formats/block_output.h"
+#include "formats/bytes.h"
+#include "formats/checked_mesh_writer.h"
+#include "formats/npy_header.h"
+#include "formats/npy_mesh.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+/// One array being written.
+class ArrayOutput {
+ public:
+  ArrayOutput(std::unique_ptr<OutputFile> file, std::string type, std::vector<std::uint64_t> shape)
+      : output_(std::move(file)) {
+    NpyHeader header;
+    header.type = std::move(type);
+    header.shape = std::move(shape);
+    header_ = npy_header_bytes(header);
+    output_.append(header_);
+  }
+
+  template <typename T>
+  void append(std::span<const T> values) {
+    output_.append(as_text(std::as_bytes(values)));
+  }
+
+  /// Brings everything to the disk, where it may still fail, before any file gets its name: an
+  /// output that is rewritten must have written what it buffers.
+  void settle() { output_.rewrite(0, header_); }
+
+  void commit() { output_.commit(); }
+
+ private:
+  std::string header_;
+  BlockOutput output_;
+};
+
+class NpyMeshWriter : public CheckedMeshWriter {
+ public:
+  NpyMeshWriter(FileSystem& files, const NpyMeshNames& names, const MeshHeader& header)
+      : CheckedMeshWriter(header, names.vertices),
+        vertices_(files.create(names.vertices), "<f8", {header.vertices, 3}),
+        simplices_(files.create(names.simplices), "<i8",
+                   {header.simplices, corners_per_simplex()}) {
+    if (header.has_input_index) {
+      input_index_.emplace(files.create(names.input_index), "<i8",
+                           std::vector<std::uint64_t>{header.vertices});
+    }
+  }
+
+ private:
+  void put_vertices(std::span<const Point<3>> vertices,
+                    std::span<const std::uint64_t> input_index) override {
+    vertices_.append(vertices);
+    if (input_index_) input_index_->append(input_index);
+  }
+
+  void put_simplices(std::span<const std::uint64_t> corners) override {
+    simplices_.append(corners);
+  }
+
+  void complete() override {
+    vertices_.settle();
+    simplices_.settle();
+    if (input_index_) {
+      input_index_->settle();
+      input_index_->commit();
+    }
+    vertices_.commit();
+    simplices_.commit();
+  }
+
+  ArrayOutput vertices_;
+  ArrayOutput simplices_;
+  std::optional<ArrayOutput> input_index_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshWriter> open_npy_mesh_writer(FileSystem& files, const std::string& path,
+                                                 const MeshHeader& header) {
+  if (path == "-") {
+    throw Error("standard output cannot take an npy mesh, which is two files; choose ply or vtu");
+  }
+  const NpyMeshNames names = npy_mesh_names(path);
+  if (!header.has_input_index && files.exists(names.input_index)) {
+    throw Error(
+        fmt::format("cannot write {}: {} of an earlier mesh would be taken for part of it; "
+                    "remove it or choose another name",
+                    names.vertices, names.input_index));
+  }
+  return std::make_unique<NpyMeshWriter>(files, names, header);
+}
+
+}  // namespace spillway

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "formats/file_system.h"
+#include "formats/point_writer.h"
+
+namespace spillway {
+
+/// Writes an npy array of float64, n x 2 or n x 3, of output coordinates.
+std::unique_ptr<PointWriter> open_npy_writer(std::unique_ptr<OutputFile> file,
+                                             const PointWriterOptions& options);
+
+}  // namespace spillway

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "formats/input_source.h"
+#include "formats/mesh.h"
+
+namespace spillway {
+
+/// Reads the vertices and triangles of a Wavefront OBJ file; normals, texture, groups, materials,
+/// points and lines are passed over. Throws Error that names the line.
+Mesh read_obj(InputSource& source);
+
+}  // namespace spillway

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "formats/input_source.h"
+#include "formats/mesh.h"
+
+namespace spillway {
+
+/// Reads a text OFF file of triangles; colours of faces are passed over. Throws Error that names
+/// the line.
+Mesh read_off(InputSource& source);
+
+}  // namespace spillway

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "formats/input_source.h"
+#include "formats/mesh.h"
+
+namespace spillway {
+
+/// Reads a PLY mesh, binary of either byte order or ASCII. Elements and properties that are not the
+/// mesh's are passed over, faces too where there are tetrahedra. Throws Error that names the item
+/// and its byte or line.
+Mesh read_ply(InputSource& source);
+
+}  // namespace spillway

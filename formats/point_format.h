@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace spillway {
+
+enum class PointFormat { kLas, kText, kNpy };
+
+/// The format of that name ("las", "text", "npy"). Throws UsageError that lists them otherwise.
+PointFormat point_format_by_name(std::string_view name);
+
+/// The format that the extension of `path` stands for, that of compressed text (.gz, .bz2, .zst)
+/// included; nothing for other extensions.
+std::optional<PointFormat> point_format_of_path(std::string_view path);
+
+/// The extension of the last part of `path`, in lower case, without the dot; empty if it has none.
+std::string extension_of(std::string_view path);
+
+}  // namespace spillway

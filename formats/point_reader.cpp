@@ -1,0 +1,86 @@
+#include "formats/point_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "formats/bytes.h"
+#include "formats/decompress.h"
+#include "formats/input_source.h"
+#include "formats/las_reader.h"
+#include "formats/npy_header.h"
+#include "formats/npy_reader.h"
+#include "formats/point_format.h"
+#include "formats/text_reader.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+constexpr std::size_t kProbe = 512;
+
+/// Whether these bytes may begin a text file: no control characters but white space.
+bool looks_like_text(std::string_view bytes) {
+  return std::none_of(bytes.begin(), bytes.end(), [](unsigned char c) {
+    return c == 0x7f || (c < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\f');
+  });
+}
+
+PointFormat format_of_content(const InputSource& source, std::span<const std::byte> first_bytes) {
+  const std::string_view text = as_text(first_bytes);
+  if (text.starts_with("LASF")) return PointFormat::kLas;
+  if (text.starts_with(kNpyMagic)) return PointFormat::kNpy;
+  if (compression_of_content(first_bytes) != Compression::kNone) return PointFormat::kText;
+  if (looks_like_text(text)) return PointFormat::kText;
+  throw Error(
+      fmt::format("{}: unknown format: the file begins neither as LAS nor as npy nor as "
+                  "text; convert it or name its format",
+                  source.name()));
+}
+
+/// How the text is compressed, by its name or its first bytes.
+Compression compression_of(const InputSource& source, const std::string& path,
+                           std::span<const std::byte> first_bytes) {
+  const Compression promised = compression_of_name(path);
+  const Compression found = compression_of_content(first_bytes);
+  if (promised != Compression::kNone) {
+    const std::string inner = extension_of(std::filesystem::path(path).stem().string());
+    if (inner == "las" || inner == "laz" || inner == "npy") {
+      throw Error(fmt::format("{}: only text is read compressed; decompress the file first",
+                              source.name()));
+    }
+    if (found != promised) {
+      throw Error(
+          fmt::format("{}: the file does not begin as its extension says; it is corrupt or "
+                      "has the wrong name",
+                      source.name()));
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::string& path,
+                                               const PointReaderOptions& options) {
+  std::optional<PointFormat> format;
+  if (!options.format.empty()) format = point_format_by_name(options.format);
+  if (!format) format = point_format_of_path(path);
+  auto source = std::make_unique<InputSource>(files.open(path));
+  const std::span<const std::byte> first_bytes = source->peek(kProbe);
+  if (!format) format = format_of_content(*source, first_bytes);
+  switch (*format) {
+    case PointFormat::kLas:
+      return open_las_reader(std::move(source), path, options.keep_withheld);
+    case PointFormat::kNpy:
+      return open_npy_reader(std::move(source), path);
+    case PointFormat::kText:
+      break;
+  }
+  const Compression compression = compression_of(*source, path, first_bytes);
+  return open_text_reader(std::move(source), path, compression);
+}
+
+}  // namespace spillway

@@ -1,0 +1,21 @@
+# The seam to the disk, and points: LAS, text, npy.
+# Zstandard is used directly: Boost's filter takes truncated data for complete.
+pkg_check_modules(libzstd REQUIRED IMPORTED_TARGET libzstd)
+target_sources(spillway_formats PRIVATE
+  decompress.cpp
+  file_system.cpp
+  input_source.cpp
+  las_header.cpp
+  las_reader.cpp
+  las_writer.cpp
+  line_reader.cpp
+  npy_header.cpp
+  npy_reader.cpp
+  npy_writer.cpp
+  point_format.cpp
+  point_reader.cpp
+  point_writer.cpp
+  text_columns.cpp
+  text_reader.cpp
+  text_writer.cpp)
+target_link_libraries(spillway_formats PRIVATE PkgConfig::libzstd)

@@ -1,0 +1,21 @@
+#pragma once
+// Names and codes in VTU files that the writer and the reader share. Layout:
+// docs/formats-meshes.md ("VTU").
+
+#include <cstdint>
+
+namespace spillway::vtu {
+
+// Field arrays.
+inline constexpr const char* kDimension = "spillway_dimension";
+inline constexpr const char* kLattice = "spillway_lattice";
+inline constexpr const char* kCrs = "spillway_crs";
+
+// Point array.
+inline constexpr const char* kInputIndex = "input_index";
+
+// Cell types.
+inline constexpr std::uint8_t kTriangle = 5;
+inline constexpr std::uint8_t kTetrahedron = 10;
+
+}  // namespace spillway::vtu

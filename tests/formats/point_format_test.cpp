@@ -1,0 +1,57 @@
+#include "formats/point_format.h"
+
+#include "formats/point_writer.h"
+#include "tests/formats/las_file.h"
+#include "tests/formats/point_test_helpers.h"
+
+namespace spillway::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(PointFormatChoice, ExtensionInAnyCase) {
+  EXPECT_EQ(point_format_of_path("dir.txt/A.LAS"), PointFormat::kLas);
+  EXPECT_EQ(point_format_of_path("a.npy"), PointFormat::kNpy);
+  for (const char* name : {"a.txt", "a.xyz", "a.csv", "a.asc", "a.xyz.gz", "a.csv.bz2", "a.zst"}) {
+    EXPECT_EQ(point_format_of_path(name), PointFormat::kText) << name;
+  }
+  EXPECT_FALSE(point_format_of_path("a.dat"));
+  EXPECT_FALSE(point_format_of_path("las"));
+  EXPECT_FALSE(point_format_of_path("-"));
+}
+
+TEST(PointFormatChoice, OptionBeforeExtension) {
+  EXPECT_EQ(read_content("a.las", "1 2 3\n", {"text", false}).header.format, "text");
+}
+
+TEST(PointFormatChoice, ExtensionBeforeContent) {
+  EXPECT_THAT(error_of_content("a.npy", LasFile().bytes()), HasSubstr("no npy file"));
+}
+
+TEST(PointFormatChoice, ContentWhereTheNameSaysNothing) {
+  EXPECT_EQ(read_content("a.dat", LasFile().bytes()).header.format, "las");
+  EXPECT_EQ(read_content("a.dat", "1 2 3\n").header.format, "text");
+}
+
+TEST(PointFormatChoice, UnknownContent) {
+  EXPECT_THAT(error_of_content("a.dat", std::string("\x7f"
+                                                    "ELF\0\0\0",
+                                                    7)),
+              HasSubstr("a.dat: unknown format"));
+}
+
+TEST(PointFormatChoice, UnknownOption) {
+  EXPECT_THAT(error_of_content("a.las", "", {"shp", false}), HasSubstr("choose las, text or npy"));
+}
+
+TEST(PointFormatChoice, OutputWithoutKnownFormat) {
+  FaultyFileSystem files;
+  EXPECT_THROW(open_point_writer(files, "-", {}), UsageError);
+  EXPECT_THROW(open_point_writer(files, "a.dat", {}), UsageError);
+  EXPECT_THROW(open_point_writer(files, "a.laz", {}), UsageError);
+  EXPECT_THROW(open_point_writer(files, "a.xyz.gz", {}), UsageError);
+  EXPECT_EQ(files.count(Call::kCreate), 0);
+}
+
+}  // namespace
+}  // namespace spillway::testing

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "formats/point_reader.h"
+#include "src/error.h"
+#include "tests/faulty_file_system.h"
+
+namespace spillway::testing {
+
+/// Everything that a reader gives.
+struct AllPoints {
+  PointHeader header;
+  std::vector<Point<3>> points;
+  std::vector<std::uint64_t> index;
+  std::uint64_t withheld = 0;
+};
+
+inline AllPoints read_all_points(FileSystem& files, const std::string& path,
+                                 const PointReaderOptions& options = {}) {
+  const auto reader = open_point_reader(files, path, options);
+  AllPoints all;
+  all.header = reader->header();
+  PointBlock block;
+  while (reader->read(block)) {
+    EXPECT_GT(block.size(), 0U);
+    EXPECT_EQ(block.points.size(), block.index.size());
+    all.points.insert(all.points.end(), block.points.begin(), block.points.end());
+    all.index.insert(all.index.end(), block.index.begin(), block.index.end());
+  }
+  EXPECT_EQ(block.size(), 0U);
+  all.withheld = reader->withheld();
+  return all;
+}
+
+/// Reads `content` as a file of that name.
+inline AllPoints read_content(const std::string& path, const std::string& content,
+                              const PointReaderOptions& options = {}) {
+  FaultyFileSystem files;
+  files.files[path] = content;
+  return read_all_points(files, path, options);
+}
+
+/// The message of the Error that `action` throws; a failure of the test if it throws none. A
+/// message is one line.
+template <typename F>
+std::string error_of(F&& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    std::string message = error.what();
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return message;
+  }
+  ADD_FAILURE() << "no Error was thrown";
+  return "";
+}
+
+/// The message that reading `content` as a file of that name ends with.
+inline std::string error_of_content(const std::string& path, const std::string& content,
+                                    const PointReaderOptions& options = {}) {
+  return error_of([&] { read_content(path, content, options); });
+}
+
+/// The bytes of a value.
+template <typename T>
+std::string bytes_of(const T& value) {
+  std::string bytes(sizeof(T), '\0');
+  std::memcpy(bytes.data(), &value, sizeof(T));
+  return bytes;
+}
+
+/// Overwrites bytes of `content` by a value.
+template <typename T>
+void put(std::string& content, std::size_t at, const T& value) {
+  content.replace(at, sizeof(T), bytes_of(value));
+}
+
+}  // namespace spillway::testing

@@ -1,0 +1,17 @@
+spillway_test(file_system_test unit
+  SOURCES formats/file_system_test.cpp
+  LIBS spillway_formats)
+spillway_test(points_test unit
+  SOURCES
+    formats/compressed_text_test.cpp
+    formats/las_corruption_test.cpp
+    formats/las_reader_test.cpp
+    formats/las_shared_data_test.cpp
+    formats/npy_reader_test.cpp
+    formats/point_format_test.cpp
+    formats/point_writer_test.cpp
+    formats/text_reader_test.cpp
+  LIBS spillway_formats Boost::iostreams fmt::fmt)
+spillway_test(point_fault_test fault
+  SOURCES formats/point_fault_test.cpp
+  LIBS spillway_formats fmt::fmt)
