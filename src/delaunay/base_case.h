@@ -36,4 +36,7 @@ BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input);
 template <int D>
 BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const VertexId> basis);
 
+/// Gives the system the memory that base cases keep for those that follow.
+void release_base_case_memory();
+
 }  // namespace spillway

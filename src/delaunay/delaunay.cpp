@@ -16,10 +16,10 @@
 namespace spillway {
 namespace {
 
-/// Base cases about this size keep CGAL's structures in a core's caches; smaller ones lose more to
-/// merging, larger ones to memory (docs/performance.md has the measurements).
+/// Smaller base cases lose more to merging, larger ones more to memory (docs/performance.md has the
+/// measurements).
 template <int D>
-constexpr std::size_t kCacheSizedBaseCase = D == 2 ? 32'768 : 65'536;
+constexpr std::size_t kGoodBaseCase = D == 2 ? 32'768 : 262'144;
 
 /// A border with more than this share of a part's points is triangulated at once: dividing it again
 /// would not make it smaller.
@@ -33,8 +33,8 @@ constexpr std::size_t kSmallestBorderBaseCase = 4'096;
 template <int D>
 std::size_t default_base_case_size(std::size_t points) {
   constexpr double kSlack = 1.1;
-  const std::size_t parts = std::bit_floor(
-      std::max<std::size_t>(1, (points + kCacheSizedBaseCase<D> / 2) / kCacheSizedBaseCase<D>));
+  const std::size_t parts =
+      std::bit_floor(std::max<std::size_t>(1, (points + kGoodBaseCase<D> / 2) / kGoodBaseCase<D>));
   return static_cast<std::size_t>(std::ceil(static_cast<double>(points) / parts * kSlack));
 }
 
@@ -149,6 +149,7 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
     result = Run<D>({points.begin(), points.end()}, options)
                  .triangulate(base_case_size, options.tasks == nullptr ? unused : *options.tasks);
   });
+  release_base_case_memory();
   return result;
 }
 

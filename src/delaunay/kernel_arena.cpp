@@ -5,33 +5,62 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdlib>
+#include <iterator>
+#include <mutex>
 #include <new>
 
 namespace spillway {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
-constexpr std::size_t kFirstChunk = std::size_t{1} << 16;
-constexpr std::size_t kLargestChunk = std::size_t{1} << 25;
+constexpr std::size_t kFirstChunk = std::size_t{1} << 15;
+constexpr std::size_t kStandardChunk = 4 * kHugePage;
 constexpr std::size_t kAlignment = alignof(std::max_align_t);
 
 thread_local KernelArena* current_arena = nullptr;
 
 }  // namespace
 
+struct KernelArena::Kept {
+  std::mutex mutex;
+  std::vector<Chunk> chunks;  ///< guarded by `mutex`
+};
+
 KernelArena::KernelArena() {
   assert(current_arena == nullptr);
   current_arena = this;
 }
 
-KernelArena::~KernelArena() { current_arena = nullptr; }
+KernelArena::~KernelArena() {
+  current_arena = nullptr;
+  const std::lock_guard lock(kept().mutex);
+  std::move(kept_chunks_.begin(), kept_chunks_.end(), std::back_inserter(kept().chunks));
+}
 
 KernelArena& KernelArena::current() { return *current_arena; }
 
 void KernelArena::Free::operator()(std::byte* chunk) const { std::free(chunk); }
 
+auto KernelArena::kept() -> Kept& {
+  static Kept kept;
+  return kept;
+}
+
+void KernelArena::release_kept_memory() {
+  const std::lock_guard lock(kept().mutex);
+  kept().chunks.clear();
+}
+
 /// Chunks that span huge pages ask for them; small base cases stay small.
 auto KernelArena::make_chunk(std::size_t bytes) -> Chunk {
+  if (bytes == kStandardChunk) {
+    const std::lock_guard lock(kept().mutex);
+    if (!kept().chunks.empty()) {
+      Chunk chunk = std::move(kept().chunks.back());
+      kept().chunks.pop_back();
+      return chunk;
+    }
+  }
   const bool huge = bytes >= kHugePage;
   const std::size_t alignment = huge ? kHugePage : kAlignment;
   const std::size_t size = (bytes + alignment - 1) / alignment * alignment;
@@ -41,14 +70,16 @@ auto KernelArena::make_chunk(std::size_t bytes) -> Chunk {
   return chunk;
 }
 
+/// Chunks double up to the standard size; only requests above it get larger ones.
 void* KernelArena::allocate(std::size_t bytes) {
   bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;
   if (bytes > left_) {
     const std::size_t doubled =
-        std::min(kLargestChunk, kFirstChunk << std::min<std::size_t>(chunks_.size(), 16));
+        std::min(kStandardChunk, kFirstChunk << std::min<std::size_t>(own_chunks_.size(), 16));
     left_ = std::max(bytes, doubled);
-    chunks_.push_back(make_chunk(left_));
-    next_ = chunks_.back().get();
+    auto& chunks = left_ == kStandardChunk ? kept_chunks_ : own_chunks_;
+    chunks.push_back(make_chunk(left_));
+    next_ = chunks.back().get();
   }
   void* result = next_;
   next_ += bytes;

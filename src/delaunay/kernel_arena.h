@@ -1,8 +1,8 @@
 #pragma once
-// Memory for one base case. CGAL's containers ask for blocks that grow, and give them all back at the
-// end; taken from malloc, each base case pays again for fresh pages and for address translation.
-// An arena asks the system for huge pages instead and never gives single blocks back. Measured: 10 to
-// 15% of a 3D base case (docs/performance.md).
+// Memory for one base case. CGAL's containers ask for blocks that grow, and give them all back at
+// the end. An arena takes huge pages for them, gives nothing back before the end, and then keeps
+// the pages for the next base case: fresh memory costs more than the triangulation of a small part
+// of it.
 
 #include <cstddef>
 #include <memory>
@@ -10,7 +10,8 @@
 
 namespace spillway {
 
-/// Serves the thread that made it, from its construction to its destruction. One at a time a thread.
+/// Serves the thread that made it, from its construction to its destruction. One at a time a
+/// thread.
 class KernelArena {
  public:
   KernelArena();
@@ -24,15 +25,21 @@ class KernelArena {
   /// Memory that lasts as long as the arena, aligned for any type. Throws std::bad_alloc.
   void* allocate(std::size_t bytes);
 
+  /// Gives the system all that is kept for coming base cases, of all threads.
+  static void release_kept_memory();
+
  private:
   struct Free {
     void operator()(std::byte* chunk) const;
   };
   using Chunk = std::unique_ptr<std::byte, Free>;
+  struct Kept;
 
   static Chunk make_chunk(std::size_t bytes);
+  static Kept& kept();
 
-  std::vector<Chunk> chunks_;
+  std::vector<Chunk> own_chunks_;   ///< of other sizes than the standard one
+  std::vector<Chunk> kept_chunks_;  ///< of the standard size, to be kept
   std::byte* next_ = nullptr;
   std::size_t left_ = 0;
 };

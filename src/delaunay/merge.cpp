@@ -123,6 +123,8 @@ class Merge {
     return first_of_block_[id.block] + id.index;
   }
 
+  [[nodiscard]] std::vector<VertexId> vertices_of(const std::vector<SimplexId>& simplices,
+                                                  const Part<D>& child) const;
   [[nodiscard]] std::vector<OpenFacet> open_facets();
   void link_simplex(SimplexId in_border_mesh, SimplexId created, const ConcurrentIndex& facet_index,
                     const std::vector<OpenFacet>& facets, std::vector<Link>& links);
@@ -161,14 +163,7 @@ void Merge<D>::find_borders(Task& task) {
         if (o != c) others.push_back(&part_.children[o]);
       }
       borders[c] = find_border<D>(triangulation_, children_[c].hull, others, marks_);
-      vertices[c].reserve(borders[c].size());
-      for (const SimplexId id : borders[c]) {
-        for (const VertexId v : triangulation_.simplex(id).vertices) {
-          if (v != kInfiniteVertex) vertices[c].push_back(v);
-        }
-      }
-      std::sort(vertices[c].begin(), vertices[c].end());
-      vertices[c].erase(std::unique(vertices[c].begin(), vertices[c].end()), vertices[c].end());
+      vertices[c] = vertices_of(borders[c], part_.children[c]);
     });
   }
   group.wait();
@@ -178,6 +173,23 @@ void Merge<D>::find_borders(Task& task) {
   }
   task.points = border_vertices_.size();
   task.pieces = std::max<std::size_t>(1, grain_count(border_.size(), kGrain));
+}
+
+/// The finite vertices of a child's simplices, sorted.
+template <int D>
+std::vector<VertexId> Merge<D>::vertices_of(const std::vector<SimplexId>& simplices,
+                                            const Part<D>& child) const {
+  std::vector<bool> seen(child.size());
+  for (const SimplexId id : simplices) {
+    for (const VertexId v : vertices(id)) {
+      if (v != kInfiniteVertex) seen[v - child.begin] = true;
+    }
+  }
+  std::vector<VertexId> sorted;
+  for (VertexId v = child.begin; v < child.end; ++v) {
+    if (seen[v - child.begin]) sorted.push_back(v);
+  }
+  return sorted;
 }
 
 template <int D>

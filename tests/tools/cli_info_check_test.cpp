@@ -1,0 +1,143 @@
+// `info`, `check` and `generate` as people and programs use them.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/tools/command_runner.h"
+
+namespace spillway::test {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Info, TellsThePointsOfALasFile) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 3000 -o in.las");
+  const auto info = work.info("in.las");
+  EXPECT_EQ(info["kind"], "points");
+  EXPECT_EQ(info["format"], "las");
+  EXPECT_EQ(info["points"], 3000);
+  EXPECT_EQ(info["withheld"], 0);
+  EXPECT_EQ(info["scale"], (std::vector<double>{0.01, 0.01, 0.01}));
+  EXPECT_EQ(info["extent"]["min"].size(), 3U);
+  EXPECT_GT(info["density"].get<double>(), 0);
+  for (const char* key :
+       {"name", "version", "point_format", "coordinates", "offset", "crs", "software"}) {
+    EXPECT_TRUE(info.contains(key)) << key;
+  }
+}
+
+TEST(Info, ExtentAndDensityOfTextAreExact) {
+  const Workspace work;
+  work.write("in.txt", "0 0 7\n10 0 8\n0 5 9\n10 5 -1\n");
+  const auto info = work.info("in.txt");
+  EXPECT_EQ(info["extent"]["min"], (std::vector<double>{0, 0, -1}));
+  EXPECT_EQ(info["extent"]["max"], (std::vector<double>{10, 5, 9}));
+  EXPECT_EQ(info["density"], 4 / 50.0);
+  EXPECT_TRUE(info["scale"].is_null());
+}
+
+TEST(Info, TellsAMeshAndSeveralFilesOnALineEach) {
+  const Workspace work;
+  work.write("in.txt", "0 0 0\n1 0 0\n0 1 0\n1.5 1.5 0\n");
+  const std::string lines = work.succeed(
+      "spillway triangulate -q in.txt -o mesh.ply\n"
+      "spillway info -q --json in.txt mesh.ply");
+  const auto mesh = nlohmann::json::parse(lines.substr(lines.find('\n')));
+  EXPECT_EQ(mesh["kind"], "mesh");
+  EXPECT_EQ(mesh["vertices"], 4);
+  EXPECT_EQ(mesh["simplices"], 2);
+  EXPECT_EQ(mesh["hull_facets"], 4);
+  EXPECT_EQ(mesh["canonical_hash"].get<std::string>().size(), 16U);
+}
+
+TEST(Info, ReadsPointsFromAPipeAndWritesForPeople) {
+  const Workspace work;
+  const std::string text =
+      work.succeed("spillway generate -q uniform -n 100 --dim 3 -o - | spillway info -q -");
+  EXPECT_THAT(text, testing::ContainsRegex("points +100\n"));
+  EXPECT_THAT(text, HasSubstr("extent min"));
+}
+
+TEST(Check, SaysWhatItProvedAndTheHash) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q lattice -n 400 -o in.las\n"
+      "spillway triangulate -q in.las -o mesh.ply");
+  const std::string text = work.succeed("spillway check -q mesh.ply --points in.las");
+  EXPECT_THAT(text, HasSubstr("proved: "));
+  EXPECT_THAT(text, HasSubstr(work.info("mesh.ply")["canonical_hash"].get<std::string>()));
+  const auto json = nlohmann::json::parse(work.succeed("spillway check -q mesh.ply --json"));
+  EXPECT_EQ(json["proved"], true);
+  EXPECT_EQ(json["on_lattice"], true);
+  EXPECT_EQ(json["fault_count"], 0);
+  EXPECT_EQ(json["canonical_hash"], work.info("mesh.ply")["canonical_hash"]);
+}
+
+TEST(Check, RefutesAFlippedEdgeWithExitCodeOne) {
+  const Workspace work;
+  // The diagonal of this quadrilateral that is no Delaunay edge: from the first to the last vertex.
+  work.write("bad.off", "OFF\n4 2 0\n0 0 0\n3 1 0\n3 -1 0\n6 0 0\n3 0 3 1\n3 0 2 3\n");
+  const Result result = work.run("spillway check -q bad.off");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, HasSubstr("fault: "));
+  EXPECT_THAT(result.out, HasSubstr("NOT"));
+  const Result json = work.run("spillway check -q bad.off --json");
+  EXPECT_EQ(json.exit_code, 1);
+  EXPECT_EQ(nlohmann::json::parse(json.out)["proved"], false);
+}
+
+TEST(Check, EitherDiagonalOfASquareIsDelaunayIfAskedFor) {
+  const Workspace work;
+  const std::string vertices = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  work.write("one.off", vertices + "3 0 1 2\n3 0 2 3\n");
+  work.write("other.off", vertices + "3 0 1 3\n3 1 2 3\n");
+  const int one = work.run("spillway check -q one.off").exit_code;
+  const int other = work.run("spillway check -q other.off").exit_code;
+  EXPECT_EQ(one + other, 1) << "exactly one of the two is the canonical triangulation";
+  EXPECT_EQ(work.run("spillway check -q --any-delaunay one.off").exit_code, 0);
+  EXPECT_EQ(work.run("spillway check -q --any-delaunay other.off").exit_code, 0);
+}
+
+TEST(Check, MissesAPointOfTheInput) {
+  const Workspace work;
+  work.write("in.txt", "0 0 0\n1 0 0\n0 1 0\n");
+  work.write("more.txt", "0.3 0.3 0\n");
+  work.succeed("spillway triangulate -q in.txt -o mesh.ply");
+  EXPECT_EQ(work.run("spillway check -q mesh.ply --points in.txt").exit_code, 0);
+  EXPECT_EQ(work.run("spillway check -q mesh.ply --points in.txt more.txt").exit_code, 1);
+}
+
+TEST(Generate, SameArgumentsGiveTheSameBytesAndAnotherSeedOthers) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 1e4 -o a.las\n"
+      "spillway generate -q terrain -n 10000 --seed 1 -o b.las\n"
+      "spillway generate -q terrain -n 1e4 --seed 2 -o c.las\n"
+      "cmp a.las b.las; ! cmp -s a.las c.las");
+}
+
+TEST(Generate, EveryFamilyComesInBothDimensionsAndAsManyAsAskedFor) {
+  const Workspace work;
+  for (const std::string family :
+       {"uniform", "normal", "bubbles", "ellipsoid", "lines", "lattice", "circle", "terrain"}) {
+    for (const std::string dimension : {"2", "3"}) {
+      const std::string name = family + dimension + ".npy";
+      work.succeed(
+          fmt::format("spillway generate -q {} -n 777 --dim {} -o {}", family, dimension, name));
+      EXPECT_EQ(work.info(name)["points"], 777) << name;
+    }
+  }
+}
+
+TEST(Generate, NoPointsMakeAValidFile) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 0 -o none.las");
+  EXPECT_EQ(work.info("none.las")["points"], 0);
+}
+
+}  // namespace
+}  // namespace spillway::test

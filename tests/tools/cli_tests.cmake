@@ -1,0 +1,21 @@
+# The command, run as a process, and its parts that need none.
+spillway_test(command_unit_tests unit
+  SOURCES tools/command_unit_test.cpp
+  LIBS spillway_command)
+
+function(spillway_command_test name label)
+  spillway_test(${name} ${label}
+    SOURCES tools/command_runner.cpp ${ARGN}
+    LIBS spillway_build fmt::fmt nlohmann_json::nlohmann_json)
+  target_compile_definitions(${name} PRIVATE SPILLWAY_COMMAND="$<TARGET_FILE:spillway>")
+  add_dependencies(${name} spillway)
+endfunction()
+
+spillway_command_test(cli_tests cli
+  tools/cli_formats_test.cpp
+  tools/cli_info_check_test.cpp
+  tools/cli_shared_data_test.cpp
+  tools/cli_triangulate_test.cpp
+  tools/cli_usage_test.cpp)
+spillway_command_test(cli_fault_tests fault
+  tools/cli_fault_test.cpp)

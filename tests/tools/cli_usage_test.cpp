@@ -1,0 +1,92 @@
+// Help, version, completion, manual, and wrong command lines.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/tools/command_runner.h"
+
+namespace spillway::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(Usage, HelpIsOnStandardOutputAtEveryLevel) {
+  const Workspace work;
+  for (const std::string level : {"", "triangulate", "info", "generate", "check", "completion"}) {
+    const std::string help = work.succeed("spillway " + level + " --help");
+    EXPECT_THAT(help, HasSubstr("Usage: spillway")) << level;
+    EXPECT_THAT(help, HasSubstr("Examples:")) << level;
+  }
+  EXPECT_THAT(work.succeed("spillway --version"), StartsWith("spillway "));
+}
+
+class WrongCommandLine : public testing::TestWithParam<std::string> {};
+
+TEST_P(WrongCommandLine, IsOneLineAndExitCodeTwo) {
+  const Workspace work;
+  work.write("in.txt", "0 0 0\n1 0 0\n0 1 0\n");
+  const Result result = work.run("spillway " + GetParam());
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_THAT(result.err, StartsWith("spillway: error: "));
+  EXPECT_EQ(result.err.find('\n'), result.err.size() - 1) << result.err;
+  EXPECT_EQ(work.names(), std::vector<std::string>{"in.txt"});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cli, WrongCommandLine,
+    testing::Values(
+        "", "frobnicate", "triangulate", "triangulate in.txt", "triangulate -o x.ply",
+        "triangulate in.txt -o x.ply --frobnicate", "triangulate in.txt -o x.ply --dim 4",
+        "triangulate in.txt -o x.nonsense", "triangulate in.txt -o x.ply --duplicates most",
+        "triangulate in.txt -o x.ply --max-edge 0", "triangulate in.txt -o x.ply --threads -1",
+        "triangulate in.txt -o x.ply --base-case -1", "triangulate in.txt -o x.ply --children 1",
+        "triangulate in.txt -o x.ply -q -v", "triangulate - - -o x.ply",
+        "triangulate in.txt -o - --output-format obj --stats -",
+        "triangulate in.txt -o x.ply --simulate-cores 0",
+        "triangulate in.txt -o x.ply --simulate-cores 1,...",
+        "triangulate in.txt -o x.ply --simulate-cores 1,2 --threads 2", "generate",
+        "generate nothing -n 5 -o x.txt", "generate uniform -o x.txt",
+        "generate uniform -n many -o x.txt", "generate uniform -n -1 -o x.txt",
+        "generate uniform -n 1.5 -o x.txt", "info", "check", "completion tcsh"));
+
+TEST(Completion, BashCompletesSubcommandsOptionsAndValues) {
+  const Workspace work;
+  const Result there = work.run("command -v bash");
+  if (there.exit_code != 0) GTEST_SKIP() << "no bash";
+  work.succeed("spillway completion bash > completion");
+  const auto complete = [&](const std::string& words, int current) {
+    return work.succeed("bash -c 'source ./completion; COMP_WORDS=(" + words + "); COMP_CWORD=" +
+                        std::to_string(current) + "; _spillway; echo \"${COMPREPLY[*]}\"'");
+  };
+  EXPECT_EQ(complete("spillway tri", 1), "triangulate\n");
+  EXPECT_EQ(complete("spillway triangulate --dup", 2), "--duplicates\n");
+  EXPECT_EQ(complete("spillway triangulate --dim \"\"", 3), "2 3\n");
+  EXPECT_EQ(complete("spillway generate te", 2), "terrain\n");
+  EXPECT_EQ(complete("spillway triangulate \"\"", 2), "\n");  // leaves files to the shell
+}
+
+TEST(Completion, OtherShellsKnowEverySubcommand) {
+  const Workspace work;
+  for (const std::string shell : {"zsh", "fish"}) {
+    const std::string script = work.succeed("spillway completion " + shell);
+    for (const char* name : {"triangulate", "info", "generate", "check", "duplicates"}) {
+      EXPECT_THAT(script, HasSubstr(name)) << shell;
+    }
+  }
+}
+
+TEST(Manual, HasEverySubcommandAndOption) {
+  const Workspace work;
+  const std::string manual = work.succeed("spillway manual");
+  EXPECT_THAT(manual, StartsWith(".TH SPILLWAY 1"));
+  for (const char* text :
+       {"triangulate", "generate", "\\-\\-duplicates", "\\-\\-any\\-delaunay", ".SH EXIT STATUS"}) {
+    EXPECT_THAT(manual, HasSubstr(text));
+  }
+}
+
+}  // namespace
+}  // namespace spillway::test

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+
+namespace spillway {
+
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitFailed = 1;        ///< an Error, or a mesh that `check` refutes
+inline constexpr int kExitUsage = 2;         ///< a UsageError
+inline constexpr int kExitClosedPipe = 141;  ///< 128 + SIGPIPE, as shells report it
+
+/// A subcommand in the tree of options, and what to do once the command line is parsed.
+struct Subcommand {
+  CLI::App* app;
+  std::function<int()> run;  ///< returns the exit code
+};
+
+/// One for each subcommand: adds it to the tree. Each is defined in the file of its name.
+Subcommand add_triangulate(CLI::App& root);
+Subcommand add_info(CLI::App& root);
+Subcommand add_generate(CLI::App& root);
+Subcommand add_check(CLI::App& root);
+Subcommand add_completion(CLI::App& root);
+Subcommand add_manual(CLI::App& root);
+
+/// Parses the command line and does what it says. Returns the exit code; throws UsageError for a
+/// wrong command line and Error for what goes wrong later.
+int run_command(int argc, const char* const* argv);
+
+}  // namespace spillway

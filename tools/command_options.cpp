@@ -1,0 +1,86 @@
+#include "tools/command_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+
+#include "src/error.h"
+
+namespace spillway {
+
+HelpFormatter::HelpFormatter() { column_width(34); }
+
+std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
+  const bool many = option->get_expected_max() == CLI::detail::expected_max_vector_size;
+  if (option->get_positional()) return many ? "..." : "";
+  if (option->get_type_size() == 0) return "";
+  return " " + option->get_type_name() + (many ? "..." : "");
+}
+
+std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
+  std::string text = option->get_description();
+  if (option->get_required() && !option->get_positional()) text += " [required]";
+  if (!option->get_default_str().empty()) text += " [" + option->get_default_str() + "]";
+  return text;
+}
+
+CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,
+                        const std::vector<std::string>& words, const std::string& description) {
+  CLI::Option* option = app.add_option(name, value, description);
+  option->check(CLI::IsMember(words).description(""));
+  option->type_name(fmt::format("{}", fmt::join(words, "|")));
+  if (!value.empty()) option->default_str(value);
+  return option;
+}
+
+void add_report_options(CLI::App& app, ReportOptions& options) {
+  add_choice(app, "--progress", options.progress, {"auto", "plain", "json", "none"},
+             "Progress on standard error");
+  CLI::Option* quiet =
+      app.add_flag("-q,--quiet", options.quiet, "Say nothing on standard error but errors");
+  app.add_flag("-v,--verbose", options.verbose, "Say more")->excludes(quiet);
+}
+
+Progress make_progress(const ReportOptions& options) {
+  ProgressStyle style = ProgressStyle::kPlain;
+  if (options.quiet || options.progress == "none") {
+    style = ProgressStyle::kNone;
+  } else if (options.progress == "json") {
+    style = ProgressStyle::kJson;
+  } else if (options.progress == "auto" && isatty(STDERR_FILENO) != 0) {
+    const char* terminal = std::getenv("TERM");
+    if (terminal != nullptr && std::string_view(terminal) != "dumb") {
+      style = ProgressStyle::kTerminal;
+    }
+  }
+  return {style, options.quiet, options.verbose};
+}
+
+void add_reader_options(CLI::App& app, PointReaderOptions& options) {
+  add_choice(app, "--input-format", options.format, {"las", "text", "npy"},
+             "Format of the points, where neither name nor first bytes tell");
+  app.add_flag("--keep-withheld", options.keep_withheld,
+               "Use points that LAS files flag as withheld, too");
+}
+
+std::uint64_t parse_point_count(std::string_view text) {
+  std::uint64_t count = 0;
+  const char* end = text.data() + text.size();
+  const auto whole = std::from_chars(text.data(), end, count);
+  if (!text.empty() && whole.ec == std::errc{} && whole.ptr == end) return count;
+  double value = -1;
+  const auto scientific = std::from_chars(text.data(), end, value);
+  constexpr double kLargest = 9007199254740992.0;  // 2^53: whole numbers are exact up to here
+  if (scientific.ec != std::errc{} || scientific.ptr != end || !(value >= 0 && value <= kLargest) ||
+      value != std::floor(value)) {
+    throw UsageError(fmt::format("'{}' is not a number of points: write 1000000 or 1e6", text));
+  }
+  return static_cast<std::uint64_t>(value);
+}
+
+}  // namespace spillway

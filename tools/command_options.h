@@ -1,0 +1,48 @@
+#pragma once
+// What several subcommands' options have in common, and how help shows them.
+
+#include <CLI/App.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/point_reader.h"
+#include "tools/progress.h"
+
+namespace spillway {
+
+/// Help with `--option VALUE  description [default]`.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter();
+  std::string make_option_opts(const CLI::Option* option) const override;
+  std::string make_option_desc(const CLI::Option* option) const override;
+};
+
+/// --progress, -q, -v.
+struct ReportOptions {
+  std::string progress = "auto";
+  bool quiet = false;
+  bool verbose = false;
+};
+void add_report_options(CLI::App& app, ReportOptions& options);
+
+/// The reporter that the options ask for; "auto" is a rewritten line on a terminal, else plain
+/// lines.
+Progress make_progress(const ReportOptions& options);
+
+/// --input-format, --keep-withheld.
+void add_reader_options(CLI::App& app, PointReaderOptions& options);
+
+/// An option that takes one of some words. The words become its value name, separated by `|`, which
+/// is also where completion and manual find them.
+CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,
+                        const std::vector<std::string>& words, const std::string& description);
+
+/// Reads a number of things: digits, or with an exponent (1e6, 2.5e6). Throws UsageError for
+/// anything else, negative and fractional numbers included.
+std::uint64_t parse_point_count(std::string_view text);
+
+}  // namespace spillway

@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formats/point_format.h"
+#include "formats/point_writer.h"
+#include "src/generators/generators.h"
+#include "tools/command.h"
+#include "tools/command_options.h"
+
+namespace spillway {
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  spillway generate terrain -n 1e6 -o hills.las          airborne LiDAR as a scanner makes "
+    "it\n"
+    "  spillway generate uniform -n 1e5 --dim 3 -o cube.npy\n"
+    "  spillway generate circle -n 1000 -o - | spillway triangulate - -o disc.obj\n"
+    "The same family, number, dimension and seed give the same points on every machine.";
+
+constexpr std::size_t kBlockSize = 65536;  // points made and written at a time
+
+struct GenerateOptions {
+  std::string family;
+  std::string count;
+  std::string dimension = "2";
+  std::uint64_t seed = 1;
+  std::string output;
+  std::string output_format;
+  ReportOptions report;
+};
+
+int run(const GenerateOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  GeneratorOptions what;
+  what.family = family_by_name(options.family);
+  what.count = parse_point_count(options.count);
+  what.dimension = options.dimension == "3" ? 3 : 2;
+  what.seed = options.seed;
+  const auto generator = make_generator(what);
+
+  PointWriterOptions how;
+  how.format =
+      options.output_format.empty() && options.output == "-" ? "text" : options.output_format;
+  const bool las = how.format == "las" || point_format_of_path(options.output) == PointFormat::kLas;
+  how.coordinates = what.dimension == 3 || what.family == Family::kTerrain || las ? 3 : 2;
+  how.count = what.count;
+  if (generator->lattice() != nullptr) how.lattice = *generator->lattice();
+  const auto writer = open_point_writer(disk(), options.output, how);
+
+  Progress progress = make_progress(options.report);
+  progress.begin("generate", "points");
+  std::vector<Point<3>> block(std::min<std::uint64_t>(kBlockSize, what.count));
+  std::uint64_t written = 0;
+  while (written < what.count) {
+    const std::size_t made = generator->next(block);
+    writer->write(std::span(block).first(made));
+    written += made;
+    progress.update(written, static_cast<double>(written) / static_cast<double>(what.count));
+    if (made < block.size()) break;
+  }
+  writer->finish();
+  progress.end();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  progress.say(fmt::format("{} points of {} in {}, {:.2f} s", written, options.family,
+                           options.output == "-" ? "standard output" : options.output,
+                           seconds.count()));
+  return kExitDone;
+}
+
+}  // namespace
+
+Subcommand add_generate(CLI::App& root) {
+  const auto options = std::make_shared<GenerateOptions>();
+  CLI::App* app = root.add_subcommand("generate", "Make points to try things with");
+  app->footer(kExamples);
+  add_choice(*app, "FAMILY", options->family, family_names(), "What the points look like")
+      ->required();
+  app->add_option("-n,--count", options->count, "How many points; 1e6 is a million")
+      ->required()
+      ->type_name("N");
+  add_choice(*app, "--dim", options->dimension, {"2", "3"}, "Dimension; terrain always has z");
+  app->add_option("--seed", options->seed, "Another seed, other points")
+      ->type_name("S")
+      ->capture_default_str();
+  app->add_option("-o,--output", options->output, "Point file; - is standard output")
+      ->required()
+      ->type_name("FILE");
+  add_choice(*app, "--output-format", options->output_format, {"las", "text", "npy"},
+             "Format, where the name does not tell; text on a pipe");
+  add_report_options(*app, options->report);
+  return {app, [options] { return run(*options); }};
+}
+
+}  // namespace spillway

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "src/delaunay/triangulation.h"
+
+namespace spillway {
+
+/// Which z the vertex gets where several points have the same x and y.
+enum class HeightChoice { kFirst, kLowest, kHighest, kMean };
+
+/// The names --duplicates takes, in the order of the enumeration.
+const std::vector<std::string>& height_choice_names();
+
+/// The choice of that name, which must be one of height_choice_names().
+HeightChoice height_choice_by_name(const std::string& name);
+
+/// Makes the choice. `heights` is z by input index. For the lowest and the highest, the vertex
+/// takes the whole identity of the point that has it: input_index[vertex] is changed to that point
+/// (the first one, if several have that z). For the mean, the height of the vertex's point is
+/// replaced; it is summed in ascending order, so that it does not depend on the order of the
+/// points.
+void choose_heights(Triangulation<2>& triangulation, HeightChoice choice,
+                    std::vector<double>& heights);
+
+}  // namespace spillway

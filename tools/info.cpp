@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/mesh_reader.h"
+#include "formats/point_reader.h"
+#include "src/geometry/canonical_hash.h"
+#include "tools/checker.h"
+#include "tools/command.h"
+#include "tools/command_options.h"
+#include "tools/facet_count.h"
+#include "tools/json_text.h"
+#include "tools/text_output.h"
+
+namespace spillway {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  spillway info survey.las\n"
+    "  spillway info *.las tin.ply --json | jq .canonical_hash\n"
+    "All points are read, so extents and counts are exact, whatever headers say.";
+
+struct InfoOptions {
+  std::vector<std::string> files;
+  bool json = false;
+  PointReaderOptions reader;
+  ReportOptions report;
+};
+
+Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+/// Lowest and highest coordinates, the first `coordinates` of them.
+Json extent_json(const Box<3>& box, int coordinates) {
+  if (box.empty()) return nullptr;
+  return {{"min", std::vector<double>(box.lo.begin(), box.lo.begin() + coordinates)},
+          {"max", std::vector<double>(box.hi.begin(), box.hi.begin() + coordinates)}};
+}
+
+void add_lattice(const std::optional<Lattice>& lattice, Json& json) {
+  json["scale"] = lattice ? Json(lattice->scale) : Json(nullptr);
+  json["offset"] = lattice ? Json(lattice->offset) : Json(nullptr);
+}
+
+/// Points per square unit of the extent in x, y; null where that has no area.
+Json density(const Box<3>& box, std::uint64_t points) {
+  if (box.empty()) return nullptr;
+  const double area = (box.hi[0] - box.lo[0]) * (box.hi[1] - box.lo[1]);
+  return area > 0 ? Json(static_cast<double>(points) / area) : Json(nullptr);
+}
+
+Json describe_points(const std::string& path, const PointReaderOptions& options,
+                     Progress& progress) {
+  const auto reader = open_point_reader(disk(), path, options);
+  const PointHeader& header = reader->header();
+  Box<3> box;
+  std::uint64_t points = 0;
+  PointBlock block;
+  progress.begin("read", "points");
+  while (reader->read(block)) {
+    for (const Point<3>& point : block.points) {
+      box.expand(header.lattice ? header.lattice->to_world(point) : point);
+    }
+    points += block.size();
+    progress.update(points, reader->fraction_read());
+  }
+  progress.end();
+  Json json;
+  json["name"] = header.name;
+  json["kind"] = "points";
+  json["format"] = header.format;
+  json["version"] = text_or_null(header.version);
+  json["point_format"] = header.point_format < 0 ? Json(nullptr) : Json(header.point_format);
+  json["coordinates"] = header.coordinates;
+  json["points"] = points;
+  json["withheld"] = reader->withheld();
+  json["extent"] = extent_json(box, header.coordinates);
+  add_lattice(header.lattice, json);
+  json["density"] = density(box, points);
+  json["crs"] = text_or_null(header.crs);
+  json["software"] = text_or_null(header.software);
+  return json;
+}
+
+Json describe_mesh(const std::string& path, Progress& progress) {
+  progress.begin("read", "vertices");
+  const Mesh mesh = read_mesh(disk(), path);
+  progress.update(mesh.vertices.size(), 1);
+  progress.end();
+  Box<3> box;
+  for (const Point<3>& vertex : mesh.vertices) box.expand(vertex);
+  std::string format = std::filesystem::path(path).extension().string();
+  Json json;
+  json["name"] = path;
+  json["kind"] = "mesh";
+  json["format"] = text_or_null(format.empty() ? format : format.substr(1));
+  json["dimension"] = mesh.header.dimension;
+  json["vertices"] = mesh.vertices.size();
+  json["simplices"] = mesh.corners.size() / mesh.corners_per_simplex();
+  json["hull_facets"] = count_boundary_facets(mesh);
+  json["canonical_hash"] = hash_to_hex(canonical_hash(mesh));
+  json["extent"] = extent_json(box, 3);
+  add_lattice(mesh.header.lattice, json);
+  json["on_lattice"] = mesh.header.lattice.has_value();
+  json["input_index"] = mesh.header.has_input_index;
+  json["crs"] = text_or_null(mesh.header.crs);
+  return json;
+}
+
+std::string value_text(const Json& value) {
+  if (value.is_null()) return "-";
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return json_text(value);
+  std::string text;
+  for (const Json& item : value) {
+    if (!text.empty()) text += "  ";
+    text += value_text(item);
+  }
+  return text;
+}
+
+/// The same keys and values as the JSON, laid out for people.
+std::string describe(const Json& json) {
+  std::string text = json["name"].get<std::string>() + "\n";
+  for (const auto& [key, value] : json.items()) {
+    if (key == "name") continue;
+    if (value.is_object()) {
+      for (const auto& [inner_key, inner_value] : value.items()) {
+        const std::string path = fmt::format("{} {}", key, inner_key);
+        text += fmt::format("  {:16} {}\n", path, value_text(inner_value));
+      }
+    } else {
+      text += fmt::format("  {:16} {}\n", key, value_text(value));
+    }
+  }
+  return text;
+}
+
+int run(const InfoOptions& options) {
+  Progress progress = make_progress(options.report);
+  for (const std::string& path : options.files) {
+    const Json json = path != "-" && is_mesh(disk(), path)
+                          ? describe_mesh(path, progress)
+                          : describe_points(path, options.reader, progress);
+    write_text("-", options.json ? json_text(json) + "\n" : describe(json));
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+Subcommand add_info(CLI::App& root) {
+  const auto options = std::make_shared<InfoOptions>();
+  CLI::App* app = root.add_subcommand("info", "Tell what point files and meshes hold");
+  app->footer(kExamples);
+  app->add_option("FILE", options->files, "Point files and meshes; - is points from a pipe")
+      ->required();
+  app->add_flag("--json", options->json, "One JSON object a line for each file");
+  add_reader_options(*app, options->reader);
+  add_report_options(*app, options->report);
+  return {app, [options] { return run(*options); }};
+}
+
+}  // namespace spillway

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace spillway {
+
+/// Makes SIGINT, SIGTERM and SIGHUP remove unfinished output files and end the process with exit
+/// code 128 + signal. A closed pipe and a file beyond the process's size limit become failed
+/// writes, no signals. To be called once, before any thread is started: all threads inherit the
+/// blocked signals, and one thread of this function waits for them, so that removing files happens
+/// outside a signal handler.
+void handle_interrupts();
+
+}  // namespace spillway

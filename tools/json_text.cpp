@@ -1,0 +1,9 @@
+#include "tools/json_text.h"
+
+namespace spillway {
+
+std::string json_text(const nlohmann::ordered_json& json, int indent) {
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace spillway

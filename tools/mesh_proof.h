@@ -1,0 +1,154 @@
+#pragma once
+// The proof behind check_mesh, for one dimension. What its steps prove together, and why, is
+// written in docs/algorithm.md ("What check proves").
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/checker.h"
+
+namespace spillway {
+
+/// The words for a simplex and its facets.
+template <int D>
+struct Words;
+template <>
+struct Words<2> {
+  static constexpr const char* kSimplex = "triangle";
+  static constexpr const char* kSimplices = "triangles";
+  static constexpr const char* kFacet = "edge";
+  static constexpr const char* kRidge = "vertex";
+};
+template <>
+struct Words<3> {
+  static constexpr const char* kSimplex = "tetrahedron";
+  static constexpr const char* kSimplices = "tetrahedra";
+  static constexpr const char* kFacet = "facet";
+  static constexpr const char* kRidge = "edge";
+};
+
+/// Adds faults to a report, described as long as there are few.
+class Faults {
+ public:
+  Faults(CheckReport& report, std::size_t most) : report_(report), most_(most) {}
+
+  template <typename... Args>
+  void add(fmt::format_string<Args...> format, Args&&... args) {
+    ++report_.fault_count;
+    if (report_.faults.size() < most_) {
+      report_.faults.push_back(fmt::format(format, std::forward<Args>(args)...));
+    }
+  }
+  [[nodiscard]] std::uint64_t count() const { return report_.fault_count; }
+
+ private:
+  CheckReport& report_;
+  std::size_t most_;
+};
+
+/// A face as the sorted numbers of its K vertices, and whose face it is.
+template <std::size_t K>
+struct Face {
+  std::array<std::uint64_t, K> vertices;
+  std::uint64_t owner;
+  auto operator<=>(const Face&) const = default;
+};
+
+/// Sorts the faces and calls f(first, count) for each run of equal ones.
+template <std::size_t K, typename F>
+void for_each_run(std::vector<Face<K>>& faces, F&& f);
+
+/// A facet that only one simplex has, listed so that orientation(facet, p) is positive for p
+/// outside.
+template <int D>
+struct BoundaryFacet {
+  std::array<std::uint64_t, D> vertices;
+  std::uint64_t simplex;
+};
+
+/// A mesh whose vertex numbers are valid, seen by the proof: the coordinates that predicates run
+/// on, and words for faults.
+template <int D>
+class MeshView {
+ public:
+  explicit MeshView(const Mesh& mesh) : mesh_(mesh), points_(mesh.vertices.size()) {}
+
+  /// Coordinates for the predicates, to be filled in.
+  [[nodiscard]] std::vector<Point<D>>& points() { return points_; }
+  [[nodiscard]] const Point<D>& point(std::uint64_t vertex) const { return points_[vertex]; }
+
+  [[nodiscard]] std::uint64_t vertex_count() const { return points_.size(); }
+  [[nodiscard]] std::uint64_t simplex_count() const { return mesh_.corners.size() / (D + 1); }
+  [[nodiscard]] std::uint64_t corner(std::uint64_t simplex, int i) const {
+    return mesh_.corners[simplex * (D + 1) + i];
+  }
+  [[nodiscard]] std::array<Point<D>, D + 1> simplex(std::uint64_t number) const {
+    std::array<Point<D>, D + 1> points;
+    for (int i = 0; i <= D; ++i) points[i] = points_[corner(number, i)];
+    return points;
+  }
+  /// The simplex of a facet's vertices and one more.
+  [[nodiscard]] std::array<Point<D>, D + 1> simplex(const std::array<std::uint64_t, D>& facet,
+                                                    std::uint64_t last) const {
+    std::array<Point<D>, D + 1> points;
+    for (int i = 0; i < D; ++i) points[i] = points_[facet[i]];
+    points[D] = points_[last];
+    return points;
+  }
+  /// The facet opposite a simplex's i-th vertex, listed so that its outside is positive if the
+  /// simplex is positively oriented.
+  [[nodiscard]] std::array<std::uint64_t, D> facet(std::uint64_t simplex, int i) const {
+    std::array<std::uint64_t, D> vertices;
+    for (int j = 0, k = 0; j <= D; ++j) {
+      if (j != i) vertices[k++] = corner(simplex, j);
+    }
+    if ((D - i) % 2 == 0) std::swap(vertices[0], vertices[1]);
+    return vertices;
+  }
+
+  /// "vertex 7 (1.5, 2)", in output coordinates.
+  [[nodiscard]] std::string vertex_text(std::uint64_t vertex) const;
+  /// "triangle 3 (vertices 5, 6, 7 at (0, 0), (1, 0), (0, 1))".
+  [[nodiscard]] std::string simplex_text(std::uint64_t simplex) const;
+  /// "edge 5, 7 at (0, 0), (1, 0)" for a face of any dimension, called as given.
+  template <std::size_t K>
+  [[nodiscard]] std::string face_text(const char* name,
+                                      const std::array<std::uint64_t, K>& face) const {
+    return fmt::format("{} {}", name, list_text(face.data(), K));
+  }
+
+ private:
+  [[nodiscard]] std::string coordinates_text(std::uint64_t vertex) const;
+  [[nodiscard]] std::string list_text(const std::uint64_t* vertices, std::size_t count) const;
+
+  const Mesh& mesh_;
+  std::vector<Point<D>> points_;
+};
+
+/// Runs the whole proof and writes its outcome into the report.
+template <int D>
+void prove_mesh(const Mesh& mesh, const CheckOptions& options, CheckReport& report);
+
+/// The part about the boundary: adds a fault unless the facets form one convex surface around the
+/// simplices. Each facet's simplex must be positively oriented.
+template <int D>
+void prove_boundary(const MeshView<D>& mesh, const std::vector<BoundaryFacet<D>>& boundary,
+                    Faults& faults);
+
+template <std::size_t K, typename F>
+void for_each_run(std::vector<Face<K>>& faces, F&& f) {
+  std::sort(faces.begin(), faces.end());
+  for (std::size_t first = 0, last = 0; first < faces.size(); first = last) {
+    while (last < faces.size() && faces[last].vertices == faces[first].vertices) ++last;
+    f(&faces[first], last - first);
+  }
+}
+
+}  // namespace spillway

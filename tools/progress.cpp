@@ -1,0 +1,116 @@
+#include "tools/progress.h"
+
+#include <cstdio>
+
+#include "tools/json_text.h"
+
+namespace spillway {
+namespace {
+
+/// Progress is not worth failing for: if standard error is gone, it goes unseen.
+void write_to_standard_error(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+std::chrono::milliseconds period(ProgressStyle style) {
+  switch (style) {
+    case ProgressStyle::kTerminal:
+      return std::chrono::milliseconds(100);
+    case ProgressStyle::kJson:
+      return std::chrono::seconds(1);
+    default:
+      return std::chrono::seconds(5);
+  }
+}
+
+}  // namespace
+
+Progress::Progress(ProgressStyle style, bool quiet, bool verbose)
+    : style_(style), quiet_(quiet), verbose_(verbose) {}
+
+Progress::~Progress() {
+  ticker_ = {};
+  const std::lock_guard lock(mutex_);
+  wipe(lock);
+}
+
+void Progress::begin(const std::string& phase, const std::string& unit) {
+  start_ = Clock::now();
+  {
+    const std::lock_guard lock(mutex_);
+    state_ = {.phase = phase, .unit = unit, .fraction = {}};
+  }
+  if (style_ != ProgressStyle::kNone) {
+    ticker_ = std::jthread([this](const std::stop_token& stop) { tick_until_stopped(stop); });
+  }
+}
+
+void Progress::update(std::uint64_t done, std::optional<double> fraction) {
+  const std::lock_guard lock(mutex_);
+  state_.done = done;
+  state_.fraction = fraction;
+}
+
+double Progress::end() {
+  ticker_ = {};
+  const std::lock_guard lock(mutex_);
+  state_.finished = true;
+  state_.seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  if (style_ == ProgressStyle::kTerminal) {
+    wipe(lock);
+  } else {
+    show(lock);
+  }
+  return state_.seconds;
+}
+
+void Progress::say(std::string_view message) {
+  if (quiet_) return;
+  const std::lock_guard lock(mutex_);
+  wipe(lock);
+  if (style_ == ProgressStyle::kJson) {
+    write_to_standard_error(json_text({{"message", message}}) + "\n");
+  } else {
+    write_to_standard_error("spillway: " + std::string(message) + "\n");
+  }
+}
+
+void Progress::detail(std::string_view message) {
+  if (verbose_) say(message);
+}
+
+void Progress::tick_until_stopped(const std::stop_token& stop) {
+  std::unique_lock sleep(sleep_mutex_);
+  const auto never = [] { return false; };
+  while (true) {
+    stopped_.wait_for(sleep, stop, period(style_), never);
+    if (stop.stop_requested()) return;
+    const std::lock_guard lock(mutex_);
+    state_.seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    show(lock);
+  }
+}
+
+void Progress::show(const std::lock_guard<std::mutex>& lock) const {
+  switch (style_) {
+    case ProgressStyle::kNone:
+      break;
+    case ProgressStyle::kPlain:
+      write_to_standard_error("spillway: " + progress_line(state_) + "\n");
+      break;
+    case ProgressStyle::kTerminal:
+      wipe(lock);
+      write_to_standard_error(progress_line(state_));
+      break;
+    case ProgressStyle::kJson:
+      write_to_standard_error(progress_json(state_) + "\n");
+      break;
+  }
+}
+
+void Progress::wipe(const std::lock_guard<std::mutex>& /*lock*/) const {
+  if (style_ == ProgressStyle::kTerminal) write_to_standard_error("\r\x1b[K");
+}
+
+}  // namespace spillway

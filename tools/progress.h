@@ -1,0 +1,64 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "tools/progress_line.h"
+
+namespace spillway {
+
+enum class ProgressStyle {
+  kNone,
+  kPlain,     ///< a line at the end of a phase and every few seconds
+  kTerminal,  ///< one line that is rewritten ten times a second
+  kJson,      ///< a JSON object a line, every second and at the end of a phase; messages likewise
+};
+
+/// All that a run says on standard error, errors excepted: progress and messages. The work is a
+/// sequence of phases. While one lasts, a thread of its own shows how far it is, so the work itself
+/// only counts. All functions may be called from any thread.
+class Progress {
+ public:
+  /// `quiet` silences say(), `verbose` lets detail() speak.
+  Progress(ProgressStyle style, bool quiet, bool verbose);
+
+  /// Wipes a line that is being rewritten, so that an error message finds a clean one.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void begin(const std::string& phase, const std::string& unit);
+  void update(std::uint64_t done, std::optional<double> fraction);
+  /// Ends the phase and returns how many seconds it took.
+  double end();
+
+  /// A message, unless quiet.
+  void say(std::string_view message);
+  /// A message that only -v shows.
+  void detail(std::string_view message);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void tick_until_stopped(const std::stop_token& stop);
+  void show(const std::lock_guard<std::mutex>& lock) const;
+  void wipe(const std::lock_guard<std::mutex>& lock) const;
+
+  const ProgressStyle style_;
+  const bool quiet_;
+  const bool verbose_;
+  Clock::time_point start_;
+  std::mutex mutex_;  // guards state_ and what stands on standard error
+  PhaseState state_;
+  std::mutex sleep_mutex_;
+  std::condition_variable_any stopped_;
+  std::jthread ticker_;
+};
+
+}  // namespace spillway

@@ -1,0 +1,15 @@
+#include "tools/text_output.h"
+
+#include <span>
+
+#include "formats/file_system.h"
+
+namespace spillway {
+
+void write_text(const std::string& path, std::string_view text) {
+  const auto output = disk().create(path);
+  output->write(std::as_bytes(std::span(text)));
+  output->commit();
+}
+
+}  // namespace spillway
