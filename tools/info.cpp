@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "tools/command_options.h"
 #include "tools/facet_count.h"
 #include "tools/json_text.h"
+#include "tools/statistics.h"
 #include "tools/text_output.h"
 
 namespace spillway {
@@ -142,12 +144,28 @@ std::string describe(const Json& json) {
   return text;
 }
 
+/// Adds what the JSON of every kind of file has in common with that of --stats; null where the file
+/// does not tell.
+void add_common_keys(double seconds, Json& json) {
+  for (const char* key :
+       {"points", "duplicates", "vertices", "simplices", "hull_facets", "canonical_hash"}) {
+    if (!json.contains(key)) json[key] = nullptr;
+  }
+  json["peak_rss_bytes"] = peak_rss_bytes();
+  json["seconds"] = seconds;
+}
+
 int run(const InfoOptions& options) {
   Progress progress = make_progress(options.report);
   for (const std::string& path : options.files) {
-    const Json json = path != "-" && is_mesh(disk(), path)
-                          ? describe_mesh(path, progress)
-                          : describe_points(path, options.reader, progress);
+    const auto start = std::chrono::steady_clock::now();
+    Json json = path != "-" && is_mesh(disk(), path)
+                    ? describe_mesh(path, progress)
+                    : describe_points(path, options.reader, progress);
+    if (options.json) {
+      add_common_keys(
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), json);
+    }
     write_text("-", options.json ? json_text(json) + "\n" : describe(json));
   }
   return kExitDone;

@@ -247,8 +247,8 @@ int run(const TriangulateOptions& options) {
   if (std::count(options.inputs.begin(), options.inputs.end(), "-") > 1) {
     throw UsageError("standard input can be read only once: give - once");
   }
-  if (options.output == "-" && options.stats_path == "-") {
-    throw UsageError("the mesh and --stats cannot both go to standard output");
+  if (options.output == options.stats_path) {
+    throw UsageError("the mesh and --stats cannot go to the same place: " + options.output);
   }
   const MeshFormat format = mesh_format(options.output, options.output_format);
   RunStatistics statistics;

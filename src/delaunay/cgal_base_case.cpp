@@ -18,10 +18,12 @@
 #include <CGAL/spatial_sort.h>
 
 #include <algorithm>
+#include <string>
 #include <unordered_map>
 #include <utility>
 
 #include "src/delaunay/base_case.h"
+#include "src/error.h"
 
 namespace spillway {
 namespace {
@@ -153,8 +155,14 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
   BaseCase<D> result;
   result.dimension = D;
   result.duplicates = inserter.duplicates();
-  CellIndex count = 0;
-  for (const auto cell : Traits::all_cells(delaunay)) cell->info() = count++;
+  std::size_t count = 0;
+  for (const auto cell : Traits::all_cells(delaunay)) {
+    cell->info() = static_cast<CellIndex>(count++);
+  }
+  if (count >= Simplex<D>::kLink) {
+    throw Error("a base case of " + std::to_string(input.points.size()) + " points has " +
+                std::to_string(count) + " simplices, more than fit; choose smaller base cases");
+  }
   result.simplices.reserve(count);
   for (const auto cell : Traits::all_cells(delaunay)) {
     Simplex<D>& simplex = result.simplices.emplace_back();

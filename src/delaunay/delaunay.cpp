@@ -21,10 +21,6 @@ namespace {
 template <int D>
 constexpr std::size_t kGoodBaseCase = D == 2 ? 32'768 : 262'144;
 
-/// A border with more than this share of a part's points is triangulated at once: dividing it again
-/// would not make it smaller.
-constexpr double kLargestDividedBorder = 0.5;
-
 /// So many base cases that a border is divided into, to have something to do for every thread.
 constexpr std::size_t kBorderBaseCases = 4;
 constexpr std::size_t kSmallestBorderBaseCase = 4'096;
@@ -57,6 +53,7 @@ class Run {
     marks_.resize(root.block + 1);
     duplicates_.resize(root.block + 1);
     base_case_size_ = base_case_size;
+    root_block_ = root.block;
     PartSurface surface = triangulate_part(root, task);
     result_.dimension = surface.dimension;
     result_.hull = std::move(surface.hull);
@@ -81,18 +78,12 @@ class Run {
          .first_vertex = part.begin});
     PartSurface surface;
     surface.dimension = leaf.dimension;
-    if (leaf.dimension < D) {
-      std::vector<VertexId> dropped;
-      for (const Duplicate& duplicate : leaf.duplicates) dropped.push_back(duplicate.dropped);
-      std::vector<VertexId> all(part.size());
-      std::iota(all.begin(), all.end(), part.begin);
-      std::set_difference(all.begin(), all.end(), dropped.begin(), dropped.end(),
-                          std::back_inserter(surface.vertices));
-    }
+    surface.open = leaf.dimension < D;
     for (const std::uint32_t i : leaf.hull) surface.hull.push_back({part.block, i});
     marks_[part.block].assign(leaf.simplices.size(), Mark::kInterior);
     result_.blocks[part.block].simplices = std::move(leaf.simplices);
     duplicates_[part.block] = std::move(leaf.duplicates);
+    if (surface.open) surface.vertices = distinct_vertices(part);
     return surface;
   }
 
@@ -105,19 +96,51 @@ class Run {
       group.run([&, c] { surfaces[c] = triangulate_part(part.children[c], task.children[c]); });
     }
     group.wait();
-    return merge<D>(
-        result_, marks_, part, surfaces,
+    PartSurface surface = merge<D>(
+        result_, marks_, part, surfaces, part.block != root_block_,
         [this](std::vector<Point<D>> points, std::size_t part_size, Task& border_task) {
           return triangulate_border(std::move(points), part_size, border_task);
         },
         task);
+    if (surface.open) {
+      drop_simplices(part);
+      surface.vertices = distinct_vertices(part);
+    }
+    return surface;
+  }
+
+  /// A part's vertices without those that equal another one.
+  [[nodiscard]] std::vector<VertexId> distinct_vertices(const Part<D>& part) const {
+    if (!part.leaf()) {
+      std::vector<VertexId> vertices;
+      for (const Part<D>& child : part.children) {
+        const std::vector<VertexId> some = distinct_vertices(child);
+        vertices.insert(vertices.end(), some.begin(), some.end());
+      }
+      return vertices;
+    }
+    std::vector<VertexId> dropped;
+    for (const Duplicate& duplicate : duplicates_[part.block]) dropped.push_back(duplicate.dropped);
+    std::vector<VertexId> all(part.size());
+    std::iota(all.begin(), all.end(), part.begin);
+    std::vector<VertexId> vertices;
+    std::set_difference(all.begin(), all.end(), dropped.begin(), dropped.end(),
+                        std::back_inserter(vertices));
+    return vertices;
+  }
+
+  /// Gives up the simplices of a part that stays open.
+  void drop_simplices(const Part<D>& part) {
+    for (const Part<D>& child : part.children) drop_simplices(child);
+    result_.blocks[part.block] = {};
+    marks_[part.block] = {};
   }
 
   Triangulation<D> triangulate_border(std::vector<Point<D>> points, std::size_t part_size,
                                       Task& task) const {
     const auto count = static_cast<double>(points.size());
     std::size_t base_case_size = points.size();
-    if (count <= kLargestDividedBorder * static_cast<double>(part_size)) {
+    if (count <= kLargestBorder * static_cast<double>(part_size)) {
       base_case_size =
           std::clamp(points.size() / kBorderBaseCases,
                      std::min(kSmallestBorderBaseCase, base_case_size_), base_case_size_);
@@ -127,6 +150,7 @@ class Run {
 
   const DelaunayOptions& options_;
   std::size_t base_case_size_ = 0;
+  std::uint32_t root_block_ = 0;
   Triangulation<D> result_;
   std::vector<BlockMarks> marks_;                   ///< by block
   std::vector<std::vector<Duplicate>> duplicates_;  ///< by block

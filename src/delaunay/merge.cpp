@@ -4,10 +4,12 @@
 #include <atomic>
 #include <numeric>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "src/delaunay/hash.h"
 #include "src/delaunay/schedule.h"
+#include "src/error.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway {
@@ -66,6 +68,11 @@ class Merge {
 
   /// Step 1: border_ and border_vertices_.
   void find_borders(Task& task);
+
+  /// The share of the part's points that are in borders.
+  [[nodiscard]] double border_share() const {
+    return static_cast<double>(border_vertices_.size()) / static_cast<double>(part_.size());
+  }
 
   /// Step 2: border_mesh_, its vertices renumbered to those of triangulation_.
   void triangulate_border(const BorderTriangulator<D>& triangulate, Task& task);
@@ -154,7 +161,7 @@ void Merge<D>::find_borders(Task& task) {
   TaskGroup group;
   for (std::size_t c = 0; c < count; ++c) {
     group.run([&, c] {
-      if (children_[c].dimension < D) {
+      if (children_[c].open) {
         vertices[c] = children_[c].vertices;
         return;
       }
@@ -236,7 +243,7 @@ void Merge<D>::accept(Task& task) {
     }
   });
 
-  std::vector<std::uint32_t> created(grain_count(mesh_simplices_.size(), kGrain) + 1);
+  std::vector<std::size_t> created(grain_count(mesh_simplices_.size(), kGrain) + 1);
   parallel_for(
       mesh_simplices_.size(), kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
         std::uint32_t count = 0;
@@ -244,7 +251,7 @@ void Merge<D>::accept(Task& task) {
           const Vertices& candidate = border_mesh_.simplex(mesh_simplices_[m]).vertices;
           SimplexId& target = targets_[flat(mesh_simplices_[m])];
           const std::size_t c = only_child(candidate);
-          if (c == kSpans || children_[c].dimension < D) {
+          if (c == kSpans || children_[c].open) {
             target = {part_.block, count++};
             continue;
           }
@@ -258,6 +265,10 @@ void Merge<D>::accept(Task& task) {
         created[g + 1] = count;
       });
   std::partial_sum(created.begin(), created.end(), created.begin());
+  if (created.back() >= Simplex<D>::kLink || border_.size() >= Simplex<D>::kLink) {
+    throw Error("the border of " + std::to_string(border_vertices_.size()) +
+                " points has more simplices than fit into one block");
+  }
 
   new_block().simplices.resize(created.back());
   marks_[part_.block].assign(created.back(), Mark::kInterior);
@@ -266,7 +277,7 @@ void Merge<D>::accept(Task& task) {
                  for (std::size_t m = begin; m < end; ++m) {
                    SimplexId& target = targets_[flat(mesh_simplices_[m])];
                    if (target.block != part_.block) continue;
-                   target.index += created[g];
+                   target.index += static_cast<std::uint32_t>(created[g]);
                    new_block().simplices[target.index].vertices =
                        border_mesh_.simplex(mesh_simplices_[m]).vertices;
                  }
@@ -387,7 +398,8 @@ template <int D>
 PartSurface Merge<D>::surface() {
   PartSurface surface;
   surface.dimension = border_mesh_.dimension;
-  if (surface.dimension < D) {
+  surface.open = surface.dimension < D;
+  if (surface.open) {
     surface.vertices = std::move(border_vertices_);
     return surface;
   }
@@ -406,11 +418,17 @@ PartSurface Merge<D>::surface() {
 
 template <int D>
 PartSurface merge(Triangulation<D>& triangulation, std::span<BlockMarks> marks, const Part<D>& part,
-                  std::span<PartSurface> children, const BorderTriangulator<D>& triangulate_border,
-                  Task& task) {
-  task.after.resize(4);
+                  std::span<PartSurface> children, bool may_stay_open,
+                  const BorderTriangulator<D>& triangulate_border, Task& task) {
+  task.after.reserve(4);
   Merge<D> merge(triangulation, marks, part, children);
-  merge.find_borders(task.after[0]);
+  merge.find_borders(task.after.emplace_back());
+  if (may_stay_open && merge.border_share() > kLargestBorder) {
+    PartSurface open;
+    open.dimension = D;
+    return open;
+  }
+  task.after.resize(4);
   merge.triangulate_border(triangulate_border, task.after[1]);
   merge.accept(task.after[2]);
   merge.link(task.after[3]);
@@ -418,8 +436,8 @@ PartSurface merge(Triangulation<D>& triangulation, std::span<BlockMarks> marks, 
 }
 
 template PartSurface merge<2>(Triangulation<2>&, std::span<BlockMarks>, const Part<2>&,
-                              std::span<PartSurface>, const BorderTriangulator<2>&, Task&);
+                              std::span<PartSurface>, bool, const BorderTriangulator<2>&, Task&);
 template PartSurface merge<3>(Triangulation<3>&, std::span<BlockMarks>, const Part<3>&,
-                              std::span<PartSurface>, const BorderTriangulator<3>&, Task&);
+                              std::span<PartSurface>, bool, const BorderTriangulator<3>&, Task&);
 
 }  // namespace spillway

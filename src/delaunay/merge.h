@@ -12,13 +12,20 @@ namespace spillway {
 
 struct Task;
 
-/// What merging needs to know of a part that is triangulated; its simplices are in the blocks of
-/// its subtree.
+/// What merging needs to know of a part that is done; its simplices are in the blocks of its
+/// subtree.
 struct PartSurface {
-  int dimension = -1;              ///< of the affine hull of its points
-  std::vector<SimplexId> hull;     ///< its infinite simplices, if dimension == D
-  std::vector<VertexId> vertices;  ///< all its distinct vertices, sorted, if dimension < D
+  int dimension = -1;  ///< of the affine hull of its points
+  /// Whether it has no simplices and gives all its vertices to the merge above: because they span
+  /// fewer than D dimensions, or because nearly all its simplices would be in the border anyway.
+  bool open = true;
+  std::vector<SimplexId> hull;     ///< its infinite simplices; none if open
+  std::vector<VertexId> vertices;  ///< all its distinct vertices, sorted, if open
 };
+
+/// A border with more than this share of a part's points does not pay: such a part stays open, and
+/// at the root, where that cannot be, the border is not divided again.
+inline constexpr double kLargestBorder = 0.5;
 
 /// Triangulates a border's points for a merge of so many points; vertex v of the result is point
 /// input_index[v] of those given.
@@ -28,8 +35,9 @@ using BorderTriangulator = std::function<Triangulation<D>(std::vector<Point<D>> 
 
 /// Makes one triangulation of the parts that are `part`'s children (Algorithm 1 of Funke, Sanders
 /// 2017, for any number of children at once):
-///   1. The border of each child against its siblings is found; a child that spans fewer than D
-///      dimensions gives all its points.
+///   1. The border of each child against its siblings is found; an open child gives all its points.
+///      If `may_stay_open` and the borders are more than kLargestBorder, that is all: the part
+///      stays open, without vertices yet.
 ///   2. The vertices of all borders are triangulated.
 ///   3. Of that triangulation a simplex is accepted if it spans children, or if its own child's
 ///   border
@@ -39,7 +47,7 @@ using BorderTriangulator = std::function<Triangulation<D>(std::vector<Point<D>> 
 /// are. Returns the part's own surface. `task` gets the steps with their durations.
 template <int D>
 PartSurface merge(Triangulation<D>& triangulation, std::span<BlockMarks> marks, const Part<D>& part,
-                  std::span<PartSurface> children, const BorderTriangulator<D>& triangulate_border,
-                  Task& task);
+                  std::span<PartSurface> children, bool may_stay_open,
+                  const BorderTriangulator<D>& triangulate_border, Task& task);
 
 }  // namespace spillway

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -55,8 +54,9 @@ void parallel_for(
 /// to about `batch` items; the order is unspecified.
 template <typename Item, typename Body>
 void parallel_work_queue(std::vector<Item> items, std::size_t batch, const Body& body) {
+  std::function<void(std::vector<Item>)> work;  // outlives the tasks of `group`, which call it
   TaskGroup group;
-  std::function<void(std::vector<Item>)> work = [&](std::vector<Item> todo) {
+  work = [&](std::vector<Item> todo) {
     std::vector<Item> found;
     while (!todo.empty()) {
       while (todo.size() > 2 * batch) {
