@@ -149,6 +149,9 @@ Triangulation<D> triangulate(const std::vector<Point<D>>& points, const Triangul
   engine.division = division_by_name(options.division);
   engine.children = options.children;
   engine.tasks = &statistics.tasks;
+  engine.progress = [&](std::size_t done) {
+    progress.update(done, static_cast<double>(done) / static_cast<double>(points.size()));
+  };
   progress.begin("triangulate", "points");
   auto triangulation = delaunay<D>(std::span<const Point<D>>(points), engine);
   require_full_dimension(triangulation);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -84,6 +85,7 @@ class Run {
     result_.blocks[part.block].simplices = std::move(leaf.simplices);
     duplicates_[part.block] = std::move(leaf.duplicates);
     if (surface.open) surface.vertices = distinct_vertices(part);
+    if (options_.progress) options_.progress(points_done_ += part.size());
     return surface;
   }
 
@@ -145,12 +147,15 @@ class Run {
           std::clamp(points.size() / kBorderBaseCases,
                      std::min(kSmallestBorderBaseCase, base_case_size_), base_case_size_);
     }
-    return Run(std::move(points), options_).triangulate(base_case_size, task);
+    DelaunayOptions options = options_;
+    options.progress = nullptr;
+    return Run(std::move(points), options).triangulate(base_case_size, task);
   }
 
   const DelaunayOptions& options_;
   std::size_t base_case_size_ = 0;
   std::uint32_t root_block_ = 0;
+  std::atomic<std::size_t> points_done_ = 0;
   Triangulation<D> result_;
   std::vector<BlockMarks> marks_;                   ///< by block
   std::vector<std::vector<Duplicate>> duplicates_;  ///< by block

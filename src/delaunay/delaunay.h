@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 
 #include "src/delaunay/divide.h"
@@ -17,6 +18,9 @@ struct DelaunayOptions {
       0;  ///< largest number of points in one base case; 0: chosen by D and n
   DivisionScheme division = DivisionScheme::kLongestExtent;
   unsigned children = 2;  ///< parts that are merged at a time
+  /// If set, is told after each base case how many points have been through one. Called by many
+  /// threads at once.
+  std::function<void(std::size_t points)> progress = nullptr;
   Task* tasks = nullptr;  ///< if set, receives the tree of tasks with their durations
 };
 

@@ -133,6 +133,20 @@ TEST(Generate, EveryFamilyComesInBothDimensionsAndAsManyAsAskedFor) {
   }
 }
 
+TEST(Check, AcceptsTheTriangulationOfEveryFamily) {
+  const Workspace work;
+  for (const std::string family :
+       {"uniform", "normal", "bubbles", "ellipsoid", "lines", "lattice", "circle", "terrain"}) {
+    for (const std::string dimension : {"2", "3"}) {
+      work.succeed(
+          fmt::format("spillway generate -q {} -n 700 --dim {} -o points.npy\n"
+                      "spillway triangulate -q points.npy --dim {} --base-case 60 -o mesh.ply\n"
+                      "spillway check -q mesh.ply --points points.npy",
+                      family, dimension, dimension));
+    }
+  }
+}
+
 TEST(Generate, NoPointsMakeAValidFile) {
   const Workspace work;
   work.succeed("spillway generate -q terrain -n 0 -o none.las");
