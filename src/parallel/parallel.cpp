@@ -2,12 +2,56 @@
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
+#ifdef __SANITIZE_THREAD__
+#include <sanitizer/tsan_interface.h>
+#endif
+
+#include <atomic>
 
 namespace spillway {
 namespace {
+
+// The thread sanitizer does not see how the library, which is not built with it, passes a task from
+// one thread to another and waits for it; these tell it (each a release or an acquire of `place`).
+#ifdef __SANITIZE_THREAD__
+void tell_release(void* place) { __tsan_release(place); }
+void tell_acquire(void* place) { __tsan_acquire(place); }
+#else
+void tell_release(void* /*place*/) {}
+void tell_acquire(void* /*place*/) {}
+#endif
+
+char handed_over;  // the place where all tasks change hands
+
+/// One task as the library gets it: it moves it into memory of its own, which it uses again, and
+/// runs and destroys it in any thread.
+class HandedOver {
+ public:
+  HandedOver(std::function<void()> work, void* group) : work_(std::move(work)), group_(group) {}
+  HandedOver(HandedOver&& other) noexcept
+      : work_((tell_acquire(&handed_over), std::move(other.work_))), group_(other.group_) {
+    tell_release(&handed_over);
+  }
+  HandedOver(const HandedOver&) = delete;
+  HandedOver& operator=(const HandedOver&) = delete;
+  ~HandedOver() {
+    tell_acquire(&handed_over);
+    work_ = nullptr;
+    tell_release(&handed_over);
+  }
+
+  void operator()() const {
+    tell_acquire(&handed_over);
+    work_();
+    tell_release(group_);
+  }
+
+ private:
+  std::function<void()> work_;
+  void* group_;
+};
 
 bool single_threaded() { return tbb::this_task_arena::max_concurrency() == 1; }
 
@@ -34,11 +78,14 @@ void TaskGroup::run(std::function<void()> work) {
   if (single_threaded()) {
     work();
   } else {
-    tasks_->group.run(std::move(work));
+    tasks_->group.run(HandedOver(std::move(work), this));
   }
 }
 
-void TaskGroup::wait() { tasks_->group.wait(); }
+void TaskGroup::wait() {
+  tasks_->group.wait();
+  tell_acquire(this);
+}
 
 void parallel_for(
     std::size_t count, std::size_t grain,
@@ -47,9 +94,17 @@ void parallel_for(
   const auto run = [&](std::size_t g) { body(g, g * grain, std::min(count, (g + 1) * grain)); };
   if (grains <= 1 || single_threaded()) {
     for (std::size_t g = 0; g < grains; ++g) run(g);
-  } else {
-    tbb::parallel_for(std::size_t{0}, grains, run);
+    return;
   }
+  std::atomic<std::size_t> next = 0;
+  const auto take_turns = [&] {
+    for (std::size_t g = next++; g < grains; g = next++) run(g);
+  };
+  TaskGroup group;
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  for (std::size_t i = 1; i < std::min(grains, threads); ++i) group.run(take_turns);
+  take_turns();
+  group.wait();
 }
 
 }  // namespace spillway

@@ -9,4 +9,4 @@ spillway_test(delaunay_unit_test unit
 spillway_test(delaunay_property_test property
   SOURCES delaunay/delaunay_property_test.cpp
   LIBS spillway_delaunay spillway_generators cgal_oracle
-  TIMEOUT 300)
+  TIMEOUT 900)

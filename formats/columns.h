@@ -1,0 +1,38 @@
+#pragma once
+// Columns of numbers, so laid out that a byte compressor finds something: integers as differences
+// from the one before, zigzag coded, in as many bytes as the largest needs, byte planes one after
+// another; doubles that are no integers likewise, by their bits.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace spillway {
+
+/// Appends a column. Values are restored to the bit, negative zero included.
+void append_column(std::vector<std::byte>& out, std::span<const double> values);
+void append_column(std::vector<std::byte>& out, std::span<const std::uint64_t> values);
+void append_column(std::vector<std::byte>& out, std::span<const std::uint32_t> values);
+
+/// Takes columns off the front of `bytes`. The number of values is the caller's to know. Throws
+/// Error, beginning with `where`, if bytes are missing or make no sense; allocates nothing that the
+/// bytes do not back.
+class ColumnReader {
+ public:
+  ColumnReader(std::span<const std::byte> bytes, std::string where);
+
+  void read(std::size_t count, std::vector<double>& values);
+  void read(std::size_t count, std::vector<std::uint64_t>& values);
+  void read(std::size_t count, std::vector<std::uint32_t>& values);
+
+  /// Throws Error if anything is left.
+  void expect_end() const;
+
+ private:
+  std::span<const std::byte> left_;
+  std::string where_;
+};
+
+}  // namespace spillway

@@ -1,0 +1,52 @@
+#pragma once
+// Where a run puts what does not fit into memory.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace spillway {
+
+/// A file for one run: appended to, then read. Its bytes are gone from the disk when it is
+/// destroyed. append() is called by one thread at a time; read() by any number, once nothing more
+/// is appended.
+class ScratchFile {
+ public:
+  virtual ~ScratchFile() = default;
+
+  /// Appends all bytes. Throws Error with the system's reason and what to do (disk full: --tmpdir;
+  /// over the cap: --max-tmp).
+  virtual void append(std::span<const std::byte> bytes) = 0;
+
+  /// Fills `buffer` from `offset` on. Throws Error if the file is shorter.
+  virtual void read(std::uint64_t offset, std::span<std::byte> buffer) const = 0;
+
+  [[nodiscard]] virtual std::uint64_t size() const = 0;
+
+  /// The path, for messages.
+  [[nodiscard]] virtual const std::string& name() const = 0;
+};
+
+/// A private folder, removed with all that is in it: by the destructor, and by
+/// remove_unfinished_files() after a signal. Made when the first file is.
+class ScratchFolder {
+ public:
+  virtual ~ScratchFolder() = default;
+
+  /// A new, empty file whose name begins with `label`. May be called by several threads.
+  virtual std::unique_ptr<ScratchFile> create(const std::string& label) = 0;
+
+  /// Bytes appended to all files so far, and the most that lay on the disk at one time.
+  [[nodiscard]] virtual std::uint64_t bytes_written() const = 0;
+  [[nodiscard]] virtual std::uint64_t peak_bytes() const = 0;
+};
+
+/// A folder of its own in `parent` on the machine's disk ("": $TMPDIR, else /tmp), holding at most
+/// `cap` bytes at a time.
+std::unique_ptr<ScratchFolder> make_scratch_folder(const std::string& parent,
+                                                   std::optional<std::uint64_t> cap);
+
+}  // namespace spillway
