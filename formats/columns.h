@@ -1,7 +1,8 @@
 #pragma once
 // Columns of numbers, so laid out that a byte compressor finds something: integers as differences
 // from the one before, zigzag coded, in as many bytes as the largest needs, byte planes one after
-// another; doubles that are no integers likewise, by their bits.
+// another; doubles that are no integers likewise, by their bits. docs/formats-blocks.md has the
+// layout.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,9 +17,9 @@ void append_column(std::vector<std::byte>& out, std::span<const double> values);
 void append_column(std::vector<std::byte>& out, std::span<const std::uint64_t> values);
 void append_column(std::vector<std::byte>& out, std::span<const std::uint32_t> values);
 
-/// Takes columns off the front of `bytes`. The number of values is the caller's to know. Throws
-/// Error, beginning with `where`, if bytes are missing or make no sense; allocates nothing that the
-/// bytes do not back.
+/// Takes columns off the front of `bytes`. The number of values is the caller's to know, and to
+/// bound, since equal steps take no bytes. Throws Error, beginning with `where`, if bytes are
+/// missing or make no sense; otherwise allocates nothing that the bytes do not back.
 class ColumnReader {
  public:
   ColumnReader(std::span<const std::byte> bytes, std::string where);

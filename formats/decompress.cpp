@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "formats/bytes.h"
+#include "formats/lz4_filter.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -43,15 +44,19 @@ class SourceDevice {
   InputSource* source_;
 };
 
-/// Gzip and bzip2, through Boost.Iostreams.
+/// Gzip, bzip2 and LZ4, through Boost.Iostreams.
 class BoostInput : public InputFile {
  public:
-  BoostInput(InputSource& source, Compression compression)
-      : source_(source), format_(compression == Compression::kGzip ? "gzip" : "bzip2") {
+  BoostInput(InputSource& source, Compression compression) : source_(source) {
     if (compression == Compression::kGzip) {
+      format_ = "gzip";
       stream_.push(boost::iostreams::gzip_decompressor(), kCompressedBuffer);
-    } else {
+    } else if (compression == Compression::kBzip2) {
+      format_ = "bzip2";
       stream_.push(boost::iostreams::bzip2_decompressor(), kCompressedBuffer);
+    } else {
+      format_ = "LZ4";
+      stream_.push(Lz4Decompressor(), kCompressedBuffer);
     }
     stream_.push(SourceDevice(source), kCompressedBuffer);
   }
@@ -123,6 +128,7 @@ Compression compression_of_name(const std::string& path) {
   if (path.ends_with(".gz")) return Compression::kGzip;
   if (path.ends_with(".bz2")) return Compression::kBzip2;
   if (path.ends_with(".zst")) return Compression::kZstd;
+  if (path.ends_with(".lz4")) return Compression::kLz4;
   return Compression::kNone;
 }
 
@@ -131,6 +137,7 @@ Compression compression_of_content(std::span<const std::byte> first_bytes) {
   if (text.starts_with("\x1f\x8b")) return Compression::kGzip;
   if (text.starts_with("BZh")) return Compression::kBzip2;
   if (text.starts_with("\x28\xb5\x2f\xfd")) return Compression::kZstd;
+  if (text.starts_with("\x04\x22\x4d\x18")) return Compression::kLz4;
   return Compression::kNone;
 }
 

@@ -9,9 +9,9 @@
 
 namespace spillway {
 
-enum class Compression { kNone, kGzip, kBzip2, kZstd };
+enum class Compression { kNone, kGzip, kBzip2, kZstd, kLz4 };
 
-/// The compression that a file name's extension (.gz, .bz2, .zst) promises.
+/// The compression that a file name's extension (.gz, .bz2, .zst, .lz4) promises.
 Compression compression_of_name(const std::string& path);
 
 /// The compression whose magic number `first_bytes` begins with.

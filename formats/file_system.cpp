@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <mutex>
 #include <set>
@@ -53,10 +54,11 @@ std::string output_hint(int error, const std::string& path) {
 }
 
 /// The temporary names that exist now. Locked for each change on disk, so that a file is either
-/// registered under its temporary name or complete under its final one.
+/// registered under its temporary name, or in a registered folder, or complete under its final one.
 struct UnfinishedFiles {
   std::mutex mutex;
-  std::set<std::string> paths;  // guarded by mutex
+  std::set<std::string> paths;    // guarded by mutex
+  std::set<std::string> folders;  // guarded by mutex
 };
 
 UnfinishedFiles& unfinished_files() {
@@ -296,11 +298,47 @@ FileSystem& disk() {
   return instance;
 }
 
+std::string make_temporary_folder(const std::string& parent, const std::string& prefix) {
+  std::string path = (std::filesystem::path(parent) / (prefix + "XXXXXX")).string();
+  UnfinishedFiles& unfinished = unfinished_files();
+  const std::lock_guard lock(unfinished.mutex);
+  if (::mkdtemp(path.data()) == nullptr) {
+    throw Error(fmt::format("cannot create a temporary folder in {}: {}", parent, reason(errno)));
+  }
+  unfinished.folders.insert(path);
+  return path;
+}
+
+void create_in_temporary_folder(const std::string& folder, const std::string& name) {
+  const std::string path = (std::filesystem::path(folder) / name).string();
+  UnfinishedFiles& unfinished = unfinished_files();
+  const std::lock_guard lock(unfinished.mutex);
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (fd < 0) fail_to_create(path, errno, "");
+  ::close(fd);
+}
+
+bool is_temporary_folder(const std::string& folder) {
+  UnfinishedFiles& unfinished = unfinished_files();
+  const std::lock_guard lock(unfinished.mutex);
+  return unfinished.folders.contains(folder);
+}
+
+void remove_temporary_folder(const std::string& folder) {
+  UnfinishedFiles& unfinished = unfinished_files();
+  const std::lock_guard lock(unfinished.mutex);
+  std::error_code ignored;  // what cannot be removed is left to whoever cleans the parent
+  if (unfinished.folders.erase(folder) > 0) std::filesystem::remove_all(folder, ignored);
+}
+
 void remove_unfinished_files() {
   UnfinishedFiles& unfinished = unfinished_files();
   const std::lock_guard lock(unfinished.mutex);
   for (const std::string& path : unfinished.paths) ::unlink(path.c_str());
   unfinished.paths.clear();
+  std::error_code ignored;  // the next folder is to be tried all the same
+  for (const std::string& path : unfinished.folders) std::filesystem::remove_all(path, ignored);
+  unfinished.folders.clear();
 }
 
 }  // namespace spillway

@@ -65,8 +65,21 @@ class FileSystem {
 /// which is main's business.
 FileSystem& disk();
 
-/// Removes every file that is still under its temporary name. For signal handling: the files'
-/// owners must not run on afterwards.
+/// Makes a private folder in `parent` whose name is `prefix` and six characters, and returns its
+/// path. Throws Error with the system's reason, without a hint.
+std::string make_temporary_folder(const std::string& parent, const std::string& prefix);
+
+/// Creates an empty file in such a folder. Throws Error likewise.
+void create_in_temporary_folder(const std::string& folder, const std::string& name);
+
+/// Whether the folder is there; false also once remove_unfinished_files() has removed it.
+bool is_temporary_folder(const std::string& folder);
+
+/// Removes such a folder with all that is in it.
+void remove_temporary_folder(const std::string& folder);
+
+/// Removes every file that is still under its temporary name, and the temporary folders with all
+/// that is in them. For signal handling: the files' owners must not run on afterwards.
 void remove_unfinished_files();
 
 }  // namespace spillway

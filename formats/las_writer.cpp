@@ -26,7 +26,9 @@ constexpr double kMost = std::numeric_limits<std::int32_t>::max();
 class LasWriter : public PointWriter {
  public:
   LasWriter(std::unique_ptr<OutputFile> file, const PointWriterOptions& options)
-      : file_(std::move(file)), count_(options.count), records_(kBlockPoints * kRecordLength) {
+      : file_(std::move(file)),
+        count_(options.count.value()),
+        records_(kBlockPoints * kRecordLength) {
     if (!options.lattice) {
       throw Error(
           fmt::format("cannot write {}: LAS holds integers with a scale, and these points "

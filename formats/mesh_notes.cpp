@@ -15,20 +15,17 @@ namespace {
 constexpr std::string_view kLatticeNote = "spillway lattice ";
 constexpr std::string_view kCrsNote = "crs ";
 
-/// Widely used PLY readers refuse lines of more than 1024 bytes.
-constexpr std::size_t kLongestCrsPart = 900;
-
 }  // namespace
 
-std::vector<std::string> mesh_notes(const MeshHeader& header) {
+std::vector<std::string> mesh_notes(const MeshHeader& header, std::size_t longest_crs) {
   std::vector<std::string> notes{fmt::format("spillway dimension {}", header.dimension)};
   if (header.lattice) {
     notes.push_back(fmt::format("{}{} {}", kLatticeNote, fmt::join(header.lattice->scale, " "),
                                 fmt::join(header.lattice->offset, " ")));
   }
   const std::string crs = one_line(header.crs);
-  for (std::size_t begin = 0; begin < crs.size(); begin += kLongestCrsPart) {
-    notes.push_back(fmt::format("{}{}", kCrsNote, crs.substr(begin, kLongestCrsPart)));
+  for (std::size_t begin = 0; begin < crs.size(); begin += longest_crs) {
+    notes.push_back(fmt::format("{}{}", kCrsNote, crs.substr(begin, longest_crs)));
   }
   return notes;
 }

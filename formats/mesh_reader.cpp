@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <cctype>
+#include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "formats/bytes.h"
 #include "formats/input_source.h"
+#include "formats/mesh_block.h"
 #include "formats/mesh_writer.h"
 #include "formats/npy_header.h"
 #include "formats/npy_mesh.h"
@@ -16,6 +19,9 @@
 #include "formats/ply_header.h"
 #include "formats/ply_reader.h"
 #include "formats/point_format.h"
+#include "formats/sma_reader.h"
+#include "formats/spm_format.h"
+#include "formats/spm_reader.h"
 #include "formats/vtu_reader.h"
 #include "src/error.h"
 
@@ -37,6 +43,8 @@ std::optional<MeshFormat> format_of_content(InputSource& source) {
   if (begins_with_word(text, "ply")) return MeshFormat::kPly;
   if (begins_with_word(text, "OFF")) return MeshFormat::kOff;
   if (begins_with_word(text, "# spillway dimension")) return MeshFormat::kObj;
+  if (begins_with_word(text, kSmaNote)) return MeshFormat::kSma;
+  if (text.starts_with(kSpmMagic)) return MeshFormat::kSpm;
   if (text.starts_with('<') && text.find("<VTKFile") != text.npos) return MeshFormat::kVtu;
   return std::nullopt;
 }
@@ -48,6 +56,8 @@ std::optional<MeshFormat> format_of_name(const std::string& path) {
   if (extension == "obj") return MeshFormat::kObj;
   if (extension == "off") return MeshFormat::kOff;
   if (extension == "vtu") return MeshFormat::kVtu;
+  if (extension == "spm") return MeshFormat::kSpm;
+  if (extension == "sma") return MeshFormat::kSma;
   return std::nullopt;
 }
 
@@ -70,8 +80,8 @@ bool is_ply_mesh(InputSource& source) {
   }
   throw Error(
       fmt::format("{}: this is no mesh that is known: it begins neither as PLY nor as OFF nor "
-                  "as VTU, and has not the name of OBJ or npy; convert it or name its "
-                  "format",
+                  "as VTU nor as spm, and has not the name of OBJ, SMA or npy; convert it "
+                  "or name its format",
                   source.name()));
 }
 
@@ -91,6 +101,26 @@ Mesh read_npy(FileSystem& files, const std::string& path) {
                   names.vertices, names.simplices));
 }
 
+/// The whole of a stream, in output coordinates.
+Mesh collect(MeshStreamReader& stream) {
+  Mesh mesh;
+  mesh.header.dimension = stream.header().dimension;
+  mesh.header.has_input_index = stream.header().has_input_index;
+  mesh.header.lattice = stream.header().lattice;
+  mesh.header.crs = stream.header().crs;
+  MeshBlock block;
+  while (stream.read(block)) {
+    append_stream_numbers(block, mesh.vertices.size(), mesh.corners);
+    move_to_world(stream.header(), block);
+    mesh.vertices.insert(mesh.vertices.end(), block.vertices.begin(), block.vertices.end());
+    mesh.input_index.insert(mesh.input_index.end(), block.input_index.begin(),
+                            block.input_index.end());
+  }
+  mesh.header.vertices = mesh.vertices.size();
+  mesh.header.simplices = mesh.corners.size() / mesh.corners_per_simplex();
+  return mesh;
+}
+
 }  // namespace
 
 bool is_mesh(FileSystem& files, const std::string& path) {
@@ -108,19 +138,23 @@ Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& fo
   if (format == MeshFormat::kNpy || (!format && is_npy_mesh(files, path))) {
     return read_npy(files, path);
   }
-  InputSource source(files.open(path));
-  if (!format) format = format_of_content(source);
+  auto source = std::make_unique<InputSource>(files.open(path));
+  if (!format) format = format_of_content(*source);
   if (!format) format = format_of_name(path);
-  if (!format) fail_for_unknown(source, path);
+  if (!format) fail_for_unknown(*source, path);
   switch (*format) {
     case MeshFormat::kObj:
-      return read_obj(source);
+      return read_obj(*source);
     case MeshFormat::kOff:
-      return read_off(source);
+      return read_off(*source);
     case MeshFormat::kVtu:
-      return read_vtu(source);
+      return read_vtu(*source);
+    case MeshFormat::kSpm:
+      return collect(*open_spm_reader(std::move(source)));
+    case MeshFormat::kSma:
+      return collect(*open_sma_reader(std::move(source)));
     default:
-      return read_ply(source);
+      return read_ply(*source);
   }
 }
 

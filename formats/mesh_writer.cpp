@@ -26,18 +26,19 @@ struct NamedFormat {
 constexpr std::array kFormats = {
     NamedFormat{"ply", MeshFormat::kPly}, NamedFormat{"ply-ascii", MeshFormat::kPlyAscii},
     NamedFormat{"obj", MeshFormat::kObj}, NamedFormat{"off", MeshFormat::kOff},
-    NamedFormat{"vtu", MeshFormat::kVtu}, NamedFormat{"npy", MeshFormat::kNpy}};
+    NamedFormat{"vtu", MeshFormat::kVtu}, NamedFormat{"npy", MeshFormat::kNpy},
+    NamedFormat{"spm", MeshFormat::kSpm}, NamedFormat{"sma", MeshFormat::kSma}};
 
 /// Throws Error if the format, of triangles only, cannot hold the mesh.
-void check_triangles_only(const std::string& path, std::string_view format,
-                          const MeshHeader& header) {
-  if (header.dimension != 2) {
-    throw Error(fmt::format("cannot write {}: {} holds no tetrahedra; choose ply, vtu or npy", path,
-                            format));
+void check_triangles_only(const std::string& path, std::string_view format, int dimension,
+                          bool has_input_index) {
+  if (dimension != 2) {
+    throw Error(fmt::format("cannot write {}: {} holds no tetrahedra; choose spm, ply, vtu or npy",
+                            path, format));
   }
-  if (header.has_input_index) {
+  if (has_input_index) {
     throw Error(
-        fmt::format("cannot write {}: {} holds no input index; choose ply, vtu or npy, or "
+        fmt::format("cannot write {}: {} holds no input index; choose spm, ply, vtu or npy, or "
                     "leave the index out",
                     path, format));
   }
@@ -53,6 +54,7 @@ std::vector<std::string> mesh_format_names() {
 }
 
 MeshFormat mesh_format(const std::string& path, const std::string& format_name) {
+  if (path == "-" && format_name.empty()) return MeshFormat::kSpm;
   const std::string name = format_name.empty() ? extension_of(path) : format_name;
   const auto* const found =
       std::find_if(kFormats.begin(), kFormats.end(),
@@ -60,29 +62,61 @@ MeshFormat mesh_format(const std::string& path, const std::string& format_name) 
   if (found != kFormats.end()) return found->format;
   const std::string what = !format_name.empty()
                                ? fmt::format("there is no mesh format \"{}\"", name)
-                           : path == "-" ? "standard output has no extension"
-                                         : fmt::format("the name {} tells no mesh format", path);
+                               : fmt::format("the name {} tells no mesh format", path);
   throw UsageError(fmt::format("{}; choose one of {}", what, fmt::join(mesh_format_names(), ", ")));
+}
+
+MeshFiles create_mesh_files(FileSystem& files, const std::string& path, MeshFormat format,
+                            int dimension, bool has_input_index) {
+  MeshFiles created;
+  created.format = format;
+  switch (format) {
+    case MeshFormat::kObj:
+      check_triangles_only(path, "OBJ", dimension, has_input_index);
+      break;
+    case MeshFormat::kOff:
+      check_triangles_only(path, "OFF", dimension, has_input_index);
+      break;
+    case MeshFormat::kSma:
+      check_triangles_only(path, "SMA", dimension, has_input_index);
+      break;
+    case MeshFormat::kNpy: {
+      const NpyMeshNames names = npy_mesh_to_write(files, path, has_input_index);
+      created.main = files.create(names.vertices);
+      created.simplices = files.create(names.simplices);
+      if (has_input_index) created.input_index = files.create(names.input_index);
+      return created;
+    }
+    default:
+      break;
+  }
+  created.main = files.create(path);
+  return created;
+}
+
+std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshHeader& header) {
+  switch (files.format) {
+    case MeshFormat::kPly:
+    case MeshFormat::kPlyAscii:
+      return open_ply_writer(std::move(files.main), header, files.format == MeshFormat::kPlyAscii);
+    case MeshFormat::kObj:
+      return open_obj_writer(std::move(files.main), header);
+    case MeshFormat::kOff:
+      return open_off_writer(std::move(files.main), header);
+    case MeshFormat::kVtu:
+      return open_vtu_writer(std::move(files.main), header);
+    case MeshFormat::kNpy:
+      return open_npy_mesh_writer(std::move(files), header);
+    default:
+      throw Error(fmt::format("cannot write {}: its format is a stream, no whole mesh",
+                              files.main->name()));
+  }
 }
 
 std::unique_ptr<MeshWriter> open_mesh_writer(FileSystem& files, const std::string& path,
                                              MeshFormat format, const MeshHeader& header) {
-  switch (format) {
-    case MeshFormat::kPly:
-    case MeshFormat::kPlyAscii:
-      return open_ply_writer(files.create(path), header, format == MeshFormat::kPlyAscii);
-    case MeshFormat::kObj:
-      check_triangles_only(path, "OBJ", header);
-      return open_obj_writer(files.create(path), header);
-    case MeshFormat::kOff:
-      check_triangles_only(path, "OFF", header);
-      return open_off_writer(files.create(path), header);
-    case MeshFormat::kVtu:
-      return open_vtu_writer(files.create(path), header);
-    case MeshFormat::kNpy:
-      break;
-  }
-  return open_npy_mesh_writer(files, path, header);
+  return open_mesh_writer(
+      create_mesh_files(files, path, format, header.dimension, header.has_input_index), header);
 }
 
 }  // namespace spillway

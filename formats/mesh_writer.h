@@ -30,18 +30,35 @@ class MeshWriter {
   virtual void finish() = 0;
 };
 
-/// The mesh formats, by the names `--output-format` and `--input-format` take.
-enum class MeshFormat { kPly, kPlyAscii, kObj, kOff, kVtu, kNpy };
+/// The mesh formats, by the names `--output-format` and `--input-format` take. The last two are
+/// streams.
+enum class MeshFormat { kPly, kPlyAscii, kObj, kOff, kVtu, kNpy, kSpm, kSma };
 
 /// All names of mesh formats, as the command line lists them: "ply", "ply-ascii", "obj", ...
 std::vector<std::string> mesh_format_names();
 
-/// The format called `format_name`, or, if that is empty, the one of the path's extension.
-/// Throws UsageError that lists what there is if neither names a format.
+/// The format called `format_name`, or, if that is empty, the one of the path's extension; "spm"
+/// for standard output. Throws UsageError that lists what there is if neither names a format.
 MeshFormat mesh_format(const std::string& path, const std::string& format_name);
 
-/// Opens `path` ("-": standard output) for a mesh. Throws Error if the format cannot hold it (OBJ
-/// and OFF hold no tetrahedra; npy needs two files and so no pipe) or the file cannot be created.
+/// The files of a mesh, created but still empty.
+struct MeshFiles {
+  MeshFormat format = MeshFormat::kPly;
+  std::unique_ptr<OutputFile> main;         ///< the only one but for npy, where it has the vertices
+  std::unique_ptr<OutputFile> simplices;    ///< npy only
+  std::unique_ptr<OutputFile> input_index;  ///< npy only, if there is an input index
+};
+
+/// Creates the files of the mesh `path` ("-": standard output). Throws Error if the format cannot
+/// hold it (OBJ, OFF and SMA hold no tetrahedra and no input index; npy needs two files and so no
+/// pipe) or a file cannot be created.
+MeshFiles create_mesh_files(FileSystem& files, const std::string& path, MeshFormat format,
+                            int dimension, bool has_input_index);
+
+/// Begins to write to these files. Throws Error for streams: open_mesh_stream_writer() writes them.
+std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshHeader& header);
+
+/// Creates the files of a mesh and begins to write to them.
 std::unique_ptr<MeshWriter> open_mesh_writer(FileSystem& files, const std::string& path,
                                              MeshFormat format, const MeshHeader& header);
 

@@ -4,6 +4,7 @@ target_sources(spillway_formats PRIVATE
   block_output.cpp
   checked_mesh_writer.cpp
   fields.cpp
+  input_kind.cpp
   mesh_checks.cpp
   mesh_notes.cpp
   mesh_reader.cpp

@@ -26,10 +26,13 @@ NpyMeshNames npy_mesh_names(const std::string& path);
 /// X.npy or X. Nothing unless the files of vertices and simplices are both there.
 std::optional<NpyMeshNames> find_npy_mesh(const FileSystem& files, const std::string& path);
 
-/// Creates the files of the mesh `path`. Throws Error for standard output, and if an input index of
-/// an earlier mesh would lie beside a mesh that has none.
-std::unique_ptr<MeshWriter> open_npy_mesh_writer(FileSystem& files, const std::string& path,
-                                                 const MeshHeader& header);
+/// The names of the files that the mesh `path` is written to. Throws Error for standard output, and
+/// if an input index of an earlier mesh would lie beside a mesh that has none.
+NpyMeshNames npy_mesh_to_write(const FileSystem& files, const std::string& path,
+                               bool has_input_index);
+
+/// Writes a mesh to `files`, which create_mesh_files() made.
+std::unique_ptr<MeshWriter> open_npy_mesh_writer(MeshFiles files, const MeshHeader& header);
 
 /// Reads the mesh. Throws Error that names the file and the byte.
 Mesh read_npy_mesh(FileSystem& files, const NpyMeshNames& names);

@@ -42,13 +42,12 @@ class ArrayOutput {
 
 class NpyMeshWriter : public CheckedMeshWriter {
  public:
-  NpyMeshWriter(FileSystem& files, const NpyMeshNames& names, const MeshHeader& header)
-      : CheckedMeshWriter(header, names.vertices),
-        vertices_(files.create(names.vertices), "<f8", {header.vertices, 3}),
-        simplices_(files.create(names.simplices), "<i8",
-                   {header.simplices, corners_per_simplex()}) {
+  NpyMeshWriter(MeshFiles files, const MeshHeader& header)
+      : CheckedMeshWriter(header, files.main->name()),
+        vertices_(std::move(files.main), "<f8", {header.vertices, 3}),
+        simplices_(std::move(files.simplices), "<i8", {header.simplices, corners_per_simplex()}) {
     if (header.has_input_index) {
-      input_index_.emplace(files.create(names.input_index), "<i8",
+      input_index_.emplace(std::move(files.input_index), "<i8",
                            std::vector<std::uint64_t>{header.vertices});
     }
   }
@@ -82,19 +81,23 @@ class NpyMeshWriter : public CheckedMeshWriter {
 
 }  // namespace
 
-std::unique_ptr<MeshWriter> open_npy_mesh_writer(FileSystem& files, const std::string& path,
-                                                 const MeshHeader& header) {
+NpyMeshNames npy_mesh_to_write(const FileSystem& files, const std::string& path,
+                               bool has_input_index) {
   if (path == "-") {
     throw Error("standard output cannot take an npy mesh, which is two files; choose ply or vtu");
   }
-  const NpyMeshNames names = npy_mesh_names(path);
-  if (!header.has_input_index && files.exists(names.input_index)) {
+  NpyMeshNames names = npy_mesh_names(path);
+  if (!has_input_index && files.exists(names.input_index)) {
     throw Error(
         fmt::format("cannot write {}: {} of an earlier mesh would be taken for part of it; "
                     "remove it or choose another name",
                     names.vertices, names.input_index));
   }
-  return std::make_unique<NpyMeshWriter>(files, names, header);
+  return names;
+}
+
+std::unique_ptr<MeshWriter> open_npy_mesh_writer(MeshFiles files, const MeshHeader& header) {
+  return std::make_unique<NpyMeshWriter>(std::move(files), header);
 }
 
 }  // namespace spillway

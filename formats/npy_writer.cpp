@@ -17,7 +17,7 @@ class NpyWriter : public PointWriter {
   NpyWriter(std::unique_ptr<OutputFile> file, const PointWriterOptions& options)
       : file_(std::move(file)),
         lattice_(options.lattice),
-        count_(options.count),
+        count_(options.count.value()),
         columns_(options.coordinates) {
     NpyHeader header;
     header.type = "<f8";

@@ -6,13 +6,14 @@
 
 namespace spillway {
 
-enum class PointFormat { kLas, kText, kNpy };
+enum class PointFormat { kLas, kText, kNpy, kSpp };
 
-/// The format of that name ("las", "text", "npy"). Throws UsageError that lists them otherwise.
+/// The format of that name ("las", "text", "npy", "spp"). Throws UsageError that lists them
+/// otherwise.
 PointFormat point_format_by_name(std::string_view name);
 
-/// The format that the extension of `path` stands for, that of compressed text (.gz, .bz2, .zst)
-/// included; nothing for other extensions.
+/// The format that the extension of `path` stands for, that of compressed text (.gz, .bz2, .zst,
+/// .lz4) included; nothing for other extensions.
 std::optional<PointFormat> point_format_of_path(std::string_view path);
 
 /// The extension of the last part of `path`, in lower case, without the dot; empty if it has none.

@@ -13,6 +13,8 @@
 #include "formats/npy_header.h"
 #include "formats/npy_reader.h"
 #include "formats/point_format.h"
+#include "formats/spp_format.h"
+#include "formats/spp_reader.h"
 #include "formats/text_reader.h"
 #include "src/error.h"
 
@@ -32,11 +34,12 @@ PointFormat format_of_content(const InputSource& source, std::span<const std::by
   const std::string_view text = as_text(first_bytes);
   if (text.starts_with("LASF")) return PointFormat::kLas;
   if (text.starts_with(kNpyMagic)) return PointFormat::kNpy;
+  if (text.starts_with(kSppMagic)) return PointFormat::kSpp;
   if (compression_of_content(first_bytes) != Compression::kNone) return PointFormat::kText;
   if (looks_like_text(text)) return PointFormat::kText;
   throw Error(
       fmt::format("{}: unknown format: the file begins neither as LAS nor as npy nor as "
-                  "text; convert it or name its format",
+                  "spp nor as text; convert it or name its format",
                   source.name()));
 }
 
@@ -47,7 +50,7 @@ Compression compression_of(const InputSource& source, const std::string& path,
   const Compression found = compression_of_content(first_bytes);
   if (promised != Compression::kNone) {
     const std::string inner = extension_of(std::filesystem::path(path).stem().string());
-    if (inner == "las" || inner == "laz" || inner == "npy") {
+    if (inner == "las" || inner == "laz" || inner == "npy" || inner == "spp") {
       throw Error(fmt::format("{}: only text is read compressed; decompress the file first",
                               source.name()));
     }
@@ -76,6 +79,8 @@ std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::str
       return open_las_reader(std::move(source), path, options.keep_withheld);
     case PointFormat::kNpy:
       return open_npy_reader(std::move(source), path);
+    case PointFormat::kSpp:
+      return open_spp_reader(std::move(source), path);
     case PointFormat::kText:
       break;
   }

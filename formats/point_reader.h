@@ -30,7 +30,7 @@ struct PointBlock {
 /// What a source says about its points before any is read.
 struct PointHeader {
   std::string name;       ///< as the user gave it, for messages
-  std::string format;     ///< "las", "text" or "npy"
+  std::string format;     ///< "las", "text", "npy" or "spp"
   std::string version;    ///< the format's own version, e.g. "1.2"; empty if it has none
   int point_format = -1;  ///< LAS point data record format, -1 for others
   int coordinates = 3;    ///< 2 if the points have no z
@@ -42,7 +42,7 @@ struct PointHeader {
 };
 
 struct PointReaderOptions {
-  std::string format;          ///< "las", "text", "npy"; empty: by extension, then first bytes
+  std::string format;  ///< "las", "text", "npy", "spp"; empty: by extension, then first bytes
   bool keep_withheld = false;  ///< LAS: keep points flagged as withheld
 };
 
@@ -66,8 +66,8 @@ class PointReader {
 };
 
 /// Opens a source ("-": standard input) and checks its header. The format is that of the options,
-/// else of the extension (.las, .txt, .xyz, .csv, .asc, .npy, each text format also with .gz, .bz2,
-/// .zst), else of the first bytes.
+/// else of the extension (.las, .txt, .xyz, .csv, .asc, .npy, .spp, each text format also with
+/// .gz, .bz2, .zst, .lz4), else of the first bytes.
 std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::string& path,
                                                const PointReaderOptions& options);
 

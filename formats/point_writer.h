@@ -7,6 +7,7 @@
 #include <string>
 
 #include "formats/file_system.h"
+#include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
@@ -14,10 +15,13 @@ namespace spillway {
 
 /// What a point file to be written holds.
 struct PointWriterOptions {
-  std::string format;       ///< "las", "text" or "npy"; empty: by extension
-  int coordinates = 3;      ///< 2: x and y only (text and npy)
-  std::uint64_t count = 0;  ///< how many points will come; the headers of LAS and npy need it
+  std::string format;   ///< "las", "text", "npy" or "spp"; empty: by extension
+  int coordinates = 3;  ///< 2: x and y only (not LAS)
+  /// How many points will come; the headers of LAS and npy need it.
+  std::optional<std::uint64_t> count;
   std::optional<Lattice> lattice;  ///< set if the points come as integers; LAS requires it
+  std::optional<Box<3>> extent;    ///< in output coordinates, where known; told by spp only
+  std::string crs;                 ///< as in PointHeader; told by spp only
 };
 
 /// Writes points. Nothing appears under the final name before finish().
@@ -28,7 +32,7 @@ class PointWriter {
   /// Appends points: integers if the options have a lattice, else output coordinates.
   virtual void write(std::span<const Point<3>> points) = 0;
 
-  /// Completes the file. Throws Error if the number of points is not the promised one.
+  /// Completes the file. Throws Error if a number of points was promised and another came.
   virtual void finish() = 0;
 };
 

@@ -65,9 +65,9 @@ class TextWriter : public PointWriter {
   }
 
   void finish() override {
-    if (written_ != count_) {
+    if (count_ && written_ != *count_) {
       throw Error(fmt::format("cannot write {}: {} points were promised, but {} came",
-                              file_->name(), count_, written_));
+                              file_->name(), *count_, written_));
     }
     flush();
     file_->commit();
@@ -108,7 +108,7 @@ class TextWriter : public PointWriter {
   std::unique_ptr<OutputFile> file_;
   std::optional<Lattice> lattice_;
   std::array<std::optional<Decimal>, 3> decimal_;  // by axis
-  std::uint64_t count_;
+  std::optional<std::uint64_t> count_;
   std::uint64_t written_ = 0;
   int coordinates_;
   char separator_;

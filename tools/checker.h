@@ -3,11 +3,13 @@
 // with the engine but the predicates: it rebuilds all adjacency from the written simplices.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/mesh.h"
+#include "formats/mesh_stream.h"
 #include "src/geometry/lattice.h"
 
 namespace spillway {
@@ -20,6 +22,13 @@ struct CheckOptions {
   std::optional<Lattice> input_lattice;
   /// At most this many offending simplices are described.
   std::size_t most_faults = 10;
+
+  // For streams only.
+  unsigned threads = 1;  ///< 0: as many as the machine has
+  /// If set, is told now and then how many simplices are done, and the reader's fraction_read().
+  std::function<void(std::uint64_t simplices, std::optional<double> fraction)> progress = nullptr;
+  /// If set, is given the output coordinates of all vertices, in the stream's order.
+  std::function<void(const Point<3>& vertex)> vertex = nullptr;
 };
 
 /// What a check found. The mesh is proved if `fault_count` is 0.
@@ -36,6 +45,10 @@ struct CheckReport {
   /// Of the output coordinates; 0 if a vertex number is out of range or a coordinate not finite.
   std::uint64_t canonical_hash = 0;
   bool on_lattice = false;  ///< whether the predicates ran on lattice integers
+  /// The most vertices, and facets with one simplex so far, that were held at a time; 0 for meshes
+  /// that are in memory as a whole.
+  std::uint64_t peak_live_vertices = 0;
+  std::uint64_t peak_open_facets = 0;
 };
 
 /// Proves or refutes: every vertex number valid and every vertex used, no simplex twice, every
@@ -46,10 +59,14 @@ struct CheckReport {
 /// has the argument. Throws Error if the mesh's dimension is neither 2 nor 3.
 CheckReport check_mesh(const Mesh& mesh, const CheckOptions& options);
 
-/// Adds to `report` whether the vertices of the mesh are exactly the distinct points of `input`,
-/// both as their first D output coordinates (D: the mesh's dimension).
-void check_vertex_set(const Mesh& mesh, const std::vector<Point<3>>& input, CheckReport& report,
-                      const CheckOptions& options);
+/// The same proof for a mesh that flows, in memory that is proportional to its open border (the
+/// vertices that are not finalized and the facets with one simplex so far). Compares the totals
+/// that the stream ends with, if it has any. Throws what the reader throws.
+CheckReport check_mesh_stream(MeshStreamReader& reader, const CheckOptions& options);
+
+/// The numbers, the hash and the peaks of that report without the proof: faults are only totals
+/// other than those that the stream ends with.
+CheckReport count_mesh_stream(MeshStreamReader& reader, const CheckOptions& options);
 
 /// The canonical hash of any mesh, proved or not. Throws Error if a vertex number is out of range.
 std::uint64_t canonical_hash(const Mesh& mesh);

@@ -7,15 +7,13 @@ add_library(spillway_command STATIC
   core_simulation.cpp
   facet_count.cpp
   generate.cpp
-  heights.cpp
   info.cpp
-  input_points.cpp
   interrupts.cpp
   json_text.cpp
   manual.cpp
-  mesh_output.cpp
   option_tree.cpp
   output_check.cpp
+  point_comparison.cpp
   progress.cpp
   progress_line.cpp
   text_output.cpp
@@ -23,7 +21,7 @@ add_library(spillway_command STATIC
   triangulate.cpp)
 target_compile_definitions(spillway_command PRIVATE SPILLWAY_VERSION="${PROJECT_VERSION}")
 target_link_libraries(spillway_command
-  PUBLIC spillway_delaunay spillway_formats nlohmann_json::nlohmann_json CLI11::CLI11
+  PUBLIC spillway_stream nlohmann_json::nlohmann_json CLI11::CLI11
   PRIVATE spillway_generators spillway_checker fmt::fmt)
 
 add_executable(spillway main.cpp)

@@ -10,6 +10,7 @@
 #include <cstdlib>
 
 #include "src/error.h"
+#include "stream/memory_budget.h"
 
 namespace spillway {
 
@@ -27,6 +28,27 @@ std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
   if (option->get_required() && !option->get_positional()) text += " [required]";
   if (!option->get_default_str().empty()) text += " [" + option->get_default_str() + "]";
   return text;
+}
+
+void add_memory_options(CLI::App& app, MemoryOptions& options) {
+  app.add_option("--memory", options.limit,
+                 "Memory to keep to, as 512M or 2G [a quarter of the machine's, at most 2G]")
+      ->type_name("SIZE");
+  app.add_option("--tmpdir", options.scratch_parent,
+                 "Folder for what does not fit into memory [$TMPDIR, else /tmp]")
+      ->type_name("DIR");
+  app.add_option("--max-tmp", options.scratch_cap, "Most of the disk to use for that [no limit]")
+      ->type_name("SIZE");
+}
+
+std::uint64_t memory_limit(const MemoryOptions& options) {
+  return options.limit.empty() ? default_memory_limit() : parse_memory_size(options.limit);
+}
+
+std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options) {
+  std::optional<std::uint64_t> cap;
+  if (!options.scratch_cap.empty()) cap = parse_memory_size(options.scratch_cap);
+  return make_scratch_folder(options.scratch_parent, cap);
 }
 
 CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,
@@ -62,7 +84,7 @@ Progress make_progress(const ReportOptions& options) {
 }
 
 void add_reader_options(CLI::App& app, PointReaderOptions& options) {
-  add_choice(app, "--input-format", options.format, {"las", "text", "npy"},
+  add_choice(app, "--input-format", options.format, {"las", "text", "npy", "spp"},
              "Format of the points, where neither name nor first bytes tell");
   app.add_flag("--keep-withheld", options.keep_withheld,
                "Use points that LAS files flag as withheld, too");

@@ -4,11 +4,13 @@
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "formats/point_reader.h"
+#include "formats/scratch_folder.h"
 #include "tools/progress.h"
 
 namespace spillway {
@@ -35,6 +37,20 @@ Progress make_progress(const ReportOptions& options);
 
 /// --input-format, --keep-withheld.
 void add_reader_options(CLI::App& app, PointReaderOptions& options);
+
+/// --memory, --tmpdir, --max-tmp.
+struct MemoryOptions {
+  std::string limit;
+  std::string scratch_parent;
+  std::string scratch_cap;
+};
+void add_memory_options(CLI::App& app, MemoryOptions& options);
+
+/// What --memory says, or the default. Throws UsageError.
+std::uint64_t memory_limit(const MemoryOptions& options);
+
+/// A scratch folder as --tmpdir and --max-tmp ask for it. Throws UsageError.
+std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options);
 
 /// An option that takes one of some words. The words become its value name, separated by `|`, which
 /// is also where completion and manual find them.

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,6 +10,7 @@
 
 #include "formats/point_format.h"
 #include "formats/point_writer.h"
+#include "src/error.h"
 #include "src/generators/generators.h"
 #include "tools/command.h"
 #include "tools/command_options.h"
@@ -21,7 +23,7 @@ constexpr const char* kExamples =
     "  spillway generate terrain -n 1e6 -o hills.las          airborne LiDAR as a scanner makes "
     "it\n"
     "  spillway generate uniform -n 1e5 --dim 3 -o cube.npy\n"
-    "  spillway generate circle -n 1000 -o - | spillway triangulate - -o disc.obj\n"
+    "  spillway generate circle -n 1000 | spillway triangulate - -o disc.obj\n"
     "The same family, number, dimension and seed give the same points on every machine.";
 
 constexpr std::size_t kBlockSize = 65536;  // points made and written at a time
@@ -31,10 +33,23 @@ struct GenerateOptions {
   std::string count;
   std::string dimension = "2";
   std::uint64_t seed = 1;
-  std::string output;
+  std::string output = "-";
   std::string output_format;
   ReportOptions report;
 };
+
+/// The format by name; empty if the output's extension is to tell. Throws UsageError if bytes would
+/// go to a terminal.
+std::string format_of(const GenerateOptions& options) {
+  if (options.output != "-") return options.output_format;
+  const std::string format = options.output_format.empty() ? "spp" : options.output_format;
+  if (format != "text" && isatty(STDOUT_FILENO) != 0) {
+    throw UsageError(
+        "standard output is a terminal, and the points are no text; name a file with -o, pipe "
+        "them into another command, or ask for --output-format text");
+  }
+  return format;
+}
 
 int run(const GenerateOptions& options) {
   const auto start = std::chrono::steady_clock::now();
@@ -46,8 +61,7 @@ int run(const GenerateOptions& options) {
   const auto generator = make_generator(what);
 
   PointWriterOptions how;
-  how.format =
-      options.output_format.empty() && options.output == "-" ? "text" : options.output_format;
+  how.format = format_of(options);
   const bool las = how.format == "las" || point_format_of_path(options.output) == PointFormat::kLas;
   how.coordinates = what.dimension == 3 || what.family == Family::kTerrain || las ? 3 : 2;
   how.count = what.count;
@@ -90,10 +104,10 @@ Subcommand add_generate(CLI::App& root) {
       ->type_name("S")
       ->capture_default_str();
   app->add_option("-o,--output", options->output, "Point file; - is standard output")
-      ->required()
-      ->type_name("FILE");
-  add_choice(*app, "--output-format", options->output_format, {"las", "text", "npy"},
-             "Format, where the name does not tell; text on a pipe");
+      ->type_name("FILE")
+      ->capture_default_str();
+  add_choice(*app, "--output-format", options->output_format, {"las", "text", "npy", "spp"},
+             "Format, where the name does not tell; spp on a pipe");
   add_report_options(*app, options->report);
   return {app, [options] { return run(*options); }};
 }

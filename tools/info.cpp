@@ -7,8 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "formats/input_kind.h"
 #include "formats/mesh_reader.h"
+#include "formats/mesh_stream.h"
 #include "formats/point_reader.h"
+#include "src/error.h"
 #include "src/geometry/canonical_hash.h"
 #include "tools/checker.h"
 #include "tools/command.h"
@@ -27,6 +30,7 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  spillway info survey.las\n"
     "  spillway info *.las tin.ply --json | jq .canonical_hash\n"
+    "  spillway generate terrain -n 1e8 | spillway triangulate - -o - | spillway info -\n"
     "All points are read, so extents and counts are exact, whatever headers say.";
 
 struct InfoOptions {
@@ -57,9 +61,8 @@ Json density(const Box<3>& box, std::uint64_t points) {
   return area > 0 ? Json(static_cast<double>(points) / area) : Json(nullptr);
 }
 
-Json describe_points(const std::string& path, const PointReaderOptions& options,
-                     Progress& progress) {
-  const auto reader = open_point_reader(disk(), path, options);
+Json describe_points(ProbedInput& input, const PointReaderOptions& options, Progress& progress) {
+  const auto reader = open_point_reader(input, input.path(), options);
   const PointHeader& header = reader->header();
   Box<3> box;
   std::uint64_t points = 0;
@@ -90,29 +93,98 @@ Json describe_points(const std::string& path, const PointReaderOptions& options,
   return json;
 }
 
-Json describe_mesh(const std::string& path, Progress& progress) {
+/// What there is to say of a mesh, however it came.
+struct MeshFigures {
+  std::string format;
+  std::uint64_t vertices;
+  std::uint64_t simplices;
+  std::uint64_t hull_facets;
+  std::uint64_t hash;
+  Box<3> extent;
+};
+
+/// `header` is a MeshHeader or a MeshStreamHeader.
+template <typename Header>
+Json mesh_json(const std::string& path, const Header& header, const MeshFigures& figures) {
+  Json json;
+  json["name"] = path;
+  json["kind"] = "mesh";
+  json["format"] = text_or_null(figures.format);
+  json["dimension"] = header.dimension;
+  json["vertices"] = figures.vertices;
+  json["simplices"] = figures.simplices;
+  json["hull_facets"] = figures.hull_facets;
+  json["canonical_hash"] = hash_to_hex(figures.hash);
+  json["extent"] = extent_json(figures.extent, 3);
+  add_lattice(header.lattice, json);
+  json["on_lattice"] = header.lattice.has_value();
+  json["input_index"] = header.has_input_index;
+  json["crs"] = text_or_null(header.crs);
+  return json;
+}
+
+Json describe_mesh(ProbedInput& input, Progress& progress) {
   progress.begin("read", "vertices");
-  const Mesh mesh = read_mesh(disk(), path);
+  const Mesh mesh = read_mesh(input, input.path());
   progress.update(mesh.vertices.size(), 1);
   progress.end();
   Box<3> box;
   for (const Point<3>& vertex : mesh.vertices) box.expand(vertex);
-  std::string format = std::filesystem::path(path).extension().string();
-  Json json;
-  json["name"] = path;
-  json["kind"] = "mesh";
-  json["format"] = text_or_null(format.empty() ? format : format.substr(1));
-  json["dimension"] = mesh.header.dimension;
-  json["vertices"] = mesh.vertices.size();
-  json["simplices"] = mesh.corners.size() / mesh.corners_per_simplex();
-  json["hull_facets"] = count_boundary_facets(mesh);
-  json["canonical_hash"] = hash_to_hex(canonical_hash(mesh));
-  json["extent"] = extent_json(box, 3);
-  add_lattice(mesh.header.lattice, json);
-  json["on_lattice"] = mesh.header.lattice.has_value();
-  json["input_index"] = mesh.header.has_input_index;
-  json["crs"] = text_or_null(mesh.header.crs);
+  const std::string extension = std::filesystem::path(input.path()).extension().string();
+  return mesh_json(input.path(), mesh.header,
+                   {.format = extension.empty() ? extension : extension.substr(1),
+                    .vertices = mesh.vertices.size(),
+                    .simplices = mesh.corners.size() / mesh.corners_per_simplex(),
+                    .hull_facets = count_boundary_facets(mesh),
+                    .hash = canonical_hash(mesh),
+                    .extent = box});
+}
+
+/// Holds no more of the stream than its open border. Throws Error if its end says otherwise than
+/// what was read.
+Json describe_mesh_stream(ProbedInput& input, Progress& progress) {
+  const auto reader = open_mesh_stream_reader(input, input.path());
+  Box<3> box;
+  CheckOptions options;
+  options.vertex = [&box](const Point<3>& vertex) { box.expand(vertex); };
+  options.progress = [&progress](std::uint64_t simplices, std::optional<double> fraction) {
+    progress.update(simplices, fraction);
+  };
+  progress.begin("read", "simplices");
+  const CheckReport found = count_mesh_stream(*reader, options);
+  progress.end();
+  if (found.fault_count > 0) {
+    throw Error(fmt::format("{}: {}; the file is corrupt, write it again", input.path(),
+                            found.faults.front()));
+  }
+  Json json = mesh_json(input.path(), reader->header(),
+                        {.format = reader->has_hash() ? "spm" : "sma",
+                         .vertices = found.vertices,
+                         .simplices = found.simplices,
+                         .hull_facets = found.hull_facets,
+                         .hash = found.canonical_hash,
+                         .extent = box});
+  if (reader->has_hash()) {
+    json["points"] = reader->totals().points;
+    json["duplicates"] = reader->totals().duplicates;
+  }
+  json["peak_live_vertices"] = found.peak_live_vertices;
   return json;
+}
+
+Json describe_input(const std::string& path, const PointReaderOptions& options,
+                    Progress& progress) {
+  ProbedInput input(disk(), path);
+  if (path == "-" && !options.format.empty()) return describe_points(input, options, progress);
+  switch (kind_of_input(input)) {
+    case InputKind::kMesh:
+      return describe_mesh(input, progress);
+    case InputKind::kMeshStream:
+      return describe_mesh_stream(input, progress);
+    case InputKind::kPoints:
+      break;
+  }
+  return describe_points(input, options, progress);
 }
 
 std::string value_text(const Json& value) {
@@ -159,9 +231,7 @@ int run(const InfoOptions& options) {
   Progress progress = make_progress(options.report);
   for (const std::string& path : options.files) {
     const auto start = std::chrono::steady_clock::now();
-    Json json = path != "-" && is_mesh(disk(), path)
-                    ? describe_mesh(path, progress)
-                    : describe_points(path, options.reader, progress);
+    Json json = describe_input(path, options.reader, progress);
     if (options.json) {
       add_common_keys(
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), json);
@@ -177,7 +247,8 @@ Subcommand add_info(CLI::App& root) {
   const auto options = std::make_shared<InfoOptions>();
   CLI::App* app = root.add_subcommand("info", "Tell what point files and meshes hold");
   app->footer(kExamples);
-  app->add_option("FILE", options->files, "Point files and meshes; - is points from a pipe")
+  app->add_option("FILE", options->files,
+                  "Point files and meshes; - is points or a mesh stream from a pipe")
       ->required();
   app->add_flag("--json", options->json, "One JSON object a line for each file");
   add_reader_options(*app, options->reader);

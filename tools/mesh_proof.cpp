@@ -9,30 +9,28 @@
 namespace spillway {
 
 template <int D>
-std::string MeshView<D>::coordinates_text(std::uint64_t vertex) const {
-  const Point<3>& p = mesh_.vertices[vertex];
-  if constexpr (D == 2) return fmt::format("({}, {})", p[0], p[1]);
-  return fmt::format("({}, {}, {})", p[0], p[1], p[2]);
-}
-
-template <int D>
-std::string MeshView<D>::list_text(const std::uint64_t* vertices, std::size_t count) const {
-  std::string coordinates;
-  for (std::size_t i = 0; i < count; ++i) {
-    coordinates += (i == 0 ? "" : ", ") + coordinates_text(vertices[i]);
-  }
-  return fmt::format("{} at {}", fmt::join(vertices, vertices + count, ", "), coordinates);
-}
-
-template <int D>
-std::string MeshView<D>::vertex_text(std::uint64_t vertex) const {
-  return fmt::format("vertex {} {}", vertex, coordinates_text(vertex));
+NamedVertex<D> MeshView<D>::named(std::uint64_t vertex) const {
+  NamedVertex<D> result{numbers_ == nullptr ? vertex : numbers_->vertices[vertex], {}};
+  std::copy_n(mesh_.vertices[vertex].begin(), D, result.point.begin());
+  return result;
 }
 
 template <int D>
 std::string MeshView<D>::simplex_text(std::uint64_t simplex) const {
-  return fmt::format("{} {} (vertices {})", Words<D>::kSimplex, simplex,
-                     list_text(&mesh_.corners[simplex * (D + 1)], D + 1));
+  std::array<NamedVertex<D>, D + 1> vertices;
+  for (int i = 0; i <= D; ++i) vertices[i] = named(corner(simplex, i));
+  return spillway::simplex_text<D>(numbers_ == nullptr ? simplex : numbers_->simplices[simplex],
+                                   vertices);
+}
+
+template <int D>
+const char* apex_fault(const std::array<Point<D>, D + 1>& simplex, const Point<D>& apex,
+                       const CheckOptions& options) {
+  const int side =
+      options.any_delaunay ? side_of_sphere<D>(simplex, apex) : in_sphere<D>(simplex, apex);
+  if (side <= 0) return nullptr;
+  const bool tie = !options.any_delaunay && side_of_sphere<D>(simplex, apex) == 0;
+  return tie ? "lies, as ties are broken, inside" : "lies inside";
 }
 
 namespace {
@@ -241,14 +239,11 @@ class MeshProof {
 
   bool locally_delaunay(const Face<D>& a, const Face<D>& b) {
     const std::uint64_t apex = mesh_.corners[b.owner];
-    const auto simplex = view_.simplex(a.owner / (D + 1));
-    const int side = options_.any_delaunay ? side_of_sphere<D>(simplex, view_.point(apex))
-                                           : in_sphere<D>(simplex, view_.point(apex));
-    if (side <= 0) return true;
-    const bool tie = !options_.any_delaunay && side_of_sphere<D>(simplex, view_.point(apex)) == 0;
+    const char* fault =
+        apex_fault<D>(view_.simplex(a.owner / (D + 1)), view_.point(apex), options_);
+    if (fault == nullptr) return true;
     faults_.add("{} is not Delaunay: {} of {} {} its circumsphere", owner_text(a),
-                view_.vertex_text(apex), owner_text(b),
-                tie ? "lies, as ties are broken, inside" : "lies inside");
+                view_.vertex_text(apex), owner_text(b), fault);
     return false;
   }
 
@@ -271,6 +266,10 @@ void prove_mesh(const Mesh& mesh, const CheckOptions& options, CheckReport& repo
 
 template class MeshView<2>;
 template class MeshView<3>;
+template const char* apex_fault<2>(const std::array<Point<2>, 3>&, const Point<2>&,
+                                   const CheckOptions&);
+template const char* apex_fault<3>(const std::array<Point<3>, 4>&, const Point<3>&,
+                                   const CheckOptions&);
 template void prove_mesh<2>(const Mesh&, const CheckOptions&, CheckReport&);
 template void prove_mesh<3>(const Mesh&, const CheckOptions&, CheckReport&);
 

@@ -13,45 +13,9 @@
 #include <vector>
 
 #include "tools/checker.h"
+#include "tools/fault_text.h"
 
 namespace spillway {
-
-/// The words for a simplex and its facets.
-template <int D>
-struct Words;
-template <>
-struct Words<2> {
-  static constexpr const char* kSimplex = "triangle";
-  static constexpr const char* kSimplices = "triangles";
-  static constexpr const char* kFacet = "edge";
-  static constexpr const char* kRidge = "vertex";
-};
-template <>
-struct Words<3> {
-  static constexpr const char* kSimplex = "tetrahedron";
-  static constexpr const char* kSimplices = "tetrahedra";
-  static constexpr const char* kFacet = "facet";
-  static constexpr const char* kRidge = "edge";
-};
-
-/// Adds faults to a report, described as long as there are few.
-class Faults {
- public:
-  Faults(CheckReport& report, std::size_t most) : report_(report), most_(most) {}
-
-  template <typename... Args>
-  void add(fmt::format_string<Args...> format, Args&&... args) {
-    ++report_.fault_count;
-    if (report_.faults.size() < most_) {
-      report_.faults.push_back(fmt::format(format, std::forward<Args>(args)...));
-    }
-  }
-  [[nodiscard]] std::uint64_t count() const { return report_.fault_count; }
-
- private:
-  CheckReport& report_;
-  std::size_t most_;
-};
 
 /// A face as the sorted numbers of its K vertices, and whose face it is.
 template <std::size_t K>
@@ -73,12 +37,19 @@ struct BoundaryFacet {
   std::uint64_t simplex;
 };
 
+/// Numbers by which faults call vertices and simplices, where they are others than the mesh's.
+struct MeshNumbers {
+  std::vector<std::uint64_t> vertices;
+  std::vector<std::uint64_t> simplices;
+};
+
 /// A mesh whose vertex numbers are valid, seen by the proof: the coordinates that predicates run
 /// on, and words for faults.
 template <int D>
 class MeshView {
  public:
-  explicit MeshView(const Mesh& mesh) : mesh_(mesh), points_(mesh.vertices.size()) {}
+  explicit MeshView(const Mesh& mesh, const MeshNumbers* numbers = nullptr)
+      : mesh_(mesh), numbers_(numbers), points_(mesh.vertices.size()) {}
 
   /// Coordinates for the predicates, to be filled in.
   [[nodiscard]] std::vector<Point<D>>& points() { return points_; }
@@ -114,23 +85,33 @@ class MeshView {
   }
 
   /// "vertex 7 (1.5, 2)", in output coordinates.
-  [[nodiscard]] std::string vertex_text(std::uint64_t vertex) const;
+  [[nodiscard]] std::string vertex_text(std::uint64_t vertex) const {
+    return spillway::vertex_text<D>(named(vertex));
+  }
   /// "triangle 3 (vertices 5, 6, 7 at (0, 0), (1, 0), (0, 1))".
   [[nodiscard]] std::string simplex_text(std::uint64_t simplex) const;
   /// "edge 5, 7 at (0, 0), (1, 0)" for a face of any dimension, called as given.
   template <std::size_t K>
   [[nodiscard]] std::string face_text(const char* name,
                                       const std::array<std::uint64_t, K>& face) const {
-    return fmt::format("{} {}", name, list_text(face.data(), K));
+    std::array<NamedVertex<D>, K> vertices;
+    for (std::size_t i = 0; i < K; ++i) vertices[i] = named(face[i]);
+    return fmt::format("{} {}", name, list_text<D>(vertices));
   }
 
  private:
-  [[nodiscard]] std::string coordinates_text(std::uint64_t vertex) const;
-  [[nodiscard]] std::string list_text(const std::uint64_t* vertices, std::size_t count) const;
+  [[nodiscard]] NamedVertex<D> named(std::uint64_t vertex) const;
 
   const Mesh& mesh_;
+  const MeshNumbers* numbers_;
   std::vector<Point<D>> points_;
 };
+
+/// How the apex of one simplex at a facet lies to the circumsphere of the other, in words, if that
+/// is wrong; nullptr if it is outside, ties broken as `options` says.
+template <int D>
+const char* apex_fault(const std::array<Point<D>, D + 1>& simplex, const Point<D>& apex,
+                       const CheckOptions& options);
 
 /// Runs the whole proof and writes its outcome into the report.
 template <int D>

@@ -34,28 +34,48 @@ std::uint64_t peak_rss_bytes() {
 }
 
 Json to_json(const RunStatistics& statistics) {
+  const StreamFigures& stream = statistics.stream;
+  const MeshTotals& totals = stream.totals;
   Json json;
   json["version"] = SPILLWAY_VERSION;
   json["dimension"] = statistics.dimension;
-  json["threads"] = statistics.threads;
+  json["threads"] = stream.threads;
   json["inputs"] = statistics.inputs;
   json["output"] = statistics.output;
   json["output_format"] = statistics.output_format;
+  json["output_bytes"] = statistics.output_bytes;
   json["on_lattice"] = statistics.on_lattice;
-  json["points"] = statistics.points;
+  json["points"] = totals.points;
   json["withheld"] = statistics.withheld;
-  json["duplicates"] = statistics.duplicates;
-  json["vertices"] = statistics.mesh.vertices;
-  json["simplices"] = statistics.mesh.simplices;
-  json["left_out"] = statistics.mesh.left_out;
-  json["hull_facets"] = statistics.mesh.hull_facets;
-  json["canonical_hash"] = hash_to_hex(statistics.mesh.canonical_hash);
+  json["duplicates"] = totals.duplicates;
+  json["vertices"] = totals.vertices;
+  json["simplices"] = totals.simplices;
+  json["left_out"] = stream.left_out;
+  json["hull_facets"] = totals.hull_facets;
+  json["canonical_hash"] = hash_to_hex(totals.canonical_hash);
+  json["memory_limit"] = statistics.memory_limit;
   json["peak_rss_bytes"] = peak_rss_bytes();
   json["seconds"] = statistics.seconds;
-  json["phases"] = {{"read", statistics.read_seconds},
-                    {"triangulate", statistics.triangulate_seconds},
-                    {"hash", statistics.hash_seconds},
+  json["phases"] = {{"read", stream.read_seconds},
+                    {"triangulate", stream.triangulate_seconds},
                     {"write", statistics.write_seconds}};
+  Json stages;
+  for (std::size_t s = 0; s < kStageNames.size(); ++s) {
+    stages[kStageNames[s]] = stream.stage_seconds[s];
+  }
+  json["stages"] = std::move(stages);
+  json["tiles"] = stream.tiles;
+  json["tile_capacity"] = stream.tile_capacity;
+  json["leaves"] = stream.leaves;
+  json["leaf_size"] = stream.leaf_size;
+  json["spilled_points"] = stream.spilled_points;
+  json["spilled_bytes"] = stream.spilled_bytes;
+  json["final"] = {{"in_leaves", stream.final_in_leaves},
+                   {"in_tiles", stream.final_in_tiles},
+                   {"by_level", stream.final_by_level}};
+  json["retriangulated_points"] = stream.retriangulated;
+  json["border_simplices"] = stream.border_simplices;
+  json["border_bytes"] = stream.border_bytes;
   if (!statistics.simulated.empty()) {
     json["simulated"] = Json::array();
     for (const SimulatedRun& run : statistics.simulated) {
@@ -63,7 +83,7 @@ Json to_json(const RunStatistics& statistics) {
           {{"cores", run.cores}, {"seconds", run.seconds}, {"speed_up", run.speed_up}});
     }
   }
-  json["tasks"] = to_json(statistics.tasks);
+  json["tasks"] = to_json(stream.tasks);
   return json;
 }
 

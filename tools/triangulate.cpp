@@ -1,27 +1,28 @@
 #include <fmt/format.h>
+#include <malloc.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "formats/mesh_writer.h"
-#include "src/delaunay/delaunay.h"
+#include "formats/mesh_stream_writer.h"
+#include "formats/scratch_folder.h"
 #include "src/error.h"
 #include "src/geometry/canonical_hash.h"
 #include "src/parallel/parallel.h"
+#include "stream/memory_budget.h"
+#include "stream/pipeline.h"
+#include "stream/point_source.h"
 #include "tools/command.h"
 #include "tools/command_options.h"
 #include "tools/core_simulation.h"
-#include "tools/heights.h"
-#include "tools/input_points.h"
 #include "tools/json_text.h"
-#include "tools/mesh_output.h"
 #include "tools/output_check.h"
 #include "tools/statistics.h"
 #include "tools/text_output.h"
@@ -36,8 +37,9 @@ constexpr const char* kExamples =
     "  zcat points.txt.gz | spillway triangulate - -o - --output-format obj > tin.obj\n"
     "  spillway triangulate scan.npy --dim 3 -o tetrahedra.vtu --stats run.json\n"
     "  spillway triangulate survey.las -o tin.ply --simulate-cores 1,2,4,...,1024\n"
-    "All inputs are read into memory before the output is begun, so an output may replace an "
-    "input.";
+    "  spillway triangulate survey.las -o tin.spm --memory 512M --tmpdir /scratch\n"
+    "  spillway generate terrain -n 1e8 | spillway triangulate - -o - | spillway info -\n"
+    "The output gets its name when it is complete, so it may replace an input.";
 
 struct TriangulateOptions {
   std::vector<std::string> inputs;
@@ -46,10 +48,12 @@ struct TriangulateOptions {
   std::string dimension = "2";
   std::string duplicates = "first";
   std::string division = "longest";
-  std::optional<double> max_edge;
+  std::string max_edge;
   unsigned threads = 0;
   std::size_t base_case_size = 0;
   unsigned children = 2;
+  MemoryOptions memory;
+  std::size_t tile_capacity = 0;
   bool input_index = false;
   std::string stats_path;
   std::string core_list;
@@ -62,7 +66,7 @@ struct TriangulateOptions {
 void add_options(CLI::App& app, TriangulateOptions& options) {
   app.add_option("IN", options.inputs, "Point files; several make one triangulation; - is a pipe")
       ->required();
-  app.add_option("-o,--output", options.output, "Mesh file; - is standard output")
+  app.add_option("-o,--output", options.output, "Mesh file; - is standard output, as spm")
       ->required()
       ->type_name("FILE");
   add_choice(app, "--dim", options.dimension, {"2", "3"},
@@ -70,8 +74,7 @@ void add_options(CLI::App& app, TriangulateOptions& options) {
   add_choice(app, "--duplicates", options.duplicates, height_choice_names(),
              "Which z a vertex of several points of equal x, y gets");
   app.add_option("--max-edge", options.max_edge, "Leave out simplices with an edge longer than L")
-      ->type_name("L")
-      ->check(CLI::Validator(CLI::PositiveNumber).description(""));
+      ->type_name("L");
   app.add_flag("--id", options.input_index, "Write each vertex's index in the input");
   add_choice(app, "--output-format", options.output_format, mesh_format_names(),
              "Format of the mesh, where the name does not tell");
@@ -80,10 +83,16 @@ void add_options(CLI::App& app, TriangulateOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(0, 4096).description(""))
       ->capture_default_str();
+  add_memory_options(app, options.memory);
   app.add_option("--stats", options.stats_path, "Write figures and the task tree of the run")
       ->type_name("FILE");
   app.add_option("--base-case", options.base_case_size,
-                 "Most points of one sequential base case; 0: chosen by the number of points")
+                 "Most points of one sequential base case (a leaf); 0: chosen by number and memory")
+      ->type_name("N")
+      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->capture_default_str();
+  app.add_option("--tile", options.tile_capacity,
+                 "Most points of a tile that is loaded at a time; 0: chosen by the memory")
       ->type_name("N")
       ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
       ->capture_default_str();
@@ -105,121 +114,120 @@ DivisionScheme division_by_name(const std::string& name) {
   return DivisionScheme::kLongestExtent;
 }
 
-/// Says plainly why points that do not span D dimensions have no triangulation.
-template <int D>
-void require_full_dimension(const Triangulation<D>& triangulation) {
-  if (triangulation.dimension == D) return;
-  const char* simplex = D == 2 ? "triangle" : "tetrahedron";
-  const std::size_t points = triangulation.points.size();
-  const std::size_t distinct = triangulation.vertex_count();
-  if (points == 0) throw Error("the input has no points");
-  if (distinct <= D) {
-    throw Error(fmt::format("the input has only {} distinct point{}: a {} needs {}", distinct,
-                            distinct == 1 ? "" : "s", simplex, D + 1));
+/// The length that --max-edge gives; nothing if it is not given.
+std::optional<double> parse_max_edge(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  double length = 0;
+  const bool number = CLI::detail::lexical_cast(text, length);
+  if (!number || !(length > 0) || !std::isfinite(length)) {
+    throw UsageError(fmt::format("--max-edge: \"{}\" is no length; give a number above 0", text));
   }
-  throw Error(fmt::format("all {} points lie {}: there is no {} to make{}", points,
-                          triangulation.dimension == 1 ? "on one line" : "in one plane", simplex,
-                          triangulation.dimension == 2 ? " (--dim 2 makes triangles)" : ""));
+  return length;
 }
 
-/// Separates what is triangulated from what is carried along, and lets go of the rest.
-template <int D>
-std::vector<Point<D>> take_coordinates(InputPoints& input, std::vector<double>& heights) {
-  if constexpr (D == 3) {
-    return std::move(input.points);
-  } else {
-    std::vector<Point<2>> flat;
-    flat.reserve(input.points.size());
-    heights.reserve(input.points.size());
-    for (const Point<3>& point : input.points) {
-      flat.push_back({point[0], point[1]});
-      heights.push_back(point[2]);
-    }
-    input.points = {};
-    return flat;
-  }
-}
-
-template <int D>
-Triangulation<D> triangulate(const std::vector<Point<D>>& points, const TriangulateOptions& options,
-                             RunStatistics& statistics, Progress& progress) {
-  DelaunayOptions engine;
-  engine.threads = statistics.threads;
-  engine.base_case_size = options.base_case_size;
-  engine.division = division_by_name(options.division);
-  engine.children = options.children;
-  engine.tasks = &statistics.tasks;
-  engine.progress = [&](std::size_t done) {
-    progress.update(done, static_cast<double>(done) / static_cast<double>(points.size()));
+StreamOptions stream_options(const TriangulateOptions& options, Progress& progress,
+                             RunStatistics& statistics) {
+  StreamOptions stream;
+  stream.threads = options.simulates()    ? 1
+                   : options.threads == 0 ? available_threads()
+                                          : options.threads;
+  stream.tile_capacity = options.tile_capacity;
+  stream.leaf_size = options.base_case_size;
+  stream.division = division_by_name(options.division);
+  stream.children = options.children;
+  stream.heights = height_choice_by_name(options.duplicates);
+  stream.max_edge = parse_max_edge(options.max_edge);
+  stream.input_index = options.input_index;
+  stream.begin_phase = [&](const char* phase) { progress.begin(phase, "points"); };
+  stream.end_phase = [&] { progress.end(); };
+  stream.progress = [&](std::uint64_t points, std::optional<double> fraction) {
+    progress.update(points, fraction);
   };
-  progress.begin("triangulate", "points");
-  auto triangulation = delaunay<D>(std::span<const Point<D>>(points), engine);
-  require_full_dimension(triangulation);
-  progress.update(points.size(), 1);
-  statistics.triangulate_seconds = progress.end();
-  return triangulation;
+  statistics.max_edge = stream.max_edge;
+  return stream;
 }
 
 void report(const TriangulateOptions& options, const RunStatistics& statistics,
             Progress& progress) {
-  const MeshFigures& mesh = statistics.mesh;
-  if (mesh.left_out > 0) {
+  const StreamFigures& stream = statistics.stream;
+  if (stream.left_out > 0) {
     progress.say(
-        fmt::format("{} simplices with an edge longer than {} left out: this is no longer "
-                    "the Delaunay triangulation of all points",
-                    mesh.left_out, *options.max_edge));
+        fmt::format("{} simplices with an edge longer than {} left out: this is no longer the "
+                    "Delaunay triangulation of all points",
+                    stream.left_out, *statistics.max_edge));
   }
-  if (options.simulates()) {
-    progress.say("what the triangulation alone would take, tasks measured on one thread:\n" +
-                 simulation_table(statistics.simulated));
+  if (stream.spilled_points > 0) {
+    progress.detail(
+        fmt::format("{} tiles, {} of points spilled to the disk, {} of border resident "
+                    "at most",
+                    stream.tiles, memory_size_text(stream.spilled_bytes),
+                    memory_size_text(stream.border_bytes)));
   }
   progress.say(fmt::format("{} points, {} duplicates, {} vertices, {} {}, hash {}, {:.2f} s",
-                           statistics.points, statistics.duplicates, mesh.vertices, mesh.simplices,
+                           stream.totals.points, stream.totals.duplicates, stream.totals.vertices,
+                           stream.totals.simplices,
                            statistics.dimension == 2 ? "triangles" : "tetrahedra",
-                           hash_to_hex(mesh.canonical_hash), statistics.seconds));
+                           hash_to_hex(stream.totals.canonical_hash), statistics.seconds));
+  if (options.simulates()) {
+    // The table is what was asked for; it gives way only to a mesh on standard output.
+    const std::string table =
+        "what the triangulation alone would take, tasks measured on one thread:\n" +
+        simulation_table(statistics.simulated);
+    if (options.output == "-") {
+      progress.say(table);
+    } else {
+      write_text("-", table + "\n");
+    }
+  }
+}
+
+/// Buffers of some megabytes come and go with every leaf: taken from the system anew each time,
+/// they would cost a fifth of the run in page faults.
+void reuse_freed_memory() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
 }
 
 template <int D>
 int run(const TriangulateOptions& options, MeshFormat format, RunStatistics& statistics) {
   const auto start = std::chrono::steady_clock::now();
+  reuse_freed_memory();
   Progress progress = make_progress(options.report);
-  statistics.threads = options.simulates()    ? 1
-                       : options.threads == 0 ? available_threads()
-                                              : options.threads;
+  const StreamOptions stream = stream_options(options, progress, statistics);
+  MemoryBudget budget(memory_limit(options.memory));
+  const auto scratch = make_scratch_folder(options.memory);
+  PointSource source(disk(), options.inputs,
+                     {.dimension = D,
+                      .index = options.input_index,
+                      .reader = options.reader,
+                      .warn = [&](std::string_view text) { progress.say(text); },
+                      .detail = [&](std::string_view text) { progress.detail(text); }});
+  MeshStreamHeader header;
+  header.dimension = D;
+  header.has_input_index = options.input_index;
+  header.lattice = source.lattice();
+  header.points = source.count();
+  header.crs = source.crs();
+  const auto writer = open_mesh_stream_writer(disk(), options.output, format, header, *scratch);
 
-  InputPoints input = read_input_points(
-      disk(), options.inputs,
-      {.dimension = D, .index = options.input_index, .reader = options.reader}, progress);
-  statistics.read_seconds = progress.end();
-  statistics.points = input.points.size();
-  statistics.withheld = input.withheld;
-  statistics.on_lattice = input.lattice.has_value();
-
-  TriangulatedPoints<D> result;
-  {
-    const std::vector<Point<D>> points = take_coordinates<D>(input, result.heights);
-    result.triangulation = triangulate<D>(points, options, statistics, progress);
+  statistics.stream = triangulate_stream<D>(source, *writer, *scratch, budget, stream);
+  statistics.memory_limit = budget.limit();
+  statistics.withheld = source.withheld();
+  statistics.on_lattice = source.lattice().has_value();
+  const MeshTotals& totals = statistics.stream.totals;
+  if (totals.simplices == 0) {
+    throw Error(fmt::format("every one of {} simplices has an edge longer than {}: nothing is left",
+                            statistics.stream.left_out, *statistics.max_edge));
   }
-  result.lattice = input.lattice;
-  result.index = std::move(input.index);
-  result.crs = input.crs;
-  statistics.duplicates = result.triangulation.duplicates.size();
-  if constexpr (D == 2) {
-    choose_heights(result.triangulation, height_choice_by_name(options.duplicates), result.heights);
-  }
-
-  const char* unit = D == 2 ? "triangles" : "tetrahedra";
-  const MeshSelection selection{options.max_edge};
-  progress.begin("hash", unit);
-  statistics.mesh = measure_mesh<D>(result, selection, statistics.threads);
-  progress.update(statistics.mesh.simplices, 1);
-  statistics.hash_seconds = progress.end();
-  progress.begin("write", unit);
-  write_mesh<D>(result, selection, statistics.mesh, disk(), options.output, format, progress);
+  progress.begin("write", D == 2 ? "triangles" : "tetrahedra");
+  writer->finish(totals);
+  progress.update(totals.simplices, 1);
   statistics.write_seconds = progress.end();
+  statistics.output_bytes = writer->bytes_written();
 
   if (options.simulates()) {
-    statistics.simulated = simulate_cores(statistics.tasks, parse_core_list(options.core_list));
+    statistics.simulated =
+        simulate_cores(statistics.stream.tasks, parse_core_list(options.core_list));
   }
   statistics.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -228,16 +236,6 @@ int run(const TriangulateOptions& options, MeshFormat format, RunStatistics& sta
   }
   report(options, statistics, progress);
   return kExitDone;
-}
-
-/// Opens the outputs on trial, where nobody notices.
-void try_outputs(const TriangulateOptions& options, MeshFormat format, int dimension) {
-  if (!options.stats_path.empty()) check_can_create(disk(), options.stats_path);
-  if (!can_be_tried(options.output)) return;
-  MeshHeader header;
-  header.dimension = dimension;
-  header.has_input_index = options.input_index;
-  open_mesh_writer(disk(), options.output, format, header);
 }
 
 int run(const TriangulateOptions& options) {
@@ -254,12 +252,15 @@ int run(const TriangulateOptions& options) {
     throw UsageError("the mesh and --stats cannot go to the same place: " + options.output);
   }
   const MeshFormat format = mesh_format(options.output, options.output_format);
+  if (options.output == "-" && ::isatty(STDOUT_FILENO) != 0 && options.output_format.empty()) {
+    throw UsageError("a mesh stream is nothing for a terminal: name a file, or pipe it on");
+  }
   RunStatistics statistics;
   statistics.dimension = options.dimension == "3" ? 3 : 2;
   statistics.inputs = options.inputs;
   statistics.output = options.output;
   statistics.output_format = mesh_format_names().at(static_cast<std::size_t>(format));
-  try_outputs(options, format, statistics.dimension);
+  if (!options.stats_path.empty()) check_can_create(disk(), options.stats_path);
   return statistics.dimension == 3 ? run<3>(options, format, statistics)
                                    : run<2>(options, format, statistics);
 }

@@ -8,8 +8,9 @@
 
 namespace spillway {
 
-/// The points of one base case: point i is vertex first_vertex + i, and of equal points the one of
-/// the lowest input index is kept.
+/// The points of one base case, neighbours near each other in the list (a Hilbert curve's order, as
+/// divide() leaves them; any order is correct, but slower): point i is vertex first_vertex + i, and
+/// of equal points the one of the lowest input index is kept.
 template <int D>
 struct BaseCaseInput {
   std::span<const Point<D>> points;

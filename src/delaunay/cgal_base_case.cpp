@@ -8,21 +8,19 @@
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Spatial_sort_traits_adapter_2.h>
-#include <CGAL/Spatial_sort_traits_adapter_3.h>
 #include <CGAL/Triangulation_cell_base_with_info_3.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
-#include <CGAL/property_map.h>
-#include <CGAL/spatial_sort.h>
 
 #include <algorithm>
+#include <bit>
 #include <string>
 #include <unordered_map>
 #include <utility>
 
 #include "src/delaunay/base_case.h"
+#include "src/delaunay/hash.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -48,8 +46,6 @@ struct CgalTraits<2> {
   using CellBase = CGAL::Triangulation_face_base_with_info_2<CellIndex, Kernel>;
   using Tds = CGAL::Triangulation_data_structure_2<VertexBase, CellBase>;
   using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, Tds>;
-  template <typename PointMap>
-  using SortTraits = CGAL::Spatial_sort_traits_adapter_2<Kernel, PointMap>;
 
   static CgalPoint point(const Point<2>& p) { return {p[0], p[1]}; }
   static auto all_cells(Delaunay& d) { return d.all_face_handles(); }
@@ -65,8 +61,6 @@ struct CgalTraits<3> {
                                                 CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
   using Tds = CGAL::Triangulation_data_structure_3<VertexBase, CellBase>;
   using Delaunay = CGAL::Delaunay_triangulation_3<Kernel, Tds>;
-  template <typename PointMap>
-  using SortTraits = CGAL::Spatial_sort_traits_adapter_3<Kernel, PointMap>;
 
   static CgalPoint point(const Point<3>& p) { return {p[0], p[1], p[2]}; }
   static auto all_cells(Delaunay& d) { return d.all_cell_handles(); }
@@ -78,27 +72,28 @@ struct CgalTraits<3> {
 template <int D>
 class Inserter {
   using Traits = CgalTraits<D>;
-  using Entry = std::pair<typename Traits::CgalPoint, VertexId>;
 
  public:
   Inserter(const BaseCaseInput<D>& input, typename Traits::Delaunay& delaunay)
       : input_(input), delaunay_(delaunay) {}
 
   /// The basis comes first: as long as all points are collinear or coplanar, CGAL's location takes
-  /// linear time. The others follow in spatial order.
+  /// linear time. The others follow in rounds, each a random sample of what is left and in the
+  /// order of the list, so that no input is a bad one (N. Amenta, S. Choi, G. Rote, "Incremental
+  /// constructions con BRIO", SoCG 2003).
   void insert_all(std::span<const VertexId> basis) {
     for (const VertexId i : basis) insert(Traits::point(input_.points[i]), i);
-    std::vector<Entry> entries;
-    entries.reserve(input_.points.size());
-    for (VertexId i = 0; i < input_.points.size(); ++i) {
-      if (std::find(basis.begin(), basis.end(), i) == basis.end()) {
-        entries.emplace_back(Traits::point(input_.points[i]), i);
-      }
+    const std::size_t count = input_.points.size();
+    int rounds = 1;
+    while ((count >> (kRoundBits * rounds)) > kSmallestRound) ++rounds;
+    std::vector<std::vector<VertexId>> members(rounds);
+    for (VertexId i = 0; i < count; ++i) {
+      if (std::find(basis.begin(), basis.end(), i) != basis.end()) continue;
+      members[std::max(0, rounds - 1 - std::countr_zero(mix64(i)) / kRoundBits)].push_back(i);
     }
-    using PointMap = CGAL::First_of_pair_property_map<Entry>;
-    CGAL::spatial_sort(entries.begin(), entries.end(),
-                       typename Traits::template SortTraits<PointMap>());
-    for (const auto& [point, i] : entries) insert(point, i);
+    for (const std::vector<VertexId>& round : members) {
+      for (const VertexId i : round) insert(Traits::point(input_.points[i]), i);
+    }
   }
 
   /// The points that were left out, sorted.
@@ -117,6 +112,10 @@ class Inserter {
   }
 
  private:
+  /// A round has 2^kRoundBits times the points of the one before; the first is about so large.
+  static constexpr int kRoundBits = 3;
+  static constexpr std::size_t kSmallestRound = 64;
+
   void insert(const typename Traits::CgalPoint& point, VertexId i) {
     const auto vertex =
         last_ == nullptr ? delaunay_.insert(point) : delaunay_.insert(point, Traits::start(last_));

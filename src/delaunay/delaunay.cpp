@@ -26,6 +26,10 @@ constexpr std::size_t kGoodBaseCase = D == 2 ? 32'768 : 262'144;
 constexpr std::size_t kBorderBaseCases = 4;
 constexpr std::size_t kSmallestBorderBaseCase = 4'096;
 
+std::size_t border_base_case_size(std::size_t points, std::size_t largest) {
+  return std::clamp(points / kBorderBaseCases, std::min(kSmallestBorderBaseCase, largest), largest);
+}
+
 /// The default: the number of parts is a power of two, with room for cuts that miss the middle.
 template <int D>
 std::size_t default_base_case_size(std::size_t points) {
@@ -143,9 +147,7 @@ class Run {
     const auto count = static_cast<double>(points.size());
     std::size_t base_case_size = points.size();
     if (count <= kLargestBorder * static_cast<double>(part_size)) {
-      base_case_size =
-          std::clamp(points.size() / kBorderBaseCases,
-                     std::min(kSmallestBorderBaseCase, base_case_size_), base_case_size_);
+      base_case_size = border_base_case_size(points.size(), base_case_size_);
     }
     DelaunayOptions options = options_;
     options.progress = nullptr;
@@ -182,6 +184,15 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
   return result;
 }
 
+template <int D>
+Triangulation<D> border_delaunay(std::vector<Point<D>> points, Task& task) {
+  const std::size_t base_case_size = border_base_case_size(points.size(), kGoodBaseCase<D>);
+  const DelaunayOptions options;
+  return Run<D>(std::move(points), options).triangulate(base_case_size, task);
+}
+
+template Triangulation<2> border_delaunay<2>(std::vector<Point<2>>, Task&);
+template Triangulation<3> border_delaunay<3>(std::vector<Point<3>>, Task&);
 template Triangulation<2> delaunay<2>(std::span<const Point<2>>, const DelaunayOptions&);
 template Triangulation<3> delaunay<3>(std::span<const Point<3>>, const DelaunayOptions&);
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "src/delaunay/divide.h"
 #include "src/delaunay/triangulation.h"
@@ -32,5 +33,10 @@ struct DelaunayOptions {
 /// points.
 template <int D>
 Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOptions& options = {});
+
+/// The same, of a border's points, for a caller that is itself one of the tasks of with_threads():
+/// runs on its threads, divides only what is large, and keeps memory for the base cases to come.
+template <int D>
+Triangulation<D> border_delaunay(std::vector<Point<D>> points, Task& task);
 
 }  // namespace spillway

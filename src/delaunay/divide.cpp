@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "src/delaunay/hash.h"
+#include "src/delaunay/hilbert_order.h"
 #include "src/delaunay/schedule.h"
 #include "src/parallel/parallel.h"
 
@@ -39,7 +40,11 @@ class Divider {
   void divide(Part<D>& part, std::size_t depth, Task& task) const {
     task.kind = "divide";
     task.points = part.size();
-    if (part.size() <= options_.leaf_size || part.box.lo == part.box.hi) return;
+    if (part.size() <= options_.leaf_size || part.box.lo == part.box.hi) {
+      const Stopwatch watch(task.seconds);
+      sort_leaf(part);
+      return;
+    }
     {
       const Stopwatch watch(task.seconds);
       split(part, options_.children, depth, part.children);
@@ -108,6 +113,18 @@ class Divider {
       std::swap(points_[low], points_[high]);
       std::swap(input_index_[low], input_index_[high]);
       ++low;
+    }
+  }
+
+  void sort_leaf(const Part<D>& part) const {
+    const auto points = points_.subspan(part.begin, part.size());
+    const auto input_index = input_index_.subspan(part.begin, part.size());
+    const std::vector<VertexId> order = hilbert_order<D>(points, part.box);
+    const std::vector<Point<D>> old_points(points.begin(), points.end());
+    const std::vector<VertexId> old_index(input_index.begin(), input_index.end());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      points[i] = old_points[order[i]];
+      input_index[i] = old_index[order[i]];
     }
   }
 

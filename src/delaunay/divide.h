@@ -38,11 +38,12 @@ struct Part {
   [[nodiscard]] bool leaf() const { return children.empty(); }
 };
 
-/// Divides the points into a k-d tree and puts them, with their input indices, into its order. Cuts
-/// compare coordinates with a value taken from a sample, so equal points always stay together; a
-/// part is a leaf when it has at most leaf_size points or when all its points are equal. Where the
-/// scheme's axis has no extent the longest one is cut. The result doesn't depend on the number of
-/// threads. If `task` is set, it receives the tree of divisions with their durations.
+/// Divides the points into a k-d tree and puts them, with their input indices, into its order,
+/// those of a leaf into the order of a Hilbert curve. Cuts compare coordinates with a value taken
+/// from a sample, so equal points always stay together; a part is a leaf when it has at most
+/// leaf_size points or when all its points are equal. Where the scheme's axis has no extent the
+/// longest one is cut. The result doesn't depend on the number of threads. If `task` is set, it
+/// receives the tree of divisions with their durations.
 template <int D>
 Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
                const DivideOptions& options, Task* task = nullptr);

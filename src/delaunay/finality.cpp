@@ -13,40 +13,45 @@ namespace {
 /// Simplices that a task of the border search looks at before it shares its work.
 constexpr std::size_t kBorderBatch = 512;
 
-template <int D, typename Meets>
-bool any_leaf_meets(const Part<D>& part, const Meets& meets) {
-  if (!meets(part.box)) return false;
-  if (part.leaf()) return true;
-  return std::any_of(part.children.begin(), part.children.end(),
-                     [&](const Part<D>& child) { return any_leaf_meets(child, meets); });
+}  // namespace
+
+template <int D>
+ConflictRegion<D>::ConflictRegion(const std::array<VertexId, D + 1>& vertices,
+                                  std::span<const Point<D>> points) {
+  const auto infinite = std::find(vertices.begin(), vertices.end(), kInfiniteVertex);
+  if (infinite == vertices.end()) {
+    std::array<Point<D>, D + 1> corners;
+    for (int i = 0; i <= D; ++i) corners[i] = points[vertices[i]];
+    ball_ = certified_ball<D>(corners);
+    return;
+  }
+  infinite_ = true;
+  // Bring the infinite vertex to the end by an even permutation: the rest is the facet as
+  // half_space_meets wants it.
+  std::array<VertexId, D + 1> even = vertices;
+  if (infinite != vertices.end() - 1) {
+    std::swap(even[infinite - vertices.begin()], even[D]);
+    std::swap(even[0], even[1]);
+  }
+  for (int i = 0; i < D; ++i) facet_[i] = points[even[i]];
 }
 
-}  // namespace
+template <int D>
+bool ConflictRegion<D>::may_meet(const Box<D>& box) const {
+  return infinite_ ? half_space_meets<D>(facet_, box) : spillway::may_meet<D>(ball_, box);
+}
+
+template <int D>
+bool ConflictRegion<D>::inside(const Box<D>& box) const {
+  return !infinite_ && spillway::inside<D>(ball_, box);
+}
 
 template <int D>
 bool may_be_changed(const Simplex<D>& simplex, std::span<const Point<D>> points,
                     std::span<const Part<D>* const> others) {
-  const auto meets_others = [&](const auto& meets) {
-    return std::any_of(others.begin(), others.end(),
-                       [&](const Part<D>* other) { return any_leaf_meets(*other, meets); });
-  };
-  const int infinite_place = simplex.infinite_place();
-  if (infinite_place < 0) {
-    std::array<Point<D>, D + 1> corners;
-    for (int i = 0; i <= D; ++i) corners[i] = points[simplex.vertices[i]];
-    const CertifiedBall<D> ball = certified_ball<D>(corners);
-    return meets_others([&](const Box<D>& box) { return may_meet<D>(ball, box); });
-  }
-  // Bring the infinite vertex to the end by an even permutation: the rest is the facet as
-  // half_space_meets wants it.
-  std::array<Point<D>, D> facet;
-  std::array<VertexId, D + 1> vertices = simplex.vertices;
-  if (infinite_place != D) {
-    std::swap(vertices[infinite_place], vertices[D]);
-    std::swap(vertices[0], vertices[1]);
-  }
-  for (int i = 0; i < D; ++i) facet[i] = points[vertices[i]];
-  return meets_others([&](const Box<D>& box) { return half_space_meets<D>(facet, box); });
+  const ConflictRegion<D> region(simplex.vertices, points);
+  return std::any_of(others.begin(), others.end(),
+                     [&](const Part<D>* other) { return region.may_meet_leaf(*other); });
 }
 
 template <int D>
@@ -77,6 +82,8 @@ std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
   return border;
 }
 
+template class ConflictRegion<2>;
+template class ConflictRegion<3>;
 template bool may_be_changed<2>(const Simplex<2>&, std::span<const Point<2>>,
                                 std::span<const Part<2>* const>);
 template bool may_be_changed<3>(const Simplex<3>&, std::span<const Point<3>>,

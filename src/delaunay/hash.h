@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -32,6 +33,22 @@ std::uint64_t simplex_hash(const std::array<VertexId, N>& vertices) {
 template <std::size_t N>
 std::uint64_t facet_hash(const std::array<VertexId, N>& vertices, int i) {
   return simplex_hash(vertices) ^ mix64(vertices[i]);
+}
+
+/// Whether two simplices have the same vertices and orientation: an infinite simplex of the
+/// border's triangulation may have the vertices of a child's, but face the other way.
+template <std::size_t N>
+bool same_simplex(std::array<VertexId, N> a, const std::array<VertexId, N>& b) {
+  bool even = true;
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto place = std::find(a.begin() + i, a.end(), b[i]);
+    if (place == a.end()) return false;
+    if (place != a.begin() + i) {
+      std::swap(a[i], *place);
+      even = !even;
+    }
+  }
+  return even;
 }
 
 /// A hash index of items kept elsewhere, filled and searched by many threads at once, but not

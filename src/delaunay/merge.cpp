@@ -25,22 +25,6 @@ bool same_facet(std::array<VertexId, N> a, std::array<VertexId, N> b) {
   return a == b;
 }
 
-/// Whether two simplices have the same vertices and orientation: an infinite simplex of the
-/// border's triangulation may have the vertices of a child's, but face the other way.
-template <std::size_t N>
-bool same_simplex(std::array<VertexId, N> a, const std::array<VertexId, N>& b) {
-  bool even = true;
-  for (std::size_t i = 0; i < N; ++i) {
-    const auto place = std::find(a.begin() + i, a.end(), b[i]);
-    if (place == a.end()) return false;
-    if (place != a.begin() + i) {
-      std::swap(a[i], *place);
-      even = !even;
-    }
-  }
-  return even;
-}
-
 /// The vertices of a simplex without the i-th.
 template <std::size_t N>
 std::array<VertexId, N - 1> facet_vertices(const std::array<VertexId, N>& vertices, int i) {

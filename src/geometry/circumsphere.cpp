@@ -124,6 +124,17 @@ bool may_meet(const CertifiedBall<D>& ball, const Box<D>& box) {
 }
 
 template <int D>
+bool inside(const CertifiedBall<D>& ball, const Box<D>& box) {
+  for (int k = 0; k < D; ++k) {
+    const double below = ball.centre[k] - (box.lo[k] - ball.anchor[k]) - ball.error;
+    const double above = (box.hi[k] - ball.anchor[k]) - ball.centre[k] - ball.error;
+    const double gap = std::min(below, above);
+    if (!(gap > 0 && gap * gap > ball.squared_radius)) return false;  // NaN fails
+  }
+  return true;
+}
+
+template <int D>
 bool half_space_meets(const std::array<Point<D>, D>& facet, const Box<D>& box) {
   if (box.empty()) return false;
   std::array<Point<D>, D + 1> simplex;
@@ -139,6 +150,8 @@ template CertifiedBall<2> certified_ball<2>(const std::array<Point<2>, 3>&);
 template CertifiedBall<3> certified_ball<3>(const std::array<Point<3>, 4>&);
 template bool may_meet<2>(const CertifiedBall<2>&, const Box<2>&);
 template bool may_meet<3>(const CertifiedBall<3>&, const Box<3>&);
+template bool inside<2>(const CertifiedBall<2>&, const Box<2>&);
+template bool inside<3>(const CertifiedBall<3>&, const Box<3>&);
 template bool half_space_meets<2>(const std::array<Point<2>, 2>&, const Box<2>&);
 template bool half_space_meets<3>(const std::array<Point<3>, 3>&, const Box<3>&);
 

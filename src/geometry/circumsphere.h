@@ -36,6 +36,11 @@ CertifiedBall<D> certified_ball(const std::array<Point<D>, D + 1>& simplex);
 template <int D>
 bool may_meet(const CertifiedBall<D>& ball, const Box<D>& box);
 
+/// True only if the closed circumsphere certainly lies inside the box and touches none of its
+/// sides, which may be infinite.
+template <int D>
+bool inside(const CertifiedBall<D>& ball, const Box<D>& box);
+
 /// True if and only if the closed half-space beyond `facet` has a point in common with the box.
 /// `facet` is listed so that orientation(facet, p) is positive for p beyond. Exact. True if the
 /// facet's points do not span a hyperplane; false for an empty box. The box must be finite.

@@ -2,6 +2,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 #ifdef __SANITIZE_THREAD__
@@ -98,13 +99,49 @@ void parallel_for(
   }
   std::atomic<std::size_t> next = 0;
   const auto take_turns = [&] {
-    for (std::size_t g = next++; g < grains; g = next++) run(g);
+    try {
+      for (std::size_t g = next++; g < grains; g = next++) run(g);
+    } catch (...) {
+      next = grains;  // nobody need begin another grain
+      throw;
+    }
   };
-  TaskGroup group;
-  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-  for (std::size_t i = 1; i < std::min(grains, threads); ++i) group.run(take_turns);
-  take_turns();
-  group.wait();
+  // Isolated: whoever waits here for others takes up no work from outside meanwhile.
+  tbb::this_task_arena::isolate([&] {
+    TaskGroup group;
+    const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    for (std::size_t i = 1; i < std::min(grains, threads); ++i) group.run(take_turns);
+    take_turns();
+    group.wait();
+  });
+}
+
+void run_pipeline(std::size_t slots, const std::function<bool(std::size_t slot)>& source,
+                  std::span<const PipelineStage> stages) {
+  std::size_t next = 0;
+  // The last stage frees slots in the order in which they are taken.
+  auto chain = tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
+                                                   [&](tbb::flow_control& control) -> std::size_t {
+                                                     tell_acquire(&handed_over);
+                                                     const std::size_t slot = next++ % slots;
+                                                     if (!source(slot)) control.stop();
+                                                     tell_release(&handed_over);
+                                                     return slot;
+                                                   });
+  for (const PipelineStage& stage : stages) {
+    chain =
+        chain & tbb::make_filter<std::size_t, std::size_t>(
+                    stage.in_order ? tbb::filter_mode::serial_in_order : tbb::filter_mode::parallel,
+                    [&](std::size_t slot) {
+                      tell_acquire(&handed_over);
+                      stage.work(slot);
+                      tell_release(&handed_over);
+                      return slot;
+                    });
+  }
+  tbb::parallel_pipeline(slots, chain & tbb::make_filter<std::size_t, void>(
+                                            tbb::filter_mode::parallel, [](std::size_t) {}));
+  tell_acquire(&handed_over);
 }
 
 }  // namespace spillway

@@ -44,10 +44,23 @@ inline std::size_t grain_count(std::size_t count, std::size_t grain) {
 
 /// Calls body(grain_number, begin, end) for consecutive ranges of `grain` items (the last may be
 /// shorter) that cover [0, count). The ranges don't depend on the number of threads, so results
-/// kept by grain number are deterministic. A single grain runs in the calling thread.
+/// kept by grain number are deterministic. Grains are begun in ascending order. A single grain runs
+/// in the calling thread. After an exception no further grain is begun.
 void parallel_for(
     std::size_t count, std::size_t grain,
     const std::function<void(std::size_t grain_number, std::size_t begin, std::size_t end)>& body);
+
+/// One step of a pipeline: does its work on the item in the slot of that number.
+struct PipelineStage {
+  bool in_order = false;  ///< one item at a time, in the order of the source; else many at once
+  std::function<void(std::size_t slot)> work;
+};
+
+/// Sends items through stages that work beside each other on different items. `source` fills the
+/// slot it is given and returns whether it could; it is called in order, as is the last stage,
+/// which must be in_order. At most `slots` items are under way, so slot numbers are below that.
+void run_pipeline(std::size_t slots, const std::function<bool(std::size_t slot)>& source,
+                  std::span<const PipelineStage> stages);
 
 /// Works off a set of items that grows as it is worked on: calls body(items, found) for batches of
 /// items, each thread pushing what it finds to its own `found`, until nothing is left. Batches keep

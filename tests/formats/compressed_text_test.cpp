@@ -4,6 +4,7 @@
 #endif
 
 #include <fmt/format.h>
+#include <lz4frame.h>
 
 #include <boost/iostreams/filter/bzip2.hpp>
 #include <boost/iostreams/filter/gzip.hpp>
@@ -18,7 +19,18 @@ namespace {
 
 using ::testing::HasSubstr;
 
+/// A frame as the lz4 tool makes it, with a checksum at its end.
+std::string lz4_compressed(const std::string& content) {
+  LZ4F_preferences_t preferences = LZ4F_INIT_PREFERENCES;
+  preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+  std::string result(LZ4F_compressFrameBound(content.size(), &preferences), '\0');
+  result.resize(LZ4F_compressFrame(result.data(), result.size(), content.data(), content.size(),
+                                   &preferences));
+  return result;
+}
+
 std::string compressed(const std::string& content, const std::string& extension) {
+  if (extension == ".lz4") return lz4_compressed(content);
   std::ostringstream result;
   boost::iostreams::filtering_ostream stream;
   if (extension == ".gz") stream.push(boost::iostreams::gzip_compressor());
@@ -105,13 +117,13 @@ TEST_P(CompressedText, NotCompressed) {
 }
 
 TEST_P(CompressedText, OtherFormatsCompressed) {
-  for (const char* inner : {"a.las", "a.LAZ", "a.npy"}) {
+  for (const char* inner : {"a.las", "a.LAZ", "a.npy", "a.spp"}) {
     EXPECT_THAT(error_of_content(inner + extension_, compressed("x", extension_)),
                 HasSubstr("only text is read compressed"));
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, CompressedText, ::testing::Values(".gz", ".bz2", ".zst"),
+INSTANTIATE_TEST_SUITE_P(All, CompressedText, ::testing::Values(".gz", ".bz2", ".zst", ".lz4"),
                          [](const auto& tested) { return tested.param.substr(1); });
 
 TEST(CompressedZstd, WithoutChecksumTruncationIsSeen) {
@@ -119,6 +131,17 @@ TEST(CompressedZstd, WithoutChecksumTruncationIsSeen) {
   const std::string whole = compressed("1 2 3\n4 5 6\n", ".zst");
   EXPECT_THAT(error_of_content("a.zst", whole.substr(0, whole.size() - 2)),
               HasSubstr("corrupt or ends early"));
+}
+
+TEST(CompressedLz4, WithoutChecksumTruncationIsSeen) {
+  std::string whole(100, '\0');
+  const std::string text = "1 2 3\n4 5 6\n";
+  whole.resize(LZ4F_compressFrame(whole.data(), whole.size(), text.data(), text.size(), nullptr));
+  EXPECT_EQ(read_content("a.lz4", whole).points.size(), 2U);
+  for (std::size_t size = 4; size < whole.size(); ++size) {
+    EXPECT_THAT(error_of_content("a.lz4", whole.substr(0, size)),
+                HasSubstr("corrupt or ends early"));
+  }
 }
 
 }  // namespace

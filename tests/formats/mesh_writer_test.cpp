@@ -24,6 +24,12 @@ TEST(MeshFormatChoice, TakesTheExtensionInAnyCase) {
   EXPECT_EQ(mesh_format("a.off", ""), MeshFormat::kOff);
   EXPECT_EQ(mesh_format("a.vtu", ""), MeshFormat::kVtu);
   EXPECT_EQ(mesh_format("a.npy", ""), MeshFormat::kNpy);
+  EXPECT_EQ(mesh_format("a.Spm", ""), MeshFormat::kSpm);
+  EXPECT_EQ(mesh_format("a.sma", ""), MeshFormat::kSma);
+}
+
+TEST(MeshFormatChoice, StandardOutputTakesAStream) {
+  EXPECT_EQ(mesh_format("-", ""), MeshFormat::kSpm);
 }
 
 TEST(MeshFormatChoice, TakesTheNameBeforeTheExtension) {
@@ -33,20 +39,21 @@ TEST(MeshFormatChoice, TakesTheNameBeforeTheExtension) {
 
 TEST(MeshFormatChoice, NamesAreInTheOrderOfTheFormats) {
   const std::vector<std::string> names = mesh_format_names();
-  ASSERT_EQ(names.size(), 6U);
+  ASSERT_EQ(names.size(), 8U);
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_EQ(mesh_format("-", names[i]), static_cast<MeshFormat>(i));
   }
 }
 
 TEST(MeshFormatChoice, ListsTheFormatsWhereNoneIsNamed) {
-  for (const std::string path : {"-", "a", "a.stl", "ply"}) {
+  for (const std::string path : {"a", "a.stl", "ply"}) {
     EXPECT_THROW(mesh_format(path, ""), UsageError) << path;
     EXPECT_THAT(error_of([&] { mesh_format(path, ""); }),
-                HasSubstr("ply, ply-ascii, obj, off, vtu, npy"));
+                HasSubstr("ply, ply-ascii, obj, off, vtu, npy, spm, sma"));
   }
-  EXPECT_THAT(error_of([] { mesh_format("a.ply", "stl"); }),
-              AllOf(HasSubstr("\"stl\""), HasSubstr("ply, ply-ascii, obj, off, vtu, npy")));
+  EXPECT_THAT(
+      error_of([] { mesh_format("a.ply", "stl"); }),
+      AllOf(HasSubstr("\"stl\""), HasSubstr("ply, ply-ascii, obj, off, vtu, npy, spm, sma")));
 }
 
 TEST(PlyWriter, AsciiTriangles) {
@@ -196,9 +203,9 @@ TEST(SurfaceFormats, NameTheFormatsThatHoldWhatTheyCannot) {
   FaultyFileSystem files;
   for (const MeshFormat format : {MeshFormat::kObj, MeshFormat::kOff}) {
     EXPECT_THAT(error_of([&] { write_mesh(files, "a.x", format, small_mesh(3)); }),
-                AllOf(HasSubstr("a.x"), HasSubstr("tetrahedra; choose ply, vtu or npy")));
+                AllOf(HasSubstr("a.x"), HasSubstr("tetrahedra; choose spm, ply, vtu or npy")));
     EXPECT_THAT(error_of([&] { write_mesh(files, "a.x", format, full_mesh(2)); }),
-                AllOf(HasSubstr("a.x"), HasSubstr("input index; choose ply, vtu or npy")));
+                AllOf(HasSubstr("a.x"), HasSubstr("input index; choose spm, ply, vtu or npy")));
   }
   EXPECT_EQ(files.count(Call::kCreate), 0);
 }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <random>
+
 #include "formats/point_writer.h"
 #include "tests/formats/las_file.h"
 #include "tests/formats/point_test_helpers.h"
@@ -17,7 +19,10 @@ void write_points(FaultyFileSystem& files, const std::string& path) {
   options.count = kPoints;
   options.lattice = Lattice{};
   const auto writer = open_point_writer(files, path, options);
-  writer->write(std::vector<Point<3>>(kPoints, Point<3>{1, 2, 3}));
+  std::mt19937 random(1);
+  std::vector<Point<3>> points(kPoints);
+  for (Point<3>& p : points) p = {double(random() >> 1U), double(random() >> 1U), 3};
+  writer->write(points);
   writer->finish();
 }
 
@@ -81,13 +86,14 @@ TEST_P(PointFaults, AClosedPipeIsToldApart) {
 TEST_P(PointFaults, AnUnfinishedFileIsDropped) {
   FaultyFileSystem files;
   PointWriterOptions options;
+  options.count = kPoints;
   options.lattice = Lattice{};
   open_point_writer(files, GetParam(), options).reset();
   EXPECT_TRUE(files.files.empty());
   EXPECT_TRUE(files.parts.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PointFaults, ::testing::Values("a.las", "a.xyz", "a.npy"),
+INSTANTIATE_TEST_SUITE_P(All, PointFaults, ::testing::Values("a.las", "a.xyz", "a.npy", "a.spp"),
                          [](const auto& tested) { return tested.param.substr(2); });
 
 TEST(ShrinkingFile, LasEndsWithinAPoint) {
@@ -145,7 +151,9 @@ TEST(AnyCorruption, LasGivesPointsOrAnError) {
 
 TEST(AnyCorruption, NpyGivesPointsOrAnError) {
   FaultyFileSystem files;
-  const auto writer = open_point_writer(files, "a.npy", {"", 3, 2, {}});
+  PointWriterOptions options;
+  options.count = 2;
+  const auto writer = open_point_writer(files, "a.npy", options);
   writer->write(std::vector<Point<3>>(2, Point<3>{1, 2, 3}));
   writer->finish();
   read_every_corruption("a.npy", files.files.at("a.npy"));

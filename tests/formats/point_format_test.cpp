@@ -12,7 +12,9 @@ using ::testing::HasSubstr;
 TEST(PointFormatChoice, ExtensionInAnyCase) {
   EXPECT_EQ(point_format_of_path("dir.txt/A.LAS"), PointFormat::kLas);
   EXPECT_EQ(point_format_of_path("a.npy"), PointFormat::kNpy);
-  for (const char* name : {"a.txt", "a.xyz", "a.csv", "a.asc", "a.xyz.gz", "a.csv.bz2", "a.zst"}) {
+  EXPECT_EQ(point_format_of_path("a.Spp"), PointFormat::kSpp);
+  for (const char* name :
+       {"a.txt", "a.xyz", "a.csv", "a.asc", "a.xyz.gz", "a.csv.bz2", "a.zst", "a.txt.lz4"}) {
     EXPECT_EQ(point_format_of_path(name), PointFormat::kText) << name;
   }
   EXPECT_FALSE(point_format_of_path("a.dat"));
@@ -41,7 +43,8 @@ TEST(PointFormatChoice, UnknownContent) {
 }
 
 TEST(PointFormatChoice, UnknownOption) {
-  EXPECT_THAT(error_of_content("a.las", "", {"shp", false}), HasSubstr("choose las, text or npy"));
+  EXPECT_THAT(error_of_content("a.las", "", {"shp", false}),
+              HasSubstr("choose las, text, npy or spp"));
 }
 
 TEST(PointFormatChoice, OutputWithoutKnownFormat) {
@@ -51,6 +54,22 @@ TEST(PointFormatChoice, OutputWithoutKnownFormat) {
   EXPECT_THROW(open_point_writer(files, "a.laz", {}), UsageError);
   EXPECT_THROW(open_point_writer(files, "a.xyz.gz", {}), UsageError);
   EXPECT_EQ(files.count(Call::kCreate), 0);
+}
+
+TEST(PointFormatChoice, OutputThatNeedsTheCountBeforehand) {
+  FaultyFileSystem files;
+  PointWriterOptions options;
+  options.lattice = Lattice{};
+  for (const char* name : {"a.las", "a.npy"}) {
+    EXPECT_THAT(error_of([&] { open_point_writer(files, name, options); }),
+                HasSubstr("not known beforehand; write text or spp"));
+  }
+  for (const char* name : {"a.txt", "a.spp"}) {
+    const auto writer = open_point_writer(files, name, options);
+    writer->write(std::vector<Point<3>>(2));
+    writer->finish();
+    EXPECT_EQ(read_all_points(files, name).points.size(), 2U);
+  }
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ spillway_test(points_test unit
     formats/point_format_test.cpp
     formats/point_writer_test.cpp
     formats/text_reader_test.cpp
-  LIBS spillway_formats Boost::iostreams fmt::fmt)
+  LIBS spillway_formats Boost::iostreams PkgConfig::liblz4 fmt::fmt)
 spillway_test(point_fault_test fault
   SOURCES formats/point_fault_test.cpp
   LIBS spillway_formats fmt::fmt)

@@ -164,7 +164,7 @@ TEST(NpyWriter, WorldCoordinatesOfLatticePoints) {
 }
 
 TEST(PointWriter, RefusesAnotherNumberOfPoints) {
-  for (const char* path : {"a.las", "a.xyz", "a.npy"}) {
+  for (const char* path : {"a.las", "a.xyz", "a.npy", "a.spp"}) {
     FaultyFileSystem files;
     PointWriterOptions options = with_lattice({});
     options.count = 3;

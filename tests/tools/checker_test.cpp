@@ -351,42 +351,6 @@ TYPED_TEST(CheckerTest, DescribesNoMoreFaultsThanAskedForButCountsAll) {
   EXPECT_EQ(report.fault_count, 20U);
 }
 
-TYPED_TEST(CheckerTest, VertexSetEqualsTheInputsDistinctPoints) {
-  Mesh mesh = this->good_;
-  std::vector<Point<3>> input = mesh.vertices;
-  std::reverse(input.begin(), input.end());
-  input.push_back(input[4]);
-  CheckReport report = check_mesh(mesh, {});
-  check_vertex_set(mesh, input, report, {});
-  EXPECT_EQ(report.fault_count, 0U);
-  EXPECT_THAT(report.proved, Contains(HasSubstr("the 200 distinct points of the input")));
-}
-
-TYPED_TEST(CheckerTest, RejectsAnInputPointThatIsNoVertexAndTheReverse) {
-  std::vector<Point<3>> input = this->good_.vertices;
-  input.push_back({0.5, 0.5, 0.5});
-  CheckReport extra;
-  check_vertex_set(this->good_, input, extra, {});
-  EXPECT_EQ(extra.fault_count, 1U);
-  EXPECT_THAT(extra.faults, Contains(HasSubstr("input point 200 (0.5, 0.5")));
-  input.resize(199);
-  CheckReport missing;
-  check_vertex_set(this->good_, input, missing, {});
-  EXPECT_EQ(missing.fault_count, 1U);
-  EXPECT_THAT(missing.faults, Contains(HasSubstr("vertex 199 (")));
-}
-
-TYPED_TEST(CheckerTest, RejectsADroppedVertexWhoseHoleWasFilledWell) {
-  constexpr int D = TypeParam::value;
-  auto points = scattered<D>(200, 1, 0);
-  points.erase(points.begin() + 100);
-  const Mesh mesh = cgal_mesh<D>(points);
-  expect_proved(mesh);
-  CheckReport report;
-  check_vertex_set(mesh, this->good_.vertices, report, {});
-  EXPECT_EQ(report.fault_count, 1U);
-}
-
 TEST(Checker2DTest, RejectsABoundaryThatWindsTwice) {
   // The pentagram around its centre: every angle convex, every triangle positive, covered twice.
   Mesh mesh;

@@ -149,8 +149,28 @@ TEST(Check, AcceptsTheTriangulationOfEveryFamily) {
 
 TEST(Generate, NoPointsMakeAValidFile) {
   const Workspace work;
-  work.succeed("spillway generate -q terrain -n 0 -o none.las");
+  work.succeed(
+      "spillway generate -q terrain -n 0 -o none.las\n"
+      "spillway generate -q terrain -n 0 -o none.spp");
   EXPECT_EQ(work.info("none.las")["points"], 0);
+  EXPECT_EQ(work.info("none.spp")["points"], 0);
+}
+
+TEST(Generate, WritesSppToAPipeAndTextIfAskedTo) {
+  const Workspace work;
+  EXPECT_THAT(work.succeed("spillway generate -q uniform -n 5 | head -c 8"), "SPWYSPP\n");
+  EXPECT_EQ(work.succeed("spillway generate -q lattice -n 1 --output-format text | wc -l"), "1\n");
+}
+
+TEST(Generate, NoBytesForATerminal) {
+  const Workspace work;
+  for (const std::string options : {"", "--output-format npy"}) {
+    const Result refused =
+        work.run(fmt::format("spillway generate -q uniform -n 5 {} > /dev/ptmx", options));
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("standard output is a terminal"));
+  }
+  work.succeed("spillway generate -q uniform -n 5 --output-format text > /dev/ptmx");
 }
 
 }  // namespace

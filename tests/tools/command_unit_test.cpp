@@ -1,4 +1,4 @@
-// The parts of the command that need no process: lists of cores, counts, progress lines, heights.
+// The parts of the command that need no process: lists of cores, counts, progress lines.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,6 @@
 #include "tools/command_options.h"
 #include "tools/core_simulation.h"
 #include "tools/facet_count.h"
-#include "tools/heights.h"
 #include "tools/json_text.h"
 #include "tools/progress_line.h"
 
@@ -86,43 +85,6 @@ TEST(ProgressJson, LeavesUnknownsNull) {
 
 TEST(JsonText, BytesThatAreNoTextDoNotFail) {
   EXPECT_EQ(json_text({{"name", "a\xff"}}), "{\"name\":\"a\xEF\xBF\xBD\"}");
-}
-
-/// Three points at one place, input indices 4, 2, 7 (the first is 2), and one elsewhere.
-Triangulation<2> stacked() {
-  Triangulation<2> t;
-  t.points = {{0, 0}, {0, 0}, {1, 0}, {0, 0}};
-  t.input_index = {4, 2, 0, 7};
-  t.duplicates = {{.dropped = 0, .kept = 1}, {.dropped = 3, .kept = 1}};
-  return t;
-}
-
-TEST(Heights, LowestAndHighestTakeThePointThatHasIt) {
-  std::vector<double> heights = {9, 0, 5, 0, 1, 0, 0, 8};
-  auto lowest = stacked();
-  choose_heights(lowest, HeightChoice::kLowest, heights);
-  EXPECT_EQ(lowest.input_index[1], 4U);
-  auto highest = stacked();
-  choose_heights(highest, HeightChoice::kHighest, heights);
-  EXPECT_EQ(highest.input_index[1], 7U);
-  auto first = stacked();
-  choose_heights(first, HeightChoice::kFirst, heights);
-  EXPECT_EQ(first.input_index[1], 2U);
-}
-
-TEST(Heights, OfEqualHeightsTheFirstPointOfTheInputIsTaken) {
-  std::vector<double> heights(8, 3.0);
-  auto t = stacked();
-  choose_heights(t, HeightChoice::kHighest, heights);
-  EXPECT_EQ(t.input_index[1], 2U);
-}
-
-TEST(Heights, MeanCountsEveryPointOnce) {
-  std::vector<double> heights = {9, 0, 6, 0, 1, 0, 0, 8};
-  auto t = stacked();
-  choose_heights(t, HeightChoice::kMean, heights);
-  EXPECT_EQ(heights[t.input_index[1]], 5);
-  EXPECT_EQ(heights[t.input_index[2]], 9);
 }
 
 TEST(FacetCount, CountsWhatOneSimplexHasAlone) {

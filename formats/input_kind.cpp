@@ -1,0 +1,42 @@
+#include "formats/input_kind.h"
+
+#include <string_view>
+#include <utility>
+
+#include "formats/bytes.h"
+#include "formats/mesh_reader.h"
+#include "formats/point_format.h"
+#include "formats/sma_reader.h"
+#include "formats/spm_format.h"
+
+namespace spillway {
+namespace {
+
+constexpr std::size_t kProbe = 4096;
+
+}  // namespace
+
+InputSource& ProbedInput::source() {
+  if (!source_) source_ = std::make_unique<InputSource>(files_.open(path_));
+  return *source_;
+}
+
+std::unique_ptr<InputFile> ProbedInput::open(const std::string& path) {
+  if (path == path_ && source_) return std::move(source_);
+  return files_.open(path);
+}
+
+InputKind kind_of_input(ProbedInput& input) {
+  const bool is_pipe = input.path() == "-";
+  const std::string extension = extension_of(input.path());
+  if (extension == "spm" || extension == "sma") return InputKind::kMeshStream;
+  if (!is_pipe && !input.exists(input.path())) {  // an npy mesh may go by a name that no file has
+    return is_mesh(input.beneath(), input.path()) ? InputKind::kMesh : InputKind::kPoints;
+  }
+  const std::string_view text = as_text(input.source().peek(kProbe));
+  if (text.starts_with(kSpmMagic) || text.starts_with(kSmaNote)) return InputKind::kMeshStream;
+  if (!is_pipe && is_mesh(input.beneath(), input.path())) return InputKind::kMesh;
+  return looks_like_sma(text) ? InputKind::kMeshStream : InputKind::kPoints;
+}
+
+}  // namespace spillway

@@ -1,0 +1,21 @@
+#include "formats/mesh_block.h"
+
+namespace spillway {
+
+void append_stream_numbers(const MeshBlock& block, std::uint64_t first,
+                           std::vector<std::uint64_t>& corners) {
+  const std::size_t begin = corners.size();
+  corners.resize(begin + block.corners.size());
+  const std::size_t vertices = block.vertices.size();
+  for (std::size_t i = 0; i < block.corners.size(); ++i) {
+    const std::uint32_t number = block.corners[i];
+    corners[begin + i] = number < vertices ? first + number : block.imported[number - vertices];
+  }
+}
+
+void move_to_world(const MeshStreamHeader& header, MeshBlock& block) {
+  if (!header.lattice) return;
+  for (Point<3>& vertex : block.vertices) vertex = header.lattice->to_world(vertex);
+}
+
+}  // namespace spillway

@@ -1,0 +1,19 @@
+#pragma once
+// From a block's own numbers and coordinates to those of the whole mesh.
+
+#include <cstdint>
+#include <vector>
+
+#include "formats/mesh_stream.h"
+
+namespace spillway {
+
+/// Appends the corners of a block's simplices as stream numbers, where the block's vertices are
+/// numbered from `first` on.
+void append_stream_numbers(const MeshBlock& block, std::uint64_t first,
+                           std::vector<std::uint64_t>& corners);
+
+/// Maps the vertices of a block to output coordinates.
+void move_to_world(const MeshStreamHeader& header, MeshBlock& block);
+
+}  // namespace spillway

@@ -1,0 +1,28 @@
+#include "formats/mesh_stream_writer.h"
+
+#include <utility>
+
+#include "formats/sma_writer.h"
+#include "formats/spm_writer.h"
+#include "formats/spooled_mesh_writer.h"
+
+namespace spillway {
+
+std::unique_ptr<MeshStreamWriter> open_mesh_stream_writer(FileSystem& files,
+                                                          const std::string& path,
+                                                          MeshFormat format,
+                                                          const MeshStreamHeader& header,
+                                                          ScratchFolder& scratch) {
+  MeshFiles created =
+      create_mesh_files(files, path, format, header.dimension, header.has_input_index);
+  switch (format) {
+    case MeshFormat::kSpm:
+      return open_spm_writer(std::move(created.main), header);
+    case MeshFormat::kSma:
+      return open_sma_writer(std::move(created.main), header);
+    default:
+      return open_spooled_mesh_writer(std::move(created), header, scratch);
+  }
+}
+
+}  // namespace spillway

@@ -1,0 +1,25 @@
+#pragma once
+// What reader and writer of Spillway's own mesh stream share. docs/formats-meshes.md ("spm") has
+// the layout.
+
+#include <cstdint>
+#include <string_view>
+
+namespace spillway {
+
+inline constexpr std::string_view kSpmMagic = "SPWMESH\n";
+inline constexpr std::uint32_t kSpmVersion = 1;
+
+/// Kinds of blocks.
+inline constexpr std::uint32_t kSpmHeader = 1;
+inline constexpr std::uint32_t kSpmImported = 2;
+inline constexpr std::uint32_t kSpmMesh = 3;
+inline constexpr std::uint32_t kSpmTrailer = 4;
+
+/// Bits of the header's flags.
+inline constexpr std::uint32_t kSpmHasLattice = 1;
+inline constexpr std::uint32_t kSpmHasPoints = 2;
+inline constexpr std::uint32_t kSpmHasExtent = 4;
+inline constexpr std::uint32_t kSpmHasInputIndex = 8;
+
+}  // namespace spillway

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <memory>
+
+#include "formats/input_source.h"
+#include "formats/mesh_stream.h"
+
+namespace spillway {
+
+/// Reads Spillway's own mesh stream.
+std::unique_ptr<MeshStreamReader> open_spm_reader(std::unique_ptr<InputSource> source);
+
+}  // namespace spillway

@@ -1,0 +1,180 @@
+#include "stream/border.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "src/delaunay/delaunay.h"
+#include "src/delaunay/divide.h"
+#include "src/delaunay/hash.h"
+#include "src/delaunay/schedule.h"
+#include "src/parallel/parallel.h"
+#include "stream/tile_tree.h"
+
+namespace spillway {
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+template <int D, typename Tree>
+class Merge {
+  using Corners = std::array<VertexId, D + 1>;
+
+ public:
+  Merge(std::span<Border<D>> children, std::span<const Tree* const> trees)
+      : children_(children), trees_(trees) {}
+
+  MergedBorder<D> run(Task& task) {
+    task.after.resize(3);
+    find_exposed(task.after[0]);
+    triangulate(task.after[1]);
+    accept(task.after[2]);
+    return std::move(result_);
+  }
+
+ private:
+  /// Numbers all vertices, sorts the children's simplices into those that a sibling may change and
+  /// those that stay, and collects the vertices to be triangulated.
+  void find_exposed(Task& task) {
+    task.kind = "border";
+    const Stopwatch watch(task.seconds);
+    auto& vertices = result_.border.vertices;
+    first_vertex_.assign(1, 0);
+    for (const Border<D>& child : children_) {
+      first_vertex_.push_back(first_vertex_.back() + static_cast<VertexId>(child.vertices.size()));
+      result_.border.dimension = std::max(result_.border.dimension, child.dimension);
+    }
+    vertices.reserve(first_vertex_.back());
+    std::vector<bool> wanted(first_vertex_.back());
+    for (std::size_t c = 0; c < children_.size(); ++c) {
+      Border<D> child = std::exchange(children_[c], {});
+      open_.push_back(child.open());
+      const std::vector<bool> exposed = exposed_simplices(child, c);
+      for (std::size_t s = 0; s < child.simplices.size(); ++s) {
+        Corners corners = child.simplices[s];
+        for (VertexId& v : corners) {
+          if (v == kInfiniteVertex) continue;
+          v += first_vertex_[c];
+          if (exposed[s]) wanted[v] = true;
+        }
+        (exposed[s] ? exposed_ : result_.border.simplices).push_back(corners);
+      }
+      if (child.open()) {
+        std::fill(wanted.begin() + first_vertex_[c], wanted.begin() + first_vertex_[c + 1], true);
+      }
+      vertices.insert(vertices.end(), child.vertices.begin(), child.vertices.end());
+    }
+    for (VertexId v = 0; v < wanted.size(); ++v) {
+      if (wanted[v]) border_vertices_.push_back(v);
+    }
+    result_.tested = result_.border.simplices.size();
+    result_.retriangulated = border_vertices_.size();
+    task.points = border_vertices_.size();
+    task.pieces = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
+  }
+
+  [[nodiscard]] std::vector<bool> exposed_simplices(const Border<D>& child, std::size_t c) const {
+    std::vector<Point<D>> points(child.vertices.size());
+    for (std::size_t v = 0; v < points.size(); ++v) points[v] = child.vertices[v].position;
+    std::vector<std::uint8_t> exposed(child.simplices.size());
+    parallel_for(exposed.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) {
+        const ConflictRegion<D> region(child.simplices[s], points);
+        for (std::size_t other = 0; other < trees_.size(); ++other) {
+          if (other != c && region.may_meet_leaf(*trees_[other])) {
+            exposed[s] = 1;
+            break;
+          }
+        }
+      }
+    });
+    return {exposed.begin(), exposed.end()};
+  }
+
+  void triangulate(Task& task) {
+    std::vector<Point<D>> points;
+    points.reserve(border_vertices_.size());
+    for (const VertexId v : border_vertices_) {
+      points.push_back(result_.border.vertices[v].position);
+    }
+    mesh_ = border_delaunay<D>(std::move(points), task);
+    result_.border.dimension = std::max(result_.border.dimension, mesh_.dimension);
+  }
+
+  void accept(Task& task) {
+    task.kind = "accept";
+    task.points = border_vertices_.size();
+    const Stopwatch watch(task.seconds);
+    ConcurrentIndex index(exposed_.size());
+    parallel_for(exposed_.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t e = begin; e < end; ++e) {
+        index.insert(simplex_hash(exposed_[e]), static_cast<std::uint32_t>(e));
+      }
+    });
+    for (const SimplexBlock<D>& block : mesh_.blocks) {
+      std::vector<std::vector<Corners>> accepted(grain_count(block.simplices.size(), kGrain));
+      parallel_for(block.simplices.size(), kGrain,
+                   [&](std::size_t g, std::size_t begin, std::size_t end) {
+                     for (std::size_t s = begin; s < end; ++s) {
+                       if (block.simplices[s].removed()) continue;
+                       const Corners corners = renumbered(block.simplices[s].vertices);
+                       if (is_accepted(corners, index)) accepted[g].push_back(corners);
+                     }
+                   });
+      auto& simplices = result_.border.simplices;
+      for (const auto& some : accepted) simplices.insert(simplices.end(), some.begin(), some.end());
+    }
+    task.pieces = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
+  }
+
+  [[nodiscard]] Corners renumbered(Corners corners) const {
+    for (VertexId& v : corners) {
+      if (v != kInfiniteVertex) v = border_vertices_[mesh_.input_index[v]];
+    }
+    return corners;
+  }
+
+  [[nodiscard]] bool is_accepted(const Corners& corners, const ConcurrentIndex& index) const {
+    constexpr std::size_t kNone = ~std::size_t{0};
+    std::size_t only = kNone;
+    for (const VertexId v : corners) {
+      if (v == kInfiniteVertex) continue;
+      std::size_t c = 0;
+      while (v >= first_vertex_[c + 1]) ++c;
+      if (only != kNone && only != c) return true;  // spans children
+      only = c;
+    }
+    if (open_[only]) return true;
+    return index.find(simplex_hash(corners), [&](std::uint32_t e) {
+      return same_simplex(corners, exposed_[e]);
+    }) != ConcurrentIndex::kNotFound;
+  }
+
+  std::span<Border<D>> children_;
+  std::span<const Tree* const> trees_;
+  std::vector<VertexId> first_vertex_;  ///< by child, and one more
+  std::vector<bool> open_;              ///< by child
+  std::vector<Corners> exposed_;
+  std::vector<VertexId> border_vertices_;
+  Triangulation<D> mesh_;
+  MergedBorder<D> result_;
+};
+
+}  // namespace
+
+template <int D, typename Tree>
+MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
+                              Task& task) {
+  return Merge<D, Tree>(children, trees).run(task);
+}
+
+template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const Part<2>* const>,
+                                       Task&);
+template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const Part<3>* const>,
+                                       Task&);
+template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const TileNode<2>* const>,
+                                       Task&);
+template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const TileNode<3>* const>,
+                                       Task&);
+
+}  // namespace spillway

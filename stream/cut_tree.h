@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "src/geometry/point.h"
+
+namespace spillway {
+
+/// Which tile a point belongs to: a k-d tree of cuts whose cells reach to infinity, so that it
+/// knows a tile for points anywhere. Points on a cut go up; equal points always go together.
+class CutTree {
+ public:
+  /// One tile, number 0, that holds everything. Only the first `dimension` axes are cut.
+  explicit CutTree(int dimension) : dimension_(dimension) {}
+
+  [[nodiscard]] std::uint32_t tile_of(const Point<3>& point) const {
+    std::int32_t place = root_;
+    while (place >= 0) {
+      const Cut& cut = cuts_[place];
+      place = cut.sides[point[cut.axis] >= cut.value ? 1 : 0];
+    }
+    return static_cast<std::uint32_t>(-place - 1);
+  }
+
+  [[nodiscard]] std::uint32_t tiles() const { return tiles_; }
+
+  /// Divides a tile into about `parts` that would get equal shares of `sample` (points of that
+  /// tile, which are put into another order). The tile keeps its number for one of them, the others
+  /// get new ones. Fewer parts come out where the sample's points are equal.
+  void split(std::uint32_t tile, std::vector<Point<3>>& sample, std::size_t parts);
+
+  /// Cuts a tile in two: below `value` on `axis` and not below.
+  void cut(std::uint32_t tile, int axis, double value);
+
+  /// A node of the tree, for walking it: a tile, or a cut with two sides.
+  using Place = std::int32_t;
+  [[nodiscard]] Place root() const { return root_; }
+  [[nodiscard]] static bool is_tile(Place place) { return place < 0; }
+  [[nodiscard]] static std::uint32_t tile_at(Place place) {
+    return static_cast<std::uint32_t>(-place - 1);
+  }
+  [[nodiscard]] std::array<Place, 2> sides(Place place) const { return cuts_[place].sides; }
+
+ private:
+  struct Cut {
+    double value;
+    int axis;
+    std::array<Place, 2> sides;  ///< below, not below
+  };
+
+  static Place place_of(std::uint32_t tile) { return -static_cast<Place>(tile) - 1; }
+  Place make_cut(std::uint32_t tile, int axis, double value);
+  void split_sample(std::uint32_t tile, Point<3>* begin, Point<3>* end, std::size_t parts);
+
+  int dimension_;
+  Place root_ = place_of(0);
+  std::uint32_t tiles_ = 1;
+  std::vector<Cut> cuts_;
+  std::vector<Place> parents_{-1};  ///< by tile: the cut above it, or -1
+};
+
+}  // namespace spillway

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "src/delaunay/triangulation.h"
+
+namespace spillway {
+
+/// Which z the vertex gets where several points have the same x and y.
+enum class HeightChoice { kFirst, kLowest, kHighest, kMean };
+
+/// The names --duplicates takes, in the order of the enumeration.
+const std::vector<std::string>& height_choice_names();
+
+/// The choice of that name, which must be one of height_choice_names().
+HeightChoice height_choice_by_name(const std::string& name);
+
+/// Makes the choice for the points of one base case, whose duplicates are given. `input_index` has
+/// each vertex's place in `heights`, which is z. For the lowest and the highest, the vertex takes
+/// the whole identity of the point that has it: its input index becomes that point's (the first
+/// one, if several have that z). For the mean, the height of the vertex's point is replaced; it is
+/// summed in ascending order, so that it does not depend on the order of the points.
+void choose_heights(std::span<const Duplicate> duplicates, HeightChoice choice,
+                    std::span<VertexId> input_index, std::span<double> heights);
+
+}  // namespace spillway

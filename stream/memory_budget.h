@@ -1,0 +1,68 @@
+#pragma once
+// One limit for the whole process. Whoever is about to hold much memory takes a lease first.
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+namespace spillway {
+
+/// The smaller of 2 GiB and a quarter of the memory that this process may use: the machine's, or
+/// its container's where that has less.
+std::uint64_t default_memory_limit();
+
+/// The number of bytes that "512M", "2G", "1.5g", "800MiB" or "1000000" stand for; K, M, G, T are
+/// powers of 1024. Throws UsageError for anything else.
+std::uint64_t parse_memory_size(const std::string& text);
+
+/// "512 MiB", "1.5 GiB": for messages.
+std::string memory_size_text(std::uint64_t bytes);
+
+/// Bytes promised to the stages of a run.
+class MemoryBudget {
+ public:
+  explicit MemoryBudget(std::uint64_t limit) : limit_(limit) {}
+
+  [[nodiscard]] std::uint64_t limit() const { return limit_; }
+  [[nodiscard]] std::uint64_t used() const { return used_; }
+
+ private:
+  friend class MemoryLease;
+
+  void take(std::uint64_t bytes, const char* purpose);
+  void give_back(std::uint64_t bytes) { used_ -= bytes; }
+
+  const std::uint64_t limit_;
+  std::atomic<std::uint64_t> used_ = 0;
+};
+
+/// A share of a budget, held as long as the object lives.
+class MemoryLease {
+ public:
+  MemoryLease() = default;
+  /// Throws Error, with the purpose and the --memory that would do, if the budget has not so much
+  /// left.
+  MemoryLease(MemoryBudget& budget, std::uint64_t bytes, const char* purpose)
+      : budget_(&budget), bytes_(bytes) {
+    budget.take(bytes, purpose);
+  }
+  MemoryLease(MemoryLease&& other) noexcept
+      : budget_(std::exchange(other.budget_, nullptr)), bytes_(std::exchange(other.bytes_, 0)) {}
+  MemoryLease& operator=(MemoryLease&& other) noexcept {
+    std::swap(budget_, other.budget_);
+    std::swap(bytes_, other.bytes_);
+    return *this;
+  }
+  ~MemoryLease() {
+    if (budget_ != nullptr) budget_->give_back(bytes_);
+  }
+  MemoryLease(const MemoryLease&) = delete;
+  MemoryLease& operator=(const MemoryLease&) = delete;
+
+ private:
+  MemoryBudget* budget_ = nullptr;
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace spillway

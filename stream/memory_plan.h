@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace spillway {
+
+/// How a memory limit is shared out. Nothing here depends on the number of threads, so neither does
+/// the order of the output.
+struct MemoryPlan {
+  std::size_t buffered_points = 0;  ///< waiting in memory to be spilled
+  std::size_t tile_capacity = 0;    ///< points of one tile
+  std::size_t leaf_size = 0;        ///< largest number of points of a leaf
+  unsigned threads = 1;             ///< that the scratch memory of leaves leaves room for
+};
+
+/// The plan for a limit in bytes. `wanted_threads` is cut down to what there is memory for. Throws
+/// UsageError with the least limit that would do if this one is too small.
+MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads);
+
+/// Leaves for so many points: at most plan.leaf_size, and smaller where there are few points, so
+/// that all threads have something to do.
+std::size_t leaf_size_for(std::uint64_t points, int dimension, const MemoryPlan& plan);
+
+}  // namespace spillway

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_set>
+
+#include "src/delaunay/hash.h"
+
+namespace spillway {
+
+/// The facets of one simplex only, of a stream of simplices given by their vertices' numbers.
+template <int D>
+class OpenFacets {
+ public:
+  void add(const std::array<std::uint64_t, D + 1>& corners) {
+    for (int i = 0; i <= D; ++i) {
+      Facet facet;
+      std::copy(corners.begin(), corners.begin() + i, facet.begin());
+      std::copy(corners.begin() + i + 1, corners.end(), facet.begin() + i);
+      std::sort(facet.begin(), facet.end());
+      const auto [place, is_new] = open_.insert(facet);
+      if (!is_new) open_.erase(place);
+    }
+  }
+
+  [[nodiscard]] std::uint64_t count() const { return open_.size(); }
+
+ private:
+  using Facet = std::array<std::uint64_t, D>;
+  struct Hash {
+    std::size_t operator()(const Facet& facet) const {
+      std::uint64_t hash = 0;
+      for (const std::uint64_t v : facet) hash = mix64(hash ^ v);
+      return hash;
+    }
+  };
+
+  std::unordered_set<Facet, Hash> open_;
+};
+
+}  // namespace spillway

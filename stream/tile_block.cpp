@@ -1,0 +1,61 @@
+#include "stream/tile_block.h"
+
+#include <fmt/format.h>
+
+#include "formats/block.h"
+#include "formats/bytes.h"
+#include "formats/columns.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+constexpr std::uint32_t kPointsKind = 1;
+constexpr std::uint32_t kIndexedPointsKind = 2;
+
+}  // namespace
+
+std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes) {
+  std::vector<TileBlock> blocks;
+  std::vector<std::byte> content;
+  std::vector<double> column;
+  points.drain([&](std::span<const Point<3>> piece, std::span<const std::uint64_t> index) {
+    content.resize(sizeof(std::uint32_t));
+    store(content.data(), static_cast<std::uint32_t>(piece.size()));
+    column.resize(piece.size());
+    for (int k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < piece.size(); ++i) column[i] = piece[i][k];
+      append_column(content, column);
+    }
+    if (!index.empty()) append_column(content, index);
+    const std::size_t begin = bytes.size();
+    append_block(bytes, index.empty() ? kPointsKind : kIndexedPointsKind, content);
+    blocks.push_back({begin, bytes.size() - begin, piece.size()});
+  });
+  return blocks;
+}
+
+void decode_points(std::span<const std::byte> block, const std::string& where, PointBlock& points) {
+  if (block.size() < kBlockHeadSize) throw Error(where + ": the block is cut short");
+  const BlockHead head = decode_block_head(block.first<kBlockHeadSize>(), where);
+  if (head.stored_size != block.size() - kBlockHeadSize) {
+    throw Error(where + ": the block has another size than its head says");
+  }
+  std::vector<std::byte> content;
+  decode_block(head, block.subspan(kBlockHeadSize), content, where);
+  if (content.size() < sizeof(std::uint32_t)) throw Error(where + ": the block has no count");
+  const std::size_t count = load<std::uint32_t>(content.data());
+  if (count > PointBuffer::kPiece) throw Error(where + ": the block has too many points");
+  ColumnReader columns(std::span<const std::byte>(content).subspan(sizeof(std::uint32_t)), where);
+  points.points.resize(count);
+  std::vector<double> column;
+  for (int k = 0; k < 3; ++k) {
+    columns.read(count, column);
+    for (std::size_t i = 0; i < count; ++i) points.points[i][k] = column[i];
+  }
+  points.index.clear();
+  if (head.kind == kIndexedPointsKind) columns.read(count, points.index);
+  columns.expect_end();
+}
+
+}  // namespace spillway

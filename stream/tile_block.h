@@ -1,0 +1,55 @@
+#pragma once
+// How points lie in a tile's file: blocks (formats/block.h) of up to some ten thousand points, each
+// a count and the columns x, y, z and, where wanted, the index (formats/columns.h).
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/point_reader.h"
+#include "src/geometry/point.h"
+#include "stream/point_buffer.h"
+
+namespace spillway {
+
+/// The points of a tile, ready to be triangulated, in the order in which they were read.
+template <int D>
+struct TilePoints {
+  std::vector<Point<D>> points;
+  std::vector<double> heights;       ///< D = 2: z, one a point
+  std::vector<std::uint64_t> index;  ///< one a point, or none
+
+  void resize(std::size_t count, bool with_index) {
+    points.resize(count);
+    if constexpr (D == 2) heights.resize(count);
+    if (with_index) index.resize(count);
+  }
+  /// Puts a point into a place.
+  void set(std::size_t place, const Point<3>& point) {
+    if constexpr (D == 2) {
+      points[place] = {point[0], point[1]};
+      heights[place] = point[2];
+    } else {
+      points[place] = point;
+    }
+  }
+};
+
+/// Where a block lies in a tile's file, and how many points it holds.
+struct TileBlock {
+  std::uint64_t offset = 0;
+  std::size_t size = 0;
+  std::size_t points = 0;
+};
+
+/// Appends a buffer's points to `bytes` as blocks, one a piece, and lets go of them. The blocks'
+/// offsets are counted from the beginning of `bytes`.
+std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes);
+
+/// Replaces `points` by those of one block, given by its bytes. Throws Error, beginning with
+/// `where`, if the block is corrupt.
+void decode_points(std::span<const std::byte> block, const std::string& where, PointBlock& points);
+
+}  // namespace spillway

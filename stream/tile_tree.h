@@ -1,0 +1,136 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/point_reader.h"
+#include "formats/scratch_folder.h"
+#include "src/geometry/box.h"
+#include "stream/cut_tree.h"
+#include "stream/point_buffer.h"
+#include "stream/stage_times.h"
+#include "stream/tile_block.h"
+
+namespace spillway {
+
+struct TileTreeOptions {
+  int dimension = 2;
+  std::size_t capacity = 0;                 ///< most points of one tile, equal points apart
+  std::size_t buffered_points = 0;          ///< most points waiting in memory
+  std::optional<std::uint64_t> expected{};  ///< how many points will come, where that is known
+  std::optional<Box<3>> extent{};           ///< where they will lie, where that is known
+  bool index = false;                       ///< points carry their index
+};
+
+/// A node of the finished tree over tiles: a tile that can be loaded, or two nodes.
+template <int D>
+struct TileNode {
+  Box<D> box;  ///< tight around its points
+  std::uint64_t points = 0;
+  std::vector<TileNode> children;     ///< none for a tile
+  std::vector<std::uint32_t> stored;  ///< of a tile: the stored tiles it is made of
+};
+
+/// Points of any number, dealt into tiles that fit into memory. Points wait in memory; when too
+/// many do, the tiles with most of them write theirs to the disk. The first division is made when
+/// that happens for the first time, of what is known then: the points so far, and the expected
+/// number and extent. When all points are in, tiles that became too large are divided once more,
+/// their number then being known, so a point is written at most twice as a rule.
+class TileTree {
+ public:
+  TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times);
+
+  /// Deals all points that `source` gives (as PointReader::read) and makes the tiles final.
+  /// Reading, dealing, encoding and writing go on beside each other; the result does not depend on
+  /// threads.
+  void fill(const std::function<bool(PointBlock&)>& source);
+
+  /// The tree of tiles, neighbours that fit together made one; nothing if there are no points.
+  template <int D>
+  [[nodiscard]] std::optional<TileNode<D>> nodes() const;
+
+  /// Takes the points of a tile of nodes() out of the tree, from memory and disk.
+  template <int D>
+  TilePoints<D> load(const TileNode<D>& tile);
+
+  [[nodiscard]] std::uint64_t points() const { return points_; }
+  /// How many points were written to the disk, those written twice counted twice.
+  [[nodiscard]] std::uint64_t points_written() const { return points_written_; }
+  [[nodiscard]] std::uint64_t bytes_written() const { return folder_.bytes_written(); }
+
+ private:
+  /// Points on their way to one tile.
+  struct Run {
+    std::uint32_t tile = 0;
+    std::size_t begin = 0;  ///< of Batch::dealt
+    std::size_t end = 0;
+    Box<3> box;
+  };
+  /// Points on their way from one tile's buffer to its file.
+  struct Spill {
+    std::uint32_t tile = 0;
+    PointBuffer points;
+    std::vector<std::byte> bytes;
+    std::vector<TileBlock> blocks;
+  };
+  /// What goes through the pipeline at a time.
+  struct Batch {
+    PointBlock points;
+    std::vector<std::byte> stored;    ///< the points as read back from a file, still to be decoded
+    std::string where;                ///< in which file
+    std::vector<std::uint32_t> tile;  ///< by point
+    std::shared_ptr<const CutTree> dealt_by;  ///< the cuts that `runs` come from
+    PointBlock dealt;                         ///< the points, grouped by tile
+    std::vector<Run> runs;
+    std::vector<Spill> spills;
+  };
+  struct Tile {
+    Box<3> box;
+    std::uint64_t points = 0;
+    PointBuffer buffer;  ///< what came after what is in the file
+    std::unique_ptr<ScratchFile> file;
+    std::vector<TileBlock> blocks;
+    std::vector<Point<3>> sample;
+    std::uint64_t next_sample = 0;
+  };
+
+  void run_batches(const std::function<bool(Batch&)>& source);
+  void deal(Batch& batch) const;
+  void append(Batch& batch);
+  void append_runs(Batch& batch);
+  void spill_fullest(Batch& batch);
+  void write(Batch& batch);
+
+  void divide_first();
+  [[nodiscard]] bool sample_is_representative() const;
+  void add_expected_points(std::vector<Point<3>>& sample) const;
+  void divide(std::uint32_t number);
+  void split(CutTree& cuts, std::uint32_t number, std::vector<Point<3>> sample,
+             std::size_t parts) const;
+  void deal_from_memory(PointBuffer points);
+  [[nodiscard]] bool too_large(const Tile& tile) const;
+
+  template <int D>
+  std::optional<TileNode<D>> node_at(CutTree::Place place) const;
+
+  TileTreeOptions options_;
+  ScratchFolder& folder_;
+  StageTimes& times_;
+  /// Replaced as a whole, under the mutex, since batches are dealt by it meanwhile.
+  std::shared_ptr<const CutTree> cuts_;
+  mutable std::mutex cuts_mutex_;
+  std::vector<Tile> tiles_;
+  std::uint64_t points_ = 0;
+  std::size_t buffered_ = 0;  ///< room that all tiles' buffers take, in points
+  std::uint64_t points_written_ = 0;
+  std::size_t sample_stride_ = 1;
+  bool divided_ = false;
+};
+
+}  // namespace spillway

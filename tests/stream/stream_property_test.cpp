@@ -1,0 +1,132 @@
+// The contract, out of core: whatever the tiles, the leaves, the memory and the threads, the stream
+// holds CGAL's simplices, and the same bytes for any number of threads.
+
+#include <gtest/gtest.h>
+
+#include "src/delaunay/delaunay.h"
+#include "src/error.h"
+#include "src/generators/generators.h"
+#include "tests/delaunay/cgal_oracle.h"
+#include "tests/stream/stream_runner.h"
+
+namespace spillway {
+namespace {
+
+/// Tiny tiles that fit into memory, tiny tiles that all go to the disk, one tile of many leaves.
+const std::vector<StreamOptions> kManyWays = {
+    {.threads = 1, .tile_capacity = 20, .leaf_size = 8},
+    {.threads = 2, .tile_capacity = 20, .buffered_points = 50, .leaf_size = 20},
+    {.threads = 4, .tile_capacity = 150, .buffered_points = 400, .leaf_size = 30, .children = 4},
+    {.threads = 2, .leaf_size = 25},
+};
+
+template <int D>
+void expect_equal_to_cgal(const std::vector<Point<D>>& points,
+                          const std::vector<StreamOptions>& ways) {
+  const auto expected = cgal_simplices<D>(points);
+  const std::size_t hull_facets = cgal_hull_facets<D>(points);
+  const std::string path = write_points<D>(points);
+  for (const StreamOptions& options : ways) {
+    SCOPED_TRACE(testing::Message()
+                 << points.size() << " points, tiles of " << options.tile_capacity << ", leaves of "
+                 << options.leaf_size << ", " << options.threads << " threads");
+    if (expected.empty()) {
+      EXPECT_THROW(run_stream<D>(path, options), Error);
+      continue;
+    }
+    const StreamRun run = run_stream<D>(path, options);
+    ASSERT_TRUE(simplices_of<D>(run.mesh) == expected)
+        << run.figures.totals.simplices << " simplices, CGAL has " << expected.size();
+    EXPECT_EQ(run.figures.totals.hull_facets, hull_facets);
+    EXPECT_EQ(run.figures.totals.simplices, expected.size());
+    EXPECT_EQ(run.figures.totals.vertices + run.figures.totals.duplicates, points.size());
+    EXPECT_EQ(run.mesh.live(), 0U) << "vertices never finalized";
+  }
+  std::filesystem::remove(path);
+}
+
+struct FamilyCase {
+  Family family;
+  int dimension;
+};
+
+class StreamOfFamily : public testing::TestWithParam<FamilyCase> {};
+
+TEST_P(StreamOfFamily, EqualsCgalForSmallSetsInTinyTiles) {
+  for (const std::uint64_t n : {0, 1, 2, 3, 4, 5, 7, 12, 30, 100, 500, 2000}) {
+    if (GetParam().dimension == 3 && n > 1000) continue;
+    for (const std::uint64_t seed : {1, 2}) {
+      const GeneratorOptions generate{GetParam().family, n, GetParam().dimension, seed};
+      SCOPED_TRACE(testing::Message() << "seed " << seed);
+      if (GetParam().dimension == 2) {
+        expect_equal_to_cgal<2>(generate_points<2>(generate), kManyWays);
+      } else {
+        expect_equal_to_cgal<3>(generate_points<3>(generate), kManyWays);
+      }
+    }
+  }
+}
+
+TEST_P(StreamOfFamily, EqualsCgalForLargeSetsThatSpill) {
+  const bool dense = GetParam().dimension == 3 && GetParam().family == Family::kLines;
+  const bool slow = GetParam().family == Family::kCollinear;  // CGAL takes quadratic time
+  const std::uint64_t n = dense ? 500 : slow ? 2'000 : GetParam().dimension == 2 ? 60'000 : 10'000;
+  const GeneratorOptions generate{GetParam().family, n, GetParam().dimension, 7};
+  const std::vector<StreamOptions> ways = {
+      {.threads = 2, .tile_capacity = n / 7, .buffered_points = n / 5, .leaf_size = n / 40},
+      {.threads = 4, .tile_capacity = n / 3, .buffered_points = n / 2}};
+  if (GetParam().dimension == 2) {
+    expect_equal_to_cgal<2>(generate_points<2>(generate), ways);
+  } else {
+    expect_equal_to_cgal<3>(generate_points<3>(generate), ways);
+  }
+}
+
+TEST_P(StreamOfFamily, GivesTheSameBlocksForAnyThreadCount) {
+  const GeneratorOptions generate{GetParam().family, 700, GetParam().dimension, 3};
+  const auto blocks_of = [&](unsigned threads) {
+    const StreamOptions options{
+        .threads = threads, .tile_capacity = 90, .buffered_points = 200, .leaf_size = 20};
+    if (GetParam().dimension == 2) {
+      const std::string path = write_points<2>(generate_points<2>(generate));
+      return run_stream<2>(path, options).mesh.blocks;
+    }
+    const std::string path = write_points<3>(generate_points<3>(generate));
+    return run_stream<3>(path, options).mesh.blocks;
+  };
+  std::vector<MeshBlock> once;
+  try {
+    once = blocks_of(1);
+  } catch (const Error&) {
+    GTEST_SKIP() << "no simplices in this dimension";
+  }
+  for (const unsigned threads : {2U, 4U}) {
+    const auto again = blocks_of(threads);
+    ASSERT_EQ(once.size(), again.size());
+    for (std::size_t b = 0; b < once.size(); ++b) {
+      ASSERT_EQ(once[b].vertices, again[b].vertices);
+      ASSERT_EQ(once[b].imported, again[b].imported);
+      ASSERT_EQ(once[b].corners, again[b].corners);
+      ASSERT_EQ(once[b].finalized, again[b].finalized);
+    }
+  }
+}
+
+std::vector<FamilyCase> all_cases() {
+  std::vector<FamilyCase> cases;
+  for (int dimension : {2, 3}) {
+    for (const std::string& name : family_names()) {
+      cases.push_back({family_by_name(name), dimension});
+    }
+  }
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, StreamOfFamily, testing::ValuesIn(all_cases()),
+                         [](const auto& tested) {
+                           return family_names()[static_cast<std::size_t>(tested.param.family)] +
+                                  std::to_string(tested.param.dimension) + "d";
+                         });
+
+}  // namespace
+}  // namespace spillway

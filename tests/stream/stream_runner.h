@@ -1,0 +1,113 @@
+#pragma once
+// Runs the pipeline on points given in memory and keeps what it writes.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "formats/mesh_stream.h"
+#include "formats/point_writer.h"
+#include "stream/pipeline.h"
+
+namespace spillway {
+
+/// Keeps all blocks, and checks on the way that vertices are announced before and finalized after
+/// their last use, once each.
+class KeepingWriter : public MeshStreamWriter {
+ public:
+  explicit KeepingWriter(int dimension) : corners_(dimension + 1) {}
+
+  void write(MeshBlock&& block) override {
+    ASSERT_EQ(block.corners.size() % corners_, 0U);
+    std::vector<std::uint64_t> numbers;
+    for (std::size_t i = 0; i < block.vertices.size(); ++i) {
+      live_.insert(next_);
+      numbers.push_back(next_++);
+    }
+    for (const std::uint64_t v : block.imported) {
+      EXPECT_TRUE(live_.contains(v)) << "vertex " << v << " is imported, but not alive";
+      numbers.push_back(v);
+    }
+    for (const std::uint32_t c : block.corners) {
+      ASSERT_LT(c, numbers.size());
+      corner_list.push_back(numbers[c]);
+    }
+    for (const std::uint32_t v : block.finalized) {
+      ASSERT_LT(v, numbers.size());
+      EXPECT_EQ(live_.erase(numbers[v]), 1U) << "vertex finalized twice";
+    }
+    vertices.insert(vertices.end(), block.vertices.begin(), block.vertices.end());
+    index.insert(index.end(), block.input_index.begin(), block.input_index.end());
+    most_live = std::max(most_live, live_.size());
+    blocks.push_back(std::move(block));
+  }
+  void finish(const MeshTotals&) override {}
+  [[nodiscard]] std::uint64_t bytes_written() const override { return 0; }
+  [[nodiscard]] std::size_t live() const { return live_.size(); }
+
+  std::vector<Point<3>> vertices;
+  std::vector<std::uint64_t> index;
+  std::vector<std::uint64_t> corner_list;
+  std::vector<MeshBlock> blocks;
+  std::size_t most_live = 0;
+
+ private:
+  std::size_t corners_;
+  std::uint64_t next_ = 0;
+  std::set<std::uint64_t> live_;
+};
+
+/// A file of points in the test's temporary folder, of this process alone.
+template <int D>
+std::string write_points(const std::vector<Point<D>>& points) {
+  const std::string path = testing::TempDir() + "points" + std::to_string(::getpid()) + ".npy";
+  PointWriterOptions options;
+  options.coordinates = D;
+  options.count = points.size();
+  const auto writer = open_point_writer(disk(), path, options);
+  std::vector<Point<3>> block;
+  for (const Point<D>& p : points) {
+    Point<3> point{};
+    std::copy(p.begin(), p.end(), point.begin());
+    block.push_back(point);
+  }
+  writer->write(block);
+  writer->finish();
+  return path;
+}
+
+struct StreamRun {
+  StreamFigures figures;
+  KeepingWriter mesh;
+};
+
+template <int D>
+StreamRun run_stream(const std::string& path, StreamOptions options,
+                     std::uint64_t memory = std::uint64_t{1} << 30) {
+  StreamRun run{{}, KeepingWriter(D)};
+  options.input_index = true;
+  PointSource source(disk(), {path}, {.dimension = D, .index = true});
+  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  MemoryBudget budget(memory);
+  run.figures = triangulate_stream<D>(source, run.mesh, *scratch, budget, options);
+  return run;
+}
+
+/// All simplices as sorted input indices, sorted.
+template <int D>
+std::vector<std::array<VertexId, D + 1>> simplices_of(const KeepingWriter& mesh) {
+  std::vector<std::array<VertexId, D + 1>> simplices(mesh.corner_list.size() / (D + 1));
+  for (std::size_t i = 0; i < mesh.corner_list.size(); ++i) {
+    simplices[i / (D + 1)][i % (D + 1)] = static_cast<VertexId>(mesh.index[mesh.corner_list[i]]);
+  }
+  for (auto& s : simplices) std::sort(s.begin(), s.end());
+  std::sort(simplices.begin(), simplices.end());
+  return simplices;
+}
+
+}  // namespace spillway

@@ -1,0 +1,8 @@
+spillway_test(stream_unit_test unit
+  SOURCES stream/heights_test.cpp stream/memory_test.cpp stream/tile_tree_test.cpp
+  LIBS spillway_stream)
+
+spillway_test(stream_property_test property
+  SOURCES stream/stream_property_test.cpp
+  LIBS spillway_stream spillway_generators cgal_oracle
+  TIMEOUT 900)

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "formats/scratch_folder.h"
+#include "src/geometry/lattice.h"
+#include "src/geometry/point.h"
+#include "stream/point_source.h"
+#include "stream/tile_block.h"
+#include "tools/checker.h"
+
+namespace spillway {
+
+/// Compares the vertices of a mesh with the distinct points of its input, in bounded memory: both
+/// are dealt into tiles, where equal points meet, and each tile is compared for itself.
+class PointComparison {
+ public:
+  /// Keeps about to `memory` bytes. `scratch` must outlive it.
+  PointComparison(int dimension, std::uint64_t memory, ScratchFolder& scratch);
+
+  /// Takes the next vertex of the mesh, in output coordinates.
+  void add_vertex(const Point<3>& vertex);
+
+  /// Adds to `report` whether the vertices so far are exactly the distinct points of `input`, both
+  /// by their first `dimension` output coordinates, and, in the plane, whether each vertex's height
+  /// lies between those of its points. Reads the input to its end.
+  void compare(PointSource& input, const CheckOptions& options, CheckReport& report);
+
+ private:
+  void put_away();
+
+  int dimension_;
+  std::uint64_t memory_;
+  ScratchFolder& scratch_;
+  std::uint64_t vertices_ = 0;
+  PointBlock pending_;  ///< vertices that are not yet in the file
+  std::unique_ptr<ScratchFile> file_;
+  std::vector<TileBlock> blocks_;
+};
+
+}  // namespace spillway
