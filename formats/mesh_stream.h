@@ -40,6 +40,13 @@ struct MeshBlock {
   /// What MeshStreamWriter::prepare() made of the members above (`imported` apart).
   std::vector<std::byte> prepared;
 
+  /// Bytes that its members take, counted by their sizes.
+  [[nodiscard]] std::uint64_t bytes() const {
+    return vertices.size() * sizeof(vertices[0]) + input_index.size() * sizeof(input_index[0]) +
+           imported.size() * sizeof(imported[0]) + corners.size() * sizeof(corners[0]) +
+           finalized.size() * sizeof(finalized[0]) + prepared.size();
+  }
+
   void clear() {
     vertices.clear();
     input_index.clear();

@@ -9,6 +9,7 @@
 #include "src/delaunay/hash.h"
 #include "src/delaunay/schedule.h"
 #include "src/parallel/parallel.h"
+#include "stream/memory_budget.h"
 #include "stream/tile_tree.h"
 
 namespace spillway {
@@ -16,17 +17,23 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
+/// Memory for each point of a border while it is triangulated, measured.
+template <int D>
+constexpr std::uint64_t kMergeBytes = D == 2 ? 300 : 900;
+
 template <int D, typename Tree>
 class Merge {
   using Corners = std::array<VertexId, D + 1>;
 
  public:
-  Merge(std::span<Border<D>> children, std::span<const Tree* const> trees)
-      : children_(children), trees_(trees) {}
+  Merge(std::span<Border<D>> children, std::span<const Tree* const> trees, MemoryBudget& budget)
+      : children_(children), trees_(trees), budget_(budget) {}
 
   MergedBorder<D> run(Task& task) {
     task.after.resize(3);
     find_exposed(task.after[0]);
+    const MemoryLease lease(budget_, border_vertices_.size() * kMergeBytes<D>,
+                            "the triangulation of a border");
     triangulate(task.after[1]);
     accept(task.after[2]);
     return std::move(result_);
@@ -152,6 +159,7 @@ class Merge {
 
   std::span<Border<D>> children_;
   std::span<const Tree* const> trees_;
+  MemoryBudget& budget_;
   std::vector<VertexId> first_vertex_;  ///< by child, and one more
   std::vector<bool> open_;              ///< by child
   std::vector<Corners> exposed_;
@@ -164,17 +172,17 @@ class Merge {
 
 template <int D, typename Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
-                              Task& task) {
-  return Merge<D, Tree>(children, trees).run(task);
+                              MemoryBudget& budget, Task& task) {
+  return Merge<D, Tree>(children, trees, budget).run(task);
 }
 
 template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const Part<2>* const>,
-                                       Task&);
+                                       MemoryBudget&, Task&);
 template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const Part<3>* const>,
-                                       Task&);
+                                       MemoryBudget&, Task&);
 template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const TileNode<2>* const>,
-                                       Task&);
+                                       MemoryBudget&, Task&);
 template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const TileNode<3>* const>,
-                                       Task&);
+                                       MemoryBudget&, Task&);
 
 }  // namespace spillway

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -12,16 +13,24 @@
 
 namespace spillway {
 
+class MemoryBudget;
 struct Task;
 
-/// Where a vertex was announced in the stream: in which block (counted over the whole stream) and
-/// as which of its vertices.
-struct StreamPlace {
+/// The place of a block in the stream: tiles and merges of tiles have a slot each, in the order in
+/// which they come, and one or many blocks in it.
+struct BlockPlace {
   static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t block = kNowhere;
+  std::uint32_t slot = kNowhere;
+  std::uint32_t block = 0;
+  auto operator<=>(const BlockPlace&) const = default;
+};
+
+/// Where a vertex was announced in the stream: in which block, and as which of its vertices.
+struct StreamPlace {
+  BlockPlace block;
   std::uint32_t vertex = 0;
 
-  [[nodiscard]] bool announced() const { return block != kNowhere; }
+  [[nodiscard]] bool announced() const { return block.slot != BlockPlace::kNowhere; }
 };
 
 template <int D>
@@ -61,8 +70,9 @@ struct MergedBorder {
 /// of open children, are triangulated; of that, simplices are accepted that span children, or that
 /// their own child has in its border, facing the same way (Funke, Sanders 2017, Algorithm 1). All
 /// others of the children are kept as they are.
+/// Leases the memory of that triangulation from `budget`; throws Error if there is not enough.
 template <int D, typename Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
-                              Task& task);
+                              MemoryBudget& budget, Task& task);
 
 }  // namespace spillway

@@ -24,6 +24,7 @@ constexpr Costs kSpace{1'200, 224, 262'144, 8'192, 96 * kMiB};
 
 constexpr double kBufferShare = 0.4;
 constexpr double kTileShare = 0.4;
+constexpr double kWaitingShare = 0.1;
 constexpr double kLeafShare = 0.08;   // of one thread
 constexpr double kLeavesShare = 0.4;  // of all threads
 constexpr std::size_t kBufferedPointBytes = 24;
@@ -50,6 +51,7 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
   plan.tile_capacity = share(limit, kTileShare, costs.tile_bytes);
   plan.leaf_size =
       std::min({costs.good_leaf, share(limit, kLeafShare, costs.leaf_bytes), plan.tile_capacity});
+  plan.waiting_bytes = share(limit, kWaitingShare, 1);
   const std::size_t most = share(limit, kLeavesShare, costs.leaf_bytes * plan.leaf_size);
   plan.threads = static_cast<unsigned>(std::clamp<std::size_t>(most, 1, wanted_threads));
   return plan;

@@ -11,6 +11,7 @@ struct MemoryPlan {
   std::size_t buffered_points = 0;  ///< waiting in memory to be spilled
   std::size_t tile_capacity = 0;    ///< points of one tile
   std::size_t leaf_size = 0;        ///< largest number of points of a leaf
+  std::uint64_t waiting_bytes = 0;  ///< of output that waits for its turn while tiles are begun
   unsigned threads = 1;             ///< that the scratch memory of leaves leaves room for
 };
 

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <atomic>
+#include <future>
+#include <memory>
+#include <mutex>
 #include <utility>
 
 #include "src/delaunay/base_case.h"
@@ -16,6 +19,10 @@
 
 namespace spillway {
 namespace {
+
+/// Tiles that are triangulated beside each other. Two, so that there is something to do while the
+/// last merges of one tile leave threads idle; the next one is being read meanwhile.
+constexpr std::size_t kTilesAtATime = 2;
 
 template <int D>
 class Pipeline {
@@ -47,6 +54,7 @@ class Pipeline {
     tile.division = options_.division;
     tile.children = options_.children;
     tile.heights = options_.heights;
+    tile.budget = &budget_;
     tile.output = {source_.lattice(), options_.max_edge, options_.input_index};
     return tile;
   }
@@ -83,73 +91,121 @@ class Pipeline {
     const std::uint64_t points = tree_.points();
     tile_options_.leaf_size =
         options_.leaf_size > 0 ? options_.leaf_size : leaf_size_for(points, D, plan_);
-    figures_.tasks.kind = "stream";
-    figures_.tasks.points = points;
-    const std::optional<TileNode<D>> root = tree_.template nodes<D>();
-    if (!root) throw Error("the input has no points");
-    list_tiles(*root);
+    root_ = tree_.template nodes<D>();
+    if (!root_) throw Error("the input has no points");
+    add_node(*root_, nullptr, {}, figures_.tasks);
     figures_.tiles = tiles_.size();
-    next_tile_ = tree_.template load<D>(*tiles_[0]);
-    const Border<D> left = triangulate_node(*root, {}, figures_.tasks).border;
+    figures_.final_by_level.resize(nodes_.back()->level);
+    TaskGroup lanes;
+    for (std::size_t lane = 1; lane < kTilesAtATime; ++lane)
+      lanes.run([this] { work_off_tiles(); });
+    work_off_tiles();
+    lanes.wait();
+    const Border<D>& left = nodes_.back()->border;
     if (left.open()) refuse(left, points);
     options_.end_phase();
   }
 
-  void list_tiles(const TileNode<D>& node) {
-    if (node.children.empty()) tiles_.push_back(&node);
-    for (const TileNode<D>& child : node.children) list_tiles(child);
-  }
-
-  struct Done {
+  /// A tile, or a merge of tiles. Its place in nodes_, which is post-order, is its slot of the
+  /// stream.
+  struct Node {
+    const TileNode<D>* tiles = nullptr;
+    Node* parent = nullptr;
+    Outside<D> outside;
+    Task* task = nullptr;
+    std::uint32_t slot = 0;
+    std::size_t level = 0;  ///< merges below, at most
+    std::vector<Node*> children;
+    std::atomic<std::size_t> children_missing = 0;
     Border<D> border;
-    std::size_t level = 0;  ///< merges of tiles below, at most
   };
 
-  Done triangulate_node(const TileNode<D>& node, const Outside<D>& outside, Task& task) {
-    if (node.children.empty()) return {triangulate_next_tile(outside, task), 0};
+  Node* add_node(const TileNode<D>& tiles, Node* parent, const Outside<D>& outside, Task& task) {
+    auto node = std::make_unique<Node>();
+    node->tiles = &tiles;
+    node->parent = parent;
+    node->outside = outside;
+    node->task = &task;
+    node->children_missing = tiles.children.size();
     task.kind = "node";
-    task.points = node.points;
-    task.children.resize(node.children.size());
-    std::vector<Border<D>> borders;
-    std::size_t level = 0;
-    for (std::size_t c = 0; c < node.children.size(); ++c) {
+    task.points = tiles.points;
+    task.children.resize(tiles.children.size());
+    for (std::size_t c = 0; c < tiles.children.size(); ++c) {
       Outside<D> others = outside;
-      for (std::size_t o = 0; o < node.children.size(); ++o) {
-        if (o != c) others.push_back(&node.children[o]);
+      for (std::size_t o = 0; o < tiles.children.size(); ++o) {
+        if (o != c) others.push_back(&tiles.children[o]);
       }
-      Done child = triangulate_node(node.children[c], others, task.children[c]);
-      borders.push_back(std::move(child.border));
-      level = std::max(level, child.level + 1);
+      node->children.push_back(add_node(tiles.children[c], node.get(), others, task.children[c]));
+      node->level = std::max(node->level, node->children.back()->level + 1);
     }
-    if (figures_.final_by_level.size() < level) figures_.final_by_level.resize(level);
-    Border<D> border =
-        merge_tiles<D>(borders, node, outside, tile_options_.output, sequencer_, counts_,
-                       next_block_++, figures_.final_by_level[level - 1], task);
-    lease_border();
-    return {std::move(border), level};
+    node->slot = static_cast<std::uint32_t>(nodes_.size());
+    if (tiles.children.empty()) tiles_.push_back(node.get());
+    nodes_.push_back(std::move(node));
+    return nodes_.back().get();
   }
 
-  /// Triangulates the tile that is loaded while the one after it is being read.
-  Border<D> triangulate_next_tile(const Outside<D>& outside, Task& task) {
-    TilePoints<D> tile = std::exchange(next_tile_, {});
-    TaskGroup reading_ahead;
-    if (++loaded_ < tiles_.size()) {
-      reading_ahead.run([&] { next_tile_ = tree_.template load<D>(*tiles_[loaded_]); });
+  /// Takes tiles in order as long as there are any; after the last child of a merge, does that too.
+  void work_off_tiles() {
+    try {
+      for (;;) {
+        TilePoints<D> points;
+        Node* node = take_tile(points);
+        if (node == nullptr) return;
+        node->border = triangulate_tile<D>(
+            std::move(points), node->outside, tile_options_, sequencer_, counts_, node->slot,
+            [&] { report_progress(); }, *node->task);
+        lease_borders();
+        for (node = node->parent; node != nullptr && --node->children_missing == 0;
+             node = node->parent) {
+          merge(*node);
+        }
+      }
+    } catch (...) {
+      failed_ = true;
+      sequencer_.give_up();
+      throw;
     }
-    Border<D> border = triangulate_tile<D>(
-        std::move(tile), outside, tile_options_, sequencer_, counts_, next_block_,
-        [&] {
-          const std::uint64_t done = counts_.points;
-          options_.progress(done, static_cast<double>(done) / static_cast<double>(tree_.points()));
-        },
-        task);
-    reading_ahead.wait();
-    lease_border();
-    return border;
+  }
+
+  /// The next tile and its points; null at the end, or if the run has failed. What is on the disk
+  /// of it has been read ahead, and the reading of the one after it begins.
+  Node* take_tile(TilePoints<D>& points) {
+    StoredTile stored;
+    Node* node = nullptr;
+    {
+      const std::lock_guard lock(take_mutex_);
+      if (taken_ == tiles_.size() || failed_) return nullptr;
+      node = tiles_[taken_++];
+      sequencer_.wait_for_room(plan_.waiting_bytes, node->slot);
+      stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.read(*node->tiles);
+      if (taken_ < tiles_.size()) {
+        reading_ahead_ = std::async(
+            std::launch::async, [this, next = tiles_[taken_]->tiles] { return tree_.read(*next); });
+      }
+    }
+    points = tree_.template decode<D>(std::move(stored));
+    return node;
+  }
+
+  void merge(Node& node) {
+    std::vector<Border<D>> borders;
+    for (Node* child : node.children) borders.push_back(std::exchange(child->border, {}));
+    std::uint64_t final_simplices = 0;
+    node.border = merge_tiles<D>(borders, *node.tiles, node.outside, tile_options_, sequencer_,
+                                 counts_, node.slot, final_simplices, *node.task);
+    lease_borders();
+    const std::lock_guard lock(figures_mutex_);
+    figures_.final_by_level[node.level - 1] += final_simplices;
+  }
+
+  void report_progress() const {
+    const std::uint64_t done = counts_.points;
+    options_.progress(done, static_cast<double>(done) / static_cast<double>(tree_.points()));
   }
 
   /// Borders are what grows with the input: they must not outgrow the budget.
-  void lease_border() {
+  void lease_borders() {
+    const std::lock_guard lock(figures_mutex_);
     border_lease_ = {};
     border_lease_ = MemoryLease(budget_, counts_.borders.bytes(), "the border between tiles");
   }
@@ -196,11 +252,15 @@ class Pipeline {
   StreamCounts counts_;
   TileTree tree_;
   Sequencer<D> sequencer_;
+  std::optional<TileNode<D>> root_;
+  std::vector<std::unique_ptr<Node>> nodes_;  ///< in post-order
+  std::vector<Node*> tiles_;                  ///< those of nodes_ without children, in order
+  std::mutex take_mutex_;                     ///< guards the next three
+  std::size_t taken_ = 0;
+  std::future<StoredTile> reading_ahead_;
+  std::atomic<bool> failed_ = false;
+  std::mutex figures_mutex_;  ///< guards the next two
   MemoryLease border_lease_;
-  std::vector<const TileNode<D>*> tiles_;
-  TilePoints<D> next_tile_;
-  std::size_t loaded_ = 0;
-  std::uint32_t next_block_ = 0;
   StreamFigures figures_;
 };
 

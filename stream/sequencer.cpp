@@ -9,7 +9,14 @@ Sequencer<D>::Sequencer(MeshStreamWriter& writer, const OutputOptions& output, S
     : writer_(writer), times_(times), counts_facets_(output.max_edge.has_value()) {}
 
 template <int D>
-void Sequencer<D>::submit(std::uint32_t block, MeshBlock mesh, std::vector<StreamPlace> imported,
+void Sequencer<D>::open_slot(std::uint32_t slot, std::uint32_t blocks) {
+  const std::lock_guard lock(mutex_);
+  if (blocks_.size() <= slot) blocks_.resize(slot + 1);
+  blocks_[slot] = blocks;
+}
+
+template <int D>
+void Sequencer<D>::submit(BlockPlace place, MeshBlock mesh, std::vector<StreamPlace> imported,
                           const CanonicalHash<D>& hash) {
   const std::uint64_t vertices = mesh.vertices.size();
   const std::uint64_t simplices = mesh.corners.size() / (D + 1);
@@ -18,25 +25,48 @@ void Sequencer<D>::submit(std::uint32_t block, MeshBlock mesh, std::vector<Strea
     const StageTimer timer(times_, Stage::kEncode);
     writer_.prepare(waiting.mesh);
   }
+  waiting.bytes = waiting.mesh.bytes() + waiting.imported.size() * sizeof(StreamPlace);
   const std::lock_guard lock(mutex_);
   hash_.add(hash);
-  waiting_.emplace(block, std::move(waiting));
-  for (auto next = waiting_.begin(); next != waiting_.end() && next->first == first_vertex_.size();
-       next = waiting_.begin()) {
-    Waiting turn = std::move(next->second);
-    waiting_.erase(next);
+  waiting_bytes_ += waiting.bytes;
+  waiting_.emplace(place, std::move(waiting));
+  write_what_is_due();
+  turned_.notify_all();
+}
+
+template <int D>
+void Sequencer<D>::write_what_is_due() {
+  for (auto due = waiting_.find(next_); due != waiting_.end(); due = waiting_.find(next_)) {
+    Waiting turn = std::move(due->second);
+    waiting_.erase(due);
+    waiting_bytes_ -= turn.bytes;
     write(std::move(turn));
+    if (++next_.block == blocks_[next_.slot]) next_ = {next_.slot + 1, 0};
   }
+}
+
+template <int D>
+void Sequencer<D>::wait_for_room(std::uint64_t bytes, std::uint32_t slot) {
+  std::unique_lock lock(mutex_);
+  turned_.wait(lock, [&] { return given_up_ || waiting_bytes_ <= bytes || next_.slot >= slot; });
+}
+
+template <int D>
+void Sequencer<D>::give_up() {
+  const std::lock_guard lock(mutex_);
+  given_up_ = true;
+  turned_.notify_all();
 }
 
 template <int D>
 void Sequencer<D>::write(Waiting&& waiting) {
   const StageTimer timer(times_, Stage::kWrite);
-  first_vertex_.push_back(vertices_);
+  if (first_vertex_.size() <= next_.slot) first_vertex_.resize(next_.slot + 1);
+  first_vertex_[next_.slot].push_back(vertices_);
   MeshBlock& mesh = waiting.mesh;
   mesh.imported.reserve(waiting.imported.size());
   for (const StreamPlace& place : waiting.imported) {
-    mesh.imported.push_back(first_vertex_[place.block] + place.vertex);
+    mesh.imported.push_back(first_vertex_[place.block.slot][place.block.block] + place.vertex);
   }
   if (counts_facets_) {
     for (std::size_t i = 0; i < mesh.corners.size(); i += D + 1) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -13,17 +14,27 @@
 namespace spillway {
 
 /// Brings the blocks of leaves and merges, which are ready in any order, into the stream in the
-/// order of their numbers, and numbers the vertices.
+/// order of their places, and numbers the vertices.
 template <int D>
 class Sequencer {
  public:
   /// `writer` and `times` must outlive it.
   Sequencer(MeshStreamWriter& writer, const OutputOptions& output, StageTimes& times);
 
-  /// Takes what settle() made for the stream's block of that number; each number comes once, from
-  /// any thread. What can be done before its turn is done in the calling thread.
-  void submit(std::uint32_t block, MeshBlock mesh, std::vector<StreamPlace> imported,
+  /// Tells how many blocks a slot has, at least one; once for every slot, in any order.
+  void open_slot(std::uint32_t slot, std::uint32_t blocks);
+
+  /// Takes what settle() made for one block; each comes once, from any thread. What can be done
+  /// before its turn is done in the calling thread.
+  void submit(BlockPlace place, MeshBlock mesh, std::vector<StreamPlace> imported,
               const CanonicalHash<D>& hash);
+
+  /// Waits until at most so many bytes of blocks wait for their turn, or until it is the turn of
+  /// `slot`, whose blocks nobody else will bring.
+  void wait_for_room(std::uint64_t bytes, std::uint32_t slot);
+
+  /// Ends all waiting, now and later, for a run that has failed.
+  void give_up();
 
   /// Vertices, simplices, hash and, where simplices were left out, hull facets of all blocks.
   [[nodiscard]] MeshTotals totals() const;
@@ -34,19 +45,26 @@ class Sequencer {
     std::vector<StreamPlace> imported;
     std::uint64_t vertices = 0;  ///< that the block announces; the mesh may be encoded already
     std::uint64_t simplices = 0;
+    std::uint64_t bytes = 0;
   };
 
+  void write_what_is_due();
   void write(Waiting&& waiting);
 
   MeshStreamWriter& writer_;
   StageTimes& times_;
   mutable std::mutex mutex_;
-  std::map<std::uint32_t, Waiting> waiting_;
-  std::vector<std::uint64_t> first_vertex_;  ///< by block that is written
+  std::condition_variable turned_;
+  std::map<BlockPlace, Waiting> waiting_;
+  std::uint64_t waiting_bytes_ = 0;
+  BlockPlace next_{0, 0};
+  std::vector<std::uint32_t> blocks_;                     ///< by slot; 0 where not known yet
+  std::vector<std::vector<std::uint64_t>> first_vertex_;  ///< by slot and block, as written
   std::uint64_t vertices_ = 0;
   std::uint64_t simplices_ = 0;
   CanonicalHash<D> hash_;
   bool counts_facets_;
+  bool given_up_ = false;
   OpenFacets<D> open_facets_;
 };
 

@@ -37,7 +37,7 @@ struct Settled {
 template <int D>
 struct SettleInput {
   int dimension = D;
-  std::uint32_t block = 0;  ///< the number of the stream's block that is made
+  BlockPlace block;  ///< of the stream, that is made
   std::span<const std::array<VertexId, D + 1>> simplices;
   std::span<const std::uint8_t> is_final;  ///< by simplex
   std::span<const BorderVertex<D>> vertices;

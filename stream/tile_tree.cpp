@@ -166,6 +166,7 @@ void TileTree::write(Batch& batch) {
     if (!tile.file) tile.file = folder_.create("tile");
     const std::uint64_t end = tile.file->size();
     tile.file->append(spill.bytes);
+    bytes_written_ += spill.bytes.size();
     for (TileBlock& block : spill.blocks) {
       block.offset += end;
       points_written_ += block.points;
@@ -337,9 +338,27 @@ std::optional<TileNode<D>> TileTree::node_at(CutTree::Place place) const {
 }
 
 template <int D>
-TilePoints<D> TileTree::load(const TileNode<D>& node) {
+StoredTile TileTree::read(const TileNode<D>& node) {
+  const StageTimer timer(times_, Stage::kLoad);
+  StoredTile stored;
+  stored.points = node.points;
+  for (const std::uint32_t number : node.stored) {
+    Tile tile = std::exchange(tiles_[number], {});
+    StoredTile::Part& part = stored.parts.emplace_back();
+    part.blocks = std::move(tile.blocks);
+    part.buffer = std::move(tile.buffer);
+    if (!tile.file) continue;
+    part.file = tile.file->name();
+    part.bytes.resize(tile.file->size());
+    tile.file->read(0, part.bytes);
+  }
+  return stored;
+}
+
+template <int D>
+TilePoints<D> TileTree::decode(StoredTile stored) const {
   TilePoints<D> result;
-  result.resize(node.points, options_.index);
+  result.resize(stored.points, options_.index);
   std::size_t place = 0;
   const auto put = [&](std::size_t first, std::span<const Point<3>> points,
                        std::span<const std::uint64_t> index) {
@@ -347,29 +366,23 @@ TilePoints<D> TileTree::load(const TileNode<D>& node) {
     std::copy(index.begin(), index.end(),
               result.index.begin() + static_cast<std::ptrdiff_t>(index.empty() ? 0 : first));
   };
-  for (const std::uint32_t number : node.stored) {
-    Tile tile = std::exchange(tiles_[number], {});
-    std::vector<std::size_t> first(tile.blocks.size());
+  for (StoredTile::Part& part : stored.parts) {
+    std::vector<std::size_t> first(part.blocks.size());
     for (std::size_t b = 0; b < first.size(); ++b) {
       first[b] = place;
-      place += tile.blocks[b].points;
+      place += part.blocks[b].points;
     }
-    std::vector<std::byte> bytes(tile.file ? tile.file->size() : 0);
-    {
-      const StageTimer timer(times_, Stage::kLoad);
-      if (tile.file) tile.file->read(0, bytes);
-    }
-    parallel_for(tile.blocks.size(), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for(part.blocks.size(), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
       const StageTimer timer(times_, Stage::kLoad);
       PointBlock points;
       for (std::size_t b = begin; b < end; ++b) {
-        const TileBlock& block = tile.blocks[b];
-        decode_points(std::span<const std::byte>(bytes).subspan(block.offset, block.size),
-                      fmt::format("{}, byte {}", tile.file->name(), block.offset), points);
+        const TileBlock& block = part.blocks[b];
+        decode_points(std::span<const std::byte>(part.bytes).subspan(block.offset, block.size),
+                      fmt::format("{}, byte {}", part.file, block.offset), points);
         put(first[b], points.points, points.index);
       }
     });
-    tile.buffer.drain([&](std::span<const Point<3>> points, std::span<const std::uint64_t> index) {
+    part.buffer.drain([&](std::span<const Point<3>> points, std::span<const std::uint64_t> index) {
       put(place, points, index);
       place += points.size();
     });
@@ -379,7 +392,9 @@ TilePoints<D> TileTree::load(const TileNode<D>& node) {
 
 template std::optional<TileNode<2>> TileTree::nodes<2>() const;
 template std::optional<TileNode<3>> TileTree::nodes<3>() const;
-template TilePoints<2> TileTree::load<2>(const TileNode<2>&);
-template TilePoints<3> TileTree::load<3>(const TileNode<3>&);
+template StoredTile TileTree::read<2>(const TileNode<2>&);
+template StoredTile TileTree::read<3>(const TileNode<3>&);
+template TilePoints<2> TileTree::decode<2>(StoredTile) const;
+template TilePoints<3> TileTree::decode<3>(StoredTile) const;
 
 }  // namespace spillway

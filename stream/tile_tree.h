@@ -37,6 +37,18 @@ struct TileNode {
   std::vector<std::uint32_t> stored;  ///< of a tile: the stored tiles it is made of
 };
 
+/// A tile's points as they lay in the tree: on the disk, encoded, and in memory.
+struct StoredTile {
+  struct Part {
+    std::vector<std::byte> bytes;
+    std::vector<TileBlock> blocks;
+    std::string file;  ///< its name, for messages
+    PointBuffer buffer;
+  };
+  std::vector<Part> parts;
+  std::uint64_t points = 0;
+};
+
 /// Points of any number, dealt into tiles that fit into memory. Points wait in memory; when too
 /// many do, the tiles with most of them write theirs to the disk. The first division is made when
 /// that happens for the first time, of what is known then: the points so far, and the expected
@@ -55,14 +67,19 @@ class TileTree {
   template <int D>
   [[nodiscard]] std::optional<TileNode<D>> nodes() const;
 
-  /// Takes the points of a tile of nodes() out of the tree, from memory and disk.
+  /// Takes a tile of nodes() out of the tree: reads what is on the disk of it. By one thread at a
+  /// time, but beside decode().
   template <int D>
-  TilePoints<D> load(const TileNode<D>& tile);
+  StoredTile read(const TileNode<D>& tile);
+
+  /// The points of a tile. Uses all threads.
+  template <int D>
+  TilePoints<D> decode(StoredTile stored) const;
 
   [[nodiscard]] std::uint64_t points() const { return points_; }
   /// How many points were written to the disk, those written twice counted twice.
   [[nodiscard]] std::uint64_t points_written() const { return points_written_; }
-  [[nodiscard]] std::uint64_t bytes_written() const { return folder_.bytes_written(); }
+  [[nodiscard]] std::uint64_t bytes_written() const { return bytes_written_; }
 
  private:
   /// Points on their way to one tile.
@@ -129,6 +146,7 @@ class TileTree {
   std::uint64_t points_ = 0;
   std::size_t buffered_ = 0;  ///< room that all tiles' buffers take, in points
   std::uint64_t points_written_ = 0;
+  std::uint64_t bytes_written_ = 0;
   std::size_t sample_stride_ = 1;
   bool divided_ = false;
 };

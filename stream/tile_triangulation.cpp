@@ -40,7 +40,7 @@ Box<D> whole_space() {
 
 /// Counts what has been settled, passes on what is final, and returns the border.
 template <int D>
-Border<D> pass_on(Settled<D> settled, std::uint32_t block, Sequencer<D>& sequencer,
+Border<D> pass_on(Settled<D> settled, BlockPlace block, Sequencer<D>& sequencer,
                   StreamCounts& counts) {
   counts.hull_facets += settled.hull_facets;
   counts.left_out += settled.left_out;
@@ -52,7 +52,7 @@ Border<D> pass_on(Settled<D> settled, std::uint32_t block, Sequencer<D>& sequenc
 /// merge_borders() of borders that are counted as resident; its result is not yet.
 template <int D, typename Tree>
 MergedBorder<D> merge_resident(std::span<Border<D>> children, const std::vector<const Tree*>& trees,
-                               StreamCounts& counts, Task& task) {
+                               MemoryBudget& budget, StreamCounts& counts, Task& task) {
   std::uint64_t simplices = 0;
   std::uint64_t bytes = 0;
   for (const Border<D>& child : children) {
@@ -61,7 +61,7 @@ MergedBorder<D> merge_resident(std::span<Border<D>> children, const std::vector<
   }
   const StageTimer timer(counts.times, Stage::kMerge);
   MergedBorder<D> merged =
-      merge_borders<D, Tree>(children, std::span<const Tree* const>(trees), task);
+      merge_borders<D, Tree>(children, std::span<const Tree* const>(trees), budget, task);
   counts.borders.remove(simplices, bytes);
   counts.retriangulated += merged.retriangulated;
   return merged;
@@ -69,7 +69,7 @@ MergedBorder<D> merge_resident(std::span<Border<D>> children, const std::vector<
 
 /// An open border goes up as it is; the stream's block of that number stays empty.
 template <int D>
-Border<D> pass_up(Border<D> border, std::uint32_t block, Sequencer<D>& sequencer,
+Border<D> pass_up(Border<D> border, BlockPlace block, Sequencer<D>& sequencer,
                   StreamCounts& counts) {
   sequencer.submit(block, {}, {}, {});
   counts.borders.add(0, border.bytes());
@@ -78,7 +78,7 @@ Border<D> pass_up(Border<D> border, std::uint32_t block, Sequencer<D>& sequencer
 
 /// Which simplices of a merged border are final: nothing of `trees` may change them.
 template <int D, typename MayBeChanged>
-Settled<D> settle_merged(const MergedBorder<D>& merged, std::uint32_t block,
+Settled<D> settle_merged(const MergedBorder<D>& merged, BlockPlace block,
                          const OutputOptions& output, const MayBeChanged& may_be_changed,
                          StageTimes& times) {
   const StageTimer timer(times, Stage::kFinality);
@@ -105,14 +105,14 @@ template <int D>
 class TileRun {
  public:
   TileRun(TilePoints<D> tile, const Outside<D>& outside, const TileOptions& options,
-          Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t first_block,
+          Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t slot,
           const std::function<void()>& progress)
       : tile_(std::move(tile)),
         outside_(outside),
         options_(options),
         sequencer_(sequencer),
         counts_(counts),
-        first_block_(first_block),
+        slot_(slot),
         progress_(progress) {}
 
   Border<D> run(Task& task) {
@@ -126,6 +126,7 @@ class TileRun {
           divide<D>(tile_.points, input_index_,
                     {options_.leaf_size, options_.division, options_.children}, task.before.data());
     }
+    sequencer_.open_slot(slot_, root_.block + 1);
     nodes_.resize(root_.block + 1);
     add_node(root_, kNoParent, 0, task);
     parallel_for(leaves_.size(), 1, [&](std::size_t, std::size_t begin, std::size_t) {
@@ -133,8 +134,6 @@ class TileRun {
     });
     return std::move(nodes_[root_.block].border);
   }
-
-  [[nodiscard]] std::uint32_t blocks() const { return root_.block + 1; }
 
  private:
   static constexpr std::uint32_t kNoParent = ~std::uint32_t{0};
@@ -211,11 +210,11 @@ class TileRun {
       choose_heights(leaf.duplicates, options_.heights, input_index_, tile_.heights);
     }
     if (leaf.dimension < D) {
-      return pass_up(open_border(part, leaf), first_block_ + part.block, sequencer_, counts_);
+      return pass_up(open_border(part, leaf), BlockPlace{slot_, part.block}, sequencer_, counts_);
     }
     Settled<D> settled = settle_leaf(node, std::move(leaf.simplices), points);
     counts_.final_in_leaves += settled.final_simplices;
-    return pass_on(std::move(settled), first_block_ + part.block, sequencer_, counts_);
+    return pass_on(std::move(settled), BlockPlace{slot_, part.block}, sequencer_, counts_);
   }
 
   Settled<D> settle_leaf(const Node& node, std::vector<Simplex<D>> leaf,
@@ -230,7 +229,7 @@ class TileRun {
     }
     leaf = {};
     return settle<D>({.dimension = D,
-                      .block = first_block_ + node.part->block,
+                      .block = {slot_, node.part->block},
                       .simplices = simplices,
                       .is_final = final_in_leaf(node, points, simplices),
                       .vertices = leaf_vertices(*node.part)},
@@ -296,9 +295,9 @@ class TileRun {
       children.push_back(std::exchange(nodes_[child.block].border, {}));
       trees.push_back(&child);
     }
-    MergedBorder<D> merged =
-        merge_resident(std::span<Border<D>>(children), trees, counts_, *node.task);
-    const std::uint32_t block = first_block_ + part.block;
+    MergedBorder<D> merged = merge_resident(std::span<Border<D>>(children), trees, *options_.budget,
+                                            counts_, *node.task);
+    const BlockPlace block{slot_, part.block};
     if (merged.border.open()) {
       return pass_up(std::move(merged.border), block, sequencer_, counts_);
     }
@@ -314,7 +313,7 @@ class TileRun {
   const TileOptions& options_;
   Sequencer<D>& sequencer_;
   StreamCounts& counts_;
-  const std::uint32_t first_block_;
+  const std::uint32_t slot_;
   const std::function<void()>& progress_;
   Part<D> root_;
   std::vector<Node> nodes_;
@@ -326,22 +325,21 @@ class TileRun {
 template <int D>
 Border<D> triangulate_tile(TilePoints<D> tile, const Outside<D>& outside,
                            const TileOptions& options, Sequencer<D>& sequencer,
-                           StreamCounts& counts, std::uint32_t& next_block,
+                           StreamCounts& counts, std::uint32_t slot,
                            const std::function<void()>& progress, Task& task) {
-  TileRun<D> run(std::move(tile), outside, options, sequencer, counts, next_block, progress);
-  Border<D> border = run.run(task);
-  next_block += run.blocks();
-  return border;
+  return TileRun<D>(std::move(tile), outside, options, sequencer, counts, slot, progress).run(task);
 }
 
 template <int D>
 Border<D> merge_tiles(std::span<Border<D>> children, const TileNode<D>& node,
-                      const Outside<D>& outside, const OutputOptions& output,
-                      Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t block,
+                      const Outside<D>& outside, const TileOptions& options,
+                      Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t slot,
                       std::uint64_t& final_simplices, Task& task) {
+  const BlockPlace block{slot, 0};
+  sequencer.open_slot(slot, 1);
   std::vector<const TileNode<D>*> trees;
   for (const TileNode<D>& child : node.children) trees.push_back(&child);
-  MergedBorder<D> merged = merge_resident(children, trees, counts, task);
+  MergedBorder<D> merged = merge_resident(children, trees, *options.budget, counts, task);
   if (merged.border.open()) {
     return pass_up(std::move(merged.border), block, sequencer, counts);
   }
@@ -349,22 +347,22 @@ Border<D> merge_tiles(std::span<Border<D>> children, const TileNode<D>& node,
     return std::any_of(outside.begin(), outside.end(),
                        [&](const TileNode<D>* tile) { return region.may_meet_leaf(*tile); });
   };
-  Settled<D> settled = settle_merged(merged, block, output, may_be_changed, counts.times);
+  Settled<D> settled = settle_merged(merged, block, options.output, may_be_changed, counts.times);
   final_simplices += settled.final_simplices;
   return pass_on(std::move(settled), block, sequencer, counts);
 }
 
 template Border<2> triangulate_tile(TilePoints<2>, const Outside<2>&, const TileOptions&,
-                                    Sequencer<2>&, StreamCounts&, std::uint32_t&,
+                                    Sequencer<2>&, StreamCounts&, std::uint32_t,
                                     const std::function<void()>&, Task&);
 template Border<3> triangulate_tile(TilePoints<3>, const Outside<3>&, const TileOptions&,
-                                    Sequencer<3>&, StreamCounts&, std::uint32_t&,
+                                    Sequencer<3>&, StreamCounts&, std::uint32_t,
                                     const std::function<void()>&, Task&);
 template Border<2> merge_tiles(std::span<Border<2>>, const TileNode<2>&, const Outside<2>&,
-                               const OutputOptions&, Sequencer<2>&, StreamCounts&, std::uint32_t,
+                               const TileOptions&, Sequencer<2>&, StreamCounts&, std::uint32_t,
                                std::uint64_t&, Task&);
 template Border<3> merge_tiles(std::span<Border<3>>, const TileNode<3>&, const Outside<3>&,
-                               const OutputOptions&, Sequencer<3>&, StreamCounts&, std::uint32_t,
+                               const TileOptions&, Sequencer<3>&, StreamCounts&, std::uint32_t,
                                std::uint64_t&, Task&);
 
 }  // namespace spillway

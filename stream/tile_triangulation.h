@@ -10,6 +10,7 @@
 #include "src/delaunay/schedule.h"
 #include "stream/border.h"
 #include "stream/heights.h"
+#include "stream/memory_budget.h"
 #include "stream/sequencer.h"
 #include "stream/settle.h"
 #include "stream/stage_times.h"
@@ -24,6 +25,7 @@ struct TileOptions {
   unsigned children = 2;
   HeightChoice heights = HeightChoice::kFirst;
   OutputOptions output;
+  MemoryBudget* budget = nullptr;  ///< for the triangulations of borders
 };
 
 /// How much of borders is in memory, and the most there was.
@@ -73,21 +75,20 @@ template <int D>
 using Outside = std::vector<const TileNode<D>*>;
 
 /// Triangulates a loaded tile: divides it into leaves, works them off in order by all threads, and
-/// merges what is left of them; everything that is final goes to `sequencer`, in blocks numbered
-/// from `next_block` on, which is moved past them. Returns what is not final. `progress` is called
-/// after each leaf, by any thread.
+/// merges what is left of them; everything that is final goes to `sequencer`, as the blocks of
+/// `slot`. Returns what is not final. `progress` is called after each leaf, by any thread.
 template <int D>
 Border<D> triangulate_tile(TilePoints<D> tile, const Outside<D>& outside,
                            const TileOptions& options, Sequencer<D>& sequencer,
-                           StreamCounts& counts, std::uint32_t& next_block,
+                           StreamCounts& counts, std::uint32_t slot,
                            const std::function<void()>& progress, Task& task);
 
-/// Merges the borders of a node of the tree over tiles and settles what is final now. The stream's
-/// block gets the number `block`.
+/// Merges the borders of a node of the tree over tiles and settles what is final now, as the one
+/// block of `slot`. Adds the number of simplices that became final to `final_simplices`.
 template <int D>
 Border<D> merge_tiles(std::span<Border<D>> children, const TileNode<D>& node,
-                      const Outside<D>& outside, const OutputOptions& output,
-                      Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t block,
+                      const Outside<D>& outside, const TileOptions& options,
+                      Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t slot,
                       std::uint64_t& final_simplices, Task& task);
 
 }  // namespace spillway

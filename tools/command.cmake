@@ -4,6 +4,7 @@ add_library(spillway_command STATIC
   command.cpp
   command_options.cpp
   completion.cpp
+  convert.cpp
   core_simulation.cpp
   facet_count.cpp
   generate.cpp

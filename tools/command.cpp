@@ -22,6 +22,7 @@ constexpr const char* kExamples =
     "  spillway triangulate survey.las -o tin.ply     a surface mesh of a LiDAR file\n"
     "  spillway check tin.ply --points survey.las     prove that it is the Delaunay triangulation\n"
     "  spillway info survey.las tin.ply               what the files hold\n"
+    "  spillway convert tin.spm -o tin.ply            another format\n"
     "  spillway generate terrain -n 1e6 -o hills.las  points to try things with\n"
     "`-` is standard input or output. `spillway SUBCOMMAND --help` tells more.";
 
@@ -34,9 +35,9 @@ int run_command(int argc, const char* const* argv) {
   root.set_version_flag("--version", "spillway " SPILLWAY_VERSION, "Print the version and exit");
   root.require_subcommand(1);
   root.footer(kExamples);
-  const std::vector<Subcommand> subcommands = {add_triangulate(root), add_info(root),
-                                               add_generate(root),    add_check(root),
-                                               add_completion(root),  add_manual(root)};
+  const std::vector<Subcommand> subcommands = {
+      add_triangulate(root), add_info(root),       add_generate(root), add_check(root),
+      add_convert(root),     add_completion(root), add_manual(root)};
   try {
     root.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

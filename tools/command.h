@@ -19,6 +19,7 @@ struct Subcommand {
 /// One for each subcommand: adds it to the tree. Each is defined in the file of its name.
 Subcommand add_triangulate(CLI::App& root);
 Subcommand add_info(CLI::App& root);
+Subcommand add_convert(CLI::App& root);
 Subcommand add_generate(CLI::App& root);
 Subcommand add_check(CLI::App& root);
 Subcommand add_completion(CLI::App& root);

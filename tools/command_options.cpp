@@ -5,14 +5,28 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <system_error>
 
 #include "src/error.h"
 #include "stream/memory_budget.h"
 
 namespace spillway {
+namespace {
+
+/// parse_memory_size() whose complaint names the option.
+std::uint64_t parse_size(std::string_view option, const std::string& text) {
+  try {
+    return parse_memory_size(text);
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", option, error.what()));
+  }
+}
+
+}  // namespace
 
 HelpFormatter::HelpFormatter() { column_width(34); }
 
@@ -42,13 +56,19 @@ void add_memory_options(CLI::App& app, MemoryOptions& options) {
 }
 
 std::uint64_t memory_limit(const MemoryOptions& options) {
-  return options.limit.empty() ? default_memory_limit() : parse_memory_size(options.limit);
+  return options.limit.empty() ? default_memory_limit() : parse_size("--memory", options.limit);
 }
 
 std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options) {
   std::optional<std::uint64_t> cap;
-  if (!options.scratch_cap.empty()) cap = parse_memory_size(options.scratch_cap);
-  return make_scratch_folder(options.scratch_parent, cap);
+  if (!options.scratch_cap.empty()) cap = parse_size("--max-tmp", options.scratch_cap);
+  // What was asked for by name is tried at once, not when hours of work are to be written there.
+  const std::string& parent = options.scratch_parent;
+  if (!parent.empty() && ::access((parent + "/.").c_str(), W_OK | X_OK) != 0) {
+    throw Error(fmt::format("--tmpdir: cannot write to {}: {}", parent,
+                            std::generic_category().message(errno)));
+  }
+  return make_scratch_folder(parent, cap);
 }
 
 CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,

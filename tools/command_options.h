@@ -49,7 +49,8 @@ void add_memory_options(CLI::App& app, MemoryOptions& options);
 /// What --memory says, or the default. Throws UsageError.
 std::uint64_t memory_limit(const MemoryOptions& options);
 
-/// A scratch folder as --tmpdir and --max-tmp ask for it. Throws UsageError.
+/// A scratch folder as --tmpdir and --max-tmp ask for it. Throws UsageError, and Error if the
+/// folder of --tmpdir cannot be written to.
 std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options);
 
 /// An option that takes one of some words. The words become its value name, separated by `|`, which

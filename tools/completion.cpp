@@ -14,6 +14,7 @@ namespace spillway {
 namespace {
 
 constexpr const char* kExamples =
+    "SHELL is one of bash, zsh, fish.\n\n"
     "Examples:\n"
     "  source <(spillway completion bash)\n"
     "  spillway completion zsh > ~/.zfunc/_spillway     (a folder of $fpath)\n"

@@ -1,24 +1,30 @@
 #!/usr/bin/env bash
 # From points to a proved mesh: generates a million points of terrain, or takes the file that is given,
-# triangulates it to PLY, and checks the result. Installs and builds what is missing.
+# triangulates it to PLY, and checks the result. Installs and builds what is missing. Afterwards
+# `cmake --install build/release` works.
 #
 #   tools/demo.sh [FILE]
 set -euo pipefail
 
-caller=$PWD
+points=
+if (($# > 0)); then
+  if [[ ! -f $1 ]]; then
+    echo "demo.sh: there is no file $1" >&2
+    exit 1
+  fi
+  points=$(realpath -- "$1")
+fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tools/install_packages.sh
 
 echo "== build"
 cmake --preset release --log-level=WARNING
-cmake --build --preset release -j "$(nproc)" --target spillway
+cmake --build --preset release -j "$(nproc)" --target spillway spillway_manual
 spillway=build/release/bin/spillway
 mkdir -p build/demo
 
-if (($# > 0)); then
-  points=$(cd "$caller" && realpath -e -- "$1")
-else
+if [[ -z $points ]]; then
   points=build/demo/terrain.las
   echo "== generate a million points of terrain"
   "$spillway" generate terrain -n 1e6 -o "$points"

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -24,6 +25,7 @@ constexpr const char* kExamples =
     "it\n"
     "  spillway generate uniform -n 1e5 --dim 3 -o cube.npy\n"
     "  spillway generate circle -n 1000 | spillway triangulate - -o disc.obj\n"
+    "LAS takes the families of integers: lattice, terrain, duplicates, collinear, coplanar.\n"
     "The same family, number, dimension and seed give the same points on every machine.";
 
 constexpr std::size_t kBlockSize = 65536;  // points made and written at a time
@@ -82,7 +84,7 @@ int run(const GenerateOptions& options) {
   writer->finish();
   progress.end();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  progress.say(fmt::format("{} points of {} in {}, {:.2f} s", written, options.family,
+  progress.say(fmt::format("{} points of {} written to {}, {:.2f} s", written, options.family,
                            options.output == "-" ? "standard output" : options.output,
                            seconds.count()));
   return kExitDone;
@@ -93,7 +95,8 @@ int run(const GenerateOptions& options) {
 Subcommand add_generate(CLI::App& root) {
   const auto options = std::make_shared<GenerateOptions>();
   CLI::App* app = root.add_subcommand("generate", "Make points to try things with");
-  app->footer(kExamples);
+  app->footer(
+      fmt::format("FAMILY is one of {}.\n\n{}", fmt::join(family_names(), ", "), kExamples));
   add_choice(*app, "FAMILY", options->family, family_names(), "What the points look like")
       ->required();
   app->add_option("-n,--count", options->count, "How many points; 1e6 is a million")

@@ -87,7 +87,8 @@ class TileComparison {
 
 template <int D>
 std::uint64_t compare_tiles(TileTree& tree, const TileNode<D>& node, Faults& faults) {
-  if (node.children.empty()) return TileComparison<D>(tree.load<D>(node), faults).run();
+  if (node.children.empty())
+    return TileComparison<D>(tree.decode<D>(tree.read(node)), faults).run();
   std::uint64_t distinct = 0;
   for (const TileNode<D>& child : node.children) distinct += compare_tiles(tree, child, faults);
   return distinct;

@@ -184,8 +184,8 @@ void report(const TriangulateOptions& options, const RunStatistics& statistics,
 /// Buffers of some megabytes come and go with every leaf: taken from the system anew each time,
 /// they would cost a fifth of the run in page faults.
 void reuse_freed_memory() {
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  mallopt(M_MMAP_THRESHOLD, 4 << 20);
+  mallopt(M_TRIM_THRESHOLD, 16 << 20);
 }
 
 template <int D>

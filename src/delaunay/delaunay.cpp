@@ -186,7 +186,7 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
 
 template <int D>
 Triangulation<D> border_delaunay(std::vector<Point<D>> points, Task& task) {
-  const std::size_t base_case_size = border_base_case_size(points.size(), kGoodBaseCase<D>);
+  const std::size_t base_case_size = std::max<std::size_t>(points.size() / 4, kGoodBaseCase<D>);
   const DelaunayOptions options;
   return Run<D>(std::move(points), options).triangulate(base_case_size, task);
 }

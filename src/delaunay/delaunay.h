@@ -35,7 +35,8 @@ template <int D>
 Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOptions& options = {});
 
 /// The same, of a border's points, for a caller that is itself one of the tasks of with_threads():
-/// runs on its threads, divides only what is large, and keeps memory for the base cases to come.
+/// runs on its threads, divides only what is large (a border's parts are nearly all border, so that
+/// merging them costs as much again), and keeps memory for the base cases to come.
 template <int D>
 Triangulation<D> border_delaunay(std::vector<Point<D>> points, Task& task);
 

@@ -6,3 +6,7 @@ spillway_test(stream_property_test property
   SOURCES stream/stream_property_test.cpp
   LIBS spillway_stream spillway_generators cgal_oracle
   TIMEOUT 900)
+
+spillway_test(stream_fault_test fault
+  SOURCES stream/stream_fault_test.cpp
+  LIBS spillway_stream spillway_generators)

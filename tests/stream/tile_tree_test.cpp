@@ -86,7 +86,7 @@ Filled fill(const Points& points, Knowledge known, unsigned threads = 2) {
     const auto visit = [&](const auto& self, const TileNode<2>& node) -> void {
       for (const auto& child : node.children) self(self, child);
       if (!node.children.empty()) return;
-      const TilePoints<2> tile = tree.load(node);
+      const TilePoints<2> tile = tree.decode<2>(tree.read(node));
       ++filled.tiles;
       EXPECT_EQ(tile.points.size(), node.points);
       Box<2> box;

@@ -20,3 +20,7 @@ spillway_command_test(cli_tests cli
   tools/cli_usage_test.cpp)
 spillway_command_test(cli_fault_tests fault
   tools/cli_fault_test.cpp)
+spillway_command_test(cli_out_of_core_tests cli
+  tools/cli_out_of_core_test.cpp)
+spillway_command_test(cli_out_of_core_fault_tests fault
+  tools/cli_out_of_core_fault_test.cpp)
