@@ -89,6 +89,7 @@ void PointSource::find_extent() {
     extent.expand(*input.header.extent);
   }
   if (extent.empty()) return;
+  world_extent_ = extent;
   if (lattice_) {
     for (int k = 0; k < 3; ++k) {
       extent.lo[k] = (extent.lo[k] - lattice_->offset[k]) / lattice_->scale[k];

@@ -43,6 +43,8 @@ class PointSource {
   [[nodiscard]] std::optional<std::uint64_t> count() const { return count_; }
   /// Of all points, in the coordinates of read(), where all headers tell.
   [[nodiscard]] const std::optional<Box<3>>& extent() const { return extent_; }
+  /// The same in output coordinates.
+  [[nodiscard]] const std::optional<Box<3>>& world_extent() const { return world_extent_; }
   /// Of the first input that names a coordinate system.
   [[nodiscard]] const std::string& crs() const { return crs_; }
 
@@ -73,6 +75,7 @@ class PointSource {
   bool heights_on_lattice_ = false;
   std::optional<std::uint64_t> count_;
   std::optional<Box<3>> extent_;
+  std::optional<Box<3>> world_extent_;
   std::string crs_;
   std::uint64_t points_ = 0;
   std::uint64_t withheld_ = 0;

@@ -168,7 +168,7 @@ std::string text_report(const Outcome& outcome, const CheckCommandOptions& optio
 }
 
 int run(const CheckCommandOptions& options) {
-  Progress progress = make_progress(options.report);
+  Progress progress = make_progress(options.report, options.mesh == "-");
   ProbedInput input(disk(), options.mesh);
   const Outcome outcome = is_stream(input, options) ? check_stream(input, options, progress)
                                                     : check_whole(input, options, progress);

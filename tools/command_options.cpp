@@ -88,7 +88,7 @@ void add_report_options(CLI::App& app, ReportOptions& options) {
   app.add_flag("-v,--verbose", options.verbose, "Say more")->excludes(quiet);
 }
 
-Progress make_progress(const ReportOptions& options) {
+Progress make_progress(const ReportOptions& options, bool reads_pipe) {
   ProgressStyle style = ProgressStyle::kPlain;
   if (options.quiet || options.progress == "none") {
     style = ProgressStyle::kNone;
@@ -97,7 +97,7 @@ Progress make_progress(const ReportOptions& options) {
   } else if (options.progress == "auto" && isatty(STDERR_FILENO) != 0) {
     const char* terminal = std::getenv("TERM");
     if (terminal != nullptr && std::string_view(terminal) != "dumb") {
-      style = ProgressStyle::kTerminal;
+      style = reads_pipe ? ProgressStyle::kNone : ProgressStyle::kTerminal;
     }
   }
   return {style, options.quiet, options.verbose};

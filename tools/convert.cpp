@@ -126,7 +126,7 @@ int run(const ConvertOptions& options) {
   if (options.output == "-" && ::isatty(STDOUT_FILENO) != 0 && options.output_format.empty()) {
     throw UsageError("a mesh stream is nothing for a terminal: name a file, or pipe it on");
   }
-  Progress progress = make_progress(options.report);
+  Progress progress = make_progress(options.report, options.input == "-");
   const auto scratch = make_scratch_folder(options.memory);
   ProbedInput input(disk(), options.input);
   progress.begin("convert", "simplices");

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -228,7 +229,8 @@ void add_common_keys(double seconds, Json& json) {
 }
 
 int run(const InfoOptions& options) {
-  Progress progress = make_progress(options.report);
+  Progress progress = make_progress(
+      options.report, std::count(options.files.begin(), options.files.end(), "-") > 0);
   for (const std::string& path : options.files) {
     const auto start = std::chrono::steady_clock::now();
     Json json = describe_input(path, options.reader, progress);

@@ -192,7 +192,9 @@ template <int D>
 int run(const TriangulateOptions& options, MeshFormat format, RunStatistics& statistics) {
   const auto start = std::chrono::steady_clock::now();
   reuse_freed_memory();
-  Progress progress = make_progress(options.report);
+  const auto& inputs = options.inputs;
+  Progress progress =
+      make_progress(options.report, std::count(inputs.begin(), inputs.end(), "-") > 0);
   const StreamOptions stream = stream_options(options, progress, statistics);
   MemoryBudget budget(memory_limit(options.memory));
   const auto scratch = make_scratch_folder(options.memory);
@@ -208,6 +210,7 @@ int run(const TriangulateOptions& options, MeshFormat format, RunStatistics& sta
   header.lattice = source.lattice();
   header.points = source.count();
   header.crs = source.crs();
+  header.extent = source.world_extent();
   const auto writer = open_mesh_stream_writer(disk(), options.output, format, header, *scratch);
 
   statistics.stream = triangulate_stream<D>(source, *writer, *scratch, budget, stream);

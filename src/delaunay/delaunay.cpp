@@ -23,7 +23,7 @@ template <int D>
 constexpr std::size_t kGoodBaseCase = D == 2 ? 32'768 : 262'144;
 
 /// So many base cases that a border is divided into, to have something to do for every thread.
-constexpr std::size_t kBorderBaseCases = 4;
+constexpr std::size_t kBorderBaseCases = 2;
 constexpr std::size_t kSmallestBorderBaseCase = 4'096;
 
 std::size_t border_base_case_size(std::size_t points, std::size_t largest) {

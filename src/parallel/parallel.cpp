@@ -10,6 +10,7 @@
 #endif
 
 #include <atomic>
+#include <exception>
 
 namespace spillway {
 namespace {
@@ -24,33 +25,59 @@ void tell_release(void* /*place*/) {}
 void tell_acquire(void* /*place*/) {}
 #endif
 
+/// Tells of a release at the end of a scope, also where that is an exception.
+class ReleaseAtEnd {
+ public:
+  explicit ReleaseAtEnd(void* place) : place_(place) {}
+  ~ReleaseAtEnd() { tell_release(place_); }
+  ReleaseAtEnd(const ReleaseAtEnd&) = delete;
+  ReleaseAtEnd& operator=(const ReleaseAtEnd&) = delete;
+
+ private:
+  void* place_;
+};
+
+/// The same of an acquire.
+class AcquireAtEnd {
+ public:
+  explicit AcquireAtEnd(void* place) : place_(place) {}
+  ~AcquireAtEnd() { tell_acquire(place_); }
+  AcquireAtEnd(const AcquireAtEnd&) = delete;
+  AcquireAtEnd& operator=(const AcquireAtEnd&) = delete;
+
+ private:
+  void* place_;
+};
+
 char handed_over;  // the place where all tasks change hands
 
 /// One task as the library gets it: it moves it into memory of its own, which it uses again, and
 /// runs and destroys it in any thread.
 class HandedOver {
  public:
-  HandedOver(std::function<void()> work, void* group) : work_(std::move(work)), group_(group) {}
+  HandedOver(std::function<void()> work, void* group)
+      : work_(new std::function<void()>(std::move(work))), group_(group) {}
   HandedOver(HandedOver&& other) noexcept
-      : work_((tell_acquire(&handed_over), std::move(other.work_))), group_(other.group_) {
+      : work_((tell_acquire(&handed_over), std::exchange(other.work_, nullptr))),
+        group_(other.group_) {
     tell_release(&handed_over);
   }
   HandedOver(const HandedOver&) = delete;
   HandedOver& operator=(const HandedOver&) = delete;
   ~HandedOver() {
     tell_acquire(&handed_over);
-    work_ = nullptr;
+    delete work_;
     tell_release(&handed_over);
   }
 
   void operator()() const {
     tell_acquire(&handed_over);
-    work_();
-    tell_release(group_);
+    const ReleaseAtEnd release(group_);
+    (*work_)();
   }
 
  private:
-  std::function<void()> work_;
+  std::function<void()>* work_;  // owned; nothing of it is touched after the destructor's last line
   void* group_;
 };
 
@@ -73,7 +100,15 @@ struct TaskGroup::Tasks {
 
 TaskGroup::TaskGroup() : tasks_(std::make_unique<Tasks>()) {}
 
-TaskGroup::~TaskGroup() = default;
+TaskGroup::~TaskGroup() {
+  if (std::uncaught_exceptions() == 0) return;
+  // It came before wait(), and is the one that counts.
+  tasks_->group.cancel();
+  try {
+    wait();
+  } catch (...) {
+  }
+}
 
 void TaskGroup::run(std::function<void()> work) {
   if (single_threaded()) {
@@ -84,8 +119,8 @@ void TaskGroup::run(std::function<void()> work) {
 }
 
 void TaskGroup::wait() {
+  const AcquireAtEnd acquire(this);
   tasks_->group.wait();
-  tell_acquire(this);
 }
 
 void parallel_for(
@@ -123,9 +158,9 @@ void run_pipeline(std::size_t slots, const std::function<bool(std::size_t slot)>
   auto chain = tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
                                                    [&](tbb::flow_control& control) -> std::size_t {
                                                      tell_acquire(&handed_over);
+                                                     const ReleaseAtEnd release(&handed_over);
                                                      const std::size_t slot = next++ % slots;
                                                      if (!source(slot)) control.stop();
-                                                     tell_release(&handed_over);
                                                      return slot;
                                                    });
   for (const PipelineStage& stage : stages) {
@@ -134,14 +169,14 @@ void run_pipeline(std::size_t slots, const std::function<bool(std::size_t slot)>
                     stage.in_order ? tbb::filter_mode::serial_in_order : tbb::filter_mode::parallel,
                     [&](std::size_t slot) {
                       tell_acquire(&handed_over);
+                      const ReleaseAtEnd release(&handed_over);
                       stage.work(slot);
-                      tell_release(&handed_over);
                       return slot;
                     });
   }
+  const AcquireAtEnd acquire(&handed_over);
   tbb::parallel_pipeline(slots, chain & tbb::make_filter<std::size_t, void>(
                                             tbb::filter_mode::parallel, [](std::size_t) {}));
-  tell_acquire(&handed_over);
 }
 
 }  // namespace spillway

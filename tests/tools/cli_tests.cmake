@@ -15,7 +15,7 @@ spillway_command_test(cli_tests cli
   tools/cli_formats_test.cpp
   tools/cli_info_check_test.cpp
   tools/cli_shared_data_test.cpp
-  tools/cli_stream_test.cpp
+  tools/cli_convert_test.cpp tools/cli_stream_test.cpp
   tools/cli_triangulate_test.cpp
   tools/cli_usage_test.cpp)
 spillway_command_test(cli_fault_tests fault

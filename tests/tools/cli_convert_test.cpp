@@ -1,0 +1,70 @@
+// `convert`: every mesh format to every other, streams through pipes, what cannot be held.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/tools/command_runner.h"
+
+namespace spillway::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Convert, KeepsTheMeshWhateverTheFormats) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 3000 -o in.las\n"
+      "spillway triangulate -q in.las -o mesh.spm");
+  const auto hash = work.info("mesh.spm")["canonical_hash"];
+  for (const std::string format : {"ply", "obj", "off", "vtu", "sma", "spm"}) {
+    work.succeed(
+        fmt::format("spillway convert -q mesh.spm -o there.{0}\n"
+                    "spillway check -q there.{0}\n"
+                    "spillway convert -q there.{0} -o back.spm\n"
+                    "spillway check -q back.spm --points in.las",
+                    format));
+    EXPECT_EQ(work.info("there." + format)["canonical_hash"], hash) << format;
+    EXPECT_EQ(work.info("back.spm")["canonical_hash"], hash) << format;
+  }
+}
+
+TEST(Convert, KeepsInputIndicesAndTetrahedra) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q uniform --dim 3 -n 500 -o in.npy\n"
+      "spillway triangulate -q --dim 3 --id in.npy -o mesh.spm\n"
+      "spillway triangulate -q --dim 3 --id in.npy -o direct.vtu\n"
+      "spillway convert -q mesh.spm -o converted.vtu\n"
+      "cmp direct.vtu converted.vtu");
+}
+
+TEST(Convert, PassesAStreamThroughAPipe) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 3000 -o in.las\n"
+      "spillway triangulate -q in.las -o mesh.ply\n"
+      "spillway triangulate -q in.las -o - | spillway convert -q - -o - | "
+      "spillway convert -q - -o piped.ply\n"
+      "cmp mesh.ply piped.ply");
+}
+
+TEST(Convert, RefusesWhatItCannotDoAndLeavesNothing) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q uniform --dim 3 -n 100 -o in.npy\n"
+      "spillway triangulate -q --dim 3 in.npy -o mesh.spm\n"
+      "head -c 1000 mesh.spm > short.spm");
+  EXPECT_THAT(work.run("spillway convert -q mesh.spm -o mesh.obj").err,
+              HasSubstr("holds no tetrahedra"));
+  EXPECT_THAT(work.run("spillway convert -q in.npy -o mesh.ply").err,
+              HasSubstr("these are points"));
+  EXPECT_EQ(work.run("spillway convert -q short.spm -o mesh.ply").exit_code, 1);
+  EXPECT_EQ(work.run("spillway convert -q mesh.spm -o mesh.xyz").exit_code, 2);
+  EXPECT_EQ(work.names(), (std::vector<std::string>{"in.npy", "mesh.spm", "short.spm"}));
+}
+
+}  // namespace
+}  // namespace spillway::test
