@@ -214,6 +214,10 @@ int run(const TriangulateOptions& options, MeshFormat format, RunStatistics& sta
   const auto writer = open_mesh_stream_writer(disk(), options.output, format, header, *scratch);
 
   statistics.stream = triangulate_stream<D>(source, *writer, *scratch, budget, stream);
+  if (statistics.stream.threads < stream.threads) {
+    progress.detail(fmt::format("{} of {} threads used: more of them need more --memory",
+                                statistics.stream.threads, stream.threads));
+  }
   statistics.memory_limit = budget.limit();
   statistics.withheld = source.withheld();
   statistics.on_lattice = source.lattice().has_value();
