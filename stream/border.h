@@ -22,6 +22,7 @@ struct BlockPlace {
   static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t slot = kNowhere;
   std::uint32_t block = 0;
+  // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
   auto operator<=>(const BlockPlace&) const = default;
 };
 

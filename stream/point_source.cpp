@@ -11,7 +11,7 @@
 
 namespace spillway {
 
-PointSource::PointSource(FileSystem& files, std::vector<std::string> paths,
+PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
                          PointSourceOptions options)
     : files_(files), options_(std::move(options)), count_(0) {
   for (const std::string& path : paths) inspect(path);

@@ -29,7 +29,7 @@ struct PointSourceOptions {
 class PointSource {
  public:
   /// Reads all headers. Throws Error for what cannot be opened.
-  PointSource(FileSystem& files, std::vector<std::string> paths, PointSourceOptions options);
+  PointSource(FileSystem& files, const std::vector<std::string>& paths, PointSourceOptions options);
 
   /// Replaces `block` by the next points: on lattice() if that is set, else in output coordinates.
   /// The index counts through all inputs, over withheld points too. False at the end.

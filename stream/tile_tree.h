@@ -70,7 +70,7 @@ class TileTree {
   /// Takes a tile of nodes() out of the tree: reads what is on the disk of it. By one thread at a
   /// time, but beside decode().
   template <int D>
-  StoredTile read(const TileNode<D>& tile);
+  StoredTile read(const TileNode<D>& node);
 
   /// The points of a tile. Uses all threads.
   template <int D>

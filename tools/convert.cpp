@@ -46,13 +46,11 @@ MeshTotals convert_stream(MeshStreamReader& reader, MeshFormat format,
                           Progress& progress) {
   const auto writer =
       open_mesh_stream_writer(disk(), options.output, format, reader.header(), scratch);
-  MeshBlock block;
   std::uint64_t simplices = 0;
-  while (reader.read(block)) {
+  for (MeshBlock block; reader.read(block); block = {}) {
     simplices += block.corners.size() / (reader.header().dimension + 1);
     writer->write(std::move(block));
     progress.update(simplices, reader.fraction_read());
-    block.clear();
   }
   writer->finish(reader.totals());
   return reader.totals();

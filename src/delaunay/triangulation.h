@@ -16,6 +16,7 @@ namespace spillway {
 struct SimplexId {
   std::uint32_t block;
   std::uint32_t index;
+  // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
   auto operator<=>(const SimplexId&) const = default;
 };
 

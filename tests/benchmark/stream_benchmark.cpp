@@ -52,6 +52,7 @@ struct ProcessFigures {
 /// Runs a program to its end; ends this one if that fails.
 ProcessFigures run(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   ProcessFigures figures;
