@@ -1,12 +1,12 @@
 #include "formats/block.h"
 
 #include <fmt/format.h>
-#include <lz4.h>
 #include <xxhash.h>
 
 #include <array>
 
 #include "formats/bytes.h"
+#include "formats/lz4.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -56,11 +56,8 @@ void append_block(std::vector<std::byte>& out, std::uint32_t kind,
   out.resize(begin + kBlockHeadSize + content.size());
   std::byte* const stored = out.data() + begin + kBlockHeadSize;
   // What does not get shorter is stored as it is: LZ4 stops when its room is used up.
-  const int room = static_cast<int>(content.size()) - 1;
-  const int compressed =
-      room <= 0 ? 0
-                : LZ4_compress_default(reinterpret_cast<const char*>(content.data()),
-                                       reinterpret_cast<char*>(stored), room + 1, room);
+  const std::size_t compressed =
+      content.size() <= 1 ? 0 : lz4_compress(content, {stored, content.size() - 1});
   head.compressed = compressed > 0;
   head.stored_size = head.compressed ? static_cast<std::uint32_t>(compressed) : head.content_size;
   if (!head.compressed && !content.empty()) {
@@ -101,10 +98,7 @@ void decode_block(const BlockHead& head, std::span<const std::byte> stored,
     return;
   }
   content.resize(head.content_size);
-  const int size = LZ4_decompress_safe(
-      reinterpret_cast<const char*>(stored.data()), reinterpret_cast<char*>(content.data()),
-      static_cast<int>(stored.size()), static_cast<int>(content.size()));
-  if (size != static_cast<int>(head.content_size)) {
+  if (!lz4_decompress(stored, content)) {
     fail(where, "the block does not decompress to the size that its head tells");
   }
 }

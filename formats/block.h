@@ -1,6 +1,6 @@
 #pragma once
-// Compressed blocks with checksums: what spill files and Spillway's own streams are made of. The
-// only place that knows LZ4. docs/formats-blocks.md has the layout.
+// Compressed blocks with checksums: what spill files and Spillway's own streams are made of.
+// docs/formats-blocks.md has the layout.
 
 #include <cstddef>
 #include <cstdint>

@@ -2,8 +2,9 @@
 pkg_check_modules(liblz4 REQUIRED IMPORTED_TARGET GLOBAL liblz4)
 target_sources(spillway_formats PRIVATE
   block.cpp
+  block_stream.cpp
   columns.cpp
-  lz4_filter.cpp
+  lz4.cpp
   scratch_folder.cpp
   spp_format.cpp
   spp_reader.cpp

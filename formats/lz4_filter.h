@@ -10,33 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "formats/lz4.h"
+
 namespace spillway {
-
-/// Decompresses frames, one after another, piece by piece.
-class Lz4FrameDecoder {
- public:
-  Lz4FrameDecoder();
-  ~Lz4FrameDecoder();
-  Lz4FrameDecoder(const Lz4FrameDecoder&) = delete;
-  Lz4FrameDecoder& operator=(const Lz4FrameDecoder&) = delete;
-
-  struct Progress {
-    std::size_t consumed = 0;
-    std::size_t produced = 0;
-  };
-
-  /// Decompresses as much as there is and fits. Throws std::ios_base::failure for corrupt data.
-  Progress decode(std::span<const char> compressed, std::span<char> content);
-
-  /// Whether all that was decoded are whole frames, at least one.
-  [[nodiscard]] bool complete() const { return wanted_ == 0; }
-
- private:
-  struct Context;
-
-  std::unique_ptr<Context> context_;
-  std::size_t wanted_ = 1;  // 0 between frames
-};
 
 /// The filter. Reading throws std::ios_base::failure if the data is corrupt or ends inside a frame.
 class Lz4Decompressor {

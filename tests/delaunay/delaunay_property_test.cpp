@@ -10,6 +10,7 @@
 #include "src/delaunay/delaunay.h"
 #include "src/generators/generators.h"
 #include "tests/delaunay/cgal_oracle.h"
+#include "tests/generators/family_cases.h"
 
 namespace spillway {
 namespace {
@@ -56,11 +57,6 @@ const std::vector<DelaunayOptions> kManyWays = {
     {.threads = 4, .base_case_size = 300, .children = 4},
 };
 
-struct FamilyCase {
-  Family family;
-  int dimension;
-};
-
 std::uint64_t large_count(const FamilyCase& tested) {
   if (tested.family == Family::kCollinear) return 2'000;  // CGAL takes quadratic time
   const bool dense = tested.family == Family::kLines && tested.dimension == 3;
@@ -99,21 +95,8 @@ TEST_P(DelaunayOfFamily, EqualsCgalForLargeSets) {
   }
 }
 
-std::vector<FamilyCase> all_cases() {
-  std::vector<FamilyCase> cases;
-  for (int dimension : {2, 3}) {
-    for (const std::string& name : family_names()) {
-      cases.push_back({family_by_name(name), dimension});
-    }
-  }
-  return cases;
-}
-
-INSTANTIATE_TEST_SUITE_P(Families, DelaunayOfFamily, testing::ValuesIn(all_cases()),
-                         [](const auto& tested) {
-                           return family_names()[static_cast<std::size_t>(tested.param.family)] +
-                                  std::to_string(tested.param.dimension) + "d";
-                         });
+INSTANTIATE_TEST_SUITE_P(Families, DelaunayOfFamily, testing::ValuesIn(all_family_cases()),
+                         family_case_name);
 
 /// Degenerate sets that no generator makes.
 template <typename Dimension>

@@ -7,6 +7,7 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "tests/delaunay/cgal_oracle.h"
+#include "tests/generators/family_cases.h"
 #include "tests/stream/stream_runner.h"
 
 namespace spillway {
@@ -44,11 +45,6 @@ void expect_equal_to_cgal(const std::vector<Point<D>>& points,
   }
   std::filesystem::remove(path);
 }
-
-struct FamilyCase {
-  Family family;
-  int dimension;
-};
 
 class StreamOfFamily : public testing::TestWithParam<FamilyCase> {};
 
@@ -112,21 +108,8 @@ TEST_P(StreamOfFamily, GivesTheSameBlocksForAnyThreadCount) {
   }
 }
 
-std::vector<FamilyCase> all_cases() {
-  std::vector<FamilyCase> cases;
-  for (int dimension : {2, 3}) {
-    for (const std::string& name : family_names()) {
-      cases.push_back({family_by_name(name), dimension});
-    }
-  }
-  return cases;
-}
-
-INSTANTIATE_TEST_SUITE_P(Families, StreamOfFamily, testing::ValuesIn(all_cases()),
-                         [](const auto& tested) {
-                           return family_names()[static_cast<std::size_t>(tested.param.family)] +
-                                  std::to_string(tested.param.dimension) + "d";
-                         });
+INSTANTIATE_TEST_SUITE_P(Families, StreamOfFamily, testing::ValuesIn(all_family_cases()),
+                         family_case_name);
 
 }  // namespace
 }  // namespace spillway

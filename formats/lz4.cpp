@@ -1,10 +1,24 @@
-#include "formats/lz4_filter.h"
+#include "formats/lz4.h"
 
+#include <lz4.h>
 #include <lz4frame.h>
 
 #include <new>
 
 namespace spillway {
+
+std::size_t lz4_compress(std::span<const std::byte> content, std::span<std::byte> room) {
+  return static_cast<std::size_t>(LZ4_compress_default(
+      reinterpret_cast<const char*>(content.data()), reinterpret_cast<char*>(room.data()),
+      static_cast<int>(content.size()), static_cast<int>(room.size())));
+}
+
+bool lz4_decompress(std::span<const std::byte> compressed, std::span<std::byte> content) {
+  const int size = LZ4_decompress_safe(
+      reinterpret_cast<const char*>(compressed.data()), reinterpret_cast<char*>(content.data()),
+      static_cast<int>(compressed.size()), static_cast<int>(content.size()));
+  return size >= 0 && static_cast<std::size_t>(size) == content.size();
+}
 
 struct Lz4FrameDecoder::Context {
   Context() {
