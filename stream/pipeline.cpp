@@ -97,9 +97,11 @@ class Pipeline {
     figures_.tiles = tiles_.size();
     figures_.final_by_level.resize(nodes_.back()->level);
     TaskGroup lanes;
-    for (std::size_t lane = 1; lane < kTilesAtATime; ++lane)
-      lanes.run([this] { work_off_tiles(); });
-    work_off_tiles();
+    // Isolated, since a merge that took up the other lane while it waits could end up waiting for
+    // room in the sequencer, which only it can make.
+    const auto lane = [this] { isolated([this] { work_off_tiles(); }); };
+    for (std::size_t other = 1; other < kTilesAtATime; ++other) lanes.run(lane);
+    lane();
     lanes.wait();
     const Border<D>& left = nodes_.back()->border;
     if (left.open()) refuse(left, points);

@@ -123,6 +123,8 @@ void TaskGroup::wait() {
   tasks_->group.wait();
 }
 
+void isolated(const std::function<void()>& work) { tbb::this_task_arena::isolate(work); }
+
 void parallel_for(
     std::size_t count, std::size_t grain,
     const std::function<void(std::size_t grain_number, std::size_t begin, std::size_t end)>& body) {
@@ -141,8 +143,7 @@ void parallel_for(
       throw;
     }
   };
-  // Isolated: whoever waits here for others takes up no work from outside meanwhile.
-  tbb::this_task_arena::isolate([&] {
+  isolated([&] {
     TaskGroup group;
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     for (std::size_t i = 1; i < std::min(grains, threads); ++i) group.run(take_turns);

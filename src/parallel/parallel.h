@@ -37,6 +37,11 @@ class TaskGroup {
   std::unique_ptr<Tasks> tasks_;
 };
 
+/// Runs `work` in the calling thread. While that waits for tasks of its own, the thread lends a
+/// hand to those, but takes up nothing from outside: what it holds meanwhile may be just what a
+/// task from outside would wait for.
+void isolated(const std::function<void()>& work);
+
 /// Number of grains that [0, count) falls into.
 inline std::size_t grain_count(std::size_t count, std::size_t grain) {
   return (count + grain - 1) / grain;
