@@ -237,4 +237,18 @@ LasHeader read_las_header(InputSource& source) {
   return header;
 }
 
+PointHeader las_point_header(const LasHeader& las, const std::string& path) {
+  PointHeader header;
+  header.name = path;
+  header.format = "las";
+  header.version = las.version;
+  header.point_format = las.point_format;
+  header.count = las.count;
+  header.lattice = las.lattice;
+  if (!las.extent.empty()) header.extent = las.extent;
+  header.crs = las.crs;
+  header.software = las.software;
+  return header;
+}
+
 }  // namespace spillway

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "formats/input_source.h"
+#include "formats/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 
@@ -65,5 +66,8 @@ struct LasHeader {
 /// Reads everything before the first point record. Throws Error, before anything is allocated, if a
 /// field contradicts another one or the size of the file, or if the file is compressed (LAZ).
 LasHeader read_las_header(InputSource& source);
+
+/// The same as any point source has it, for a source of that name.
+PointHeader las_point_header(const LasHeader& las, const std::string& path);
 
 }  // namespace spillway

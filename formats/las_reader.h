@@ -11,6 +11,7 @@ namespace spillway {
 /// Opens LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. `path` is the source's name as the
 /// user gave it.
 std::unique_ptr<PointReader> open_las_reader(std::unique_ptr<InputSource> source,
-                                             const std::string& path, bool keep_withheld);
+                                             const std::string& path,
+                                             const PointReaderOptions& options);
 
 }  // namespace spillway

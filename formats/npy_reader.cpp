@@ -47,7 +47,8 @@ class NpyReader : public PointReader {
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
-  bool read(PointBlock& block) override {
+  bool fetch(RawPoints& raw) override {
+    PointBlock& block = raw.decoded;
     const auto count =
         static_cast<std::size_t>(std::min<std::uint64_t>(kBlockPoints, count_ - next_));
     block.points.resize(count);

@@ -66,6 +66,22 @@ Compression compression_of(const InputSource& source, const std::string& path,
 
 }  // namespace
 
+void PointReader::decode(RawPoints& raw, PointBlock& block) const {
+  std::swap(raw.decoded, block);
+}
+
+bool PointReader::read(PointBlock& block) {
+  RawPoints raw;
+  std::uint64_t withheld = 0;
+  block.clear();
+  while (block.size() == 0 && fetch(raw)) {
+    decode(raw, block);
+    withheld += std::exchange(block.withheld, 0);
+  }
+  block.withheld = withheld;
+  return block.size() > 0;
+}
+
 std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::string& path,
                                                const PointReaderOptions& options) {
   std::optional<PointFormat> format;
@@ -76,7 +92,7 @@ std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::str
   if (!format) format = format_of_content(*source, first_bytes);
   switch (*format) {
     case PointFormat::kLas:
-      return open_las_reader(std::move(source), path, options.keep_withheld);
+      return open_las_reader(std::move(source), path, options);
     case PointFormat::kNpy:
       return open_npy_reader(std::move(source), path);
     case PointFormat::kSpp:

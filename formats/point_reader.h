@@ -13,17 +13,51 @@
 
 namespace spillway {
 
+/// What LAS and LAZ say of a point besides its coordinates, and filters look at.
+struct PointAttributes {
+  std::uint8_t classification = 0;
+  std::uint8_t return_number = 0;  ///< counted from 1; 0: not known
+  std::uint8_t return_count = 0;   ///< of its pulse; 0: not known
+  std::uint8_t flags = 0;          ///< the k... flags below
+
+  static constexpr std::uint8_t kSynthetic = 1;
+  static constexpr std::uint8_t kKeyPoint = 2;
+  static constexpr std::uint8_t kWithheld = 4;
+  static constexpr std::uint8_t kOverlap = 8;
+
+  bool operator==(const PointAttributes&) const = default;
+};
+
 /// Points in input order. z is 0 where the input has none.
 struct PointBlock {
   /// Lattice integers if the source has a lattice, else output coordinates.
   std::vector<Point<3>> points;
   /// Each point's number in its source, counted from 0 over all records, dropped ones included.
   std::vector<std::uint64_t> index;
+  /// One a point if they were asked for and the source has them, else none.
+  std::vector<PointAttributes> attributes;
+  /// Records left out of this block because they are flagged as withheld.
+  std::uint64_t withheld = 0;
 
   [[nodiscard]] std::size_t size() const { return points.size(); }
   void clear() {
     points.clear();
     index.clear();
+    attributes.clear();
+    withheld = 0;
+  }
+};
+
+/// A piece of a source as fetch() leaves it: bytes that are still to be decoded, or points.
+struct RawPoints {
+  PointBlock decoded;            ///< by readers whose input can only be decoded in order
+  std::vector<std::byte> bytes;  ///< by the others, and what decode() needs to know of them:
+  std::uint64_t offset = 0;      ///< of `bytes` in the source
+  std::uint64_t first = 0;       ///< number of the first record
+  std::uint64_t count = 0;       ///< of records in `bytes`
+
+  [[nodiscard]] std::uint64_t records() const {
+    return count + decoded.size() + decoded.withheld;
   }
 };
 
@@ -42,24 +76,37 @@ struct PointHeader {
 };
 
 struct PointReaderOptions {
-  std::string format;  ///< "las", "text", "npy", "spp"; empty: by extension, then first bytes
-  bool keep_withheld = false;  ///< LAS: keep points flagged as withheld
+  std::string format;  ///< a name of point_format.h; empty: by extension, then first bytes
+  bool keep_withheld = false;  ///< keep points flagged as withheld
+  bool attributes = false;     ///< fill PointBlock::attributes where the source has them
+  /// Only points in this box (output coordinates, closed) are wanted: a reader that knows where its
+  /// points lie leaves out parts that have none there, but may give others too.
+  std::optional<Box<3>> bounds{};
+  /// COPC: levels of the octree finer than this spacing are left out; 0: all are read.
+  double resolution = 0;
 };
 
-/// A stream of points from one source.
+/// A stream of points from one source. fetch() takes the next piece of the input, in order;
+/// decode() makes points of it and may run for many pieces at a time, so that formats that are slow
+/// to decode use all threads.
 class PointReader {
  public:
   virtual ~PointReader() = default;
 
   [[nodiscard]] virtual const PointHeader& header() const = 0;
 
-  /// Replaces `block` by the next points (some tens of thousands); false at the end. Throws Error
-  /// with the source's name and the byte, line or point index for anything that is not a finite
-  /// point.
-  virtual bool read(PointBlock& block) = 0;
+  /// Replaces `raw` by the next piece (some tens of thousands of points); false at the end. Throws
+  /// Error with the source's name and the byte, line or point index for anything that is not a
+  /// finite point.
+  virtual bool fetch(RawPoints& raw) = 0;
 
-  /// Points left out so far because they are flagged as withheld.
-  [[nodiscard]] virtual std::uint64_t withheld() const { return 0; }
+  /// Replaces `block` by the points of a piece, which is used up. Safe for many threads at a time.
+  /// Throws as fetch() does. A block may be empty before the end.
+  virtual void decode(RawPoints& raw, PointBlock& block) const;
+
+  /// Both steps: replaces `block` by the next points, at least one; false at the end, where
+  /// `block.withheld` still counts.
+  bool read(PointBlock& block);
 
   /// How far the input has been read, from 0 to 1; nothing if the source's length is unknown.
   [[nodiscard]] virtual std::optional<double> fraction_read() const = 0;

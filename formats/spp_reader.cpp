@@ -33,7 +33,8 @@ class SppReader : public PointReader {
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
-  bool read(PointBlock& block) override {
+  bool fetch(RawPoints& raw) override {
+    PointBlock& block = raw.decoded;
     block.clear();
     if (ended_) return false;
     switch (stream_.next()) {

@@ -29,7 +29,8 @@ class TextReader : public PointReader {
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
-  bool read(PointBlock& block) override {
+  bool fetch(RawPoints& raw) override {
+    PointBlock& block = raw.decoded;
     block.clear();
     if (has_first_) append(first_, block);
     has_first_ = false;

@@ -76,12 +76,17 @@ class Pipeline {
     const Stopwatch watch(figures_.read_seconds);
     const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(Point<3>),
                               "points that wait to be spilled");
-    tree_.fill([&](PointBlock& block) {
-      const StageTimer timer(counts_.times, Stage::kRead);
-      const bool more = source_.read(block);
-      options_.progress(source_.points_read(), source_.fraction_read());
-      return more;
-    });
+    tree_.fill({.fetch =
+                    [&](SourcePiece& piece) {
+                      const StageTimer timer(counts_.times, Stage::kRead);
+                      options_.progress(source_.points_read(), source_.fraction_read());
+                      return source_.fetch(piece);
+                    },
+                .decode =
+                    [&](SourcePiece& piece, PointBlock& block) {
+                      const StageTimer timer(counts_.times, Stage::kRead);
+                      source_.decode(piece, block);
+                    }});
     options_.end_phase();
   }
 

@@ -17,6 +17,10 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
   for (const std::string& path : paths) inspect(path);
   find_lattice();
   find_extent();
+  for (Input& input : inputs_) {
+    const bool moved = input.shift != std::array<double, 3>{};
+    input.as_it_is = !input.header.lattice || (lattice_ && heights_on_lattice_ && !moved);
+  }
 }
 
 void PointSource::inspect(const std::string& path) {
@@ -107,40 +111,48 @@ Point<3> PointSource::placed(const Input& input, const Point<3>& point) const {
   return {point[0] + input.shift[0], point[1] + input.shift[1], z};
 }
 
-bool PointSource::read(PointBlock& block) {
-  while (current_ < inputs_.size()) {
+bool PointSource::fetch(SourcePiece& piece) {
+  for (; current_ < inputs_.size(); finish_input()) {
     Input& input = inputs_[current_];
     if (!input.reader) input.reader = open_point_reader(files_, input.path, options_.reader);
-    if (input.reader->read(block)) {
-      const bool moved = std::any_of(input.shift.begin(), input.shift.end(),
-                                     [](double shift) { return shift != 0; });
-      const bool as_it_is = input.header.lattice ? lattice_ && heights_on_lattice_ && !moved : true;
-      if (!as_it_is) {
-        for (Point<3>& point : block.points) point = placed(input, point);
-      }
-      if (options_.index) {
-        for (std::uint64_t& index : block.index) index += records_before_;
-      } else {
-        block.index.clear();
-      }
-      points_ += block.size();
-      return true;
-    }
-    finish_input();
+    if (!input.reader->fetch(piece.raw)) continue;
+    piece.input = current_;
+    piece.first_index = records_before_;
+    piece.reader = input.reader;
+    input.records += piece.raw.records();
+    return true;
   }
-  block.clear();
   return false;
+}
+
+void PointSource::decode(SourcePiece& piece, PointBlock& block) {
+  piece.reader->decode(piece.raw, block);
+  const Input& input = inputs_[piece.input];
+  if (!input.as_it_is) {
+    for (Point<3>& point : block.points) point = placed(input, point);
+  }
+  if (options_.index) {
+    for (std::uint64_t& index : block.index) index += piece.first_index;
+  } else {
+    block.index.clear();
+  }
+  points_ += block.size();
+  withheld_ += block.withheld;
+}
+
+bool PointSource::read(PointBlock& block) {
+  SourcePiece piece;
+  block.clear();
+  while (block.size() == 0 && fetch(piece)) decode(piece, block);
+  return block.size() > 0;
 }
 
 void PointSource::finish_input() {
   Input& input = inputs_[current_++];
-  const std::uint64_t points = points_ - points_before_;
-  options_.detail(fmt::format("{}: {}{}{}, {} points, {} withheld", input.header.name,
-                              input.header.format, input.header.version.empty() ? "" : " ",
-                              input.header.version, points, input.reader->withheld()));
-  withheld_ += input.reader->withheld();
-  records_before_ += points + input.reader->withheld();
-  points_before_ = points_;
+  options_.detail(fmt::format("{}: {}{}{}, {} records read", input.header.name, input.header.format,
+                              input.header.version.empty() ? "" : " ", input.header.version,
+                              input.records));
+  records_before_ += input.header.count.value_or(input.records);
   input.reader.reset();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -25,14 +26,29 @@ struct PointSourceOptions {
   std::function<void(std::string_view)> detail = [](std::string_view) {};
 };
 
+/// A piece of one input, fetched but not decoded.
+struct SourcePiece {
+  RawPoints raw;
+  std::size_t input = 0;
+  std::uint64_t first_index = 0;              ///< what the piece's numbers are counted from
+  std::shared_ptr<const PointReader> reader;  ///< lives until its last piece is decoded
+};
+
 /// All inputs as one: one after the other, each in its own order, in common coordinates.
 class PointSource {
  public:
   /// Reads all headers. Throws Error for what cannot be opened.
   PointSource(FileSystem& files, const std::vector<std::string>& paths, PointSourceOptions options);
 
-  /// Replaces `block` by the next points: on lattice() if that is set, else in output coordinates.
-  /// The index counts through all inputs, over withheld points too. False at the end.
+  /// Takes the next piece of the inputs, in order; false at the end.
+  bool fetch(SourcePiece& piece);
+
+  /// Replaces `block` by the points of a piece, which is used up: on lattice() if that is set, else
+  /// in output coordinates. The index counts through all inputs, over withheld points too. Safe for
+  /// many threads at a time. A block may be empty before the end.
+  void decode(SourcePiece& piece, PointBlock& block);
+
+  /// Both steps: replaces `block` by the next points, at least one; false at the end.
   bool read(PointBlock& block);
 
   /// The first input's lattice, if all inputs lie on it: equal scales, offsets that differ by whole
@@ -57,8 +73,10 @@ class PointSource {
   struct Input {
     std::string path;
     PointHeader header;
-    std::unique_ptr<PointReader> reader;  ///< kept from the start only for what opens just once
+    std::shared_ptr<PointReader> reader;  ///< kept from the start only for what opens just once
     std::array<double, 3> shift{};        ///< from its integers to those of lattice_
+    bool as_it_is = false;                ///< its coordinates are those of read()
+    std::uint64_t records = 0;            ///< fetched so far
   };
 
   void inspect(const std::string& path);
@@ -77,10 +95,9 @@ class PointSource {
   std::optional<Box<3>> extent_;
   std::optional<Box<3>> world_extent_;
   std::string crs_;
-  std::uint64_t points_ = 0;
-  std::uint64_t withheld_ = 0;
+  std::atomic<std::uint64_t> points_ = 0;
+  std::atomic<std::uint64_t> withheld_ = 0;
   std::uint64_t records_before_ = 0;  ///< of all inputs before the current one
-  std::uint64_t points_before_ = 0;
 };
 
 }  // namespace spillway

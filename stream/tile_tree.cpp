@@ -48,40 +48,46 @@ TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageT
       tiles_(1),
       sample_stride_(std::max<std::size_t>(1, options.capacity / kFirstSamples)) {}
 
-void TileTree::fill(const std::function<bool(PointBlock&)>& source) {
-  run_batches([&](Batch& batch) {
-    const bool more = source(batch.points);
-    points_ += batch.points.size();
-    return more;
-  });
+void TileTree::fill(const PointFeed& source) {
+  run_batches([&](Batch& batch) { return source.fetch(batch.piece); },
+              [&](Batch& batch) { source.decode(batch.piece, batch.points); });
+  for (const Tile& tile : tiles_) points_ += tile.points;
   if (!divided_ && points_ > options_.capacity) divide_first();
   for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
     while (too_large(tiles_[t])) divide(t);
   }
 }
 
-void TileTree::run_batches(const std::function<bool(Batch&)>& source) {
+void TileTree::fill(const std::function<bool(PointBlock&)>& source) {
+  fill({.fetch = [&](SourcePiece& piece) { return source(piece.raw.decoded); },
+        .decode =
+            [](SourcePiece& piece, PointBlock& block) { std::swap(piece.raw.decoded, block); }});
+}
+
+void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
+                           const std::function<void(Batch&)>& decode) {
   std::vector<Batch> batches(kSlots);
   const auto encode = [this](Batch& batch) {
     const StageTimer timer(times_, Stage::kSpill);
     for (Spill& spill : batch.spills) spill.blocks = encode_points(spill.points, spill.bytes);
   };
   const std::vector<PipelineStage> stages = {
-      {.in_order = false, .work = [&](std::size_t slot) { deal(batches[slot]); }},
+      {.in_order = false,
+       .work =
+           [&](std::size_t slot) {
+             decode(batches[slot]);
+             deal(batches[slot]);
+           }},
       {.in_order = true, .work = [&](std::size_t slot) { append(batches[slot]); }},
       {.in_order = false, .work = [&](std::size_t slot) { encode(batches[slot]); }},
       {.in_order = true, .work = [&](std::size_t slot) { write(batches[slot]); }}};
   run_pipeline(
-      kSlots, [&](std::size_t slot) { return source(batches[slot]); }, stages);
+      kSlots, [&](std::size_t slot) { return fetch(batches[slot]); }, stages);
 }
 
 /// Groups a batch's points by tile.
 void TileTree::deal(Batch& batch) const {
   const StageTimer timer(times_, Stage::kDeal);
-  if (!batch.stored.empty()) {
-    decode_points(batch.stored, batch.where, batch.points);
-    batch.stored.clear();
-  }
   {
     const std::lock_guard lock(cuts_mutex_);
     batch.dealt_by = cuts_;
@@ -282,13 +288,17 @@ void TileTree::divide(std::uint32_t number) {
   cuts_ = std::move(cuts);
   buffered_ -= whole.buffer.room();
   auto block = whole.blocks.begin();
-  run_batches([&](Batch& batch) {
+  const auto fetch = [&](Batch& batch) {
     if (block == whole.blocks.end()) return false;
     batch.stored.resize(block->size);
     whole.file->read(block->offset, batch.stored);
     batch.where = fmt::format("{}, byte {}", whole.file->name(), block->offset);
     ++block;
     return true;
+  };
+  run_batches(fetch, [this](Batch& batch) {
+    const StageTimer timer(times_, Stage::kDeal);
+    decode_points(batch.stored, batch.where, batch.points);
   });
   deal_from_memory(std::move(whole.buffer));
 }

@@ -14,6 +14,7 @@
 #include "src/geometry/box.h"
 #include "stream/cut_tree.h"
 #include "stream/point_buffer.h"
+#include "stream/point_source.h"
 #include "stream/stage_times.h"
 #include "stream/tile_block.h"
 
@@ -26,6 +27,14 @@ struct TileTreeOptions {
   std::optional<std::uint64_t> expected{};  ///< how many points will come, where that is known
   std::optional<Box<3>> extent{};           ///< where they will lie, where that is known
   bool index = false;                       ///< points carry their index
+};
+
+/// Where a tree's points come from.
+struct PointFeed {
+  /// Takes the next piece, in order; false at the end.
+  std::function<bool(SourcePiece&)> fetch;
+  /// Makes points of a piece; called by many threads at a time.
+  std::function<void(SourcePiece&, PointBlock&)> decode;
 };
 
 /// A node of the finished tree over tiles: a tile that can be loaded, or two nodes.
@@ -58,9 +67,11 @@ class TileTree {
  public:
   TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times);
 
-  /// Deals all points that `source` gives (as PointReader::read) and makes the tiles final.
-  /// Reading, dealing, encoding and writing go on beside each other; the result does not depend on
-  /// threads.
+  /// Deals all points of `source` and makes the tiles final. Reading, decoding, dealing, encoding
+  /// and writing go on beside each other; the result does not depend on threads.
+  void fill(const PointFeed& source);
+
+  /// The same with points that need no decoding: `source` works as PointReader::read().
   void fill(const std::function<bool(PointBlock&)>& source);
 
   /// The tree of tiles, neighbours that fit together made one; nothing if there are no points.
@@ -99,7 +110,8 @@ class TileTree {
   /// What goes through the pipeline at a time.
   struct Batch {
     PointBlock points;
-    std::vector<std::byte> stored;    ///< the points as read back from a file, still to be decoded
+    SourcePiece piece;                ///< as it came from the source
+    std::vector<std::byte> stored;    ///< the points as read back from a file
     std::string where;                ///< in which file
     std::vector<std::uint32_t> tile;  ///< by point
     std::shared_ptr<const CutTree> dealt_by;  ///< the cuts that `runs` come from
@@ -117,7 +129,9 @@ class TileTree {
     std::uint64_t next_sample = 0;
   };
 
-  void run_batches(const std::function<bool(Batch&)>& source);
+  /// Sends batches through the stages: `fetch` fills them in order, `decode` makes their points.
+  void run_batches(const std::function<bool(Batch&)>& fetch,
+                   const std::function<void(Batch&)>& decode);
   void deal(Batch& batch) const;
   void append(Batch& batch);
   void append_runs(Batch& batch);

@@ -67,9 +67,11 @@ Json describe_points(ProbedInput& input, const PointReaderOptions& options, Prog
   const PointHeader& header = reader->header();
   Box<3> box;
   std::uint64_t points = 0;
+  std::uint64_t withheld = 0;
   PointBlock block;
   progress.begin("read", "points");
   while (reader->read(block)) {
+    withheld += block.withheld;
     for (const Point<3>& point : block.points) {
       box.expand(header.lattice ? header.lattice->to_world(point) : point);
     }
@@ -85,7 +87,7 @@ Json describe_points(ProbedInput& input, const PointReaderOptions& options, Prog
   json["point_format"] = header.point_format < 0 ? Json(nullptr) : Json(header.point_format);
   json["coordinates"] = header.coordinates;
   json["points"] = points;
-  json["withheld"] = reader->withheld();
+  json["withheld"] = withheld + block.withheld;
   json["extent"] = extent_json(box, header.coordinates);
   add_lattice(header.lattice, json);
   json["density"] = density(box, points);

@@ -20,6 +20,7 @@ struct AllPoints {
   PointHeader header;
   std::vector<Point<3>> points;
   std::vector<std::uint64_t> index;
+  std::vector<PointAttributes> attributes;
   std::uint64_t withheld = 0;
 };
 
@@ -34,9 +35,11 @@ inline AllPoints read_all_points(FileSystem& files, const std::string& path,
     EXPECT_EQ(block.points.size(), block.index.size());
     all.points.insert(all.points.end(), block.points.begin(), block.points.end());
     all.index.insert(all.index.end(), block.index.begin(), block.index.end());
+    all.attributes.insert(all.attributes.end(), block.attributes.begin(), block.attributes.end());
+    all.withheld += block.withheld;
   }
   EXPECT_EQ(block.size(), 0U);
-  all.withheld = reader->withheld();
+  all.withheld += block.withheld;
   return all;
 }
 
