@@ -1,12 +1,17 @@
 #include "src/delaunay/base_case.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 #include "src/delaunay/affine_basis.h"
+#include "src/delaunay/kernel_2d/kernel_2d.h"
+#include "src/delaunay/kernel_arena.h"
 
 namespace spillway {
 namespace {
+
+std::atomic<BaseCaseKernel> chosen_kernel = BaseCaseKernel::kOwn;
 
 template <int D>
 std::vector<Duplicate> find_duplicates(const BaseCaseInput<D>& input) {
@@ -29,16 +34,31 @@ std::vector<Duplicate> find_duplicates(const BaseCaseInput<D>& input) {
   return duplicates;
 }
 
+template <int D>
+BaseCase<D> triangulate_spanning(const BaseCaseInput<D>& input, std::span<const VertexId> basis) {
+  if constexpr (D == 2) {
+    if (chosen_kernel == BaseCaseKernel::kOwn) return kernel_2d_base_case(input, basis);
+  }
+  return cgal_base_case<D>(input, basis);
+}
+
 }  // namespace
+
+void set_base_case_kernel(BaseCaseKernel kernel) { chosen_kernel = kernel; }
 
 template <int D>
 BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input) {
   const std::vector<VertexId> basis = affine_basis<D>(input.points);
-  if (basis.size() == D + 1) return cgal_base_case<D>(input, basis);
+  if (basis.size() == D + 1) return triangulate_spanning<D>(input, basis);
   BaseCase<D> result;
   result.duplicates = find_duplicates(input);
   result.dimension = static_cast<int>(basis.size()) - 1;
   return result;
+}
+
+void release_base_case_memory() {
+  KernelArena::release_kept_memory();
+  release_kernel_2d_memory();
 }
 
 template BaseCase<2> triangulate_base_case<2>(const BaseCaseInput<2>&);

@@ -27,6 +27,15 @@ struct BaseCase {
   int dimension = -1;                 ///< of the points' affine hull
 };
 
+/// What triangulates base cases in the plane. In space it is always CGAL.
+enum class BaseCaseKernel : std::uint8_t {
+  kOwn,   ///< kernel_2d
+  kCgal,  ///< CGAL's incremental triangulation: same result, several times the time
+};
+
+/// Chooses the kernel for the whole process; kOwn if never called. To be called before work starts.
+void set_base_case_kernel(BaseCaseKernel kernel);
+
 /// Triangulates any finite points sequentially: none, one, all equal, collinear, coplanar or in
 /// general position.
 template <int D>

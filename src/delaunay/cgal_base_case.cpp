@@ -174,8 +174,6 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
   return result;
 }
 
-void release_base_case_memory() { KernelArena::release_kept_memory(); }
-
 template BaseCase<2> cgal_base_case<2>(const BaseCaseInput<2>&, std::span<const VertexId>);
 template BaseCase<3> cgal_base_case<3>(const BaseCaseInput<3>&, std::span<const VertexId>);
 

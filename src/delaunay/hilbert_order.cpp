@@ -2,37 +2,80 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <memory>
 #include <utility>
 
 namespace spillway {
 namespace {
 
-/// Bits of each coordinate, so that a key has at most 32.
+/// Bits of each coordinate at most, so that a key has at most 32.
 template <int D>
-constexpr int kBits = D == 2 ? 16 : 10;
+constexpr int kMostBits = D == 2 ? 16 : 10;
 
-/// Moves the bits of a coordinate D places apart.
-template <int D>
-std::uint32_t spread(std::uint32_t x) {
-  if constexpr (D == 2) {
-    x = (x | x << 8) & 0x00FF00FF;
-    x = (x | x << 4) & 0x0F0F0F0F;
-    x = (x | x << 2) & 0x33333333;
-    return (x | x << 1) & 0x55555555;
-  } else {
-    x = (x | x << 16) & 0x030000FF;
-    x = (x | x << 8) & 0x0300F00F;
-    x = (x | x << 4) & 0x030C30C3;
-    return (x | x << 2) & 0x09249249;
+/// The curve in the plane, four levels at a time. A square's curve is the whole one with the axes
+/// exchanged (bit 0 of the state), turned by half a turn (bit 1), or both.
+struct CurveTable {
+  static constexpr int kLevels = 4;
+  static constexpr std::size_t kCells = std::size_t{1} << kLevels;
+  struct Entry {
+    std::uint8_t digits;  ///< the cell's number along the curve
+    std::uint8_t state;   ///< of the curve inside the cell
+  };
+  std::array<std::array<Entry, kCells * kCells>, 4> entries{};
+
+  constexpr CurveTable() {
+    for (unsigned state = 0; state < 4; ++state) {
+      for (unsigned cell = 0; cell < kCells * kCells; ++cell)
+        entries[state][cell] = walk(state, cell);
+    }
   }
+
+ private:
+  static constexpr Entry walk(unsigned state, unsigned cell) {
+    unsigned digits = 0;
+    for (int level = kLevels - 1; level >= 0; --level) {
+      unsigned x = (cell >> (level + kLevels) & 1) ^ (state >> 1);
+      unsigned y = (cell >> level & 1) ^ (state >> 1);
+      if ((state & 1) != 0) std::swap(x, y);
+      const unsigned quarter = (3 * x) ^ y;
+      digits = 4 * digits + quarter;
+      if (quarter == 0) state ^= 1;
+      if (quarter == 3) state ^= 3;
+    }
+    return {static_cast<std::uint8_t>(digits), static_cast<std::uint8_t>(state)};
+  }
+};
+
+/// The cell's number along the curve in the plane.
+std::uint32_t hilbert_key(const std::array<std::uint32_t, 2>& cell) {
+  static constexpr CurveTable kTable;
+  constexpr unsigned kMask = CurveTable::kCells - 1;
+  std::uint32_t key = 0;
+  unsigned state = 0;
+  for (int level = kMostBits<2> - CurveTable::kLevels; level >= 0; level -= CurveTable::kLevels) {
+    const unsigned x = cell[0] >> level & kMask;
+    const unsigned y = cell[1] >> level & kMask;
+    const CurveTable::Entry& entry = kTable.entries[state][x * CurveTable::kCells + y];
+    key = key << (2 * CurveTable::kLevels) | entry.digits;
+    state = entry.state;
+  }
+  return key;
 }
 
-/// The cell's number along the curve.
-template <int D>
-std::uint32_t hilbert_key(std::array<std::uint32_t, D> cell) {
-  for (std::uint32_t bit = 1U << (kBits<D> - 1); bit > 1; bit >>= 1) {
+/// Moves the bits of a coordinate three places apart.
+std::uint32_t spread(std::uint32_t x) {
+  x = (x | x << 16) & 0x030000FF;
+  x = (x | x << 8) & 0x0300F00F;
+  x = (x | x << 4) & 0x030C30C3;
+  return (x | x << 2) & 0x09249249;
+}
+
+/// The cell's number along the curve in space (J. Skilling's algorithm).
+std::uint32_t hilbert_key(std::array<std::uint32_t, 3> cell) {
+  for (std::uint32_t bit = 1U << (kMostBits<3> - 1); bit > 1; bit >>= 1) {
     const std::uint32_t below = bit - 1;
-    for (int k = 0; k < D; ++k) {
+    for (int k = 0; k < 3; ++k) {
       // Either the low bits of axis 0 are inverted, or exchanged with those of axis k.
       const std::uint32_t invert = (cell[k] & bit) != 0 ? below : 0;
       const std::uint32_t exchange = (cell[0] ^ cell[k]) & below & ~invert;
@@ -40,51 +83,153 @@ std::uint32_t hilbert_key(std::array<std::uint32_t, D> cell) {
       cell[k] ^= exchange;
     }
   }
-  for (int k = 1; k < D; ++k) cell[k] ^= cell[k - 1];
+  for (int k = 1; k < 3; ++k) cell[k] ^= cell[k - 1];
   std::uint32_t turned = 0;
-  for (std::uint32_t bit = 1U << (kBits<D> - 1); bit > 1; bit >>= 1) {
-    turned ^= (cell[D - 1] & bit) != 0 ? bit - 1 : 0;
+  for (std::uint32_t bit = 1U << (kMostBits<3> - 1); bit > 1; bit >>= 1) {
+    turned ^= (cell[2] & bit) != 0 ? bit - 1 : 0;
   }
   std::uint32_t key = 0;
-  for (int k = 0; k < D; ++k) key |= spread<D>(cell[k] ^ turned) << (D - 1 - k);
+  for (int k = 0; k < 3; ++k) key |= spread(cell[k] ^ turned) << (2 - k);
   return key;
 }
 
-/// Sorts by the upper 32 bits, stably: three passes over 11 bits each.
-void sort_by_key(std::vector<std::uint64_t>& items) {
-  constexpr int kDigits = 11;
-  constexpr std::uint64_t kMask = (1 << kDigits) - 1;
-  std::vector<std::uint64_t> sorted(items.size());
-  for (int shift = 32; shift < 64; shift += kDigits) {
-    std::array<std::size_t, kMask + 2> place{};
-    for (const std::uint64_t item : items) ++place[(item >> shift & kMask) + 1];
-    for (std::size_t d = 1; d < place.size(); ++d) place[d] += place[d - 1];
-    for (const std::uint64_t item : items) sorted[place[item >> shift & kMask]++] = item;
-    std::swap(items, sorted);
+/// Sorts places by key. An item has the key in its upper half, the place in its lower one.
+template <int D>
+class Sorter {
+ public:
+  explicit Sorter(std::span<const Point<D>> points)
+      : points_(points),
+        count_(points.size()),
+        items_(std::make_unique_for_overwrite<Item[]>(count_)),
+        other_(std::make_unique_for_overwrite<Item[]>(count_)) {
+    for (std::size_t i = 0; i < count_; ++i) items_[i] = i;
   }
-}
+
+  /// Sorts all items, then again those that share a cell with many.
+  std::vector<VertexId> sort(const Box<D>& box) && {
+    sort_range(0, count_, box);
+    std::vector<VertexId> order(count_);
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<VertexId>(items_[i]);
+    return order;
+  }
+
+ private:
+  using Item = std::uint64_t;
+  /// So few are not divided further.
+  static constexpr std::size_t kFewPoints = 24;
+  static constexpr std::size_t kSmallestRadixSort = 512;
+
+  void sort_range(std::size_t begin, std::size_t end, const Box<D>& box) {
+    const std::size_t count = end - begin;
+    set_keys(begin, end, box);
+    int bits = kMostBits<D>;  // of a coordinate
+    if (count < kSmallestRadixSort) {
+      std::sort(&items_[begin], &items_[begin] + count);
+    } else {
+      // Two cells a point are enough, unless many points share one.
+      while (bits > 1 && (std::size_t{1} << (D * (bits - 1))) >= 2 * count) --bits;
+      radix_sort(begin, end, D * bits);
+      std::size_t crowded = 0;
+      for_each_crowded_cell(begin, end, D * bits,
+                            [&](std::size_t i, std::size_t j) { crowded += j - i; });
+      if (bits < kMostBits<D> && crowded > count / 8) {
+        bits = kMostBits<D>;
+        radix_sort(begin, end, D * bits);
+      }
+    }
+    for_each_crowded_cell(begin, end, D * bits, [&](std::size_t i, std::size_t j) {
+      if (j - i < count) sort_cell(i, j);
+    });
+  }
+
+  /// Calls visit(i, j) for every run [i, j) of items that share a cell with many.
+  template <typename Visit>
+  void for_each_crowded_cell(std::size_t begin, std::size_t end, int key_bits,
+                             const Visit& visit) const {
+    const int shift = 64 - key_bits;
+    for (std::size_t i = begin; i + kFewPoints < end;) {
+      const Item cell = items_[i] >> shift;
+      if (items_[i + kFewPoints] >> shift != cell) {
+        do {
+          ++i;
+        } while (items_[i] >> shift == cell);
+        continue;
+      }
+      std::size_t j = i + kFewPoints + 1;
+      while (j < end && items_[j] >> shift == cell) ++j;
+      visit(i, j);
+      i = j;
+    }
+  }
+
+  /// A crowded cell gets a curve of its own.
+  void sort_cell(std::size_t begin, std::size_t end) {
+    Box<D> box;
+    for (std::size_t i = begin; i < end; ++i) box.expand(point(items_[i]));
+    if (box.lo != box.hi) sort_range(begin, end, box);
+  }
+
+  [[nodiscard]] const Point<D>& point(Item item) const {
+    return points_[static_cast<VertexId>(item)];
+  }
+
+  void set_keys(std::size_t begin, std::size_t end, const Box<D>& box) {
+    constexpr double kLargest = (1 << kMostBits<D>)-1;
+    const double extent = box.extent(box.longest_axis());
+    const double scale = extent > 0 ? kLargest / extent : 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Point<D>& p = point(items_[i]);
+      std::array<std::uint32_t, D> cell;
+      for (int k = 0; k < D; ++k) {
+        // Written so that NaN, from extents that overflow, becomes 0.
+        const double place = (p[k] - box.lo[k]) * scale;
+        cell[k] = place > 0 ? static_cast<std::uint32_t>(std::min(place, kLargest)) : 0;
+      }
+      items_[i] =
+          Item{hilbert_key(cell)} << (64 - D * kMostBits<D>) | static_cast<VertexId>(items_[i]);
+    }
+  }
+
+  /// Sorts by the highest bits, stably, in passes over digits of equal width.
+  void radix_sort(std::size_t begin, std::size_t end, int key_bits) {
+    constexpr int kWidestDigit = 11;
+    const int passes = (key_bits + kWidestDigit - 1) / kWidestDigit;
+    const int digit = (key_bits + passes - 1) / passes;
+    const int lowest = 64 - key_bits;
+    const Item mask = (Item{1} << digit) - 1;
+    std::array<std::array<std::uint32_t, 1 << kWidestDigit>, 3> places{};
+    for (std::size_t i = begin; i < end; ++i) {
+      const Item key = items_[i] >> lowest;
+      for (int pass = 0; pass < passes; ++pass) ++places[pass][key >> (pass * digit) & mask];
+    }
+    for (int pass = 0; pass < passes; ++pass) {
+      auto& place = places[pass];
+      auto next = static_cast<std::uint32_t>(begin);
+      for (std::size_t d = 0; d <= mask; ++d) next += std::exchange(place[d], next);
+      const int shift = lowest + pass * digit;
+      for (std::size_t i = begin; i < end; ++i) {
+        const Item item = items_[i];
+        other_[place[item >> shift & mask]++] = item;
+      }
+      if (end - begin == count_) {
+        std::swap(items_, other_);
+      } else {
+        std::copy(&other_[begin], &other_[begin] + (end - begin), &items_[begin]);
+      }
+    }
+  }
+
+  std::span<const Point<D>> points_;
+  std::size_t count_;
+  std::unique_ptr<Item[]> items_;
+  std::unique_ptr<Item[]> other_;
+};
 
 }  // namespace
 
 template <int D>
 std::vector<VertexId> hilbert_order(std::span<const Point<D>> points, const Box<D>& box) {
-  constexpr double kLargest = (1 << kBits<D>)-1;
-  const double extent = box.extent(box.longest_axis());
-  const double scale = extent > 0 ? kLargest / extent : 0;
-  std::vector<std::uint64_t> items(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    std::array<std::uint32_t, D> cell;
-    for (int k = 0; k < D; ++k) {
-      // Written so that NaN, from extents that overflow, becomes 0.
-      const double place = (points[i][k] - box.lo[k]) * scale;
-      cell[k] = place > 0 ? static_cast<std::uint32_t>(std::min(place, kLargest)) : 0;
-    }
-    items[i] = std::uint64_t{hilbert_key<D>(cell)} << 32 | i;
-  }
-  sort_by_key(items);
-  std::vector<VertexId> order(points.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<VertexId>(items[i]);
-  return order;
+  return Sorter<D>(points).sort(box);
 }
 
 template std::vector<VertexId> hilbert_order<2>(std::span<const Point<2>>, const Box<2>&);

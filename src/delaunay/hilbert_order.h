@@ -10,9 +10,8 @@
 namespace spillway {
 
 /// Places of the points in the order in which a Hilbert curve over `box`, which holds them all,
-/// visits them; those in one of its 2^30 or more cells in their own order. Neighbours on the curve
-/// are neighbours in space (J. Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707,
-/// 2004).
+/// visits them. A cell of it with many points has a curve of its own; the few of one cell keep
+/// their order. Neighbours on the curve are neighbours in space.
 template <int D>
 std::vector<VertexId> hilbert_order(std::span<const Point<D>> points, const Box<D>& box);
 

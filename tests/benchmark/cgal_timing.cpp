@@ -26,6 +26,7 @@ Timing time_cgal_sequential<2>(std::span<const Point<2>> points) {
   Timing timing{};
   {
     const Stopwatch watch(timing.seconds);
+    const ProcessorStopwatch processor(timing.processor_seconds);
     const CGAL::Delaunay_triangulation_2<Kernel> delaunay(input.begin(), input.end());
     timing.simplices = delaunay.number_of_faces();
   }
@@ -39,6 +40,7 @@ Timing time_cgal_sequential<3>(std::span<const Point<3>> points) {
   Timing timing{};
   {
     const Stopwatch watch(timing.seconds);
+    const ProcessorStopwatch processor(timing.processor_seconds);
     const CGAL::Delaunay_triangulation_3<Kernel> delaunay(input.begin(), input.end());
     timing.simplices = delaunay.number_of_finite_cells();
   }

@@ -3,10 +3,23 @@ target_link_libraries(cgal_oracle PUBLIC spillway_build PRIVATE CGAL::CGAL)
 
 spillway_test(delaunay_unit_test unit
   SOURCES delaunay/base_case_test.cpp delaunay/divide_test.cpp delaunay/finality_test.cpp
-          delaunay/parallel_test.cpp delaunay/schedule_test.cpp
+          delaunay/hilbert_order_test.cpp delaunay/parallel_test.cpp delaunay/schedule_test.cpp
   LIBS spillway_delaunay)
 
 spillway_test(delaunay_property_test property
   SOURCES delaunay/delaunay_property_test.cpp
   LIBS spillway_delaunay spillway_generators cgal_oracle
   TIMEOUT 900)
+
+add_library(kernel_2d_sets STATIC delaunay/kernel_2d_sets.cpp)
+target_link_libraries(kernel_2d_sets PUBLIC spillway_delaunay spillway_generators
+                      PRIVATE cgal_oracle fmt::fmt)
+
+spillway_test(kernel_2d_test property
+  SOURCES delaunay/kernel_2d_test.cpp delaunay/kernel_2d_predicates_test.cpp
+  LIBS kernel_2d_sets
+  TIMEOUT 300)
+
+# Not a test: runs as long as asked.
+add_executable(kernel_driver delaunay/kernel_2d_driver.cpp)
+target_link_libraries(kernel_driver PRIVATE kernel_2d_sets CLI11::CLI11 fmt::fmt)

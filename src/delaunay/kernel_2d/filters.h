@@ -1,0 +1,84 @@
+#pragma once
+// The first rungs of the 2D kernel's predicates: double arithmetic with error bounds, and exact
+// double arithmetic on lattices. Inline, since nearly all answers come from here. The bounds are
+// derived in docs/algorithm.md ("The 2D kernel").
+
+#include <algorithm>
+
+#include "src/geometry/point.h"
+#include "src/geometry/predicate_rungs.h"
+
+namespace spillway::kernel_2d {
+
+/// Two numbers that are computed with side by side.
+using Pair [[gnu::vector_size(16)]] = double;
+
+/// A vertex as seen from the point that is being inserted.
+struct Corner {
+  Pair at;        ///< x, y
+  double square;  ///< x^2 + y^2
+
+  Corner() = default;
+  Corner(const Pair& at_, double square_) : at(at_), square(square_) {}
+  // Member by member: the compiler would copy the padding, too, and wait for it.
+  Corner(const Corner& other) : at(other.at), square(other.square) {}
+  Corner& operator=(const Corner& other) {
+    at = other.at;
+    square = other.square;
+    return *this;
+  }
+  ~Corner() = default;
+};
+
+inline Pair pair_of(const Point<2>& p) { return Pair{p[0], p[1]}; }
+
+inline Corner corner_at(const Point<2>& vertex, const Pair& query) {
+  const Pair at = pair_of(vertex) - query;
+  const Pair squares = at * at;
+  return {at, squares[0] + squares[1]};
+}
+
+/// Positive if b lies to the left of a, as seen from the query.
+inline double cross(const Corner& a, const Corner& b) {
+  return a.at[0] * b.at[1] - a.at[1] * b.at[0];
+}
+
+/// cross(a, c) and cross(b, c).
+inline Pair crosses_with(const Corner& a, const Corner& b, const Corner& c) {
+  const Pair swapped{c.at[1], c.at[0]};
+  const Pair of_a = a.at * swapped;
+  const Pair of_b = b.at * swapped;
+  return Pair{of_a[0], of_b[0]} - Pair{of_a[1], of_b[1]};
+}
+
+/// What underflow may add to the errors, in coordinates of extent 1 to 2.
+inline constexpr double kUnderflow = 0x1p-1000;
+
+/// Bound of a computed in-circle determinant's error, if no corner's square exceeds `largest`.
+inline double in_circle_bound(double largest) {
+  return 36 * rungs::kRoundoff * (largest * largest) + kUnderflow;
+}
+
+/// Bound of the error of a computed cross().
+inline double cross_bound(double largest) { return 5 * rungs::kRoundoff * largest + kUnderflow; }
+
+/// Computed from integers, the determinant is exact up to this `largest`: 3 largest^2 <= 2^53.
+inline constexpr double kExactInCircle = 54'794'157;
+/// ... and cross() up to this one.
+inline constexpr double kExactCross = 0x1p52;
+
+inline double largest_square(const Corner& a, const Corner& b, const Corner& c) {
+  return std::max(c.square, std::max(a.square, b.square));
+}
+
+/// The tie rule for four points on a circle, of which `from`, `to` and `apex` are a triangle beyond
+/// the edge from -> to, seen from the query: the triangle is in conflict unless the
+/// lexicographically largest of the four is the apex or the query. For lattice points within
+/// kExactInCircle.
+inline bool tie_conflicts(const Corner& from, const Corner& to, const Corner& apex) {
+  // Coordinates are below 2^13, so one number orders them as the pair does.
+  const auto rank = [](const Corner& c) { return c.at[0] * 0x1p14 + c.at[1]; };
+  return std::max(rank(from), rank(to)) > std::max(rank(apex), 0.0);
+}
+
+}  // namespace spillway::kernel_2d

@@ -1,0 +1,19 @@
+#pragma once
+// The base case in the plane: exact incremental insertion along a Hilbert curve, in rounds. How it
+// works and why it is exact: docs/algorithm.md, "The 2D kernel".
+
+#include <span>
+
+#include "src/delaunay/base_case.h"
+
+namespace spillway {
+
+/// Triangulates points that span the plane; `basis` has the places of three that are not collinear.
+/// Works for any finite doubles. Throws Error for more than 2^28 - 2 points, whose triangles are
+/// more than it can number.
+BaseCase<2> kernel_2d_base_case(const BaseCaseInput<2>& input, std::span<const VertexId> basis);
+
+/// Gives the system the memory that was kept for coming base cases.
+void release_kernel_2d_memory();
+
+}  // namespace spillway

@@ -1,0 +1,36 @@
+#pragma once
+// The coordinates the 2D kernel computes with. A power of two scales them, so that nothing
+// overflows; points of a lattice become integers counted from the corner of their box.
+
+#include <span>
+
+#include "src/delaunay/kernel_2d/working_memory.h"
+#include "src/geometry/point.h"
+
+namespace spillway::kernel_2d {
+
+/// The kernel's own vertex numbers: the infinite vertex, then the points in their order.
+inline constexpr VertexId kInfinite = 0;
+inline constexpr VertexId kFirstPoint = 1;
+
+/// One base case's points, by the kernel's vertex numbers.
+struct WorkingPoints {
+  /// NaN for the infinite vertex, so that every comparison with it decides nothing. If `lattice`,
+  /// integers of less than 2^53: the points minus a lattice point, over the lattice's unit. If not,
+  /// the points times a power of two that brings the longer side of their box into [1, 2), each
+  /// rounded by at most 2^-1075.
+  const Point<2>* scaled = nullptr;
+  const Point<2>* originals = nullptr;  ///< those the caller gave, from kFirstPoint on
+  bool lattice = false;
+  /// The static filter: a computed in-circle determinant of any of the points that is larger has
+  /// the right sign.
+  double certain_determinant = 0;
+
+  [[nodiscard]] const Point<2>& original(VertexId v) const { return originals[v - kFirstPoint]; }
+};
+
+/// Scales points that are not all collinear. A lattice is any set of points that all are integers
+/// below 2^53 times one power of two: LiDAR's integers as well as quarters of a metre.
+WorkingPoints make_working_points(std::span<const Point<2>> points, Block& memory);
+
+}  // namespace spillway::kernel_2d
