@@ -98,8 +98,8 @@ class DiskInput : public InputFile {
     }
     if (S_ISREG(status.st_mode)) {
       // Standard input may have been read from before: what counts is the rest.
-      const off_t position = std::max<off_t>(0, ::lseek(fd, 0, SEEK_CUR));
-      size_ = static_cast<std::uint64_t>(std::max<off_t>(0, status.st_size - position));
+      start_ = std::max<off_t>(0, ::lseek(fd, 0, SEEK_CUR));
+      size_ = static_cast<std::uint64_t>(std::max<off_t>(0, status.st_size - start_));
       ::posix_fadvise(fd, 0, 0, POSIX_FADV_SEQUENTIAL);  // only advice: no result is an error
     }
   }
@@ -119,6 +119,12 @@ class DiskInput : public InputFile {
     return done;
   }
 
+  bool seek(std::uint64_t position) override {
+    if (!size_) return false;
+    if (::lseek(file_.get(), start_ + static_cast<off_t>(position), SEEK_SET) < 0) fail(errno);
+    return true;
+  }
+
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return size_; }
   [[nodiscard]] const std::string& name() const override { return name_; }
 
@@ -129,6 +135,7 @@ class DiskInput : public InputFile {
 
   Descriptor file_;
   std::string name_;
+  off_t start_ = 0;  // where reading began
   std::optional<std::uint64_t> size_;
 };
 

@@ -11,13 +11,17 @@
 
 namespace spillway {
 
-/// A byte stream that is read once, forwards.
+/// A byte stream that is read forwards, and from any byte on where it is a file.
 class InputFile {
  public:
   virtual ~InputFile() = default;
 
   /// Reads up to buffer.size() bytes; fewer only at the end of the file. Returns how many.
   virtual std::size_t read(std::span<std::byte> buffer) = 0;
+
+  /// Makes the next read() begin at that byte, counted from the first one that could be read.
+  /// False, and nothing done, where bytes come only once: a pipe, what is being decompressed.
+  virtual bool seek(std::uint64_t /*position*/) { return false; }
 
   /// Size in bytes; nothing for pipes.
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const = 0;

@@ -6,6 +6,8 @@
 namespace spillway {
 
 std::span<const std::byte> InputSource::peek(std::size_t count) {
+  peeked_.erase(peeked_.begin(), peeked_.begin() + static_cast<std::ptrdiff_t>(peeked_read_));
+  peeked_read_ = 0;
   if (peeked_.size() < count) {
     const std::size_t had = peeked_.size();
     peeked_.resize(count);
@@ -23,6 +25,13 @@ std::size_t InputSource::read(std::span<std::byte> buffer) {
   const std::size_t done = from_peeked + (rest.empty() ? 0 : file_->read(rest));
   position_ += done;
   return done;
+}
+
+bool InputSource::seek(std::uint64_t position) {
+  if (!file_->seek(position)) return false;
+  peeked_read_ = peeked_.size();
+  position_ = position;
+  return true;
 }
 
 bool InputSource::skip(std::uint64_t count) {

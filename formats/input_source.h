@@ -12,16 +12,18 @@
 
 namespace spillway {
 
-/// An input file whose first bytes can be looked at before they are read, so that a pipe's format
+/// An input file whose next bytes can be looked at before they are read, so that a pipe's format
 /// can be recognised, and that knows how far it has been read.
 class InputSource : public InputFile {
  public:
   explicit InputSource(std::unique_ptr<InputFile> file) : file_(std::move(file)) {}
 
-  /// The first `count` bytes, fewer if the file is shorter. Only before the first read().
+  /// The next `count` bytes, fewer if the file ends before; they stay unread.
   std::span<const std::byte> peek(std::size_t count);
 
   std::size_t read(std::span<std::byte> buffer) override;
+
+  bool seek(std::uint64_t position) override;
 
   /// Reads and drops bytes; false if the file ends before.
   bool skip(std::uint64_t count);
@@ -29,7 +31,7 @@ class InputSource : public InputFile {
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return file_->size(); }
   [[nodiscard]] const std::string& name() const override { return file_->name(); }
 
-  /// Number of bytes read so far.
+  /// Number of the next byte.
   [[nodiscard]] std::uint64_t position() const { return position_; }
 
   /// The share of the file that has been read, from 0 to 1; nothing for pipes.

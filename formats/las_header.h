@@ -5,9 +5,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "formats/input_source.h"
+#include "formats/laz/copc_info.h"
+#include "formats/laz/laz_record.h"
 #include "formats/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
@@ -31,8 +34,11 @@ inline constexpr std::size_t kLegacyCount = 107;
 inline constexpr std::size_t kLegacyByReturn = 111;
 inline constexpr std::size_t kScale = 131;
 inline constexpr std::size_t kOffset = 155;
-inline constexpr std::size_t kBounds = 179;  // max x, min x, max y, min y, max z, min z
-inline constexpr std::size_t kCount = 247;   // from 1.4
+inline constexpr std::size_t kBounds = 179;         // max x, min x, max y, min y, max z, min z
+inline constexpr std::size_t kWaveformStart = 227;  // from 1.3
+inline constexpr std::size_t kEvlrStart = 235;      // from 1.4, like those below
+inline constexpr std::size_t kEvlrCount = 243;
+inline constexpr std::size_t kCount = 247;
 inline constexpr std::size_t kByReturn = 255;
 }  // namespace las_field
 
@@ -40,6 +46,7 @@ inline constexpr std::size_t kLasHeaderSize = 227;    ///< of LAS 1.0 to 1.2
 inline constexpr std::size_t kLas14HeaderSize = 375;  ///< of LAS 1.4
 inline constexpr std::size_t kLasTextField = 32;      ///< bytes of an identifier in the header
 inline constexpr std::size_t kLasVlrHeaderSize = 54;
+inline constexpr std::size_t kLasEvlrHeaderSize = 60;  ///< of the records behind the points
 
 /// Shortest record of each point format, in bytes; longer ones carry extra bytes at their end.
 inline constexpr std::array<std::size_t, 11> kLasRecordLengths = {20, 28, 26, 34, 57, 63,
@@ -53,18 +60,24 @@ constexpr unsigned las_withheld_mask(int point_format) { return point_format < 6
 
 /// What a checked header says.
 struct LasHeader {
-  std::string version;  ///< "1.0" to "1.4"
+  std::string version;  ///< "1.0" to "1.5"
   int point_format = 0;
   std::size_t record_length = 0;
   std::uint64_t count = 0;  ///< of point records
   Lattice lattice;
-  Box<3> extent;         ///< empty if the header's bounds are not ordered
-  std::string crs;       ///< WKT, or "EPSG:n", or empty
-  std::string software;  ///< generating software
+  Box<3> extent;                       ///< empty if the header's bounds are not ordered
+  std::string crs;                     ///< WKT, or "EPSG:n", or empty
+  std::string software;                ///< generating software
+  std::uint64_t offset_to_points = 0;  ///< compressed or not
+  /// Where waveforms or extended records begin behind the points, if there are any.
+  std::optional<std::uint64_t> offset_behind_points;
+  std::optional<LazRecord> laz;  ///< set if the points are compressed
+  std::optional<CopcInfo> copc;  ///< set if they are and lie in an octree
 };
 
-/// Reads everything before the first point record. Throws Error, before anything is allocated, if a
-/// field contradicts another one or the size of the file, or if the file is compressed (LAZ).
+/// Reads everything before the first point, and behind the points where the coordinate system is
+/// not told before and the source can go there. Throws Error, before anything is allocated, if a
+/// field contradicts another one or the size of the file.
 LasHeader read_las_header(InputSource& source);
 
 /// The same as any point source has it, for a source of that name.

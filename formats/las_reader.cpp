@@ -7,6 +7,7 @@
 
 #include "formats/bytes.h"
 #include "formats/las_header.h"
+#include "formats/laz/laz_reader.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -36,10 +37,10 @@ PointAttributes record_attributes(const std::byte* record, bool extended) {
 
 class LasReader : public PointReader {
  public:
-  LasReader(std::unique_ptr<InputSource> source, const std::string& path,
+  LasReader(std::unique_ptr<InputSource> source, const LasHeader& las, const std::string& path,
             const PointReaderOptions& options)
       : source_(std::move(source)),
-        las_(read_las_header(*source_)),
+        las_(las),
         header_(las_point_header(las_, path)),
         attributes_(options.attributes),
         withheld_mask_(options.keep_withheld ? 0 : las_withheld_mask(las_.point_format)),
@@ -103,7 +104,9 @@ class LasReader : public PointReader {
 std::unique_ptr<PointReader> open_las_reader(std::unique_ptr<InputSource> source,
                                              const std::string& path,
                                              const PointReaderOptions& options) {
-  return std::make_unique<LasReader>(std::move(source), path, options);
+  const LasHeader las = read_las_header(*source);
+  if (las.laz) return open_laz_reader(std::move(source), las, path, options);
+  return std::make_unique<LasReader>(std::move(source), las, path, options);
 }
 
 }  // namespace spillway

@@ -8,8 +8,8 @@
 
 namespace spillway {
 
-/// Opens LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. `path` is the source's name as the
-/// user gave it.
+/// Opens LAS 1.0 to 1.5, point formats 0 to 10, compressed (LAZ, COPC) or not. `path` is the
+/// source's name as the user gave it.
 std::unique_ptr<PointReader> open_las_reader(std::unique_ptr<InputSource> source,
                                              const std::string& path,
                                              const PointReaderOptions& options);

@@ -7,8 +7,11 @@
 
 namespace spillway {
 
-/// Writes LAS, point format 0: version 1.2, or 1.4 for more than 2^32 - 1 points. On a pipe, where
-/// the header cannot be written again, its bounds are those of all 32-bit integers.
+/// Writes LAS: version 1.2 with point format 0, or 1.4 with point format 6, which counts more than
+/// 2^32 - 1 points and holds more classes, more returns and the overlap flag. Counts and bounds are
+/// written into the header at the end. Where that cannot be done, the promised count is trusted,
+/// the bounds are those of all 32-bit integers, and the counts by return, if attributes come, are
+/// 0.
 std::unique_ptr<PointWriter> open_las_writer(std::unique_ptr<OutputFile> file,
                                              const PointWriterOptions& options);
 

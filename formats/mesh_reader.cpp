@@ -9,7 +9,10 @@
 #include <utility>
 
 #include "formats/bytes.h"
+#include "formats/glb_format.h"
+#include "formats/glb_reader.h"
 #include "formats/input_source.h"
+#include "formats/landxml_reader.h"
 #include "formats/mesh_block.h"
 #include "formats/mesh_writer.h"
 #include "formats/npy_header.h"
@@ -22,6 +25,9 @@
 #include "formats/sma_reader.h"
 #include "formats/spm_format.h"
 #include "formats/spm_reader.h"
+#include "formats/stl_format.h"
+#include "formats/stl_reader.h"
+#include "formats/vector_mesh.h"
 #include "formats/vtu_reader.h"
 #include "src/error.h"
 
@@ -29,6 +35,10 @@ namespace spillway {
 namespace {
 
 constexpr std::size_t kProbe = 1024;
+
+// A GeoPackage is a SQLite database.
+constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
+constexpr std::string_view kShapefileMagic("\x00\x00\x27\x0a", 4);
 
 /// Whether the text begins with `word`, and with nothing that makes it longer.
 bool begins_with_word(std::string_view text, std::string_view word) {
@@ -46,6 +56,11 @@ std::optional<MeshFormat> format_of_content(InputSource& source) {
   if (begins_with_word(text, kSmaNote)) return MeshFormat::kSma;
   if (text.starts_with(kSpmMagic)) return MeshFormat::kSpm;
   if (text.starts_with('<') && text.find("<VTKFile") != text.npos) return MeshFormat::kVtu;
+  if (text.find("<LandXML") != text.npos) return MeshFormat::kLandXml;
+  if (text.starts_with(glb::kMagic)) return MeshFormat::kGlb;
+  if (text.starts_with(kStlOrigin) || looks_like_ascii_stl(text)) return MeshFormat::kStl;
+  if (text.starts_with(kSqliteMagic)) return MeshFormat::kGpkg;
+  if (text.starts_with(kShapefileMagic)) return MeshFormat::kShp;
   return std::nullopt;
 }
 
@@ -58,6 +73,10 @@ std::optional<MeshFormat> format_of_name(const std::string& path) {
   if (extension == "vtu") return MeshFormat::kVtu;
   if (extension == "spm") return MeshFormat::kSpm;
   if (extension == "sma") return MeshFormat::kSma;
+  if (extension == "glb") return MeshFormat::kGlb;
+  if (extension == "stl") return MeshFormat::kStl;
+  if (extension == "gpkg") return MeshFormat::kGpkg;
+  if (extension == "shp") return MeshFormat::kShp;
   return std::nullopt;
 }
 
@@ -80,8 +99,8 @@ bool is_ply_mesh(InputSource& source) {
   }
   throw Error(
       fmt::format("{}: this is no mesh that is known: it begins neither as PLY nor as OFF nor "
-                  "as VTU nor as spm, and has not the name of OBJ, SMA or npy; convert it "
-                  "or name its format",
+                  "as VTU nor as spm, and has not the name of another format; convert it or name "
+                  "its format",
                   source.name()));
 }
 
@@ -153,6 +172,15 @@ Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& fo
       return collect(*open_spm_reader(std::move(source)));
     case MeshFormat::kSma:
       return collect(*open_sma_reader(std::move(source)));
+    case MeshFormat::kGlb:
+      return read_glb(*source);
+    case MeshFormat::kStl:
+      return read_stl(*source);
+    case MeshFormat::kLandXml:
+      return read_landxml(*source);
+    case MeshFormat::kGpkg:
+    case MeshFormat::kShp:
+      return read_vector_mesh(path);
     default:
       return read_ply(*source);
   }

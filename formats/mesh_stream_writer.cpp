@@ -5,6 +5,8 @@
 #include "formats/sma_writer.h"
 #include "formats/spm_writer.h"
 #include "formats/spooled_mesh_writer.h"
+#include "formats/stl_writer.h"
+#include "formats/vector_mesh.h"
 
 namespace spillway {
 
@@ -20,6 +22,11 @@ std::unique_ptr<MeshStreamWriter> open_mesh_stream_writer(FileSystem& files,
       return open_spm_writer(std::move(created.main), header);
     case MeshFormat::kSma:
       return open_sma_writer(std::move(created.main), header);
+    case MeshFormat::kStl:
+      return open_stl_writer(std::move(created.main), header);
+    case MeshFormat::kGpkg:
+    case MeshFormat::kShp:
+      return open_vector_mesh_writer(path, format, header);
     default:
       return open_spooled_mesh_writer(std::move(created), header, scratch);
   }

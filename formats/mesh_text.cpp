@@ -20,7 +20,7 @@ void append_coordinates(BlockOutput& output, std::string_view before, const Poin
       bytes(fmt::format_to(at, FMT_COMPILE("{}{} {} {}"), before, point[0], point[1], point[2])));
 }
 
-void append_number(BlockOutput& output, char before, std::uint64_t number) {
+void append_number(BlockOutput& output, std::string_view before, std::uint64_t number) {
   char* const at = text(output.reserve(kLongestLine));
   output.advance_to(bytes(fmt::format_to(at, FMT_COMPILE("{}{}"), before, number)));
 }

@@ -15,7 +15,7 @@ namespace spillway {
 void append_coordinates(BlockOutput& output, std::string_view before, const Point<3>& point);
 
 /// Appends `before` and a number.
-void append_number(BlockOutput& output, char before, std::uint64_t number);
+void append_number(BlockOutput& output, std::string_view before, std::uint64_t number);
 
 /// Appends a line: `keyword` and the simplex's corners, counted from `first`.
 void append_simplex(BlockOutput& output, std::string_view keyword,

@@ -7,6 +7,8 @@
 #include <array>
 #include <utility>
 
+#include "formats/glb_writer.h"
+#include "formats/landxml_writer.h"
 #include "formats/npy_mesh.h"
 #include "formats/obj_writer.h"
 #include "formats/off_writer.h"
@@ -24,10 +26,37 @@ struct NamedFormat {
 };
 
 constexpr std::array kFormats = {
-    NamedFormat{"ply", MeshFormat::kPly}, NamedFormat{"ply-ascii", MeshFormat::kPlyAscii},
-    NamedFormat{"obj", MeshFormat::kObj}, NamedFormat{"off", MeshFormat::kOff},
-    NamedFormat{"vtu", MeshFormat::kVtu}, NamedFormat{"npy", MeshFormat::kNpy},
-    NamedFormat{"spm", MeshFormat::kSpm}, NamedFormat{"sma", MeshFormat::kSma}};
+    NamedFormat{"ply", MeshFormat::kPly},         NamedFormat{"ply-ascii", MeshFormat::kPlyAscii},
+    NamedFormat{"obj", MeshFormat::kObj},         NamedFormat{"off", MeshFormat::kOff},
+    NamedFormat{"vtu", MeshFormat::kVtu},         NamedFormat{"npy", MeshFormat::kNpy},
+    NamedFormat{"spm", MeshFormat::kSpm},         NamedFormat{"sma", MeshFormat::kSma},
+    NamedFormat{"glb", MeshFormat::kGlb},         NamedFormat{"stl", MeshFormat::kStl},
+    NamedFormat{"landxml", MeshFormat::kLandXml}, NamedFormat{"gpkg", MeshFormat::kGpkg},
+    NamedFormat{"shp", MeshFormat::kShp}};
+
+/// What the formats of triangles only are called in messages; nothing for the others.
+std::string_view triangle_format(MeshFormat format) {
+  switch (format) {
+    case MeshFormat::kObj:
+      return "OBJ";
+    case MeshFormat::kOff:
+      return "OFF";
+    case MeshFormat::kSma:
+      return "SMA";
+    case MeshFormat::kGlb:
+      return "glTF";
+    case MeshFormat::kStl:
+      return "STL";
+    case MeshFormat::kLandXml:
+      return "LandXML";
+    case MeshFormat::kGpkg:
+      return "GeoPackage";
+    case MeshFormat::kShp:
+      return "Shapefile";
+    default:
+      return "";
+  }
+}
 
 /// Throws Error if the format, of triangles only, cannot hold the mesh.
 void check_triangles_only(const std::string& path, std::string_view format, int dimension,
@@ -44,6 +73,11 @@ void check_triangles_only(const std::string& path, std::string_view format, int 
   }
 }
 
+bool needs_regular_file(MeshFormat format) {
+  return format == MeshFormat::kGlb || format == MeshFormat::kStl || format == MeshFormat::kGpkg ||
+         format == MeshFormat::kShp;
+}
+
 }  // namespace
 
 std::vector<std::string> mesh_format_names() {
@@ -55,7 +89,8 @@ std::vector<std::string> mesh_format_names() {
 
 MeshFormat mesh_format(const std::string& path, const std::string& format_name) {
   if (path == "-" && format_name.empty()) return MeshFormat::kSpm;
-  const std::string name = format_name.empty() ? extension_of(path) : format_name;
+  std::string name = format_name.empty() ? extension_of(path) : format_name;
+  if (format_name.empty() && name == "xml") name = "landxml";
   const auto* const found =
       std::find_if(kFormats.begin(), kFormats.end(),
                    [&](const NamedFormat& known) { return known.name == name; });
@@ -70,25 +105,22 @@ MeshFiles create_mesh_files(FileSystem& files, const std::string& path, MeshForm
                             int dimension, bool has_input_index) {
   MeshFiles created;
   created.format = format;
-  switch (format) {
-    case MeshFormat::kObj:
-      check_triangles_only(path, "OBJ", dimension, has_input_index);
-      break;
-    case MeshFormat::kOff:
-      check_triangles_only(path, "OFF", dimension, has_input_index);
-      break;
-    case MeshFormat::kSma:
-      check_triangles_only(path, "SMA", dimension, has_input_index);
-      break;
-    case MeshFormat::kNpy: {
-      const NpyMeshNames names = npy_mesh_to_write(files, path, has_input_index);
-      created.main = files.create(names.vertices);
-      created.simplices = files.create(names.simplices);
-      if (has_input_index) created.input_index = files.create(names.input_index);
-      return created;
-    }
-    default:
-      break;
+  if (const std::string_view name = triangle_format(format); !name.empty()) {
+    check_triangles_only(path, name, dimension, has_input_index);
+  }
+  if (path == "-" && needs_regular_file(format)) {
+    throw Error(
+        fmt::format("standard output cannot take {}, whose begin is written last; name a "
+                    "file",
+                    triangle_format(format)));
+  }
+  if (format == MeshFormat::kGpkg || format == MeshFormat::kShp) return created;
+  if (format == MeshFormat::kNpy) {
+    const NpyMeshNames names = npy_mesh_to_write(files, path, has_input_index);
+    created.main = files.create(names.vertices);
+    created.simplices = files.create(names.simplices);
+    if (has_input_index) created.input_index = files.create(names.input_index);
+    return created;
   }
   created.main = files.create(path);
   return created;
@@ -107,9 +139,12 @@ std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshHeader& 
       return open_vtu_writer(std::move(files.main), header);
     case MeshFormat::kNpy:
       return open_npy_mesh_writer(std::move(files), header);
+    case MeshFormat::kGlb:
+      return open_glb_writer(std::move(files.main), header);
+    case MeshFormat::kLandXml:
+      return open_landxml_writer(std::move(files.main), header);
     default:
-      throw Error(fmt::format("cannot write {}: its format is a stream, no whole mesh",
-                              files.main->name()));
+      throw Error("this mesh format is written block by block, not as a whole mesh");
   }
 }
 

@@ -30,9 +30,23 @@ class MeshWriter {
   virtual void finish() = 0;
 };
 
-/// The mesh formats, by the names `--output-format` and `--input-format` take. The last two are
-/// streams.
-enum class MeshFormat { kPly, kPlyAscii, kObj, kOff, kVtu, kNpy, kSpm, kSma };
+/// The mesh formats, by the names `--output-format` and `--input-format` take. Spm and sma are
+/// streams, and stl, gpkg and shp are written as such, too, block by block.
+enum class MeshFormat {
+  kPly,
+  kPlyAscii,
+  kObj,
+  kOff,
+  kVtu,
+  kNpy,
+  kSpm,
+  kSma,
+  kGlb,
+  kStl,
+  kLandXml,
+  kGpkg,
+  kShp
+};
 
 /// All names of mesh formats, as the command line lists them: "ply", "ply-ascii", "obj", ...
 std::vector<std::string> mesh_format_names();
@@ -44,18 +58,21 @@ MeshFormat mesh_format(const std::string& path, const std::string& format_name);
 /// The files of a mesh, created but still empty.
 struct MeshFiles {
   MeshFormat format = MeshFormat::kPly;
-  std::unique_ptr<OutputFile> main;         ///< the only one but for npy, where it has the vertices
+  /// The only one but for npy, where it has the vertices; none for gpkg and shp, which GDAL writes.
+  std::unique_ptr<OutputFile> main;
   std::unique_ptr<OutputFile> simplices;    ///< npy only
   std::unique_ptr<OutputFile> input_index;  ///< npy only, if there is an input index
 };
 
 /// Creates the files of the mesh `path` ("-": standard output). Throws Error if the format cannot
-/// hold it (OBJ, OFF and SMA hold no tetrahedra and no input index; npy needs two files and so no
-/// pipe) or a file cannot be created.
+/// hold it (all but spm, ply, vtu and npy hold no tetrahedra and no input index; npy needs two
+/// files and so no pipe, and neither do glb, stl, gpkg and shp, whose begin is written last) or a
+/// file cannot be created.
 MeshFiles create_mesh_files(FileSystem& files, const std::string& path, MeshFormat format,
                             int dimension, bool has_input_index);
 
-/// Begins to write to these files. Throws Error for streams: open_mesh_stream_writer() writes them.
+/// Begins to write to these files. Throws Error for what is written block by block:
+/// open_mesh_stream_writer() does that.
 std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshHeader& header);
 
 /// Creates the files of a mesh and begins to write to them.

@@ -1,10 +1,16 @@
-# Meshes: PLY, OBJ, OFF, VTU, npy pairs.
+# Meshes: PLY, OBJ, OFF, VTU, npy pairs, glTF, STL, LandXML, GeoPackage, Shapefile.
 target_sources(spillway_formats PRIVATE
   block_input.cpp
   block_output.cpp
   checked_mesh_writer.cpp
   fields.cpp
+  glb_reader.cpp
+  glb_scene.cpp
+  glb_writer.cpp
   input_kind.cpp
+  landxml_reader.cpp
+  landxml_writer.cpp
+  local_origin.cpp
   mesh_checks.cpp
   mesh_notes.cpp
   mesh_reader.cpp
@@ -21,7 +27,14 @@ target_sources(spillway_formats PRIVATE
   ply_reader.cpp
   ply_values.cpp
   ply_writer.cpp
+  stl_reader.cpp
+  stl_writer.cpp
+  triangle_stream_writer.cpp
+  vector_file.cpp
+  vector_mesh.cpp
   vtu_header.cpp
   vtu_reader.cpp
   vtu_writer.cpp
+  whole_file.cpp
   xml_scanner.cpp)
+target_link_libraries(spillway_formats PRIVATE nlohmann_json::nlohmann_json)

@@ -1,13 +1,12 @@
 #include "formats/npy_writer.h"
 
-#include <fmt/format.h>
-
+#include <algorithm>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "formats/bytes.h"
 #include "formats/npy_header.h"
-#include "src/error.h"
 
 namespace spillway {
 namespace {
@@ -17,15 +16,13 @@ class NpyWriter : public PointWriter {
   NpyWriter(std::unique_ptr<OutputFile> file, const PointWriterOptions& options)
       : file_(std::move(file)),
         lattice_(options.lattice),
-        count_(options.count.value()),
+        count_(options.count),
         columns_(options.coordinates) {
-    NpyHeader header;
-    header.type = "<f8";
-    header.shape = {count_, static_cast<std::uint64_t>(columns_)};
-    file_->write(as_bytes_of(npy_header_bytes(header)));
+    file_->write(as_bytes_of(header(count_.value_or(0))));
   }
 
-  void write(std::span<const Point<3>> points) override {
+  void write(std::span<const Point<3>> points,
+             std::span<const PointAttributes> /*attributes*/) override {
     constexpr std::size_t kBlockPoints = 8192;
     while (!points.empty()) {
       const std::span<const Point<3>> block = points.first(std::min(points.size(), kBlockPoints));
@@ -41,17 +38,23 @@ class NpyWriter : public PointWriter {
   }
 
   void finish() override {
-    if (written_ != count_) {
-      throw Error(fmt::format("cannot write {}: {} points were promised, but {} came",
-                              file_->name(), count_, written_));
-    }
+    check_written(*file_, count_, written_);
+    if (!count_) file_->rewrite(0, as_bytes_of(header(written_)));
     file_->commit();
   }
 
  private:
+  /// Always 128 bytes long: its padding has room for 20 digits.
+  [[nodiscard]] std::string header(std::uint64_t count) const {
+    NpyHeader header;
+    header.type = "<f8";
+    header.shape = {count, static_cast<std::uint64_t>(columns_)};
+    return npy_header_bytes(header);
+  }
+
   std::unique_ptr<OutputFile> file_;
   std::optional<Lattice> lattice_;
-  std::uint64_t count_;
+  std::optional<std::uint64_t> count_;  // promised
   std::uint64_t written_ = 0;
   int columns_;
   std::vector<double> values_;

@@ -56,7 +56,7 @@ class PlyWriter : public CheckedMeshWriter {
       }
       if (ascii_) {
         append_coordinates(output_, "", vertices[i]);
-        if (header().has_input_index) append_number(output_, ' ', input_index[i]);
+        if (header().has_input_index) append_number(output_, " ", input_index[i]);
         append_line_end(output_);
       } else {
         std::byte* at = output_.reserve(4 * sizeof(double));

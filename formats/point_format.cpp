@@ -11,12 +11,12 @@
 namespace spillway {
 
 PointFormat point_format_by_name(std::string_view name) {
-  if (name == "las") return PointFormat::kLas;
+  if (name == "las" || name == "laz" || name == "copc") return PointFormat::kLas;
   if (name == "text") return PointFormat::kText;
   if (name == "npy") return PointFormat::kNpy;
   if (name == "spp") return PointFormat::kSpp;
-  throw UsageError(
-      fmt::format("there is no point format \"{}\"; choose las, text, npy or spp", name));
+  throw UsageError(fmt::format(
+      "there is no point format \"{}\"; choose las, laz, copc, text, npy or spp", name));
 }
 
 std::optional<PointFormat> point_format_of_path(std::string_view path) {

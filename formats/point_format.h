@@ -8,8 +8,8 @@ namespace spillway {
 
 enum class PointFormat { kLas, kText, kNpy, kSpp };
 
-/// The format of that name ("las", "text", "npy", "spp"). Throws UsageError that lists them
-/// otherwise.
+/// The format of that name ("las", "laz", "copc", "text", "npy", "spp"); the first three are one,
+/// as the header tells which of them it is. Throws UsageError that lists them otherwise.
 PointFormat point_format_by_name(std::string_view name);
 
 /// The format that the extension of `path` stands for, that of compressed text (.gz, .bz2, .zst,

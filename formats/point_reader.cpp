@@ -64,26 +64,8 @@ Compression compression_of(const InputSource& source, const std::string& path,
   return found;
 }
 
-}  // namespace
-
-void PointReader::decode(RawPoints& raw, PointBlock& block) const {
-  std::swap(raw.decoded, block);
-}
-
-bool PointReader::read(PointBlock& block) {
-  RawPoints raw;
-  std::uint64_t withheld = 0;
-  block.clear();
-  while (block.size() == 0 && fetch(raw)) {
-    decode(raw, block);
-    withheld += std::exchange(block.withheld, 0);
-  }
-  block.withheld = withheld;
-  return block.size() > 0;
-}
-
-std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::string& path,
-                                               const PointReaderOptions& options) {
+std::unique_ptr<PointReader> open_by_format(FileSystem& files, const std::string& path,
+                                            const PointReaderOptions& options) {
   std::optional<PointFormat> format;
   if (!options.format.empty()) format = point_format_by_name(options.format);
   if (!format) format = point_format_of_path(path);
@@ -102,6 +84,34 @@ std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::str
   }
   const Compression compression = compression_of(*source, path, first_bytes);
   return open_text_reader(std::move(source), path, compression);
+}
+
+}  // namespace
+
+void PointReader::decode(RawPoints& raw, PointBlock& block) const { std::swap(raw.decoded, block); }
+
+bool PointReader::read(PointBlock& block) {
+  RawPoints raw;
+  std::uint64_t withheld = 0;
+  block.clear();
+  while (block.size() == 0 && fetch(raw)) {
+    decode(raw, block);
+    withheld += std::exchange(block.withheld, 0);
+  }
+  block.withheld = withheld;
+  return block.size() > 0;
+}
+
+std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::string& path,
+                                               const PointReaderOptions& options) {
+  std::unique_ptr<PointReader> reader = open_by_format(files, path, options);
+  if (options.resolution > 0 && reader->header().format != "copc") {
+    throw UsageError(
+        fmt::format("{}: only COPC files have levels of resolution; thin its points with --thin "
+                    "instead of --resolution",
+                    reader->header().name));
+  }
+  return reader;
 }
 
 }  // namespace spillway

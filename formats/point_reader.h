@@ -56,15 +56,13 @@ struct RawPoints {
   std::uint64_t first = 0;       ///< number of the first record
   std::uint64_t count = 0;       ///< of records in `bytes`
 
-  [[nodiscard]] std::uint64_t records() const {
-    return count + decoded.size() + decoded.withheld;
-  }
+  [[nodiscard]] std::uint64_t records() const { return count + decoded.size() + decoded.withheld; }
 };
 
 /// What a source says about its points before any is read.
 struct PointHeader {
   std::string name;       ///< as the user gave it, for messages
-  std::string format;     ///< "las", "text", "npy" or "spp"
+  std::string format;     ///< "las", "laz", "copc", "text", "npy" or "spp"
   std::string version;    ///< the format's own version, e.g. "1.2"; empty if it has none
   int point_format = -1;  ///< LAS point data record format, -1 for others
   int coordinates = 3;    ///< 2 if the points have no z
@@ -76,7 +74,7 @@ struct PointHeader {
 };
 
 struct PointReaderOptions {
-  std::string format;  ///< a name of point_format.h; empty: by extension, then first bytes
+  std::string format;          ///< a name of point_format.h; empty: by extension, then first bytes
   bool keep_withheld = false;  ///< keep points flagged as withheld
   bool attributes = false;     ///< fill PointBlock::attributes where the source has them
   /// Only points in this box (output coordinates, closed) are wanted: a reader that knows where its
@@ -113,8 +111,8 @@ class PointReader {
 };
 
 /// Opens a source ("-": standard input) and checks its header. The format is that of the options,
-/// else of the extension (.las, .txt, .xyz, .csv, .asc, .npy, .spp, each text format also with
-/// .gz, .bz2, .zst, .lz4), else of the first bytes.
+/// else of the extension (.las, .laz, .txt, .xyz, .csv, .asc, .npy, .spp, each text format also
+/// with .gz, .bz2, .zst, .lz4), else of the first bytes.
 std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::string& path,
                                                const PointReaderOptions& options);
 

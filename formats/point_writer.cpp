@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "formats/decompress.h"
 #include "formats/las_writer.h"
 #include "formats/npy_writer.h"
-#include "formats/point_format.h"
+#include "formats/spooled_output.h"
 #include "formats/spp_writer.h"
 #include "formats/text_writer.h"
 #include "src/error.h"
@@ -13,9 +15,23 @@
 namespace spillway {
 namespace {
 
-PointFormat format_to_write(const std::string& path, const std::string& format_name) {
+/// Whether the header is only right once all points are written.
+bool header_comes_last(PointFormat format, const PointWriterOptions& options) {
+  if (format == PointFormat::kLas) return !options.count || options.attributes;
+  return format == PointFormat::kNpy && !options.count;
+}
+
+}  // namespace
+
+PointFormat point_format_to_write(const std::string& path, const std::string& format_name) {
+  if (format_name == "laz" || format_name == "copc" ||
+      (format_name.empty() && extension_of(path) == "laz")) {
+    throw UsageError(fmt::format(
+        "cannot write {}: LAZ is read, not written; write .las, or .spp, which is compressed too",
+        path == "-" ? "standard output" : path));
+  }
   if (!format_name.empty()) return point_format_by_name(format_name);
-  if (extension_of(path) == "laz" || compression_of_name(path) != Compression::kNone) {
+  if (compression_of_name(path) != Compression::kNone) {
     throw UsageError(
         fmt::format("cannot write {}: compressed points are not written; write them "
                     "to .las, .txt, .npy or .spp and compress that",
@@ -31,18 +47,20 @@ PointFormat format_to_write(const std::string& path, const std::string& format_n
   return *format;
 }
 
-}  // namespace
-
 std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::string& path,
                                                const PointWriterOptions& options) {
-  const PointFormat format = format_to_write(path, options.format);
-  if (!options.count && (format == PointFormat::kLas || format == PointFormat::kNpy)) {
-    throw UsageError(
-        fmt::format("cannot write {}: its header tells the number of points, which is not known "
-                    "beforehand; write text or spp",
-                    path));
-  }
+  const PointFormat format = point_format_to_write(path, options.format);
   std::unique_ptr<OutputFile> file = files.create(path);
+  if (header_comes_last(format, options) && !file->rewrite(0, {})) {
+    if (options.scratch != nullptr) {
+      file = spool_output(std::move(file), *options.scratch);
+    } else if (!options.count) {
+      throw UsageError(
+          fmt::format("cannot write {}: its header tells the number of points, which is not known "
+                      "beforehand; write text or spp",
+                      file->name()));
+    }
+  }
   switch (format) {
     case PointFormat::kLas:
       return open_las_writer(std::move(file), options);
@@ -54,6 +72,14 @@ std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::str
       break;
   }
   return open_text_writer(std::move(file), options, extension_of(path) == "csv" ? ',' : ' ');
+}
+
+void check_written(const OutputFile& file, std::optional<std::uint64_t> promised,
+                   std::uint64_t written) {
+  if (promised && written != *promised) {
+    throw Error(fmt::format("cannot write {}: {} points were promised, but {} came", file.name(),
+                            *promised, written));
+  }
 }
 
 }  // namespace spillway

@@ -7,6 +7,9 @@
 #include <string>
 
 #include "formats/file_system.h"
+#include "formats/point_format.h"
+#include "formats/point_reader.h"
+#include "formats/scratch_folder.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
@@ -17,11 +20,19 @@ namespace spillway {
 struct PointWriterOptions {
   std::string format;   ///< "las", "text", "npy" or "spp"; empty: by extension
   int coordinates = 3;  ///< 2: x and y only (not LAS)
-  /// How many points will come; the headers of LAS and npy need it.
-  std::optional<std::uint64_t> count;
-  std::optional<Lattice> lattice;  ///< set if the points come as integers; LAS requires it
-  std::optional<Box<3>> extent;    ///< in output coordinates, where known; told by spp only
-  std::string crs;                 ///< as in PointHeader; told by spp only
+  /// How many points will come, where known. The headers of LAS and npy tell it, so on a pipe they
+  /// need it, or `scratch`.
+  std::optional<std::uint64_t> count{};
+  std::optional<Lattice> lattice{};  ///< set if the points come as integers; LAS requires it
+  std::optional<Box<3>> extent{};    ///< in output coordinates, where known; told by spp only
+  std::string crs{};                 ///< as in PointHeader; told by LAS and spp
+  /// `crs` as WKT where it is a code and the caller knows; without, LAS tells the code.
+  std::string crs_wkt{};
+  bool attributes = false;  ///< attributes will come too; LAS holds them, the others drop them
+  std::string version{};    ///< of LAS, "1.2" or "1.4"; empty: 1.2 unless `count` needs 1.4
+  /// Where an output that cannot go back to its header waits until the header is known; the folder
+  /// must outlive the writer.
+  ScratchFolder* scratch = nullptr;
 };
 
 /// Writes points. Nothing appears under the final name before finish().
@@ -29,15 +40,24 @@ class PointWriter {
  public:
   virtual ~PointWriter() = default;
 
-  /// Appends points: integers if the options have a lattice, else output coordinates.
-  virtual void write(std::span<const Point<3>> points) = 0;
+  /// Appends points: integers if the options have a lattice, else output coordinates; with one
+  /// value of `attributes` each, or none at all: single returns of no class.
+  virtual void write(std::span<const Point<3>> points,
+                     std::span<const PointAttributes> attributes) = 0;
 
   /// Completes the file. Throws Error if a number of points was promised and another came.
   virtual void finish() = 0;
 };
 
-/// Opens `path` ("-": standard output).
+/// Opens `path` ("-": standard output). Throws UsageError for what cannot be asked for.
 std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::string& path,
                                                const PointWriterOptions& options);
+
+/// The format that open_point_writer() chooses. Throws UsageError as it does.
+PointFormat point_format_to_write(const std::string& path, const std::string& format_name);
+
+/// For writers: throws Error if `promised` is set and another number of points was written.
+void check_written(const OutputFile& file, std::optional<std::uint64_t> promised,
+                   std::uint64_t written);
 
 }  // namespace spillway

@@ -5,6 +5,7 @@ target_sources(spillway_formats PRIVATE
   decompress.cpp
   file_system.cpp
   input_source.cpp
+  las_crs.cpp
   las_header.cpp
   las_reader.cpp
   las_writer.cpp
@@ -15,6 +16,7 @@ target_sources(spillway_formats PRIVATE
   point_format.cpp
   point_reader.cpp
   point_writer.cpp
+  spooled_output.cpp
   text_columns.cpp
   text_reader.cpp
   text_writer.cpp)

@@ -34,7 +34,8 @@ class SppWriter : public PointWriter {
     write_header(options);
   }
 
-  void write(std::span<const Point<3>> points) override {
+  void write(std::span<const Point<3>> points,
+             std::span<const PointAttributes> /*attributes*/) override {
     while (!points.empty()) {
       const std::size_t room = kSppBlockPoints - columns_[0].size();
       const std::span<const Point<3>> block = points.first(std::min(points.size(), room));
@@ -48,10 +49,7 @@ class SppWriter : public PointWriter {
 
   void finish() override {
     flush();
-    if (count_ && written_ != *count_) {
-      throw Error(fmt::format("cannot write {}: {} points were promised, but {} came",
-                              file_->name(), *count_, written_));
-    }
+    check_written(*file_, count_, written_);
     append_value(content_, written_);
     write_block(kSppTrailer);
     file_->commit();

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "formats/bytes.h"
-#include "src/error.h"
 
 namespace spillway {
 namespace {
@@ -52,7 +51,8 @@ class TextWriter : public PointWriter {
     }
   }
 
-  void write(std::span<const Point<3>> points) override {
+  void write(std::span<const Point<3>> points,
+             std::span<const PointAttributes> /*attributes*/) override {
     for (const Point<3>& p : points) {
       for (int axis = 0; axis < coordinates_; ++axis) {
         if (axis > 0) text_.push_back(separator_);
@@ -65,10 +65,7 @@ class TextWriter : public PointWriter {
   }
 
   void finish() override {
-    if (count_ && written_ != *count_) {
-      throw Error(fmt::format("cannot write {}: {} points were promised, but {} came",
-                              file_->name(), *count_, written_));
-    }
+    check_written(*file_, count_, written_);
     flush();
     file_->commit();
   }

@@ -66,7 +66,7 @@ class Pipeline {
     return {.dimension = D,
             .capacity = plan_.tile_capacity,
             .buffered_points = plan_.buffered_points,
-            .expected = source_.count(),
+            .expected = source_.expected(),
             .extent = source_.extent(),
             .index = options_.input_index};
   }
@@ -98,6 +98,8 @@ class Pipeline {
         options_.leaf_size > 0 ? options_.leaf_size : leaf_size_for(points, D, plan_);
     root_ = tree_.template nodes<D>();
     if (!root_) throw Error("the input has no points");
+    const Box<D>& box = root_->box;
+    options_.extent_known({{box.lo[0], box.lo[1]}, {box.hi[0], box.hi[1]}});
     add_node(*root_, nullptr, {}, figures_.tasks);
     figures_.tiles = tiles_.size();
     figures_.final_by_level.resize(nodes_.back()->level);

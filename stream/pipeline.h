@@ -11,6 +11,7 @@
 #include "formats/scratch_folder.h"
 #include "src/delaunay/divide.h"
 #include "src/delaunay/schedule.h"
+#include "src/geometry/box.h"
 #include "stream/heights.h"
 #include "stream/memory_budget.h"
 #include "stream/point_source.h"
@@ -30,6 +31,9 @@ struct StreamOptions {
   HeightChoice heights = HeightChoice::kFirst;
   std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, in output units
   bool input_index = false;
+  /// Told the box around all points in x and y, in the coordinates in which the source gives them,
+  /// before the first block is written.
+  std::function<void(const Box<2>&)> extent_known = [](const Box<2>&) {};
   /// Called when a phase begins ("read", "triangulate"), and when it has ended.
   std::function<void(const char* phase)> begin_phase = [](const char*) {};
   std::function<void()> end_phase = [] {};

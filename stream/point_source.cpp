@@ -1,30 +1,94 @@
 #include "stream/point_source.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
 #include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "stream/input_crs.h"
 
 namespace spillway {
+namespace {
+
+/// Pieces on their way into the thinning at a time.
+constexpr std::size_t kSlots = 6;
+
+/// Bounds for readers that compute coordinates with another lattice than the common one: nothing
+/// that may be inside is left out.
+Box<3> widened(Box<3> box) {
+  constexpr double kMargin = 1e-12;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] -= std::abs(box.lo[k]) * kMargin;
+    box.hi[k] += std::abs(box.hi[k]) * kMargin;
+  }
+  return box;
+}
+
+Box<3> common_part(const Box<3>& a, const Box<3>& b) {
+  Box<3> part;
+  for (int k = 0; k < 3; ++k) {
+    part.lo[k] = std::max(a.lo[k], b.lo[k]);
+    part.hi[k] = std::min(a.hi[k], b.hi[k]);
+    if (part.lo[k] > part.hi[k]) return {};
+  }
+  return part;
+}
+
+/// The share of a box, by its area in x, y, that a part of it has.
+double share_of(const Box<3>& part, const Box<3>& whole) {
+  if (part.empty()) return 0;
+  const double area = whole.extent(0) * whole.extent(1);
+  return area > 0 ? part.extent(0) * part.extent(1) / area : 1;
+}
+
+}  // namespace
 
 PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
                          PointSourceOptions options)
-    : files_(files), options_(std::move(options)), count_(0) {
-  for (const std::string& path : paths) inspect(path);
+    : files_(files), options_(std::move(options)), records_(0) {
+  options_.reader.attributes |= options_.filter.needs_attributes();
+  if (options_.filter.bounds) options_.reader.bounds = widened(*options_.filter.bounds);
+  std::vector<std::string> faults;
+  for (const std::string& path : paths) {
+    try {
+      inspect(path);
+    } catch (const UsageError&) {
+      throw;
+    } catch (const Error& error) {
+      faults.emplace_back(error.what());
+    }
+  }
+  if (faults.size() == 1) throw Error(faults.front());
+  if (!faults.empty()) {
+    throw Error(fmt::format("{} of {} inputs cannot be read:\n  {}", faults.size(), paths.size(),
+                            fmt::join(faults, "\n  ")));
+  }
+  check_coordinate_systems();
   find_lattice();
   find_extent();
+  find_expected();
   for (Input& input : inputs_) {
-    const bool moved = input.shift != std::array<double, 3>{};
-    input.as_it_is = !input.header.lattice || (lattice_ && heights_on_lattice_ && !moved);
+    input.as_it_is =
+        !input.header.lattice || (lattice_ && heights_on_lattice_ && input.map.is_identity());
+  }
+  if (const auto& thinning = options_.thinning) {
+    thinning_.emplace(ThinningOptions{.cell = thinning->cell,
+                                      .choice = thinning->choice,
+                                      .dimension = options_.dimension,
+                                      .lattice = lattice_,
+                                      .memory = thinning->memory},
+                      *thinning->scratch);
   }
 }
 
 void PointSource::inspect(const std::string& path) {
-  Input& input = inputs_.emplace_back();
+  Input input;
   input.path = path;
   input.reader = open_point_reader(files_, path, options_.reader);
   input.header = input.reader->header();
@@ -32,58 +96,64 @@ void PointSource::inspect(const std::string& path) {
   if (options_.dimension == 3 && header.coordinates == 2) {
     throw Error(header.name + ": the points have no z: triangulate them with --dim 2");
   }
-  count_ = count_ && header.count ? std::optional(*count_ + *header.count) : std::nullopt;
-  if (crs_.empty()) {
-    crs_ = header.crs;
-  } else if (!header.crs.empty() && header.crs != crs_) {
-    options_.warn(header.name +
-                  ": warning: another coordinate system than that of the inputs before it; "
-                  "coordinates are used as they are");
+  const bool has_attributes = header.point_format >= 0;
+  if (options_.filter.needs_attributes() && !has_attributes) {
+    throw Error(
+        fmt::format("{}: {} has neither classes nor returns of points, so --keep-class, "
+                    "--drop-class and --returns cannot be used with it",
+                    header.name, header.format));
   }
+  records_ = records_ && header.count ? std::optional(*records_ + *header.count) : std::nullopt;
   std::error_code unknown;
   const bool opens_again = path != "-" && std::filesystem::is_regular_file(path, unknown);
   if (opens_again) input.reader.reset();
+  inputs_.push_back(std::move(input));
+}
+
+void PointSource::check_coordinate_systems() {
+  std::vector<InputCrs> systems;
+  for (const Input& input : inputs_) systems.push_back({input.header.name, input.header.crs});
+  crs_ = common_crs(systems, options_.force_crs, options_.warn);
 }
 
 void PointSource::find_lattice() {
-  const int dimension = options_.dimension;
-  const Input& first = inputs_.front();
-  if (!first.header.lattice) return;
-  const Lattice& base = *first.header.lattice;
-  if (!base.isotropic(dimension)) {
-    options_.detail(first.header.name +
-                    ": the axes have different scales, so points are triangulated in output "
-                    "coordinates");
-    return;
+  std::vector<Lattice> lattices;
+  for (const Input& input : inputs_) {
+    if (input.header.lattice) lattices.push_back(*input.header.lattice);
   }
-  heights_on_lattice_ = true;
-  for (Input& input : inputs_) {
-    if (input.header.lattice) {
-      if (const auto shift = lattice_shift(base, *input.header.lattice)) {
-        input.shift = *shift;
-        continue;
-      }
-      Lattice flat = *input.header.lattice;
-      for (int k = dimension; k < 3; ++k) {
-        flat.scale[k] = base.scale[k];
-        flat.offset[k] = base.offset[k];
-      }
-      if (const auto shift = lattice_shift(base, flat)) {
-        input.shift = *shift;
-        heights_on_lattice_ = false;
-        continue;
-      }
+  if (lattices.size() == inputs_.size()) {
+    if (const auto common = find_common_lattice(lattices, options_.dimension)) {
+      lattice_ = common->lattice;
+      heights_on_lattice_ = common->heights;
+      for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i].map = common->maps[i];
     }
-    options_.detail(input.header.name +
-                    ": not on the lattice of the inputs before it, so points are triangulated in "
-                    "output coordinates");
+  }
+  if (!lattices.empty()) explain_lattice();
+}
+
+/// Says on which lattice the points come, if it is not that of the only input; without one, which
+/// input is the first that does not fit to the first of all.
+void PointSource::explain_lattice() {
+  const PointHeader& first = inputs_.front().header;
+  if (lattice_) {
+    if (inputs_.size() == 1 && lattice_ == first.lattice) return;
+    options_.detail(fmt::format("points come on a lattice of step {}, heights {}",
+                                lattice_->scale[0],
+                                heights_on_lattice_ ? "on it, too" : "as they are"));
     return;
   }
-  lattice_ = base;
-  if (!heights_on_lattice_) {
-    lattice_->scale[2] = 1;
-    lattice_->offset[2] = 0;
+  for (const Input& input : inputs_) {
+    const bool fits =
+        first.lattice && input.header.lattice &&
+        find_common_lattice(std::vector{*first.lattice, *input.header.lattice}, options_.dimension);
+    if (fits) continue;
+    const bool alone = &input == &inputs_.front();
+    options_.detail(fmt::format(
+        "{}: {}, so points come in output coordinates", input.header.name,
+        alone ? "its axes have no common scale" : "not on one lattice with the first input"));
+    return;
   }
+  options_.detail("no lattice has all inputs, so points come in output coordinates");
 }
 
 void PointSource::find_extent() {
@@ -92,6 +162,7 @@ void PointSource::find_extent() {
     if (!input.header.extent) return;
     extent.expand(*input.header.extent);
   }
+  if (options_.filter.bounds) extent = common_part(extent, *options_.filter.bounds);
   if (extent.empty()) return;
   world_extent_ = extent;
   if (lattice_) {
@@ -103,15 +174,70 @@ void PointSource::find_extent() {
   extent_ = extent;
 }
 
+void PointSource::find_expected() {
+  if (!records_ || options_.thinning) return;
+  double expected = 0;
+  for (const Input& input : inputs_) {
+    double count = static_cast<double>(*input.header.count);
+    if (options_.filter.bounds && input.header.extent) {
+      const Box<3>& whole = *input.header.extent;
+      count *= share_of(common_part(whole, *options_.filter.bounds), whole);
+    }
+    expected += count;
+  }
+  expected_ =
+      static_cast<std::uint64_t>(std::ceil(expected / static_cast<double>(options_.filter.every)));
+}
+
+std::optional<std::uint64_t> PointSource::count() const {
+  const bool filtered =
+      options_.filter.active() || options_.thinning || options_.reader.resolution > 0;
+  return filtered ? std::nullopt : records_;
+}
+
+std::vector<PointHeader> PointSource::headers() const {
+  std::vector<PointHeader> headers;
+  for (const Input& input : inputs_) headers.push_back(input.header);
+  return headers;
+}
+
+bool PointSource::has_attributes() const {
+  return options_.reader.attributes && std::ranges::any_of(inputs_, [](const Input& input) {
+           return input.header.point_format >= 0;
+         });
+}
+
 Point<3> PointSource::placed(const Input& input, const Point<3>& point) const {
-  if (!input.header.lattice) return point;
   if (!lattice_) return input.header.lattice->to_world(point);
-  const double z =
-      heights_on_lattice_ ? point[2] + input.shift[2] : input.header.lattice->to_world(2, point[2]);
-  return {point[0] + input.shift[0], point[1] + input.shift[1], z};
+  return {input.map.map(0, point[0]), input.map.map(1, point[1]),
+          heights_on_lattice_ ? input.map.map(2, point[2])
+                              : input.header.lattice->to_world(2, point[2])};
 }
 
 bool PointSource::fetch(SourcePiece& piece) {
+  if (!thinning_) return fetch_input(piece);
+  if (!thinned_) thin_inputs();
+  piece.reader.reset();
+  return thinning_->next(piece.raw.decoded);
+}
+
+void PointSource::decode(SourcePiece& piece, PointBlock& block) {
+  if (piece.reader) {
+    decode_input(piece, block);
+  } else {
+    std::swap(piece.raw.decoded, block);
+  }
+  if (!options_.index) block.index.clear();
+}
+
+bool PointSource::read(PointBlock& block) {
+  SourcePiece piece;
+  block.clear();
+  while (block.size() == 0 && fetch(piece)) decode(piece, block);
+  return block.size() > 0;
+}
+
+bool PointSource::fetch_input(SourcePiece& piece) {
   for (; current_ < inputs_.size(); finish_input()) {
     Input& input = inputs_[current_];
     if (!input.reader) input.reader = open_point_reader(files_, input.path, options_.reader);
@@ -125,26 +251,42 @@ bool PointSource::fetch(SourcePiece& piece) {
   return false;
 }
 
-void PointSource::decode(SourcePiece& piece, PointBlock& block) {
+void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   piece.reader->decode(piece.raw, block);
   const Input& input = inputs_[piece.input];
   if (!input.as_it_is) {
     for (Point<3>& point : block.points) point = placed(input, point);
   }
-  if (options_.index) {
-    for (std::uint64_t& index : block.index) index += piece.first_index;
-  } else {
-    block.index.clear();
-  }
-  points_ += block.size();
-  withheld_ += block.withheld;
+  PointCounts counts;
+  counts.withheld = block.withheld;
+  counts.read = block.size() + block.withheld;
+  if (options_.filter.active()) apply_filter(options_.filter, lattice_, block, counts);
+  for (std::uint64_t& index : block.index) index += piece.first_index;
+  const std::lock_guard lock(counts_mutex_);
+  counts_ += counts;
 }
 
-bool PointSource::read(PointBlock& block) {
-  SourcePiece piece;
-  block.clear();
-  while (block.size() == 0 && fetch(piece)) decode(piece, block);
-  return block.size() > 0;
+/// Decoding uses all threads; the points of all inputs reach the cells in their order.
+void PointSource::thin_inputs() {
+  struct Slot {
+    SourcePiece piece;
+    PointBlock block;
+  };
+  std::vector<Slot> slots(kSlots);
+  const std::vector<PipelineStage> stages = {
+      {.in_order = false,
+       .work = [&](std::size_t slot) { decode_input(slots[slot].piece, slots[slot].block); }},
+      {.in_order = true, .work = [&](std::size_t slot) { thinning_->add(slots[slot].block); }}};
+  isolated([&] {
+    run_pipeline(
+        kSlots,
+        [&](std::size_t slot) {
+          options_.progress(points_read(), fraction_read());
+          return fetch_input(slots[slot].piece);
+        },
+        stages);
+  });
+  thinned_ = true;
 }
 
 void PointSource::finish_input() {
@@ -156,16 +298,28 @@ void PointSource::finish_input() {
   input.reader.reset();
 }
 
+PointCounts PointSource::counts() const {
+  const std::lock_guard lock(counts_mutex_);
+  PointCounts counts = counts_;
+  if (thinning_) counts.thinned = thinning_->dropped();
+  return counts;
+}
+
+std::uint64_t PointSource::points_read() const {
+  const std::lock_guard lock(counts_mutex_);
+  return counts_.read - counts_.withheld;
+}
+
 std::optional<double> PointSource::fraction_read() const {
   if (current_ == inputs_.size()) return 1;
   std::optional<double> fraction = 0;
   const Input& input = inputs_[current_];
   if (input.reader) fraction = input.reader->fraction_read();
   if (!fraction) return fraction;
-  if (count_ && *count_ > 0) {
+  if (records_ && *records_ > 0) {
     const double before = static_cast<double>(records_before_);
     const double now = *fraction * static_cast<double>(*input.header.count);
-    return (before + now) / static_cast<double>(*count_);
+    return (before + now) / static_cast<double>(*records_);
   }
   return (static_cast<double>(current_) + *fraction) / static_cast<double>(inputs_.size());
 }

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <array>
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,21 +11,39 @@
 
 #include "formats/file_system.h"
 #include "formats/point_reader.h"
+#include "formats/scratch_folder.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
+#include "stream/common_lattice.h"
+#include "stream/point_filter.h"
+#include "stream/thinning.h"
 
 namespace spillway {
 
+/// One point a cell, as Thinning does it.
+struct ThinningRequest {
+  double cell = 1;
+  ThinChoice choice = ThinChoice::kFirst;
+  std::uint64_t memory = 0;          ///< bytes to keep to
+  ScratchFolder* scratch = nullptr;  ///< outlives the source
+};
+
 struct PointSourceOptions {
   int dimension = 2;
-  bool index = false;  ///< fill PointBlock::index
-  PointReaderOptions reader{};
+  bool index = false;           ///< fill PointBlock::index
+  PointReaderOptions reader{};  ///< bounds are set by the filter
+  PointFilter filter{};
+  std::optional<ThinningRequest> thinning{};
+  bool force_crs = false;  ///< inputs of different coordinate systems are no error
   /// Receives what is worth a warning, and what only -v shows.
   std::function<void(std::string_view)> warn = [](std::string_view) {};
   std::function<void(std::string_view)> detail = [](std::string_view) {};
+  /// Told how far the inputs have been read while they are being thinned.
+  std::function<void(std::uint64_t points, std::optional<double> fraction)> progress =
+      [](std::uint64_t, std::optional<double>) {};
 };
 
-/// A piece of one input, fetched but not decoded.
+/// A piece of one input, fetched but not decoded; or of points that are ready, without a reader.
 struct SourcePiece {
   RawPoints raw;
   std::size_t input = 0;
@@ -34,38 +51,50 @@ struct SourcePiece {
   std::shared_ptr<const PointReader> reader;  ///< lives until its last piece is decoded
 };
 
-/// All inputs as one: one after the other, each in its own order, in common coordinates.
+/// All inputs as one: one after the other, each in its own order, filtered, in common coordinates.
+/// If they are thinned, the first fetch() reads all of them.
 class PointSource {
  public:
-  /// Reads all headers. Throws Error for what cannot be opened.
+  /// Reads all headers. Throws Error that names all inputs that cannot be opened or do not have
+  /// what the filter looks at, or two of different coordinate systems.
   PointSource(FileSystem& files, const std::vector<std::string>& paths, PointSourceOptions options);
 
   /// Takes the next piece of the inputs, in order; false at the end.
   bool fetch(SourcePiece& piece);
 
   /// Replaces `block` by the points of a piece, which is used up: on lattice() if that is set, else
-  /// in output coordinates. The index counts through all inputs, over withheld points too. Safe for
+  /// in output coordinates. The index counts through all inputs, over dropped points too. Safe for
   /// many threads at a time. A block may be empty before the end.
   void decode(SourcePiece& piece, PointBlock& block);
 
   /// Both steps: replaces `block` by the next points, at least one; false at the end.
   bool read(PointBlock& block);
 
-  /// The first input's lattice, if all inputs lie on it: equal scales, offsets that differ by whole
-  /// steps, and one scale for the axes that are triangulated. In the plane, z has the identity map
-  /// where only x and y agree.
+  /// The lattice on which all inputs lie, if there is one (find_common_lattice).
   [[nodiscard]] const std::optional<Lattice>& lattice() const { return lattice_; }
-  /// Records in all inputs, where all headers tell; withheld ones may be among them.
-  [[nodiscard]] std::optional<std::uint64_t> count() const { return count_; }
+  /// Records in all inputs, where all headers tell and no filter is set; withheld ones may be among
+  /// them.
+  [[nodiscard]] std::optional<std::uint64_t> count() const;
+  /// About how many points will come, where that can be told; rather too many.
+  [[nodiscard]] std::optional<std::uint64_t> expected() const { return expected_; }
   /// Of all points, in the coordinates of read(), where all headers tell.
   [[nodiscard]] const std::optional<Box<3>>& extent() const { return extent_; }
   /// The same in output coordinates.
   [[nodiscard]] const std::optional<Box<3>>& world_extent() const { return world_extent_; }
   /// Of the first input that names a coordinate system.
   [[nodiscard]] const std::string& crs() const { return crs_; }
+  /// Of all inputs, in their order.
+  [[nodiscard]] std::vector<PointHeader> headers() const;
+  /// Whether z is on lattice(), too: an integer, and not an output coordinate.
+  [[nodiscard]] bool heights_on_lattice() const { return heights_on_lattice_; }
+  /// Whether blocks come with attributes: they were asked for, and an input has them. A block of an
+  /// input that has none comes without; a thinned one with zeros.
+  [[nodiscard]] bool has_attributes() const;
 
-  [[nodiscard]] std::uint64_t points_read() const { return points_; }
-  [[nodiscard]] std::uint64_t withheld() const { return withheld_; }
+  /// What became of the records so far.
+  [[nodiscard]] PointCounts counts() const;
+  /// Records read so far, withheld ones not counted.
+  [[nodiscard]] std::uint64_t points_read() const;
   /// How far all inputs have been read, from 0 to 1; nothing if that is unknown.
   [[nodiscard]] std::optional<double> fraction_read() const;
 
@@ -74,14 +103,21 @@ class PointSource {
     std::string path;
     PointHeader header;
     std::shared_ptr<PointReader> reader;  ///< kept from the start only for what opens just once
-    std::array<double, 3> shift{};        ///< from its integers to those of lattice_
+    LatticeMap map;                       ///< from its integers to those of lattice_
     bool as_it_is = false;                ///< its coordinates are those of read()
     std::uint64_t records = 0;            ///< fetched so far
   };
 
+  [[nodiscard]] PointReaderOptions reader_options() const;
   void inspect(const std::string& path);
+  void check_coordinate_systems();
   void find_lattice();
+  void explain_lattice();
   void find_extent();
+  void find_expected();
+  bool fetch_input(SourcePiece& piece);
+  void decode_input(SourcePiece& piece, PointBlock& block);
+  void thin_inputs();
   void finish_input();
   [[nodiscard]] Point<3> placed(const Input& input, const Point<3>& point) const;
 
@@ -91,13 +127,16 @@ class PointSource {
   std::size_t current_ = 0;
   std::optional<Lattice> lattice_;
   bool heights_on_lattice_ = false;
-  std::optional<std::uint64_t> count_;
+  std::optional<std::uint64_t> records_;  ///< in all inputs, where all headers tell
+  std::optional<std::uint64_t> expected_;
   std::optional<Box<3>> extent_;
   std::optional<Box<3>> world_extent_;
   std::string crs_;
-  std::atomic<std::uint64_t> points_ = 0;
-  std::atomic<std::uint64_t> withheld_ = 0;
+  std::optional<Thinning> thinning_;
+  bool thinned_ = false;
   std::uint64_t records_before_ = 0;  ///< of all inputs before the current one
+  mutable std::mutex counts_mutex_;   ///< guards the next one
+  PointCounts counts_;
 };
 
 }  // namespace spillway

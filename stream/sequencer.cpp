@@ -20,12 +20,14 @@ void Sequencer<D>::submit(BlockPlace place, MeshBlock mesh, std::vector<StreamPl
                           const CanonicalHash<D>& hash) {
   const std::uint64_t vertices = mesh.vertices.size();
   const std::uint64_t simplices = mesh.corners.size() / (D + 1);
-  Waiting waiting{std::move(mesh), std::move(imported), vertices, simplices};
-  if (!counts_facets_) {
+  Waiting waiting{std::move(mesh), std::move(imported), {}, vertices, simplices};
+  if (counts_facets_) waiting.corners = waiting.mesh.corners;
+  {
     const StageTimer timer(times_, Stage::kEncode);
     writer_.prepare(waiting.mesh);
   }
-  waiting.bytes = waiting.mesh.bytes() + waiting.imported.size() * sizeof(StreamPlace);
+  waiting.bytes = waiting.mesh.bytes() + waiting.imported.size() * sizeof(StreamPlace) +
+                  waiting.corners.size() * sizeof(std::uint32_t);
   const std::lock_guard lock(mutex_);
   hash_.add(hash);
   waiting_bytes_ += waiting.bytes;
@@ -69,10 +71,10 @@ void Sequencer<D>::write(Waiting&& waiting) {
     mesh.imported.push_back(first_vertex_[place.block.slot][place.block.block] + place.vertex);
   }
   if (counts_facets_) {
-    for (std::size_t i = 0; i < mesh.corners.size(); i += D + 1) {
+    for (std::size_t i = 0; i < waiting.corners.size(); i += D + 1) {
       std::array<std::uint64_t, D + 1> corners;
       for (int k = 0; k <= D; ++k) {
-        const std::uint32_t v = mesh.corners[i + k];
+        const std::uint32_t v = waiting.corners[i + k];
         corners[k] = v < waiting.vertices ? vertices_ + v : mesh.imported[v - waiting.vertices];
       }
       open_facets_.add(corners);

@@ -43,6 +43,7 @@ class Sequencer {
   struct Waiting {
     MeshBlock mesh;
     std::vector<StreamPlace> imported;
+    std::vector<std::uint32_t> corners;  ///< the mesh's, if facets are counted
     std::uint64_t vertices = 0;  ///< that the block announces; the mesh may be encoded already
     std::uint64_t simplices = 0;
     std::uint64_t bytes = 0;

@@ -30,7 +30,7 @@ class FaultyFileSystem : public FileSystem {
   std::map<std::string, std::string> files;
   std::map<std::string, std::string> parts;
 
-  /// Whether inputs know their size and outputs can be rewritten; false makes all of them pipes.
+  /// Whether inputs know their size and can go back, and outputs can be rewritten; false makes all of them pipes.
   bool seekable = true;
   /// Reads end here, whatever size() says: a file that shrinks while it is read.
   std::uint64_t reads_end_at = std::numeric_limits<std::uint64_t>::max();
@@ -88,6 +88,10 @@ class FaultyFileSystem : public FileSystem {
       if (got > 0) std::memcpy(buffer.data(), content_.data() + position_, got);
       position_ += got;
       return got;
+    }
+    bool seek(std::uint64_t position) override {
+      if (owner_.seekable) position_ = position;
+      return owner_.seekable;
     }
     [[nodiscard]] std::optional<std::uint64_t> size() const override {
       return owner_.seekable ? std::optional<std::uint64_t>(content_.size()) : std::nullopt;

@@ -14,6 +14,7 @@
 #include "tools/checker.h"
 #include "tools/command.h"
 #include "tools/command_options.h"
+#include "tools/input_options.h"
 #include "tools/json_text.h"
 #include "tools/point_comparison.h"
 #include "tools/text_output.h"
@@ -38,7 +39,7 @@ struct CheckCommandOptions {
   bool json = false;
   unsigned threads = 0;
   MemoryOptions memory;
-  PointReaderOptions reader;
+  InputOptions input;
   ReportOptions report;
 };
 
@@ -63,12 +64,13 @@ class Comparison {
              Progress& progress)
       : progress_(progress) {
     if (options.points.empty()) return;
-    source_.emplace(
-        disk(), options.points,
-        PointSourceOptions{.dimension = dimension, .index = true, .reader = options.reader});
-    how.input_lattice = source_->lattice();
+    const std::uint64_t memory = memory_limit(options.memory);
     scratch_ = make_scratch_folder(options.memory);
-    points_.emplace(dimension, memory_limit(options.memory), *scratch_);
+    source_ = make_point_source(disk(), options.points, options.input,
+                                {.dimension = dimension, .index = true, .memory = memory},
+                                *scratch_, progress);
+    how.input_lattice = source_->lattice();
+    points_.emplace(dimension, memory, *scratch_);
     how.vertex = [this](const Point<3>& vertex) { points_->add_vertex(vertex); };
   }
   Comparison(const Comparison&) = delete;
@@ -80,12 +82,13 @@ class Comparison {
     points_->compare(*source_, how, report);
     progress_.update(source_->points_read(), 1);
     progress_.end();
+    if (source_->counts().dropped() > 0) progress_.say(describe(source_->counts()));
   }
 
  private:
   Progress& progress_;
-  std::optional<PointSource> source_;
   std::unique_ptr<ScratchFolder> scratch_;
+  std::unique_ptr<PointSource> source_;
   std::optional<PointComparison> points_;
 };
 
@@ -198,7 +201,7 @@ Subcommand add_check(CLI::App& root) {
       ->check(CLI::Range(0, 4096).description(""))
       ->capture_default_str();
   add_memory_options(*app, options->memory);
-  add_reader_options(*app, options->reader);
+  add_input_options(*app, options->input);
   add_report_options(*app, options->report);
   return {app, [options] { return run(*options); }};
 }

@@ -1,25 +1,42 @@
 # The `spillway` command: a library of subcommands and a short main.
 add_library(spillway_command STATIC
+  batch.cpp
   check.cpp
+  child_process.cpp
   command.cpp
   command_options.cpp
   completion.cpp
+  contour.cpp
   convert.cpp
+  convert_meshes.cpp
+  convert_points.cpp
   core_simulation.cpp
+  dem.cpp
+  dem_options.cpp
   facet_count.cpp
   generate.cpp
   info.cpp
+  input_list.cpp
+  input_options.cpp
   interrupts.cpp
+  job_list.cpp
+  job_record.cpp
+  job_steps.cpp
   json_text.cpp
+  lattice_rounding.cpp
   manual.cpp
   option_tree.cpp
   output_check.cpp
   point_comparison.cpp
+  point_output.cpp
   progress.cpp
   progress_line.cpp
+  terrain_input.cpp
   text_output.cpp
   statistics.cpp
-  triangulate.cpp)
+  suggestion.cpp
+  triangulate.cpp
+  triangulation_options.cpp)
 target_compile_definitions(spillway_command PRIVATE SPILLWAY_VERSION="${PROJECT_VERSION}")
 target_link_libraries(spillway_command
   PUBLIC spillway_stream nlohmann_json::nlohmann_json CLI11::CLI11

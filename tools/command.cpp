@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "src/error.h"
 #include "tools/command_options.h"
+#include "tools/option_tree.h"
+#include "tools/suggestion.h"
 #include "tools/text_output.h"
 
 namespace spillway {
@@ -20,24 +23,94 @@ constexpr const char* kDescription =
 constexpr const char* kExamples =
     "Examples:\n"
     "  spillway triangulate survey.las -o tin.ply     a surface mesh of a LiDAR file\n"
+    "  spillway dem survey.las -o dem.tif --resolution 0.5  a raster of its heights\n"
     "  spillway check tin.ply --points survey.las     prove that it is the Delaunay triangulation\n"
     "  spillway info survey.las tin.ply               what the files hold\n"
     "  spillway convert tin.spm -o tin.ply            another format\n"
     "  spillway generate terrain -n 1e6 -o hills.las  points to try things with\n"
     "`-` is standard input or output. `spillway SUBCOMMAND --help` tells more.";
 
+/// Says what is wrong with the command line, and what may have been meant.
+UsageError usage_error(const CLI::App& root, const CLI::ParseError& error) {
+  const auto parsed = root.get_subcommands();
+  std::vector<std::string> names;
+  if (parsed.empty()) {
+    if (root.remaining().empty()) {
+      return UsageError(fmt::format("{} (see `spillway --help`)", error.what()));
+    }
+    for (const CLI::App* app : subcommands_of(root)) names.push_back(app->get_name());
+    const std::string word = root.remaining().front();
+    return UsageError(
+        fmt::format("'{}' is neither a subcommand nor an option{} (see `spillway "
+                    "--help`)",
+                    word, suggestion(word, names)));
+  }
+  const CLI::App& app = *parsed.front();
+  for (const OptionInfo& option : options_of(app)) {
+    if (!option.positional) names.insert(names.end(), option.names.begin(), option.names.end());
+  }
+  std::string meant;
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
+    for (const std::string& word : app.remaining()) {
+      if (meant.empty() && word.starts_with("--")) {
+        meant = suggestion(word.substr(0, word.find('=')), names);
+      }
+    }
+  }
+  return UsageError(
+      fmt::format("{}{} (see `spillway {} --help`)", error.what(), meant, app.get_name()));
+}
+
+/// All options and subcommands.
+class CommandTree {
+ public:
+  CommandTree() {
+    root_.formatter(std::make_shared<HelpFormatter>());
+    root_.set_help_flag("-h,--help", "Print this help and exit");
+    root_.set_version_flag("--version", "spillway " SPILLWAY_VERSION, "Print the version and exit");
+    root_.require_subcommand(1);
+    root_.footer(kExamples);
+    for (const auto add :
+         {add_triangulate, add_dem, add_contour, add_info, add_generate, add_check,
+          add_convert, add_batch, add_completion, add_manual}) {
+      subcommands_.push_back(add(root_));
+    }
+  }
+
+  [[nodiscard]] CLI::App& root() { return root_; }
+
+  /// Does what the parsed command line says.
+  [[nodiscard]] int run() const {
+    for (const Subcommand& subcommand : subcommands_) {
+      if (subcommand.app->parsed()) return subcommand.run();
+    }
+    throw UsageError("no subcommand given");
+  }
+
+ private:
+  CLI::App root_{kDescription, "spillway"};
+  std::vector<Subcommand> subcommands_;
+};
+
 }  // namespace
 
+void check_command_line(const std::vector<std::string>& arguments) {
+  CommandTree tree;
+  try {
+    // CLI11 wants the last one first.
+    tree.root().parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::ParseError& error) {
+    throw usage_error(tree.root(), error);
+  }
+}
+
 int run_command(int argc, const char* const* argv) {
-  CLI::App root(kDescription, "spillway");
-  root.formatter(std::make_shared<HelpFormatter>());
-  root.set_help_flag("-h,--help", "Print this help and exit");
-  root.set_version_flag("--version", "spillway " SPILLWAY_VERSION, "Print the version and exit");
-  root.require_subcommand(1);
-  root.footer(kExamples);
-  const std::vector<Subcommand> subcommands = {
-      add_triangulate(root), add_info(root),       add_generate(root), add_check(root),
-      add_convert(root),     add_completion(root), add_manual(root)};
+  CommandTree tree;
+  CLI::App& root = tree.root();
+  if (argc < 2) {
+    fmt::print(stderr, "{}", root.help());
+    return kExitUsage;
+  }
   try {
     root.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -47,19 +120,9 @@ int run_command(int argc, const char* const* argv) {
     write_text("-", root.version() + "\n");
     return kExitDone;
   } catch (const CLI::ParseError& error) {
-    const auto parsed = root.get_subcommands();
-    if (parsed.empty() && !root.remaining().empty()) {
-      throw UsageError(
-          fmt::format("'{}' is neither a subcommand nor an option (see `spillway --help`)",
-                      root.remaining().front()));
-    }
-    throw UsageError(fmt::format("{} (see `spillway {}--help`)", error.what(),
-                                 parsed.empty() ? "" : parsed.front()->get_name() + " "));
+    throw usage_error(root, error);
   }
-  for (const Subcommand& subcommand : subcommands) {
-    if (subcommand.app->parsed()) return subcommand.run();
-  }
-  throw UsageError("no subcommand given");
+  return tree.run();
 }
 
 }  // namespace spillway

@@ -2,6 +2,8 @@
 
 #include <CLI/App.hpp>
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace spillway {
 
@@ -18,12 +20,20 @@ struct Subcommand {
 
 /// One for each subcommand: adds it to the tree. Each is defined in the file of its name.
 Subcommand add_triangulate(CLI::App& root);
+Subcommand add_dem(CLI::App& root);
+Subcommand add_contour(CLI::App& root);
 Subcommand add_info(CLI::App& root);
 Subcommand add_convert(CLI::App& root);
 Subcommand add_generate(CLI::App& root);
 Subcommand add_check(CLI::App& root);
+/// Behind those that make outputs: it takes over their options.
+Subcommand add_batch(CLI::App& root);
 Subcommand add_completion(CLI::App& root);
 Subcommand add_manual(CLI::App& root);
+
+/// Throws UsageError if run_command() would do so before it does anything: a subcommand's arguments
+/// that come from a list of jobs are checked before the work on any of them begins.
+void check_command_line(const std::vector<std::string>& arguments);
 
 /// Parses the command line and does what it says. Returns the exit code; throws UsageError for a
 /// wrong command line and Error for what goes wrong later.

@@ -103,13 +103,6 @@ Progress make_progress(const ReportOptions& options, bool reads_pipe) {
   return {style, options.quiet, options.verbose};
 }
 
-void add_reader_options(CLI::App& app, PointReaderOptions& options) {
-  add_choice(app, "--input-format", options.format, {"las", "text", "npy", "spp"},
-             "Format of the points, where neither name nor first bytes tell");
-  app.add_flag("--keep-withheld", options.keep_withheld,
-               "Use points that LAS files flag as withheld, too");
-}
-
 std::uint64_t parse_point_count(std::string_view text) {
   std::uint64_t count = 0;
   const char* end = text.data() + text.size();

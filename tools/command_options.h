@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/point_reader.h"
 #include "formats/scratch_folder.h"
 #include "tools/progress.h"
 
@@ -35,9 +34,6 @@ void add_report_options(CLI::App& app, ReportOptions& options);
 /// lines; but nothing, messages apart, where the input is a pipe and all stages of the chain share
 /// the terminal: the first one's line stays readable.
 Progress make_progress(const ReportOptions& options, bool reads_pipe = false);
-
-/// --input-format, --keep-withheld.
-void add_reader_options(CLI::App& app, PointReaderOptions& options);
 
 /// --memory, --tmpdir, --max-tmp.
 struct MemoryOptions {

@@ -1,167 +1,186 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <limits>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <memory>
-#include <numeric>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
+#include <vector>
 
-#include "formats/bytes.h"
 #include "formats/input_kind.h"
-#include "formats/mesh_reader.h"
-#include "formats/mesh_stream.h"
-#include "formats/mesh_stream_writer.h"
-#include "formats/spm_format.h"
+#include "formats/mesh_writer.h"
+#include "formats/point_writer.h"
 #include "src/error.h"
-#include "tools/checker.h"
 #include "tools/command.h"
 #include "tools/command_options.h"
-#include "tools/facet_count.h"
+#include "tools/convert_meshes.h"
+#include "tools/convert_points.h"
+#include "tools/input_options.h"
 
 namespace spillway {
 namespace {
 
 constexpr const char* kExamples =
     "Examples:\n"
+    "  spillway convert tile.laz -o tile.las\n"
+    "  spillway convert 'tiles/*.laz' -o ground.spp --keep-class 2\n"
+    "  spillway convert survey.xyz.gz -o survey.las --scale 0.01\n"
     "  spillway convert tin.spm -o tin.ply\n"
-    "  spillway convert tin.vtu -o tin.spm\n"
     "  spillway triangulate survey.las -o - | spillway convert - -o tin.obj\n"
-    "An spm stream of any length is converted in the memory of its border; other formats are read "
-    "as a whole.";
+    "Points and spm streams are converted as they come, in little memory; other meshes are read as "
+    "a whole.";
 
 struct ConvertOptions {
-  std::string input;
-  std::string input_format;
-  std::string output;
-  std::string output_format;
+  std::vector<std::string> inputs;
+  InputOptions input;
+  std::string mesh_format;
+  PointOutput output;
+  LatticeChoice lattice;
   MemoryOptions memory;
   ReportOptions report;
 };
 
-/// Passes the blocks of a stream on as they come.
-MeshTotals convert_stream(MeshStreamReader& reader, MeshFormat format,
-                          const ConvertOptions& options, ScratchFolder& scratch,
-                          Progress& progress) {
-  const auto writer =
-      open_mesh_stream_writer(disk(), options.output, format, reader.header(), scratch);
-  std::uint64_t simplices = 0;
-  for (MeshBlock block; reader.read(block); block = {}) {
-    simplices += block.corners.size() / (reader.header().dimension + 1);
-    writer->write(std::move(block));
-    progress.update(simplices, reader.fraction_read());
-  }
-  writer->finish(reader.totals());
-  return reader.totals();
+/// The words of --output-format: formats of points and of meshes.
+std::vector<std::string> output_format_names() {
+  std::vector<std::string> names = {"las", "text", "spp"};
+  const std::vector<std::string> meshes = mesh_format_names();
+  names.insert(names.end(), meshes.begin(), meshes.end());
+  return names;
 }
 
-MeshTotals totals_of(const Mesh& mesh) {
-  MeshTotals totals;
-  totals.vertices = mesh.vertices.size();
-  totals.simplices = mesh.corners.size() / mesh.corners_per_simplex();
-  totals.hull_facets = count_boundary_facets(mesh);
-  totals.points = totals.vertices;
-  totals.canonical_hash = canonical_hash(mesh);
-  return totals;
+/// Whether an argument is a list, a folder or a pattern.
+bool stands_for_several(const std::string& argument) {
+  std::error_code unknown;
+  const std::filesystem::path path(argument);
+  return (argument.size() > 1 && argument.front() == '@') ||
+         std::filesystem::is_directory(path, unknown) ||
+         (argument.find_first_of("*?[") != std::string::npos &&
+          !std::filesystem::exists(path, unknown));
 }
 
-/// The vertices as a stream with this lattice has them. A height need not be on it.
-std::vector<Point<3>> stream_vertices(const Mesh& mesh, std::optional<Lattice>& lattice) {
-  std::vector<Point<3>> vertices = mesh.vertices;
-  if (!lattice) return vertices;
-  if (mesh.header.dimension == 2) {
-    lattice->scale[2] = 1;
-    lattice->offset[2] = 0;
+/// Several inputs, and what stands for several, are points.
+InputKind kind_of(const ConvertOptions& options, ProbedInput& input) {
+  if (!options.mesh_format.empty()) return InputKind::kMesh;
+  if (!options.input.format.empty() || options.inputs.size() > 1 ||
+      stands_for_several(input.path())) {
+    return InputKind::kPoints;
   }
-  for (Point<3>& vertex : vertices) {
-    for (int k = 0; k < mesh.header.dimension; ++k) {
-      const auto integer = lattice->to_integer(k, vertex[k]);
-      if (!integer) {
-        lattice.reset();
-        return mesh.vertices;
-      }
-      vertex[k] = *integer;
-    }
-  }
-  return vertices;
+  return kind_of_input(input);
 }
 
-/// Writes a whole mesh as one block.
-MeshTotals convert_whole(const Mesh& mesh, MeshFormat format, const ConvertOptions& options,
-                         ScratchFolder& scratch) {
-  if (mesh.vertices.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw Error(fmt::format("{}: {} vertices are too many to convert at once", options.input,
-                            mesh.vertices.size()));
+bool is_mesh_output(const PointOutput& output) {
+  try {
+    mesh_format(output.path, output.format);
+    return true;
+  } catch (const UsageError&) {
+    return false;
   }
-  MeshStreamHeader header;
-  header.dimension = mesh.header.dimension;
-  header.has_input_index = mesh.header.has_input_index;
-  header.lattice = mesh.header.lattice;
-  header.crs = mesh.header.crs;
-  MeshBlock block;
-  block.vertices = stream_vertices(mesh, header.lattice);
-  block.input_index = mesh.input_index;
-  block.corners.assign(mesh.corners.begin(), mesh.corners.end());
-  block.finalized.resize(mesh.vertices.size());
-  std::iota(block.finalized.begin(), block.finalized.end(), 0U);
-  const auto writer = open_mesh_stream_writer(disk(), options.output, format, header, scratch);
-  const MeshTotals totals = totals_of(mesh);
-  writer->write(std::move(block));
-  writer->finish(totals);
-  return totals;
 }
 
-/// Whether the mesh is to be read block by block: an spm stream. An sma stream has no hash at its
-/// end, so that is computed of the whole.
-bool is_stream(ProbedInput& input, InputKind kind) {
-  return kind == InputKind::kMeshStream &&
-         as_text(input.source().peek(kSpmMagic.size())) == kSpmMagic;
+/// Throws if the output is of no point format.
+void check_points_output(const ConvertOptions& options) {
+  const PointOutput& output = options.output;
+  try {
+    point_format_to_write(output.path, format_name_of(output));
+  } catch (const UsageError&) {
+    if (!is_mesh_output(output)) throw;
+    throw Error(
+        fmt::format("{}: these are points, and {} would be a mesh: use spillway triangulate",
+                    options.inputs.front(), output.name()));
+  }
+}
+
+void run_points(const ConvertOptions& options, FileSystem& files, ScratchFolder& scratch,
+                Progress& progress) {
+  check_points_output(options);
+  progress.begin("convert", "points");
+  const auto source =
+      make_point_source(files, options.inputs, options.input,
+                        {.index = true, .attributes = true, .memory = memory_limit(options.memory)},
+                        scratch, progress);
+  convert_points(*source, options.output, options.lattice, scratch, progress);
+}
+
+void run_mesh(const ConvertOptions& options, ProbedInput& input, InputKind kind,
+              ScratchFolder& scratch, Progress& progress) {
+  if (options.inputs.size() > 1) {
+    throw UsageError("several meshes do not become one: convert them one by one");
+  }
+  if (options.input.filters() || !options.lattice.empty() || !options.output.las_version.empty()) {
+    throw UsageError(fmt::format(
+        "{}: this is a mesh, and filters, --scale, --offset and --las-version are for points",
+        input.path()));
+  }
+  convert_mesh(input, kind, {options.mesh_format, options.output.path, options.output.format},
+               scratch, progress);
+}
+
+/// One number for all axes, or one each.
+void check_axes(std::string_view option, const std::vector<double>& values) {
+  if (values.size() == 2) {
+    throw UsageError(fmt::format("{}: give one number, or three for x, y and z", option));
+  }
 }
 
 int run(const ConvertOptions& options) {
-  const MeshFormat format = mesh_format(options.output, options.output_format);
-  if (options.output == "-" && ::isatty(STDOUT_FILENO) != 0 && options.output_format.empty()) {
-    throw UsageError("a mesh stream is nothing for a terminal: name a file, or pipe it on");
-  }
-  Progress progress = make_progress(options.report, options.input == "-");
+  check_axes("--scale", options.lattice.scale);
+  check_axes("--offset", options.lattice.offset);
+  const bool reads_pipe = std::ranges::find(options.inputs, "-") != options.inputs.end();
+  Progress progress = make_progress(options.report, reads_pipe);
   const auto scratch = make_scratch_folder(options.memory);
-  ProbedInput input(disk(), options.input);
-  progress.begin("convert", "simplices");
-  MeshTotals totals;
-  const InputKind kind =
-      options.input_format.empty() ? kind_of_input(input) : InputKind::kMeshStream;
-  if (is_stream(input, kind)) {
-    const auto reader = open_mesh_stream_reader(input, options.input, options.input_format);
-    totals = convert_stream(*reader, format, options, *scratch, progress);
+  ProbedInput input(disk(), options.inputs.front());
+  const InputKind kind = kind_of(options, input);
+  if (kind == InputKind::kPoints) {
+    run_points(options, input, *scratch, progress);
   } else {
-    if (kind == InputKind::kPoints) {
-      throw Error(options.input + ": these are points, and only meshes are converted");
-    }
-    totals = convert_whole(read_mesh(input, options.input, options.input_format), format, options,
-                           *scratch);
+    run_mesh(options, input, kind, *scratch, progress);
   }
-  progress.update(totals.simplices, 1);
-  progress.end();
-  progress.say(fmt::format("{} vertices, {} simplices in {}", totals.vertices, totals.simplices,
-                           options.output == "-" ? "standard output" : options.output));
   return kExitDone;
+}
+
+void add_axes_option(CLI::App& app, const std::string& name, std::vector<double>& values,
+                     bool positive, const std::string& description) {
+  const auto check = [name, positive](const std::string& text) {
+    double value = 0;
+    const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+    if (number && (value > 0 || !positive)) return std::string();
+    return fmt::format("\"{}\" is no {} number", text, positive ? "positive" : "finite");
+  };
+  app.add_option(name, values, description)
+      ->delimiter(',')
+      ->expected(1, 3)
+      ->allow_extra_args(false)
+      ->type_name("N[,N,N]")
+      ->check(CLI::Validator(check, ""));
 }
 
 }  // namespace
 
 Subcommand add_convert(CLI::App& root) {
   const auto options = std::make_shared<ConvertOptions>();
-  CLI::App* app = root.add_subcommand("convert", "Write a mesh in another format");
+  CLI::App* app = root.add_subcommand("convert", "Write points or a mesh in another format");
   app->footer(kExamples);
-  app->add_option("MESH", options->input, "Mesh file; - is a mesh stream from a pipe")->required();
-  app->add_option("-o,--output", options->output, "Mesh file; - is standard output, as spm")
+  app->add_option(
+         "IN", options->inputs,
+         "Point files, folders, 'patterns', @lists, which become one, or a mesh; - is a pipe")
+      ->required();
+  app->add_option("-o,--output", options->output.path, "Point file or mesh; - is standard output")
       ->required()
       ->type_name("FILE");
-  add_choice(*app, "--mesh-format", options->input_format, mesh_format_names(),
-             "Format of the input, where neither content nor name tell");
-  add_choice(*app, "--output-format", options->output_format, mesh_format_names(),
+  add_choice(*app, "--output-format", options->output.format, output_format_names(),
              "Format of the output, where the name does not tell");
+  add_choice(*app, "--mesh-format", options->mesh_format, mesh_format_names(),
+             "The input is a mesh of this format, which neither content nor name tell");
+  add_las_version(*app, options->output);
+  add_axes_option(*app, "--scale", options->lattice.scale, true,
+                  "Round coordinates to multiples of this; one number, or one for each axis");
+  add_axes_option(*app, "--offset", options->lattice.offset, false,
+                  "Count these multiples from here on; likewise");
+  add_input_options(*app, options->input);
   add_memory_options(*app, options->memory);
   add_report_options(*app, options->report);
   return {app, [options] { return run(*options); }};

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,12 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "formats/point_format.h"
 #include "formats/point_writer.h"
-#include "src/error.h"
 #include "src/generators/generators.h"
 #include "tools/command.h"
 #include "tools/command_options.h"
+#include "tools/point_output.h"
 
 namespace spillway {
 namespace {
@@ -35,23 +33,9 @@ struct GenerateOptions {
   std::string count;
   std::string dimension = "2";
   std::uint64_t seed = 1;
-  std::string output = "-";
-  std::string output_format;
+  PointOutput output;
   ReportOptions report;
 };
-
-/// The format by name; empty if the output's extension is to tell. Throws UsageError if bytes would
-/// go to a terminal.
-std::string format_of(const GenerateOptions& options) {
-  if (options.output != "-") return options.output_format;
-  const std::string format = options.output_format.empty() ? "spp" : options.output_format;
-  if (format != "text" && isatty(STDOUT_FILENO) != 0) {
-    throw UsageError(
-        "standard output is a terminal, and the points are no text; name a file with -o, pipe "
-        "them into another command, or ask for --output-format text");
-  }
-  return format;
-}
 
 int run(const GenerateOptions& options) {
   const auto start = std::chrono::steady_clock::now();
@@ -63,12 +47,13 @@ int run(const GenerateOptions& options) {
   const auto generator = make_generator(what);
 
   PointWriterOptions how;
-  how.format = format_of(options);
-  const bool las = how.format == "las" || point_format_of_path(options.output) == PointFormat::kLas;
+  how.format = format_name_of(options.output);
+  how.version = options.output.las_version;
+  const bool las = point_format_to_write(options.output.path, how.format) == PointFormat::kLas;
   how.coordinates = what.dimension == 3 || what.family == Family::kTerrain || las ? 3 : 2;
   how.count = what.count;
   if (generator->lattice() != nullptr) how.lattice = *generator->lattice();
-  const auto writer = open_point_writer(disk(), options.output, how);
+  const auto writer = open_point_writer(disk(), options.output.path, how);
 
   Progress progress = make_progress(options.report);
   progress.begin("generate", "points");
@@ -76,7 +61,7 @@ int run(const GenerateOptions& options) {
   std::uint64_t written = 0;
   while (written < what.count) {
     const std::size_t made = generator->next(block);
-    writer->write(std::span(block).first(made));
+    writer->write(std::span(block).first(made), {});
     written += made;
     progress.update(written, static_cast<double>(written) / static_cast<double>(what.count));
     if (made < block.size()) break;
@@ -85,8 +70,7 @@ int run(const GenerateOptions& options) {
   progress.end();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   progress.say(fmt::format("{} points of {} written to {}, {:.2f} s", written, options.family,
-                           options.output == "-" ? "standard output" : options.output,
-                           seconds.count()));
+                           options.output.name(), seconds.count()));
   return kExitDone;
 }
 
@@ -106,11 +90,12 @@ Subcommand add_generate(CLI::App& root) {
   app->add_option("--seed", options->seed, "Another seed, other points")
       ->type_name("S")
       ->capture_default_str();
-  app->add_option("-o,--output", options->output, "Point file; - is standard output")
+  app->add_option("-o,--output", options->output.path, "Point file; - is standard output")
       ->type_name("FILE")
       ->capture_default_str();
-  add_choice(*app, "--output-format", options->output_format, {"las", "text", "npy", "spp"},
+  add_choice(*app, "--output-format", options->output.format, {"las", "text", "npy", "spp"},
              "Format, where the name does not tell; spp on a pipe");
+  add_las_version(*app, options->output);
   add_report_options(*app, options->report);
   return {app, [options] { return run(*options); }};
 }

@@ -11,13 +11,14 @@
 #include "formats/input_kind.h"
 #include "formats/mesh_reader.h"
 #include "formats/mesh_stream.h"
-#include "formats/point_reader.h"
 #include "src/error.h"
 #include "src/geometry/canonical_hash.h"
 #include "tools/checker.h"
 #include "tools/command.h"
 #include "tools/command_options.h"
 #include "tools/facet_count.h"
+#include "tools/input_list.h"
+#include "tools/input_options.h"
 #include "tools/json_text.h"
 #include "tools/statistics.h"
 #include "tools/text_output.h"
@@ -37,7 +38,8 @@ constexpr const char* kExamples =
 struct InfoOptions {
   std::vector<std::string> files;
   bool json = false;
-  PointReaderOptions reader;
+  InputOptions input;
+  MemoryOptions memory;
   ReportOptions report;
 };
 
@@ -62,23 +64,26 @@ Json density(const Box<3>& box, std::uint64_t points) {
   return area > 0 ? Json(static_cast<double>(points) / area) : Json(nullptr);
 }
 
-Json describe_points(ProbedInput& input, const PointReaderOptions& options, Progress& progress) {
-  const auto reader = open_point_reader(input, input.path(), options);
-  const PointHeader& header = reader->header();
+Json describe_points(ProbedInput& input, const InfoOptions& options, Progress& progress) {
+  const auto scratch = make_scratch_folder(options.memory);
+  const auto source =
+      make_point_source(input, {input.path()}, options.input,
+                        {.memory = memory_limit(options.memory)}, *scratch, progress);
+  const PointHeader header = source->headers().front();
+  const std::optional<Lattice>& lattice = source->lattice();
   Box<3> box;
   std::uint64_t points = 0;
-  std::uint64_t withheld = 0;
   PointBlock block;
   progress.begin("read", "points");
-  while (reader->read(block)) {
-    withheld += block.withheld;
+  while (source->read(block)) {
     for (const Point<3>& point : block.points) {
-      box.expand(header.lattice ? header.lattice->to_world(point) : point);
+      box.expand(lattice ? lattice->to_world(point) : point);
     }
     points += block.size();
-    progress.update(points, reader->fraction_read());
+    progress.update(source->points_read(), source->fraction_read());
   }
   progress.end();
+  const PointCounts counts = source->counts();
   Json json;
   json["name"] = header.name;
   json["kind"] = "points";
@@ -87,7 +92,8 @@ Json describe_points(ProbedInput& input, const PointReaderOptions& options, Prog
   json["point_format"] = header.point_format < 0 ? Json(nullptr) : Json(header.point_format);
   json["coordinates"] = header.coordinates;
   json["points"] = points;
-  json["withheld"] = withheld + block.withheld;
+  json["withheld"] = counts.withheld;
+  json["filters"] = options.input.filters() ? to_json(counts) : Json(nullptr);
   json["extent"] = extent_json(box, header.coordinates);
   add_lattice(header.lattice, json);
   json["density"] = density(box, points);
@@ -175,10 +181,10 @@ Json describe_mesh_stream(ProbedInput& input, Progress& progress) {
   return json;
 }
 
-Json describe_input(const std::string& path, const PointReaderOptions& options,
-                    Progress& progress) {
+Json describe_input(const std::string& path, const InfoOptions& options, Progress& progress) {
   ProbedInput input(disk(), path);
-  if (path == "-" && !options.format.empty()) return describe_points(input, options, progress);
+  if (path == "-" && !options.input.format.empty())
+    return describe_points(input, options, progress);
   switch (kind_of_input(input)) {
     case InputKind::kMesh:
       return describe_mesh(input, progress);
@@ -233,9 +239,9 @@ void add_common_keys(double seconds, Json& json) {
 int run(const InfoOptions& options) {
   Progress progress = make_progress(
       options.report, std::count(options.files.begin(), options.files.end(), "-") > 0);
-  for (const std::string& path : options.files) {
+  for (const std::string& path : expand_inputs(options.files)) {
     const auto start = std::chrono::steady_clock::now();
-    Json json = describe_input(path, options.reader, progress);
+    Json json = describe_input(path, options, progress);
     if (options.json) {
       add_common_keys(
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), json);
@@ -255,7 +261,8 @@ Subcommand add_info(CLI::App& root) {
                   "Point files and meshes; - is points or a mesh stream from a pipe")
       ->required();
   app->add_flag("--json", options->json, "One JSON object a line for each file");
-  add_reader_options(*app, options->reader);
+  add_input_options(*app, options->input);
+  add_memory_options(*app, options->memory);
   add_report_options(*app, options->report);
   return {app, [options] { return run(*options); }};
 }

@@ -131,7 +131,7 @@ void PointComparison::compare(PointSource& input, const CheckOptions& options,
       {.dimension = dimension_,
        .capacity = std::max<std::size_t>(1000, memory_ / 2 / kTileBytes),
        .buffered_points = memory_ / 3 / kBufferedBytes,
-       .expected = input.count() ? std::optional(*input.count() + vertices_) : std::nullopt,
+       .expected = input.expected() ? std::optional(*input.expected() + vertices_) : std::nullopt,
        .index = true},
       scratch_, times);
   Faults faults(report, options.most_faults);

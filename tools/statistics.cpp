@@ -33,6 +33,12 @@ std::uint64_t peak_rss_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
+Json to_json(const PointCounts& counts) {
+  return {{"read", counts.read},       {"withheld", counts.withheld}, {"every", counts.every},
+          {"class", counts.classes},   {"returns", counts.returns},   {"bounds", counts.bounds},
+          {"thinned", counts.thinned}, {"kept", counts.kept()}};
+}
+
 Json to_json(const RunStatistics& statistics) {
   const StreamFigures& stream = statistics.stream;
   const MeshTotals& totals = stream.totals;
@@ -46,7 +52,8 @@ Json to_json(const RunStatistics& statistics) {
   json["output_bytes"] = statistics.output_bytes;
   json["on_lattice"] = statistics.on_lattice;
   json["points"] = totals.points;
-  json["withheld"] = statistics.withheld;
+  json["withheld"] = statistics.input.withheld;
+  json["filters"] = to_json(statistics.input);
   json["duplicates"] = totals.duplicates;
   json["vertices"] = totals.vertices;
   json["simplices"] = totals.simplices;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stream/pipeline.h"
+#include "stream/point_filter.h"
 #include "tools/core_simulation.h"
 
 namespace spillway {
@@ -18,7 +19,7 @@ struct RunStatistics {
   std::string output;
   std::string output_format;
   bool on_lattice = false;
-  std::uint64_t withheld = 0;
+  PointCounts input;
   std::optional<double> max_edge;
   std::uint64_t memory_limit = 0;  ///< bytes
   StreamFigures stream;
@@ -29,6 +30,9 @@ struct RunStatistics {
 };
 
 nlohmann::ordered_json to_json(const RunStatistics& statistics);
+
+/// "filters" of --stats and of `info`.
+nlohmann::ordered_json to_json(const PointCounts& counts);
 
 /// The most memory this process has held so far, in bytes.
 std::uint64_t peak_rss_bytes();

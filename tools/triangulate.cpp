@@ -1,13 +1,10 @@
 #include <fmt/format.h>
-#include <malloc.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,17 +12,17 @@
 #include "formats/scratch_folder.h"
 #include "src/error.h"
 #include "src/geometry/canonical_hash.h"
-#include "src/parallel/parallel.h"
 #include "stream/memory_budget.h"
 #include "stream/pipeline.h"
-#include "stream/point_source.h"
 #include "tools/command.h"
 #include "tools/command_options.h"
 #include "tools/core_simulation.h"
+#include "tools/input_options.h"
 #include "tools/json_text.h"
 #include "tools/output_check.h"
 #include "tools/statistics.h"
 #include "tools/text_output.h"
+#include "tools/triangulation_options.h"
 
 namespace spillway {
 namespace {
@@ -38,118 +35,43 @@ constexpr const char* kExamples =
     "  spillway triangulate scan.npy --dim 3 -o tetrahedra.vtu --stats run.json\n"
     "  spillway triangulate survey.las -o tin.ply --simulate-cores 1,2,4,...,1024\n"
     "  spillway triangulate survey.las -o tin.spm --memory 512M --tmpdir /scratch\n"
+    "  spillway triangulate 'tiles/*.la[sz]' -o ground.ply --keep-class 2 --thin 0.5:lowest\n"
     "  spillway generate terrain -n 1e8 | spillway triangulate - -o - | spillway info -\n"
     "The output gets its name when it is complete, so it may replace an input.";
 
-struct TriangulateOptions {
-  std::vector<std::string> inputs;
+struct TriangulateOptions : TriangulationOptions {
   std::string output;
   std::string output_format;
   std::string dimension = "2";
-  std::string duplicates = "first";
-  std::string division = "longest";
-  std::string max_edge;
-  unsigned threads = 0;
-  std::size_t base_case_size = 0;
-  unsigned children = 2;
-  MemoryOptions memory;
-  std::size_t tile_capacity = 0;
   bool input_index = false;
-  std::string stats_path;
   std::string core_list;
-  PointReaderOptions reader;
-  ReportOptions report;
 
   [[nodiscard]] bool simulates() const { return !core_list.empty(); }
 };
 
 void add_options(CLI::App& app, TriangulateOptions& options) {
-  app.add_option("IN", options.inputs, "Point files; several make one triangulation; - is a pipe")
+  app.add_option("IN", options.inputs,
+                 "Point files, folders, 'patterns', @lists: one triangulation; - is a pipe")
       ->required();
   app.add_option("-o,--output", options.output, "Mesh file; - is standard output, as spm")
       ->required()
       ->type_name("FILE");
   add_choice(app, "--dim", options.dimension, {"2", "3"},
              "2: triangles over x, y, with z carried along; 3: tetrahedra");
-  add_choice(app, "--duplicates", options.duplicates, height_choice_names(),
-             "Which z a vertex of several points of equal x, y gets");
-  app.add_option("--max-edge", options.max_edge, "Leave out simplices with an edge longer than L")
-      ->type_name("L");
   app.add_flag("--id", options.input_index, "Write each vertex's index in the input");
   add_choice(app, "--output-format", options.output_format, mesh_format_names(),
              "Format of the mesh, where the name does not tell");
-  add_reader_options(app, options.reader);
-  app.add_option("--threads", options.threads, "Threads to use; 0: all there are")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""))
-      ->capture_default_str();
-  add_memory_options(app, options.memory);
-  app.add_option("--stats", options.stats_path, "Write figures and the task tree of the run")
-      ->type_name("FILE");
-  app.add_option("--base-case", options.base_case_size,
-                 "Most points of one sequential base case (a leaf); 0: chosen by number and memory")
-      ->type_name("N")
-      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
-      ->capture_default_str();
-  app.add_option("--tile", options.tile_capacity,
-                 "Most points of a tile that is loaded at a time; 0: chosen by the memory")
-      ->type_name("N")
-      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
-      ->capture_default_str();
-  add_choice(app, "--division", options.division, {"longest", "cycling", "constant"},
-             "Which axis the division of points cuts");
-  app.add_option("--children", options.children, "Parts that are merged at a time")
-      ->type_name("K")
-      ->check(CLI::Range(2, 1024).description(""))
-      ->capture_default_str();
+  add_triangulation_options(app, options);
   app.add_option("--simulate-cores", options.core_list,
                  "Run on one thread and print what so many cores would take, as 1,2,4,...,1024")
       ->type_name("LIST");
   add_report_options(app, options.report);
 }
 
-DivisionScheme division_by_name(const std::string& name) {
-  if (name == "cycling") return DivisionScheme::kCyclingAxis;
-  if (name == "constant") return DivisionScheme::kConstantAxis;
-  return DivisionScheme::kLongestExtent;
-}
-
-/// The length that --max-edge gives; nothing if it is not given.
-std::optional<double> parse_max_edge(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  double length = 0;
-  const bool number = CLI::detail::lexical_cast(text, length);
-  if (!number || !(length > 0) || !std::isfinite(length)) {
-    throw UsageError(fmt::format("--max-edge: \"{}\" is no length; give a number above 0", text));
-  }
-  return length;
-}
-
-StreamOptions stream_options(const TriangulateOptions& options, Progress& progress,
-                             RunStatistics& statistics) {
-  StreamOptions stream;
-  stream.threads = options.simulates()    ? 1
-                   : options.threads == 0 ? available_threads()
-                                          : options.threads;
-  stream.tile_capacity = options.tile_capacity;
-  stream.leaf_size = options.base_case_size;
-  stream.division = division_by_name(options.division);
-  stream.children = options.children;
-  stream.heights = height_choice_by_name(options.duplicates);
-  stream.max_edge = parse_max_edge(options.max_edge);
-  stream.input_index = options.input_index;
-  stream.begin_phase = [&](const char* phase) { progress.begin(phase, "points"); };
-  stream.end_phase = [&] { progress.end(); };
-  stream.progress = [&](std::uint64_t points, std::optional<double> fraction) {
-    progress.update(points, fraction);
-  };
-  statistics.max_edge = stream.max_edge;
-  return stream;
-}
-
 void report(const TriangulateOptions& options, const RunStatistics& statistics,
             Progress& progress) {
   const StreamFigures& stream = statistics.stream;
+  if (statistics.input.dropped() > 0) progress.say(describe(statistics.input));
   if (stream.left_out > 0) {
     progress.say(
         fmt::format("{} simplices with an edge longer than {} left out: this is no longer the "
@@ -181,13 +103,6 @@ void report(const TriangulateOptions& options, const RunStatistics& statistics,
   }
 }
 
-/// Buffers of some megabytes come and go with every leaf: taken from the system anew each time,
-/// they would cost a fifth of the run in page faults.
-void reuse_freed_memory() {
-  mallopt(M_MMAP_THRESHOLD, 4 << 20);
-  mallopt(M_TRIM_THRESHOLD, 16 << 20);
-}
-
 template <int D>
 int run(const TriangulateOptions& options, MeshFormat format, RunStatistics& statistics) {
   const auto start = std::chrono::steady_clock::now();
@@ -195,15 +110,16 @@ int run(const TriangulateOptions& options, MeshFormat format, RunStatistics& sta
   const auto& inputs = options.inputs;
   Progress progress =
       make_progress(options.report, std::count(inputs.begin(), inputs.end(), "-") > 0);
-  const StreamOptions stream = stream_options(options, progress, statistics);
+  StreamOptions stream = stream_options(options, progress);
+  if (options.simulates()) stream.threads = 1;
+  stream.input_index = options.input_index;
+  statistics.max_edge = stream.max_edge;
   MemoryBudget budget(memory_limit(options.memory));
   const auto scratch = make_scratch_folder(options.memory);
-  PointSource source(disk(), options.inputs,
-                     {.dimension = D,
-                      .index = options.input_index,
-                      .reader = options.reader,
-                      .warn = [&](std::string_view text) { progress.say(text); },
-                      .detail = [&](std::string_view text) { progress.detail(text); }});
+  const auto points = make_point_source(
+      disk(), options.inputs, options.input,
+      {.dimension = D, .index = options.input_index, .memory = budget.limit()}, *scratch, progress);
+  PointSource& source = *points;
   MeshStreamHeader header;
   header.dimension = D;
   header.has_input_index = options.input_index;
@@ -219,7 +135,7 @@ int run(const TriangulateOptions& options, MeshFormat format, RunStatistics& sta
                                 statistics.stream.threads, stream.threads));
   }
   statistics.memory_limit = budget.limit();
-  statistics.withheld = source.withheld();
+  statistics.input = source.counts();
   statistics.on_lattice = source.lattice().has_value();
   const MeshTotals& totals = statistics.stream.totals;
   if (totals.simplices == 0) {
@@ -252,8 +168,9 @@ int run(const TriangulateOptions& options) {
       throw UsageError("--simulate-cores measures tasks on one thread: leave --threads away");
     }
   }
-  if (std::count(options.inputs.begin(), options.inputs.end(), "-") > 1) {
-    throw UsageError("standard input can be read only once: give - once");
+  if (options.dimension == "3" && options.duplicates_option->count() > 0) {
+    throw UsageError(
+        "--duplicates chooses a height for points of equal x and y: leave it away with --dim 3");
   }
   if (options.output == options.stats_path) {
     throw UsageError("the mesh and --stats cannot go to the same place: " + options.output);

@@ -19,18 +19,4 @@ bool Lattice::isotropic(int dimensions) const {
   return true;
 }
 
-std::optional<std::array<double, 3>> lattice_shift(const Lattice& base, const Lattice& other) {
-  constexpr double kLargestShift = 4.5e15;  // keeps shifted 32-bit integers exact in a double
-  if (base.scale != other.scale) return std::nullopt;
-  std::array<double, 3> shift{};
-  for (int k = 0; k < 3; ++k) {
-    const double steps = (other.offset[k] - base.offset[k]) / base.scale[k];
-    shift[k] = std::round(steps);
-    if (!(std::abs(steps - shift[k]) <= 1e-6) || std::abs(shift[k]) > kLargestShift) {
-      return std::nullopt;
-    }
-  }
-  return shift;
-}
-
 }  // namespace spillway

@@ -31,9 +31,4 @@ struct Lattice {
   [[nodiscard]] bool isotropic(int dimensions) const;
 };
 
-/// Integer shifts that bring coordinates on `other` to coordinates on `base`:
-/// other integer k is base integer k + shift. Nothing when the scales differ or when the offsets do
-/// not differ by a whole number of steps (to 1e-6 of a step).
-std::optional<std::array<double, 3>> lattice_shift(const Lattice& base, const Lattice& other);
-
 }  // namespace spillway

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "formats/bytes.h"
+#include "formats/input_source.h"
 #include "tests/formats/point_test_helpers.h"
 
 namespace spillway::testing {
@@ -197,6 +198,24 @@ TEST_F(Disk, ReadsToTheEnd) {
   EXPECT_EQ(file->read(bytes), 0U);
 }
 
+TEST_F(Disk, ReadsOnFromAnyByteOfAFile) {
+  put_content(path("a"), "0123456789");
+  InputSource source(disk().open(path("a")));
+  EXPECT_EQ(as_text(source.peek(4)), "0123");
+  std::string buffer(3, ' ');
+  const std::span<std::byte> bytes = std::as_writable_bytes(std::span(buffer));
+  for (const std::uint64_t place : {6, 1, 0, 7}) {
+    ASSERT_TRUE(source.seek(place));
+    EXPECT_EQ(source.position(), place);
+    EXPECT_EQ(as_text(source.peek(2)), std::string("0123456789").substr(place, 2));
+    EXPECT_EQ(source.read(bytes), 3U);
+    EXPECT_EQ(buffer, std::string("0123456789").substr(place, 3));
+    EXPECT_EQ(source.position(), place + 3);
+  }
+  ASSERT_TRUE(source.seek(20));
+  EXPECT_EQ(source.read(bytes), 0U);
+}
+
 TEST_F(Disk, FillsTheBufferFromAPipe) {
   ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
   std::thread writer([&] {
@@ -207,6 +226,7 @@ TEST_F(Disk, FillsTheBufferFromAPipe) {
   EXPECT_FALSE(file->size());
   std::vector<std::byte> buffer(10000);
   EXPECT_EQ(file->read(buffer), 5000U);
+  EXPECT_FALSE(file->seek(0));
   writer.join();
 }
 
@@ -234,6 +254,8 @@ TEST_F(Disk, StandardInputIsADash) {
   EXPECT_EQ(file->size(), 9U) << "what was read before does not count";
   std::vector<std::byte> buffer(100);
   EXPECT_EQ(as_text(std::span(buffer).first(file->read(buffer))), "elsewhere");
+  ASSERT_TRUE(file->seek(4));
+  EXPECT_EQ(as_text(std::span(buffer).first(file->read(buffer))), "where");
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(LasCorruption, TruncatedHeader) {
 
 TEST(LasCorruption, UnknownVersion) {
   EXPECT_THAT(error_with(24, std::uint8_t{2}), HasSubstr("version 2.2"));
-  EXPECT_THAT(error_with(25, std::uint8_t{5}), HasSubstr("version 1.5"));
+  EXPECT_THAT(error_with(25, std::uint8_t{6}), HasSubstr("version 1.6"));
 }
 
 TEST(LasCorruption, HeaderSizeTooSmall) {
@@ -96,9 +96,14 @@ TEST(LasCorruption, VlrHeaderBeyondSpace) {
               HasSubstr("record 1 at byte 341 does not end before the points"));
 }
 
-TEST(LasCorruption, CompressedPoints) {
-  EXPECT_THAT(error_with(104, std::uint8_t{0x80}),
-              AllOf(HasSubstr("compressed (LAZ)"), HasSubstr("laszip or pdal translate")));
+TEST(LasCorruption, CompressedFlagWithoutLazRecord) {
+  for (const std::uint8_t flag : {0x80, 0x40}) {
+    EXPECT_THAT(error_with(104, flag), HasSubstr("there is no record that says how"));
+  }
+}
+
+TEST(LasCorruption, CompressedBeforeLaz) {
+  EXPECT_THAT(error_with(104, std::uint8_t{0xC0}), HasSubstr("in the way before LAZ"));
 }
 
 TEST(LasCorruption, UnknownPointFormat) {

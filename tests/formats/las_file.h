@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct LasFile {
     std::int32_t y;
     std::int32_t z;
     bool withheld = false;
+    std::optional<PointAttributes> attributes{};  ///< flags not counted; else all bits are set
   };
   struct Vlr {
     std::string user;
@@ -86,7 +88,20 @@ struct LasFile {
     put(bytes, 8, record.z);
     const std::uint8_t mask = point_format < 6 ? 0x80 : 0x04;
     put(bytes, 15, static_cast<std::uint8_t>(record.withheld ? 0xff : 0xff & ~mask));
+    if (record.attributes) put_attributes(bytes, *record.attributes);
     return bytes;
+  }
+
+  void put_attributes(std::string& bytes, const PointAttributes& attributes) const {
+    const bool extended = point_format >= 6;
+    const int returns = attributes.return_number | attributes.return_count << (extended ? 4 : 3);
+    put(bytes, 14, static_cast<std::uint8_t>(returns));
+    if (extended) {
+      put(bytes, 16, attributes.classification);
+    } else {
+      const int flags = static_cast<unsigned char>(bytes[15]) & 0xe0;
+      put(bytes, 15, static_cast<std::uint8_t>(flags | attributes.classification));
+    }
   }
 };
 

@@ -1,44 +1,11 @@
-#include <fmt/format.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
-#include <array>
-#include <cctype>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <memory>
-
-#include "tests/formats/point_test_helpers.h"
+#include "tests/formats/shared_data.h"
 
 namespace spillway::testing {
 namespace {
 
 using ::testing::HasSubstr;
-
-std::filesystem::path shared_file(const char* name) {
-  return std::filesystem::path(SPILLWAY_SHARED_DATA) / name;
-}
-
-/// SHA-256 in hexadecimal, by the sha256sum command.
-std::string sha256(const std::string& bytes) {
-  const std::string digest_file =
-      fmt::format("{}spillway_{}.sha256", ::testing::TempDir(), ::getpid());
-  FILE* const pipe = ::popen(fmt::format("sha256sum > '{}'", digest_file).c_str(), "w");
-  if (pipe == nullptr) return "sha256sum does not run";
-  std::fwrite(bytes.data(), 1, bytes.size(), pipe);
-  ::pclose(pipe);
-  std::string digest;
-  std::ifstream(digest_file) >> digest;
-  std::filesystem::remove(digest_file);
-  return digest;
-}
-
-struct Sample {
-  const char* file;
-  std::uint64_t points;
-  const char* sha256;
-};
 
 class SharedLas : public ::testing::TestWithParam<Sample> {};
 
@@ -48,21 +15,13 @@ TEST_P(SharedLas, HasTheDocumentedPoints) {
   const AllPoints all = read_all_points(disk(), path, {"", true});
   EXPECT_EQ(all.points.size(), GetParam().points);
   EXPECT_EQ(all.header.count, GetParam().points);
-  std::string integers;
-  for (const Point<3>& p : all.points) {
-    integers += bytes_of(std::array<std::int32_t, 3>{static_cast<std::int32_t>(p[0]),
-                                                     static_cast<std::int32_t>(p[1]),
-                                                     static_cast<std::int32_t>(p[2])});
-  }
-  EXPECT_EQ(sha256(integers), GetParam().sha256);
+  EXPECT_EQ(sha256_of_points(all.points), GetParam().sha256);
 }
-
-constexpr const char* kAutzen = "c29fb60ac342200ce4cf4ef97c8aa366e65fd83aef4abbafddee90e9224109cd";
 
 INSTANTIATE_TEST_SUITE_P(
     Files, SharedLas,
-    ::testing::Values(Sample{"autzen_trim.las", 110000, kAutzen},
-                      Sample{"autzen_trim_7.las", 110000, kAutzen},
+    ::testing::Values(Sample{"autzen_trim.las", 110000, kAutzenPoints},
+                      Sample{"autzen_trim_7.las", 110000, kAutzenPoints},
                       Sample{"1.2-with-color.las", 1065,
                              "2c4ac1f33f3b3bc74cc6345387e596fccd5e5dfee8c0af96c1c48be76cd560f4"},
                       Sample{"hexbin-crop.las", 38367,
@@ -75,11 +34,7 @@ INSTANTIATE_TEST_SUITE_P(
                              "bd883e63f84d4da7672995f7243026e5b8dfaf3e022cdd1b93f9c430933d9639"},
                       Sample{"sample_nc.las", 14408,
                              "67029f299a16900b372e5f60b783619a1d7568e3f2f5f20d9f2227f2681b9232"}),
-    [](const ::testing::TestParamInfo<Sample>& tested) {
-      std::string name = tested.param.file;
-      for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-      return name;
-    });
+    name_of_sample);
 
 TEST(SharedLasRefused, Truncated) {
   const std::filesystem::path path = shared_file("1.2-with-color-clipped.las");
@@ -98,12 +53,6 @@ TEST(SharedLasRefused, CorruptVlrCount) {
   rusage after{};
   ::getrusage(RUSAGE_SELF, &after);
   EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 4096) << "KiB";
-}
-
-TEST(SharedLasRefused, Compressed) {
-  const std::filesystem::path path = shared_file("autzen_trim.laz");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
-  EXPECT_THAT(error_of([&] { read_all_points(disk(), path); }), HasSubstr("compressed (LAZ)"));
 }
 
 }  // namespace

@@ -97,7 +97,9 @@ INSTANTIATE_TEST_SUITE_P(All, MeshFaults,
                                            FaultCase{"Obj", MeshFormat::kObj, "mesh.obj"},
                                            FaultCase{"Off", MeshFormat::kOff, "mesh.off"},
                                            FaultCase{"Vtu", MeshFormat::kVtu, "mesh.vtu"},
-                                           FaultCase{"Npy", MeshFormat::kNpy, "mesh.npy"}),
+                                           FaultCase{"Npy", MeshFormat::kNpy, "mesh.npy"},
+                                           FaultCase{"Glb", MeshFormat::kGlb, "mesh.glb"},
+                                           FaultCase{"LandXml", MeshFormat::kLandXml, "mesh.xml"}),
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace

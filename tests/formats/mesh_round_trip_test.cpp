@@ -187,9 +187,10 @@ INSTANTIATE_TEST_SUITE_P(All, EveryFormat, Values(kPly, kPlyAscii, kObj, kOff, k
                          [](const auto& tested) { return tested.param.name; });
 
 TEST(MeshFormats, UnknownNamesAreUsageErrorsThatListTheFormats) {
-  EXPECT_THROW(mesh_format("mesh.ply", "stl"), UsageError);
-  EXPECT_THAT(error_of([] { mesh_format("mesh.stl", ""); }),
-              HasSubstr("choose one of ply, ply-ascii, obj, off, vtu, npy, spm, sma"));
+  EXPECT_THROW(mesh_format("mesh.ply", "dxf"), UsageError);
+  EXPECT_THAT(error_of([] { mesh_format("mesh.dxf", ""); }),
+              HasSubstr("choose one of ply, ply-ascii, obj, off, vtu, npy, spm, sma, glb, stl, "
+                        "landxml, gpkg, shp"));
 }
 
 TEST(MeshFormats, MeshesAreToldFromPoints) {
@@ -227,7 +228,7 @@ TEST(MeshFormats, AFormatCanBeNamed) {
   FaultyFileSystem files;
   files.files["mesh"] = mesh_bytes(MeshFormat::kObj, awkward_mesh(2));
   expect_equal(read_mesh(files, "mesh", "obj"), awkward_mesh(2));
-  EXPECT_THROW(read_mesh(files, "mesh", "stl"), UsageError);
+  EXPECT_THROW(read_mesh(files, "mesh", "dxf"), UsageError);
 }
 
 TEST(NpyMesh, IsNotWrittenToAPipe) {

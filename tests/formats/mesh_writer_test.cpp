@@ -26,6 +26,11 @@ TEST(MeshFormatChoice, TakesTheExtensionInAnyCase) {
   EXPECT_EQ(mesh_format("a.npy", ""), MeshFormat::kNpy);
   EXPECT_EQ(mesh_format("a.Spm", ""), MeshFormat::kSpm);
   EXPECT_EQ(mesh_format("a.sma", ""), MeshFormat::kSma);
+  EXPECT_EQ(mesh_format("a.glb", ""), MeshFormat::kGlb);
+  EXPECT_EQ(mesh_format("a.stl", ""), MeshFormat::kStl);
+  EXPECT_EQ(mesh_format("a.xml", ""), MeshFormat::kLandXml);
+  EXPECT_EQ(mesh_format("a.gpkg", ""), MeshFormat::kGpkg);
+  EXPECT_EQ(mesh_format("a.SHP", ""), MeshFormat::kShp);
 }
 
 TEST(MeshFormatChoice, StandardOutputTakesAStream) {
@@ -39,21 +44,21 @@ TEST(MeshFormatChoice, TakesTheNameBeforeTheExtension) {
 
 TEST(MeshFormatChoice, NamesAreInTheOrderOfTheFormats) {
   const std::vector<std::string> names = mesh_format_names();
-  ASSERT_EQ(names.size(), 8U);
+  ASSERT_EQ(names.size(), 13U);
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_EQ(mesh_format("-", names[i]), static_cast<MeshFormat>(i));
   }
 }
 
 TEST(MeshFormatChoice, ListsTheFormatsWhereNoneIsNamed) {
-  for (const std::string path : {"a", "a.stl", "ply"}) {
+  for (const std::string path : {"a", "a.dxf", "ply"}) {
     EXPECT_THROW(mesh_format(path, ""), UsageError) << path;
     EXPECT_THAT(error_of([&] { mesh_format(path, ""); }),
                 HasSubstr("ply, ply-ascii, obj, off, vtu, npy, spm, sma"));
   }
   EXPECT_THAT(
-      error_of([] { mesh_format("a.ply", "stl"); }),
-      AllOf(HasSubstr("\"stl\""), HasSubstr("ply, ply-ascii, obj, off, vtu, npy, spm, sma")));
+      error_of([] { mesh_format("a.ply", "dxf"); }),
+      AllOf(HasSubstr("\"dxf\""), HasSubstr("ply, ply-ascii, obj, off, vtu, npy, spm, sma")));
 }
 
 TEST(PlyWriter, AsciiTriangles) {
@@ -458,7 +463,8 @@ TEST_P(MeshWriterMisuse, AFileAfterAFailedBlockIsNeverCompleted) {
 INSTANTIATE_TEST_SUITE_P(All, MeshWriterMisuse,
                          ::testing::Values(MeshFormat::kPly, MeshFormat::kPlyAscii,
                                            MeshFormat::kObj, MeshFormat::kOff, MeshFormat::kVtu,
-                                           MeshFormat::kNpy),
+                                           MeshFormat::kNpy, MeshFormat::kGlb,
+                                           MeshFormat::kLandXml),
                          [](const auto& tested) {
                            std::string name = mesh_format_names()[static_cast<int>(tested.param)];
                            std::erase(name, '-');

@@ -22,7 +22,7 @@ void write_points(FaultyFileSystem& files, const std::string& path) {
   std::mt19937 random(1);
   std::vector<Point<3>> points(kPoints);
   for (Point<3>& p : points) p = {double(random() >> 1U), double(random() >> 1U), 3};
-  writer->write(points);
+  writer->write(points, {});
   writer->finish();
 }
 
@@ -154,7 +154,7 @@ TEST(AnyCorruption, NpyGivesPointsOrAnError) {
   PointWriterOptions options;
   options.count = 2;
   const auto writer = open_point_writer(files, "a.npy", options);
-  writer->write(std::vector<Point<3>>(2, Point<3>{1, 2, 3}));
+  writer->write(std::vector<Point<3>>(2, Point<3>{1, 2, 3}), {});
   writer->finish();
   read_every_corruption("a.npy", files.files.at("a.npy"));
 }

@@ -44,7 +44,7 @@ TEST(PointFormatChoice, UnknownContent) {
 
 TEST(PointFormatChoice, UnknownOption) {
   EXPECT_THAT(error_of_content("a.las", "", {"shp", false}),
-              HasSubstr("choose las, text, npy or spp"));
+              HasSubstr("choose las, laz, copc, text, npy or spp"));
 }
 
 TEST(PointFormatChoice, OutputWithoutKnownFormat) {
@@ -53,20 +53,25 @@ TEST(PointFormatChoice, OutputWithoutKnownFormat) {
   EXPECT_THROW(open_point_writer(files, "a.dat", {}), UsageError);
   EXPECT_THROW(open_point_writer(files, "a.laz", {}), UsageError);
   EXPECT_THROW(open_point_writer(files, "a.xyz.gz", {}), UsageError);
+  PointWriterOptions laz;
+  laz.format = "laz";
+  EXPECT_THROW(open_point_writer(files, "-", laz), UsageError);
   EXPECT_EQ(files.count(Call::kCreate), 0);
 }
 
-TEST(PointFormatChoice, OutputThatNeedsTheCountBeforehand) {
+TEST(PointFormatChoice, PipeThatNeedsTheCountBeforehand) {
   FaultyFileSystem files;
+  files.seekable = false;
   PointWriterOptions options;
   options.lattice = Lattice{};
   for (const char* name : {"a.las", "a.npy"}) {
     EXPECT_THAT(error_of([&] { open_point_writer(files, name, options); }),
                 HasSubstr("not known beforehand; write text or spp"));
+    EXPECT_TRUE(files.parts.empty());
   }
   for (const char* name : {"a.txt", "a.spp"}) {
     const auto writer = open_point_writer(files, name, options);
-    writer->write(std::vector<Point<3>>(2));
+    writer->write(std::vector<Point<3>>(2), {});
     writer->finish();
     EXPECT_EQ(read_all_points(files, name).points.size(), 2U);
   }

@@ -83,7 +83,8 @@ std::string bytes_of(const T& value) {
 /// Overwrites bytes of `content` by a value.
 template <typename T>
 void put(std::string& content, std::size_t at, const T& value) {
-  content.replace(at, sizeof(T), bytes_of(value));
+  ASSERT_LE(at + sizeof(T), content.size());
+  std::memcpy(&content[at], &value, sizeof(T));
 }
 
 }  // namespace spillway::testing

@@ -8,10 +8,12 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr MeshFormat kAll[] = {MeshFormat::kPly, MeshFormat::kPlyAscii, MeshFormat::kObj,
-                               MeshFormat::kOff, MeshFormat::kVtu,      MeshFormat::kNpy};
+                               MeshFormat::kOff, MeshFormat::kVtu,      MeshFormat::kNpy,
+                               MeshFormat::kGlb, MeshFormat::kLandXml};
 
 bool triangles_only(MeshFormat format) {
-  return format == MeshFormat::kObj || format == MeshFormat::kOff;
+  return format == MeshFormat::kObj || format == MeshFormat::kOff || format == MeshFormat::kGlb ||
+         format == MeshFormat::kLandXml;
 }
 
 /// The files of a mesh that is written with a spool of `memory` bytes before it goes to the disk.

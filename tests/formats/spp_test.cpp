@@ -26,7 +26,7 @@ std::string stream_of(const std::vector<Point<3>>& points, const PointWriterOpti
   files.seekable = false;
   const auto writer = open_point_writer(files, "a.spp", options);
   for (std::size_t i = 0; i < points.size(); i += piece) {
-    writer->write(std::span(points).subspan(i, std::min(piece, points.size() - i)));
+    writer->write(std::span(points).subspan(i, std::min(piece, points.size() - i)), {});
   }
   writer->finish();
   return files.files.at("a.spp");

@@ -70,24 +70,6 @@ TEST(LatticeTest, IsotropyLooksAtTheFirstAxesOnly) {
   EXPECT_FALSE(lattice.isotropic(3));
 }
 
-TEST(LatticeTest, ShiftBetweenLatticesIsAWholeNumberOfSteps) {
-  const Lattice base{{0.01, 0.01, 0.01}, {100, 200, 0}};
-  Lattice other = base;
-  other.offset = {100.5, 100, 0.07};
-  EXPECT_EQ(lattice_shift(base, other), (std::array<double, 3>{50, -10000, 7}));
-  EXPECT_EQ(lattice_shift(base, base), (std::array<double, 3>{0, 0, 0}));
-}
-
-TEST(LatticeTest, LatticesWithOtherScalesOrFractionalShiftsDoNotCombine) {
-  const Lattice base{{0.01, 0.01, 0.01}, {0, 0, 0}};
-  Lattice other = base;
-  other.scale[2] = 0.001;
-  EXPECT_FALSE(lattice_shift(base, other).has_value());
-  other = base;
-  other.offset[1] = 0.005;
-  EXPECT_FALSE(lattice_shift(base, other).has_value());
-}
-
 template <typename Dimension>
 class CanonicalHashTest : public ::testing::Test {};
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;

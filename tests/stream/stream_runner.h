@@ -76,7 +76,7 @@ std::string write_points(const std::vector<Point<D>>& points) {
     std::copy(p.begin(), p.end(), point.begin());
     block.push_back(point);
   }
-  writer->write(block);
+  writer->write(block, {});
   writer->finish();
   return path;
 }

@@ -1,5 +1,5 @@
 spillway_test(stream_unit_test unit
-  SOURCES stream/heights_test.cpp stream/memory_test.cpp stream/tile_tree_test.cpp
+  SOURCES stream/contour_test.cpp stream/heights_test.cpp stream/memory_test.cpp stream/tile_tree_test.cpp
   LIBS spillway_stream)
 
 spillway_test(stream_property_test property
@@ -10,3 +10,13 @@ spillway_test(stream_property_test property
 spillway_test(stream_fault_test fault
   SOURCES stream/stream_fault_test.cpp
   LIBS spillway_stream spillway_generators)
+
+spillway_test(point_input_test unit
+  SOURCES stream/common_lattice_test.cpp stream/point_filter_test.cpp stream/point_source_test.cpp
+          stream/thinning_test.cpp
+  LIBS spillway_stream fmt::fmt)
+
+spillway_test(dem_test property
+  SOURCES stream/dem_test.cpp
+  LIBS spillway_stream
+  TIMEOUT 300)

@@ -15,6 +15,7 @@ spillway_command_test(cli_tests cli
   tools/cli_formats_test.cpp
   tools/cli_info_check_test.cpp
   tools/cli_shared_data_test.cpp
+  tools/cli_convert_points_test.cpp
   tools/cli_convert_test.cpp tools/cli_stream_test.cpp
   tools/cli_triangulate_test.cpp
   tools/cli_usage_test.cpp)
@@ -24,3 +25,12 @@ spillway_command_test(cli_out_of_core_tests cli
   tools/cli_out_of_core_test.cpp)
 spillway_command_test(cli_out_of_core_fault_tests fault
   tools/cli_out_of_core_fault_test.cpp)
+spillway_command_test(cli_input_tests cli
+  tools/cli_filter_test.cpp tools/cli_inputs_test.cpp)
+
+spillway_command_test(cli_batch_tests cli
+  tools/cli_batch_test.cpp tools/cli_contour_test.cpp)
+
+spillway_command_test(cli_dem_tests cli
+  tools/cli_dem_test.cpp)
+target_link_libraries(cli_dem_tests PRIVATE PkgConfig::gdal)

@@ -91,13 +91,23 @@ TEST(Triangulate, InputsOnOneLatticeStayOnIt) {
   EXPECT_EQ(work.info("mesh.ply")["on_lattice"], true);
 }
 
-TEST(Triangulate, InputsOnDifferentLatticesAreTriangulatedInOutputCoordinates) {
+TEST(Triangulate, InputsOnDifferentLatticesAreTriangulatedOnACommonOne) {
   const Workspace work;
   work.succeed(
       "spillway generate -q terrain -n 3000 -o a.las\n"
       "spillway generate -q lattice -n 100 -o b.las\n"
       "spillway triangulate -q a.las b.las -o mesh.ply --stats stats.json\n"
       "spillway check -q mesh.ply --points a.las b.las");
+  EXPECT_EQ(stats_of(work)["on_lattice"], true);
+}
+
+TEST(Triangulate, InputsWithoutACommonLatticeAreTriangulatedInOutputCoordinates) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 3000 -o a.las\n"
+      "spillway generate -q uniform -n 100 -o b.npy\n"
+      "spillway triangulate -q a.las b.npy -o mesh.ply --stats stats.json\n"
+      "spillway check -q mesh.ply --points a.las b.npy");
   EXPECT_EQ(stats_of(work)["on_lattice"], false);
 }
 

@@ -38,7 +38,7 @@ TEST_P(WrongCommandLine, IsOneLineAndExitCodeTwo) {
 INSTANTIATE_TEST_SUITE_P(
     Cli, WrongCommandLine,
     testing::Values(
-        "", "frobnicate", "triangulate", "triangulate in.txt", "triangulate -o x.ply",
+        "frobnicate", "triangulate", "triangulate in.txt", "triangulate -o x.ply",
         "triangulate in.txt -o x.ply --frobnicate", "triangulate in.txt -o x.ply --dim 4",
         "triangulate in.txt -o x.nonsense", "triangulate in.txt -o x.ply --duplicates most",
         "triangulate in.txt -o x.ply --max-edge 0", "triangulate in.txt -o x.ply --threads -1",

@@ -1,0 +1,132 @@
+#include "formats/gdal/crs.h"
+
+#include <cpl_conv.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "formats/gdal/gdal_errors.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+// GDAL's measure of how well a system fits one of EPSG's: equal in all but its name.
+constexpr int kEqualButForName = 90;
+
+constexpr std::size_t kLongestQuote = 60;
+
+std::string text_of(char* text) {
+  const std::unique_ptr<char, void (*)(void*)> owner(text, [](void* p) { CPLFree(p); });
+  return text == nullptr ? std::string() : std::string(text);
+}
+
+std::string exported(const OGRSpatialReference& crs, const char* format) {
+  const std::vector<const char*> options = {format, "MULTILINE=NO", nullptr};
+  char* text = nullptr;
+  const OGRErr error = crs.exportToWkt(&text, options.data());
+  std::string wkt = text_of(text);
+  return error == OGRERR_NONE ? wkt : std::string();
+}
+
+/// "EPSG:n", or nothing if the system has no number.
+std::string code_of(const OGRSpatialReference& crs) {
+  const char* const authority = crs.GetAuthorityName(nullptr);
+  const char* const code = crs.GetAuthorityCode(nullptr);
+  if (authority == nullptr || code == nullptr) return "";
+  return fmt::format("{}:{}", authority, code);
+}
+
+bool equal(const OGRSpatialReference& a, const OGRSpatialReference& b) {
+  const std::vector<const char*> options = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
+                                            "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS",
+                                            nullptr};
+  return a.IsSame(&b, options.data()) != 0;
+}
+
+/// The code of EPSG's system that equals this one but for its name, or nothing. Files that were
+/// written by other programs name datums in their own ways.
+std::string best_code(const OGRSpatialReference& crs) {
+  const std::string code = code_of(crs);
+  if (!code.empty()) return code;
+  int count = 0;
+  int* confidence = nullptr;
+  OGRSpatialReferenceH* const matches =
+      OSRFindMatches(OGRSpatialReference::ToHandle(const_cast<OGRSpatialReference*>(&crs)), nullptr,
+                     &count, &confidence);
+  std::string best;
+  if (count > 0 && confidence[0] >= kEqualButForName) {
+    best = code_of(*OGRSpatialReference::FromHandle(matches[0]));
+  }
+  OSRFreeSRSArray(matches);
+  CPLFree(confidence);
+  return best;
+}
+
+OGRSpatialReference horizontal(OGRSpatialReference crs) {
+  crs.StripVertical();
+  return crs;
+}
+
+}  // namespace
+
+OGRSpatialReference parse_crs(const std::string& crs) {
+  forget_gdal_errors();
+  OGRSpatialReference result;
+  // Neither files nor addresses: the text may come from a file of somebody else.
+  const OGRErr error = result.SetFromUserInput(
+      crs.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get());
+  if (error != OGRERR_NONE) {
+    std::string shown = crs.substr(0, kLongestQuote);
+    std::replace(shown.begin(), shown.end(), '\n', ' ');
+    if (crs.size() > kLongestQuote) shown += "...";
+    throw Error(fmt::format("\"{}\" is no coordinate system ({}); give \"EPSG:n\" or WKT", shown,
+                            gdal_reason()));
+  }
+  result.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return result;
+}
+
+bool same_crs(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  const OGRSpatialReference first = parse_crs(a);
+  const OGRSpatialReference second = parse_crs(b);
+  if (equal(first, second)) return true;
+  if (first.IsCompound() != 0 && second.IsCompound() != 0) return false;
+  const OGRSpatialReference flat_first = horizontal(first);
+  const OGRSpatialReference flat_second = horizontal(second);
+  if (equal(flat_first, flat_second)) return true;
+  const std::string code = best_code(flat_first);
+  return !code.empty() && code == best_code(flat_second);
+}
+
+std::string wkt_of(const OGRSpatialReference* crs) {
+  if (crs == nullptr || crs->IsEmpty()) return "";
+  forget_gdal_errors();
+  std::string wkt = exported(*crs, "FORMAT=WKT1_GDAL");
+  if (wkt.empty()) wkt = exported(*crs, "FORMAT=WKT2_2019");
+  if (wkt.empty()) throw Error("cannot write a coordinate system as WKT: " + gdal_reason());
+  return wkt;
+}
+
+std::string crs_to_wkt(const std::string& crs) {
+  const OGRSpatialReference parsed = parse_crs(crs);
+  return wkt_of(&parsed);
+}
+
+std::string crs_name(const std::string& crs) {
+  const OGRSpatialReference parsed = parse_crs(crs);
+  const char* const given = parsed.GetName();
+  const std::string name = given == nullptr ? "unnamed" : given;
+  const std::string code = code_of(parsed);
+  return code.empty() ? name : fmt::format("{} ({})", code, name);
+}
+
+double crs_unit(const std::string& crs) {
+  const OGRSpatialReference parsed = parse_crs(crs);
+  return parsed.IsGeographic() != 0 ? 0 : parsed.GetLinearUnits();
+}
+
+}  // namespace spillway

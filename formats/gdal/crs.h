@@ -1,0 +1,22 @@
+#pragma once
+// Coordinate systems, within the module.
+
+#include <ogr_spatialref.h>
+
+#include <string>
+
+namespace spillway {
+
+/// The coordinate system that a text names, x east and y north. Throws Error if it names none.
+OGRSpatialReference parse_crs(const std::string& crs);
+
+/// What the members of Gdal of these names return.
+bool same_crs(const std::string& a, const std::string& b);
+std::string crs_to_wkt(const std::string& crs);
+std::string crs_name(const std::string& crs);
+double crs_unit(const std::string& crs);
+
+/// The coordinate system as Gdal::crs_to_wkt() gives it; empty if there is none.
+std::string wkt_of(const OGRSpatialReference* crs);
+
+}  // namespace spillway

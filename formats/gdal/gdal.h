@@ -1,0 +1,61 @@
+#pragma once
+// The seam to GDAL: coordinate systems, GeoTIFF, vector files. GDAL brings a hundred shared
+// libraries, so it stands in a module of its own that is loaded when first needed: a run that needs
+// none of it pays nothing.
+
+#include <memory>
+#include <string>
+
+#include "formats/gdal/raster.h"
+#include "formats/gdal/vector_layer.h"
+
+namespace spillway {
+
+/// What the module offers. A coordinate system is given as WKT (1 or 2), as "EPSG:n" or as PROJ
+/// text; what GDAL takes for none of these is an Error. May be called by many threads.
+class Gdal {
+ public:
+  Gdal() = default;
+  virtual ~Gdal() = default;
+  Gdal(const Gdal&) = delete;
+  Gdal& operator=(const Gdal&) = delete;
+
+  /// Whether two coordinate systems are the same one, however they are written. The order of axes
+  /// does not matter: coordinates are always x (east), y (north). Where only one of them has a
+  /// vertical part, the horizontal parts alone are compared; where both have, both parts count.
+  [[nodiscard]] virtual bool same_crs(const std::string& a, const std::string& b) const = 0;
+
+  /// A coordinate system as WKT in one line: version 1 in GDAL's dialect, which LAS files need, or
+  /// version 2 if the first cannot tell it.
+  [[nodiscard]] virtual std::string crs_to_wkt(const std::string& crs) const = 0;
+
+  /// A short name for messages: "EPSG:2927 (NAD83(HARN) / Washington South (ftUS))".
+  [[nodiscard]] virtual std::string crs_name(const std::string& crs) const = 0;
+
+  /// Metres in a unit of x and y; 0 if these are angles.
+  [[nodiscard]] virtual double crs_unit(const std::string& crs) const = 0;
+
+  /// Begins a vector file of one layer.
+  [[nodiscard]] virtual std::unique_ptr<VectorLayer> create_layer(
+      const VectorLayerOptions& options) const = 0;
+
+  /// Opens the one layer of triangles of a vector file.
+  [[nodiscard]] virtual std::unique_ptr<TriangleLayer> open_layer(
+      const std::string& path) const = 0;
+
+  /// Begins a GeoTIFF.
+  [[nodiscard]] virtual std::unique_ptr<Raster> create_raster(
+      const RasterOptions& options) const = 0;
+
+  /// Where an existing raster lies. Throws Error if its pixels are not square, north up.
+  [[nodiscard]] virtual RasterGrid read_raster_grid(const std::string& path) const = 0;
+};
+
+/// The module, loaded at the first call. Throws Error if it is not installed.
+const Gdal& gdal();
+
+/// What the module has under the name kGdalFactory: it returns what gdal() gives.
+using GdalFactory = const Gdal* (*)();
+inline constexpr const char* kGdalFactory = "spillway_gdal";
+
+}  // namespace spillway

@@ -1,0 +1,174 @@
+#include "formats/gdal/geotiff.h"
+
+#include <cpl_string.h>
+#include <fmt/format.h>
+#include <gdal_priv.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string_view>
+#include <system_error>
+
+#include "formats/gdal/crs.h"
+#include "formats/gdal/gdal_errors.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+/// How far rows may be from square with columns, as a part of a pixel over the whole raster.
+constexpr double kSquare = 1e-3;
+
+/// Compression that takes little time; see docs/dem.md.
+constexpr const char* kDeflateLevel = "3";
+constexpr const char* kZstdLevel = "3";
+
+std::string upper(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
+class GeoTiff : public Raster {
+ public:
+  explicit GeoTiff(const RasterOptions& options)
+      : options_(options),
+        plain_path_(options.cloud_optimized ? options.path + ".plain" : options.path) {
+    forget_gdal_errors();
+    GDALSetCacheMax64(static_cast<GIntBig>(options_.memory));
+    GDALDriver* const driver = driver_named("GTiff");
+    const PixelGrid& grid = options_.grid.pixels;
+    const CPLStringList creation = plain_options(*driver);
+    file_.reset(driver->Create(plain_path_.c_str(), static_cast<int>(grid.columns),
+                               static_cast<int>(grid.rows), static_cast<int>(options_.bands.size()),
+                               GDT_Float32, creation.List()));
+    if (!file_) fail(gdal_reason());
+    std::array<double, 6> transform = {grid.west, grid.resolution, 0, grid.north,
+                                       0,         -grid.resolution};
+    if (file_->SetGeoTransform(transform.data()) != CE_None) fail(gdal_reason());
+    if (!options_.grid.crs.empty()) {
+      const OGRSpatialReference crs = parse_crs(options_.grid.crs);
+      if (file_->SetSpatialRef(&crs) != CE_None) fail(gdal_reason());
+    }
+    for (std::size_t b = 0; b < options_.bands.size(); ++b) {
+      band(b).SetDescription(options_.bands[b].c_str());
+      if (band(b).SetNoDataValue(options_.nodata) != CE_None) fail(gdal_reason());
+    }
+  }
+
+  void write_tile(std::size_t number, std::uint32_t tile_column, std::uint32_t tile_row,
+                  std::span<const float> pixels) override {
+    forget_gdal_errors();
+    // Straight to the file: nothing is left to a cache that writes in an order of its own.
+    const CPLErr error =
+        band(number).WriteBlock(static_cast<int>(tile_column), static_cast<int>(tile_row),
+                                const_cast<float*>(pixels.data()));
+    if (error != CE_None || gdal_failed()) fail(gdal_reason());
+  }
+
+  void finish() override {
+    forget_gdal_errors();
+    file_.reset();  // closing writes what is left: only now can the disk be full
+    if (gdal_failed()) fail(gdal_reason());
+    if (options_.cloud_optimized) optimize();
+  }
+
+ private:
+  static GDALDriver* driver_named(const char* name) {
+    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(name);
+    if (driver == nullptr) {
+      throw Error(
+          fmt::format("GDAL is installed without its driver {}; install one with it", name));
+    }
+    return driver;
+  }
+
+  [[nodiscard]] GDALRasterBand& band(std::size_t number) {
+    return *file_->GetRasterBand(static_cast<int>(number) + 1);
+  }
+
+  [[nodiscard]] CPLStringList plain_options(GDALDriver& driver) const {
+    CPLStringList creation;
+    creation.SetNameValue("TILED", "YES");
+    creation.SetNameValue("BLOCKXSIZE", fmt::format("{}", kRasterTile).c_str());
+    creation.SetNameValue("BLOCKYSIZE", fmt::format("{}", kRasterTile).c_str());
+    creation.SetNameValue("INTERLEAVE", "BAND");
+    creation.SetNameValue("BIGTIFF", "IF_SAFER");
+    creation.SetNameValue("NUM_THREADS", fmt::format("{}", options_.threads).c_str());
+    if (options_.compression == "none") return creation;
+    const std::string compression = upper(options_.compression);
+    const char* const known = driver.GetMetadataItem(GDAL_DMD_CREATIONOPTIONLIST);
+    if (known == nullptr || std::string_view(known).find(compression) == std::string_view::npos) {
+      fail(fmt::format("GDAL is installed without {} compression; choose another", compression));
+    }
+    creation.SetNameValue("COMPRESS", compression.c_str());
+    creation.SetNameValue("PREDICTOR", "3");
+    creation.SetNameValue("ZLEVEL", kDeflateLevel);
+    creation.SetNameValue("ZSTD_LEVEL", kZstdLevel);
+    return creation;
+  }
+
+  /// Makes the file of what was written beside it.
+  void optimize() const {
+    GDALDriver* const driver = driver_named("COG");
+    const GDALDatasetUniquePtr plain(GDALDataset::Open(plain_path_.c_str(), GDAL_OF_RASTER));
+    if (!plain) fail(gdal_reason());
+    CPLStringList creation;
+    creation.SetNameValue("COMPRESS", upper(options_.compression).c_str());
+    if (options_.compression != "none") {
+      creation.SetNameValue("PREDICTOR", "FLOATING_POINT");
+      creation.SetNameValue("LEVEL", options_.compression == "zstd" ? kZstdLevel : kDeflateLevel);
+    }
+    creation.SetNameValue("BIGTIFF", "IF_SAFER");
+    creation.SetNameValue("NUM_THREADS", fmt::format("{}", options_.threads).c_str());
+    creation.SetNameValue("OVERVIEW_RESAMPLING",
+                          options_.averaged_overviews ? "AVERAGE" : "NEAREST");
+    GDALDatasetUniquePtr optimized(driver->CreateCopy(options_.path.c_str(), plain.get(), 0,
+                                                      creation.List(), nullptr, nullptr));
+    if (!optimized) fail(gdal_reason());
+    optimized.reset();
+    if (gdal_failed()) fail(gdal_reason());
+    std::error_code ignored;  // it goes with its folder
+    std::filesystem::remove(plain_path_, ignored);
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("cannot write {}: {}", options_.name, what));
+  }
+
+  const RasterOptions options_;
+  const std::string plain_path_;
+  GDALDatasetUniquePtr file_;
+};
+
+}  // namespace
+
+std::unique_ptr<Raster> create_geotiff(const RasterOptions& options) {
+  return std::make_unique<GeoTiff>(options);
+}
+
+RasterGrid read_geotiff_grid(const std::string& path) {
+  forget_gdal_errors();
+  const GDALDatasetUniquePtr file(
+      GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
+  if (!file) throw Error(fmt::format("cannot read {}: {}", path, gdal_reason()));
+  std::array<double, 6> transform{};
+  if (file->GetGeoTransform(transform.data()) != CE_None) {
+    throw Error(
+        fmt::format("{}: the raster has no geotransform, so nobody knows where it lies", path));
+  }
+  const auto [west, width, row_shift, north, column_shift, height] = transform;
+  const auto columns = static_cast<std::uint32_t>(file->GetRasterXSize());
+  const auto rows = static_cast<std::uint32_t>(file->GetRasterYSize());
+  if (!(width > 0) || row_shift != 0 || column_shift != 0 ||
+      !(std::abs(width + height) * std::max(columns, rows) <= kSquare * width)) {
+    throw Error(
+        fmt::format("{}: only rasters with square pixels and north up can be followed "
+                    "(gdalwarp makes them); a pixel is {} by {}",
+                    path, width, -height));
+  }
+  return {{west, north, width, columns, rows}, wkt_of(file->GetSpatialRef())};
+}
+
+}  // namespace spillway

@@ -1,0 +1,58 @@
+// The module's one door.
+
+#include <cpl_conv.h>
+#include <gdal.h>
+
+#include "formats/gdal/crs.h"
+#include "formats/gdal/gdal.h"
+#include "formats/gdal/gdal_errors.h"
+#include "formats/gdal/geotiff.h"
+#include "formats/gdal/vectors.h"
+
+namespace spillway {
+namespace {
+
+class LoadedGdal : public Gdal {
+ public:
+  LoadedGdal() {
+    silence_gdal();
+    // Files get their final name only when complete, so that a crash may leave them broken.
+    CPLSetConfigOption("OGR_SQLITE_SYNCHRONOUS", "OFF");
+    CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");
+    GDALAllRegister();
+  }
+
+  [[nodiscard]] bool same_crs(const std::string& a, const std::string& b) const override {
+    return spillway::same_crs(a, b);
+  }
+  [[nodiscard]] std::string crs_to_wkt(const std::string& crs) const override {
+    return spillway::crs_to_wkt(crs);
+  }
+  [[nodiscard]] std::string crs_name(const std::string& crs) const override {
+    return spillway::crs_name(crs);
+  }
+  [[nodiscard]] double crs_unit(const std::string& crs) const override {
+    return spillway::crs_unit(crs);
+  }
+  [[nodiscard]] std::unique_ptr<VectorLayer> create_layer(
+      const VectorLayerOptions& options) const override {
+    return create_ogr_layer(options);
+  }
+  [[nodiscard]] std::unique_ptr<TriangleLayer> open_layer(const std::string& path) const override {
+    return open_ogr_layer(path);
+  }
+  [[nodiscard]] std::unique_ptr<Raster> create_raster(const RasterOptions& options) const override {
+    return create_geotiff(options);
+  }
+  [[nodiscard]] RasterGrid read_raster_grid(const std::string& path) const override {
+    return read_geotiff_grid(path);
+  }
+};
+
+}  // namespace
+}  // namespace spillway
+
+extern "C" __attribute__((visibility("default"))) const spillway::Gdal* spillway_gdal() {
+  static const spillway::LoadedGdal instance;
+  return &instance;
+}

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+
+#include "src/geometry/point.h"
+
+namespace spillway {
+
+/// What a vector file of one layer holds.
+struct VectorLayerOptions {
+  std::string path;    ///< of the file to create, which is not there yet
+  std::string name;    ///< of the file in messages
+  std::string driver;  ///< GDAL's name: "GPKG", "ESRI Shapefile", "GeoJSON"
+  std::string layer;   ///< the layer's name; a shapefile takes it from its path instead
+  bool lines = false;  ///< lines with an elevation; else triangles
+  std::string crs;     ///< as Gdal takes it; empty: unknown
+  /// Said about the layer where the driver can hold it (GeoPackage); dropped elsewhere.
+  std::map<std::string, std::string> metadata;
+};
+
+/// A layer being written. The file is not complete before finish(), and is left as it is if the
+/// layer is destroyed without. Throws Error with GDAL's reason.
+class VectorLayer {
+ public:
+  VectorLayer() = default;
+  virtual ~VectorLayer() = default;
+  VectorLayer(const VectorLayer&) = delete;
+  VectorLayer& operator=(const VectorLayer&) = delete;
+
+  /// Adds a triangle as a polygon with z.
+  virtual void add_triangle(std::span<const Point<3>, 3> corners) = 0;
+  /// Adds a line with z and the attribute "elevation"; closed if its ends are equal.
+  virtual void add_line(std::span<const Point<3>> points, double elevation) = 0;
+  /// Completes and closes the file.
+  virtual void finish() = 0;
+};
+
+/// A layer of triangles being read: polygons of three corners, TINs, or collections of these.
+/// Throws Error with the feature's number for anything else.
+class TriangleLayer {
+ public:
+  TriangleLayer() = default;
+  virtual ~TriangleLayer() = default;
+  TriangleLayer(const TriangleLayer&) = delete;
+  TriangleLayer& operator=(const TriangleLayer&) = delete;
+
+  /// The coordinate system as WKT; empty if unknown.
+  [[nodiscard]] virtual std::string crs() const = 0;
+  /// What VectorLayerOptions::metadata said of this name; empty if nothing.
+  [[nodiscard]] virtual std::string metadata(const std::string& name) const = 0;
+  /// The next triangle, counter-clockwise in x, y, with z 0 where there is none; false at the end.
+  virtual bool next(std::array<Point<3>, 3>& corners) = 0;
+};
+
+}  // namespace spillway

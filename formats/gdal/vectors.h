@@ -1,0 +1,17 @@
+#pragma once
+// Vector files through OGR, within the module.
+
+#include <memory>
+#include <string>
+
+#include "formats/gdal/vector_layer.h"
+
+namespace spillway {
+
+/// What Gdal::create_layer() returns.
+std::unique_ptr<VectorLayer> create_ogr_layer(const VectorLayerOptions& options);
+
+/// What Gdal::open_layer() returns.
+std::unique_ptr<TriangleLayer> open_ogr_layer(const std::string& path);
+
+}  // namespace spillway

@@ -1,0 +1,157 @@
+#include "formats/las_crs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "formats/bytes.h"
+#include "formats/fields.h"
+#include "formats/las_header.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+constexpr std::string_view kUser = "LASF_Projection";
+constexpr std::uint16_t kWktRecord = 2112;
+constexpr std::uint16_t kGeotiffRecord = 34735;
+
+/// A coordinate system as GeoTIFF keys tell it.
+struct Code {
+  std::uint16_t number;
+  bool geographic;
+};
+
+std::optional<std::uint16_t> epsg_number(std::string_view text) {
+  constexpr std::uint64_t kLargest = 32766;  // 32767 stands for user-defined
+  const std::optional<std::uint64_t> number = parse_count(text);
+  if (!number || *number == 0 || *number > kLargest) return std::nullopt;
+  return static_cast<std::uint16_t>(*number);
+}
+
+bool is_wkt(std::string_view crs) { return crs.find_first_of("[(") != std::string_view::npos; }
+
+bool is_geographic(std::string_view keyword) {
+  return keyword == "GEOGCS" || keyword == "GEOGCRS" || keyword == "GEOGRAPHICCRS" ||
+         keyword == "GEODCRS" || keyword == "GEODETICCRS";
+}
+
+bool is_projected(std::string_view keyword) {
+  return keyword == "PROJCS" || keyword == "PROJCRS" || keyword == "PROJECTEDCRS";
+}
+
+bool is_compound(std::string_view keyword) {
+  return keyword == "COMPD_CS" || keyword == "COMPOUNDCRS";
+}
+
+/// The number in what stands between the brackets of AUTHORITY["EPSG","n"] or ID["EPSG",n].
+std::optional<std::uint16_t> epsg_of_authority(std::string_view inside) {
+  std::string plain(inside.substr(0, inside.find_first_of("])")));
+  std::erase_if(plain, [](char c) { return c == '"' || c == ' '; });
+  if (!plain.starts_with("EPSG,")) return std::nullopt;
+  return epsg_number(std::string_view(plain).substr(5));
+}
+
+/// The EPSG code of the whole coordinate system, or of the horizontal part of a compound one.
+std::optional<Code> code_of_wkt(std::string_view wkt) {
+  std::vector<std::string_view> path;  // keywords of the brackets that are open
+  std::size_t word = 0;                // where the current word begins
+  bool quoted = false;
+  for (std::size_t at = 0; at < wkt.size(); ++at) {
+    const char c = wkt[at];
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (c == '[' || c == '(') {
+      const std::string_view keyword = wkt.substr(word, at - word);
+      const bool described = path.size() == 1 || (path.size() == 2 && is_compound(path[0]));
+      if (described && (is_projected(path.back()) || is_geographic(path.back())) &&
+          (keyword == "AUTHORITY" || keyword == "ID")) {
+        const std::optional<std::uint16_t> number = epsg_of_authority(wkt.substr(at + 1));
+        if (number) return Code{*number, is_geographic(path.back())};
+      }
+      path.push_back(keyword);
+    } else if ((c == ']' || c == ')') && !path.empty()) {
+      path.pop_back();
+    }
+    if (c == '[' || c == '(' || c == ',' || c == ' ') word = at + 1;
+  }
+  return std::nullopt;
+}
+
+std::optional<Code> code_of(const std::string& crs, const std::string& wkt) {
+  if (is_wkt(crs)) return code_of_wkt(crs);
+  constexpr std::string_view kPrefix = "EPSG:";
+  if (!crs.starts_with(kPrefix)) return std::nullopt;
+  const std::optional<std::uint16_t> number = epsg_number(crs.substr(kPrefix.size()));
+  if (!number) return std::nullopt;
+  const std::optional<Code> known = code_of_wkt(wkt);
+  if (known && known->number == *number) return known;
+  return Code{*number, *number >= 4000 && *number < 5000};  // where most of each kind are
+}
+
+void append_record(LasCrs& crs, std::uint16_t id, std::span<const std::byte> content) {
+  if (content.size() > std::numeric_limits<std::uint16_t>::max()) {
+    throw Error(fmt::format("the coordinate system takes {} bytes, and LAS holds 65535; write spp",
+                            content.size()));
+  }
+  std::array<std::byte, kLasVlrHeaderSize> header{};
+  std::ranges::copy(as_bytes_of(kUser), header.begin() + 2);
+  store(&header[18], id);
+  store(&header[20], static_cast<std::uint16_t>(content.size()));
+  crs.bytes.insert(crs.bytes.end(), header.begin(), header.end());
+  crs.bytes.insert(crs.bytes.end(), content.begin(), content.end());
+  ++crs.records;
+}
+
+void append_wkt(LasCrs& crs, const std::string& wkt) {
+  append_record(crs, kWktRecord, std::as_bytes(std::span(wkt.c_str(), wkt.size() + 1)));
+}
+
+/// A GeoTIFF directory of two keys: what the model is, and its code.
+void append_geotiff_keys(LasCrs& crs, const Code& code) {
+  constexpr std::uint16_t kModelType = 1024;
+  constexpr std::uint16_t kProjected = 1;
+  constexpr std::uint16_t kGeographic = 2;
+  constexpr std::uint16_t kGeographicType = 2048;
+  constexpr std::uint16_t kProjectedCsType = 3072;
+  const std::array<std::uint16_t, 12> keys = {1,
+                                              1,
+                                              0,
+                                              2,  // version 1.1.0, two keys
+                                              kModelType,
+                                              0,
+                                              1,
+                                              code.geographic ? kGeographic : kProjected,
+                                              code.geographic ? kGeographicType : kProjectedCsType,
+                                              0,
+                                              1,
+                                              code.number};
+  append_record(crs, kGeotiffRecord, std::as_bytes(std::span(keys)));
+}
+
+}  // namespace
+
+LasCrs las_crs(const std::string& crs, const std::string& wkt, bool version14) {
+  LasCrs result;
+  if (crs.empty()) return result;
+  const std::string& best_wkt = is_wkt(crs) ? crs : wkt;
+  const std::optional<Code> code = code_of(crs, wkt);
+  if (best_wkt.empty() && !code) {
+    throw Error(
+        fmt::format("LAS cannot hold the coordinate system \"{}\": it is neither WKT nor "
+                    "an EPSG code; write spp",
+                    crs));
+  }
+  const bool use_keys = code && (!version14 || best_wkt.empty());
+  if (use_keys) append_geotiff_keys(result, *code);
+  if (!use_keys || is_wkt(crs)) append_wkt(result, best_wkt);
+  result.wkt_bit = version14 && !use_keys;
+  return result;
+}
+
+}  // namespace spillway

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+
+#include "src/geometry/box.h"
+#include "src/geometry/pixel_grid.h"
+
+namespace spillway {
+
+/// How the pixels of a raster are to lie.
+struct GridRequest {
+  double resolution = 1;
+  std::optional<Box<2>> bounds{};    ///< to be covered; nothing: the extent of the points
+  bool align = false;                ///< edges of pixels are multiples of the resolution
+  std::optional<PixelGrid> given{};  ///< another raster's, which overrules all of the above
+};
+
+/// The smallest grid that covers the box asked for; its upper left corner is that of the box unless
+/// aligned. `extent` is that of the points, in output coordinates. Throws UsageError, naming the
+/// raster's size, if there would be more rows or columns than GeoTIFF can count.
+PixelGrid choose_grid(const GridRequest& request, const Box<2>& extent);
+
+/// The column (row) of the pixel that a coordinate lies in: pixels hold their western (northern)
+/// edges. What lies on the far edge of the raster belongs to its last pixel. Nothing outside.
+std::optional<std::uint32_t> column_of(const PixelGrid& grid, double x);
+std::optional<std::uint32_t> row_of(const PixelGrid& grid, double y);
+
+}  // namespace spillway

@@ -1,0 +1,68 @@
+#pragma once
+// Where the surface of a triangle crosses levels of height: docs/contour.md.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "src/geometry/point.h"
+
+namespace spillway {
+
+/// The heights at which lines are drawn: all multiples of an interval above and below a base, or
+/// the heights of a list. A level's number says which one it is.
+class Levels {
+ public:
+  /// Throws UsageError unless the interval is positive and both numbers are finite.
+  static Levels every(double interval, double base);
+  /// Throws UsageError unless there is one at least and all are finite.
+  static Levels of_list(std::vector<double> heights);
+
+  [[nodiscard]] double height(std::int64_t number) const;
+
+  /// Numbers of the levels above `low` and up to `high`: from first, before end.
+  struct Range {
+    std::int64_t first = 0;
+    std::int64_t end = 0;
+  };
+  [[nodiscard]] Range between(double low, double high) const;
+
+ private:
+  /// The least number whose level is above `height`.
+  [[nodiscard]] std::int64_t first_above(double height) const;
+
+  double interval_ = 0;  ///< 0: the list counts
+  double base_ = 0;
+  std::vector<double> list_;  ///< ascending
+};
+
+/// A place where a level crosses an edge: the same from both triangles of the edge.
+struct Crossing {
+  std::array<std::uint64_t, 2> edge{};  ///< numbers of its ends, the lesser first
+  std::int64_t level = 0;
+  bool operator==(const Crossing&) const = default;
+};
+
+/// A corner of a triangle, by its number in the mesh and in output coordinates.
+struct Corner {
+  std::uint64_t number = 0;
+  Point<3> point{};
+};
+
+/// A level's way through a triangle, higher ground to its left. A corner exactly on the level
+/// counts as above it; so every level that crosses a triangle comes in over one edge and leaves
+/// over another, and level triangles have no line.
+struct IsoSegment {
+  Crossing from;
+  Crossing to;
+  Point<2> from_point;
+  Point<2> to_point;
+};
+
+/// Appends the segments of all levels in a triangle whose corners run counter-clockwise. Throws
+/// Error if there are more than a million of them: the interval must be a mistake.
+void append_segments(const std::array<Corner, 3>& corners, const Levels& levels,
+                     std::vector<IsoSegment>& segments);
+
+}  // namespace spillway

@@ -1,0 +1,42 @@
+#include "src/terrain/pixel_centres.h"
+
+#include <cmath>
+
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+/// How far, in steps of the lattice, rounding takes a coordinate of some millions of steps.
+constexpr double kRoundingSteps = 1e-6;
+
+double on_lattice(const Lattice& lattice, int axis, double world) {
+  const double steps = (world - lattice.offset[axis]) / lattice.scale[axis];
+  const double whole = std::nearbyint(steps);
+  return std::abs(steps - whole) <= kRoundingSteps ? whole : steps;
+}
+
+}  // namespace
+
+PixelCentres::PixelCentres(const PixelGrid& grid, const std::optional<Lattice>& lattice)
+    : x_(grid.columns),
+      y_(grid.rows),
+      per_x_((lattice ? lattice->scale[0] : 1) / grid.resolution),
+      per_y_((lattice ? lattice->scale[1] : 1) / grid.resolution) {
+  for (std::uint32_t c = 0; c < grid.columns; ++c) {
+    const double x = grid.centre_x(c);
+    x_[c] = lattice ? on_lattice(*lattice, 0, x) : x;
+    if (c > 0 && !(x_[c] > x_[c - 1])) {
+      throw UsageError("the resolution is too fine for coordinates so large; give a coarser one");
+    }
+  }
+  for (std::uint32_t r = 0; r < grid.rows; ++r) {
+    const double y = grid.centre_y(r);
+    y_[r] = lattice ? on_lattice(*lattice, 1, y) : y;
+    if (r > 0 && !(y_[r] < y_[r - 1])) {
+      throw UsageError("the resolution is too fine for coordinates so large; give a coarser one");
+    }
+  }
+}
+
+}  // namespace spillway

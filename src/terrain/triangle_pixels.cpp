@@ -1,0 +1,177 @@
+#include "src/terrain/triangle_pixels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicates.h"
+
+namespace spillway {
+namespace {
+
+/// Products between these are rounded by remainders that are doubles themselves.
+constexpr double kSmallestProduct = 0x1p-900;
+constexpr double kLargestProduct = 0x1p1000;
+
+bool has_exact_remainder(double product) {
+  return std::abs(product) > kSmallestProduct && std::abs(product) < kLargestProduct;
+}
+
+/// orientation<2>() of a, b, p. Where the differences are exact, and they are on lattices and for
+/// decimals of few digits, the products decide, since rounding is monotone: the rounded ones are in
+/// the order of the true ones unless equal, and then their exact remainders tell. This is quick
+/// also for points that lie on the line, as the centres of gridded input do.
+int side(const Point<3>& a, const Point<3>& b, double x, double y) {
+  const double dx = b[0] - a[0];
+  const double dy = b[1] - a[1];
+  const double px = x - a[0];
+  const double py = y - a[1];
+  if (rungs::exact_difference(b[0], a[0], dx) && rungs::exact_difference(b[1], a[1], dy) &&
+      rungs::exact_difference(x, a[0], px) && rungs::exact_difference(y, a[1], py)) {
+    const double left = dx * py;
+    const double right = dy * px;
+    if (left != right) return left > right ? 1 : -1;
+    if ((dx == 0 || py == 0) && (dy == 0 || px == 0)) return 0;
+    if (has_exact_remainder(left)) {
+      return rungs::sign(std::fma(dx, py, -left) - std::fma(dy, px, -right));
+    }
+  }
+  return orientation<2>({Point<2>{a[0], a[1]}, Point<2>{b[0], b[1]}, Point<2>{x, y}});
+}
+
+constexpr std::array<std::array<int, 2>, 3> kEdges = {{{0, 1}, {0, 2}, {1, 2}}};
+
+/// Which of kEdges a centre lies on, as bits, and what place that is; 0 edges: inside.
+constexpr std::array<PixelPlace, 7> kPlaceOfEdges = {
+    PixelPlace::kInside, PixelPlace::kEdge01,  PixelPlace::kEdge02, PixelPlace::kCorner0,
+    PixelPlace::kEdge12, PixelPlace::kCorner1, PixelPlace::kCorner2};
+
+class Scan {
+ public:
+  Scan(const PixelCentres& centres, const Triangle& corners, int turn, std::vector<PixelRun>& runs)
+      : centres_(centres), corners_(corners), turn_(turn), runs_(runs) {
+    const double extent = corners[2][0] - corners[0][0];
+    margin_ = kMarginRoundoffs * rungs::kRoundoff *
+              (std::max(std::abs(corners[0][0]), std::abs(corners[2][0])) + extent);
+    for (int e = 0; e < 3; ++e) {
+      const Point<3>& from = corners[kEdges[e][0]];
+      const Point<3>& to = corners[kEdges[e][1]];
+      if (to[1] == from[1]) continue;
+      slopes_[e] = (to[0] - from[0]) / (to[1] - from[1]);
+      if (!std::isfinite(slopes_[e])) margin_ = std::numeric_limits<double>::infinity();
+    }
+  }
+
+  void scan_row(std::uint32_t row, std::uint32_t begin, std::uint32_t end) {
+    const auto [left, right, on_edge] = crossings(centres_.y()[row]);
+    const std::span<const double> x = centres_.x();
+    std::uint32_t column = std::max(begin, centres_.first_column(left - margin_));
+    const double doubtful_end = (on_edge ? right : std::min(left, right)) + margin_;
+    while (column < end && x[column] <= doubtful_end) locate(row, column++);
+    const std::uint32_t inside_end =
+        std::min(end, std::max(column, centres_.first_column(right - margin_)));
+    if (column < inside_end) runs_.push_back({row, column, inside_end});
+    for (column = std::max(column, inside_end); column < end && x[column] <= right + margin_;) {
+      locate(row, column++);
+    }
+  }
+
+ private:
+  /// The crossing of an edge and a row is off by at most 3 roundings of its distance to a corner
+  /// and one of itself; this is generous.
+  static constexpr double kMarginRoundoffs = 16;
+
+  /// Where the triangle begins and ends on a row.
+  struct Crossings {
+    double left = std::numeric_limits<double>::infinity();
+    double right = -std::numeric_limits<double>::infinity();
+    bool on_edge = false;  ///< an edge runs along the row
+  };
+
+  /// But for rounding.
+  [[nodiscard]] Crossings crossings(double y) const {
+    Crossings found;
+    for (int e = 0; e < 3; ++e) {
+      const Point<3>& from = corners_[kEdges[e][0]];
+      const Point<3>& to = corners_[kEdges[e][1]];
+      if (y < std::min(from[1], to[1]) || y > std::max(from[1], to[1])) continue;
+      if (from[1] == to[1]) return {from[0], to[0], true};
+      const double x = from[0] + (y - from[1]) * slopes_[e];
+      found.left = std::min(found.left, x);
+      found.right = std::max(found.right, x);
+    }
+    return found;
+  }
+
+  /// Decides exactly about one centre.
+  void locate(std::uint32_t row, std::uint32_t column) {
+    const double x = centres_.x()[column];
+    const double y = centres_.y()[row];
+    unsigned on_edges = 0;
+    bool owned = true;
+    for (int e = 0; e < 3; ++e) {
+      const Point<3>& from = corners_[kEdges[e][0]];
+      const Point<3>& to = corners_[kEdges[e][1]];
+      // The triangle lies on one side of 0-1 and 1-2 and on the other of 0-2.
+      const int inside = e == 1 ? -turn_ : turn_;
+      const int sign = side(from, to, x, y);
+      if (sign == -inside) return;
+      if (sign != 0) continue;
+      on_edges |= 1U << e;
+      // The side that the centre is on when moved east or, along a horizontal edge, north.
+      const int moved = to[1] > from[1] ? -1 : 1;
+      owned = owned && moved == inside;
+    }
+    runs_.push_back({row, column, column + 1, kPlaceOfEdges[on_edges], owned});
+  }
+
+  const PixelCentres& centres_;
+  const Triangle& corners_;
+  const int turn_;
+  std::vector<PixelRun>& runs_;
+  std::array<double, 3> slopes_{};
+  double margin_;
+};
+
+}  // namespace
+
+Triangle in_canonical_order(const Triangle& triangle) {
+  Triangle sorted = triangle;
+  const auto below = [](const Point<3>& a, const Point<3>& b) {
+    return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]);
+  };
+  if (below(sorted[1], sorted[0])) std::swap(sorted[0], sorted[1]);
+  if (below(sorted[2], sorted[1])) std::swap(sorted[1], sorted[2]);
+  if (below(sorted[1], sorted[0])) std::swap(sorted[0], sorted[1]);
+  return sorted;
+}
+
+VertexPlace place_of(const PixelCentres& centres, const Point<3>& vertex) {
+  VertexPlace place;
+  place.column_begin = place.column_end = centres.first_column(vertex[0]);
+  place.row_begin = place.row_end = centres.first_row(vertex[1]);
+  // Centres are distinct: at most one is at the vertex.
+  if (place.column_end < centres.x().size() && centres.x()[place.column_end] == vertex[0]) {
+    ++place.column_end;
+  }
+  if (place.row_end < centres.y().size() && centres.y()[place.row_end] == vertex[1]) {
+    ++place.row_end;
+  }
+  return place;
+}
+
+void find_pixels(const PixelCentres& centres, const Triangle& canonical, const PixelWindow& window,
+                 std::vector<PixelRun>& runs) {
+  runs.clear();
+  if (window.empty()) return;
+  const int turn = side(canonical[0], canonical[1], canonical[2][0], canonical[2][1]);
+  if (turn == 0) return;
+  Scan scan(centres, canonical, turn, runs);
+  for (std::uint32_t row = window.row_begin; row < window.row_end; ++row) {
+    scan.scan_row(row, window.column_begin, window.column_end);
+  }
+}
+
+}  // namespace spillway

@@ -1,0 +1,70 @@
+#include "stream/input_crs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "formats/gdal/gdal.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+/// A name for messages; if GDAL knows none, the beginning of the text itself.
+std::string crs_name(const std::string& crs) {
+  constexpr std::size_t kLongest = 60;
+  try {
+    return gdal().crs_name(crs);
+  } catch (const Error&) {
+    return crs.size() > kLongest ? crs.substr(0, kLongest) + "..." : crs;
+  }
+}
+
+/// What cannot be compared is not the same.
+bool same(const std::string& a, const std::string& b) {
+  try {
+    return gdal().same_crs(a, b);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+std::string common_crs(std::span<const InputCrs> inputs, bool force,
+                       const std::function<void(std::string_view)>& warn) {
+  const auto first = std::find_if(inputs.begin(), inputs.end(),
+                                  [](const InputCrs& input) { return !input.crs.empty(); });
+  if (first == inputs.end()) return "";
+  std::set<std::string> equal = {first->crs};
+  const InputCrs* unknown = nullptr;
+  std::size_t unknown_count = 0;
+  for (const InputCrs& input : inputs) {
+    if (input.crs.empty()) {
+      if (unknown == nullptr) unknown = &input;
+      ++unknown_count;
+    } else if (!equal.contains(input.crs)) {
+      if (!same(first->crs, input.crs)) {
+        const std::string what =
+            fmt::format("{} has the coordinate system {}, but {} has {}", input.name,
+                        crs_name(input.crs), first->name, crs_name(first->crs));
+        if (!force) {
+          throw Error(what +
+                      "; bring them to one system, or take coordinates as they are with "
+                      "--force-crs");
+        }
+        warn(fmt::format("warning: {}; coordinates are taken as they are", what));
+      }
+      equal.insert(input.crs);  // said once of each system
+    }
+  }
+  if (unknown != nullptr) {
+    warn(fmt::format(
+        "warning: {}{} names no coordinate system; taken to be that of {}", unknown->name,
+        unknown_count > 1 ? fmt::format(" (and {} more)", unknown_count - 1) : "", first->name));
+  }
+  return first->crs;
+}
+
+}  // namespace spillway

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace spillway {
+
+/// An input and the coordinate system that it names, or none.
+struct InputCrs {
+  std::string name;
+  std::string crs;  ///< WKT or "EPSG:n"; empty: unknown
+};
+
+/// The coordinate system of the first input that names one. Throws Error, with both inputs and
+/// systems, if another input has a different one; warns instead where `force` is set, and of inputs
+/// that name none beside ones that do.
+std::string common_crs(std::span<const InputCrs> inputs, bool force,
+                       const std::function<void(std::string_view)>& warn);
+
+}  // namespace spillway

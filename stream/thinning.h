@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "formats/point_reader.h"
+#include "formats/scratch_folder.h"
+#include "src/geometry/lattice.h"
+#include "src/geometry/point.h"
+#include "stream/point_buffer.h"
+#include "stream/tile_block.h"
+
+namespace spillway {
+
+/// Which point of a cell is kept; among equals the one of the lowest index.
+enum class ThinChoice { kFirst, kLowest, kHighest, kCenter };
+
+struct ThinningOptions {
+  double cell = 1;  ///< side, in output units; the grid has a corner at the origin
+  ThinChoice choice = ThinChoice::kFirst;
+  /// Axes that have cells: 2 or 3. kLowest and kHighest look at columns, so always 2.
+  int dimension = 2;
+  std::optional<Lattice> lattice{};  ///< the points come as integers of it
+  std::uint64_t memory = 0;          ///< bytes to keep to, a few MiB at least
+};
+
+/// Keeps one point of each cell of a grid, in bounded memory. Cells are met in the order of the
+/// points; those that come while there is room stay in a hash table, and see all their points. The
+/// points of the others go to files, by a hash of the cell, and each file is thinned afterwards in
+/// the same way. Which points are kept depends neither on their order nor on the memory.
+class Thinning {
+ public:
+  /// `scratch` must outlive it.
+  Thinning(const ThinningOptions& options, ScratchFolder& scratch);
+
+  /// Takes points, each with its index. Their attributes are kept if any block has some. Throws
+  /// Error if cells are too small to be counted.
+  void add(const PointBlock& block);
+
+  /// After the last add(): replaces `block` by the next kept points; false at the end. If all cells
+  /// found room, points come in the order in which their cells were met.
+  bool next(PointBlock& block);
+
+  /// Points that lost against another one of their cell so far.
+  [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  using Cell = std::array<double, 3>;  // whole numbers
+
+  struct Candidate {
+    Point<3> point;
+    std::uint64_t key;  ///< index and attributes, the index in the upper bits
+  };
+  /// Where a candidate is found by its cell.
+  struct Slot {
+    std::uint32_t hash = 0;    ///< lower half of that of its cell
+    std::uint32_t number = 0;  ///< of the candidate + 1; 0: free
+  };
+  /// Points of cells for which there was no room.
+  struct Part {
+    PointBuffer buffer;
+    std::unique_ptr<ScratchFile> file;
+    std::vector<TileBlock> blocks;
+    unsigned level = 0;  ///< passes that its points have been through
+  };
+
+  [[nodiscard]] Point<3> world(const Point<3>& point) const;
+  [[nodiscard]] Cell cell_of(const Point<3>& world) const;
+  [[nodiscard]] bool better(const Candidate& a, const Candidate& b) const;
+  void offer(const Candidate& candidate);
+  void grow();
+  void put_aside(const Candidate& candidate, std::uint64_t hash);
+  void write(Part& part);
+  void end_pass();
+  void run_pass(Part part);
+
+  ThinningOptions options_;
+  ScratchFolder& scratch_;
+  std::size_t capacity_;  ///< cells in memory
+  std::vector<Candidate> candidates_;
+  std::vector<Slot> slots_;  ///< as many as a power of 2, half full at most
+  std::vector<Part> parts_;  ///< of the pass that is going on
+  std::vector<Part> waiting_;
+  unsigned level_ = 0;
+  bool attributes_ = false;  ///< points have them
+  bool passing_ = true;      ///< candidates_ may still get better
+  std::size_t given_ = 0;    ///< of candidates_
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace spillway

@@ -1,0 +1,132 @@
+// laz_benchmark FILE...: reads each file to its end, on one thread and on several, and prints one
+// Markdown table. Medians over the repetitions, after one run that warms the caches of the disk.
+// Where other programs share the processor, processor time is the better measure of one thread.
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <mutex>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "formats/file_system.h"
+#include "formats/point_reader.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+struct Plan {
+  std::vector<std::string> files;
+  unsigned repetitions = 5;
+  unsigned threads = 2;
+  bool attributes = false;
+  bool keep_withheld = false;
+};
+
+/// Takes pieces in turns with other threads, and decodes them beside each other.
+void work(PointReader& reader, std::mutex& fetching, std::uint64_t& points) {
+  RawPoints raw;
+  PointBlock block;
+  for (;;) {
+    {
+      const std::scoped_lock lock(fetching);
+      if (!reader.fetch(raw)) return;
+    }
+    reader.decode(raw, block);
+    points += block.size();
+  }
+}
+
+double seconds_of(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
+}
+
+struct Speed {
+  double by_clock = 0;      ///< million points a second
+  double by_processor = 0;  ///< million points a second of processor time, all threads together
+  std::uint64_t points = 0;
+};
+
+/// Reads the file once, from opening it on.
+Speed read_file(const Plan& plan, const std::string& file, unsigned threads) {
+  const double start = seconds_of(CLOCK_MONOTONIC);
+  const double start_processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+  PointReaderOptions options;
+  options.keep_withheld = plan.keep_withheld;
+  options.attributes = plan.attributes;
+  const auto reader = open_point_reader(disk(), file, options);
+  std::mutex fetching;
+  std::vector<std::uint64_t> of_thread(threads);
+  std::vector<std::thread> workers;
+  for (unsigned i = 1; i < threads; ++i) {
+    workers.emplace_back([&, i] { work(*reader, fetching, of_thread[i]); });
+  }
+  work(*reader, fetching, of_thread[0]);
+  for (std::thread& worker : workers) worker.join();
+  Speed speed;
+  speed.points = std::accumulate(of_thread.begin(), of_thread.end(), std::uint64_t{0});
+  const double millions = static_cast<double>(speed.points) * 1e-6;
+  speed.by_clock = millions / (seconds_of(CLOCK_MONOTONIC) - start);
+  speed.by_processor = millions / (seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start_processor);
+  return speed;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+Speed median_speed(const Plan& plan, const std::string& file, unsigned threads) {
+  std::vector<double> by_clock;
+  std::vector<double> by_processor;
+  Speed speed = read_file(plan, file, threads);
+  for (unsigned r = 0; r < plan.repetitions; ++r) {
+    speed = read_file(plan, file, threads);
+    by_clock.push_back(speed.by_clock);
+    by_processor.push_back(speed.by_processor);
+  }
+  return {median(by_clock), median(by_processor), speed.points};
+}
+
+void print_table(const Plan& plan) {
+  fmt::print(
+      "| file | points | 1 thread, million points/s | by processor time | {} threads | ratio |\n",
+      plan.threads);
+  fmt::print("|---|---|---|---|---|---|\n");
+  for (const std::string& file : plan.files) {
+    const Speed one = median_speed(plan, file, 1);
+    const Speed several = median_speed(plan, file, plan.threads);
+    fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
+               std::filesystem::path(file).filename().string(), one.points, one.by_clock,
+               one.by_processor, several.by_clock, several.by_clock / one.by_clock);
+  }
+}
+
+}  // namespace
+}  // namespace spillway
+
+int main(int argc, char** argv) {
+  spillway::Plan plan;
+  CLI::App app("Times the reading of LAZ and other point files");
+  app.add_option("files", plan.files)->required();
+  app.add_option("-r,--repetitions", plan.repetitions)->check(CLI::Range(1, 1000));
+  app.add_option("--threads", plan.threads, "in the second turn")->check(CLI::Range(1, 1024));
+  app.add_flag("--attributes", plan.attributes, "also classes, returns and flags");
+  app.add_flag("--keep-withheld", plan.keep_withheld, "flags are not needed, then");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    spillway::print_table(plan);
+  } catch (const spillway::Error& error) {
+    fmt::print(stderr, "laz_benchmark: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

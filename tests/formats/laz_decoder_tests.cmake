@@ -1,0 +1,3 @@
+spillway_test(laz_decoder_test unit
+  SOURCES formats/laz_decoder_test.cpp
+  LIBS spillway_formats)

@@ -1,0 +1,177 @@
+// One point a cell, compared with a map of all cells: for every choice, any order of the points,
+// and so little memory that cells go to the disk, several times over.
+
+#include "stream/thinning.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <tuple>
+
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+using testing::HasSubstr;
+
+struct Indexed {
+  Point<3> point;
+  std::uint64_t index;
+
+  bool operator==(const Indexed&) const = default;
+  bool operator<(const Indexed& other) const { return index < other.index; }
+};
+using Cloud = std::vector<Indexed>;
+
+Cloud cloud(std::size_t count, double extent) {
+  std::mt19937_64 random(5);
+  Cloud points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (double& x : points[i].point) {
+      x = std::floor(extent * static_cast<double>(random() % 100'000) / 1e5 * 8) / 8;
+    }
+    points[i].point[0] -= extent / 2;  // on both sides of 0
+    points[i].index = i;
+  }
+  return points;
+}
+
+/// The specification, word by word.
+Cloud expected(const Cloud& points, const ThinningOptions& options) {
+  const bool columns =
+      options.choice == ThinChoice::kLowest || options.choice == ThinChoice::kHighest;
+  const int dimension = columns ? 2 : options.dimension;
+  using Rank = std::tuple<double, std::uint64_t>;
+  std::map<std::array<double, 3>, std::pair<Rank, Indexed>> best;
+  for (const Indexed& p : points) {
+    const Point<3> world = options.lattice ? options.lattice->to_world(p.point) : p.point;
+    std::array<double, 3> cell{};
+    double away = 0;
+    for (int k = 0; k < dimension; ++k) {
+      cell[k] = std::floor(world[k] / options.cell);
+      away += std::pow(world[k] - (cell[k] + 0.5) * options.cell, 2);
+    }
+    const double rank = options.choice == ThinChoice::kLowest    ? world[2]
+                        : options.choice == ThinChoice::kHighest ? -world[2]
+                        : options.choice == ThinChoice::kCenter  ? away
+                                                                 : 0;
+    const auto [found, is_new] = best.try_emplace(cell, Rank{rank, p.index}, p);
+    if (!is_new && Rank{rank, p.index} < found->second.first) {
+      found->second = {Rank{rank, p.index}, p};
+    }
+  }
+  Cloud kept;
+  for (const auto& [cell, point] : best) kept.push_back(point.second);
+  std::sort(kept.begin(), kept.end());
+  return kept;
+}
+
+/// In the order in which they come.
+Cloud thinned(const Cloud& points, const ThinningOptions& options,
+              std::uint64_t* spilled = nullptr) {
+  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  Thinning thinning(options, *scratch);
+  PointBlock block;
+  for (const Indexed& p : points) {
+    block.points.push_back(p.point);
+    block.index.push_back(p.index);
+    if (block.size() == 1000) {
+      thinning.add(block);
+      block.clear();
+    }
+  }
+  thinning.add(block);
+  Cloud kept;
+  while (thinning.next(block)) {
+    for (std::size_t i = 0; i < block.size(); ++i)
+      kept.push_back({block.points[i], block.index[i]});
+  }
+  EXPECT_FALSE(thinning.next(block));
+  EXPECT_EQ(kept.size() + thinning.dropped(), points.size());
+  if (spilled != nullptr) *spilled = scratch->bytes_written();
+  return kept;
+}
+
+class EveryChoice : public testing::TestWithParam<ThinChoice> {};
+
+TEST_P(EveryChoice, KeepsTheBestPointOfEachCellWhateverTheOrderAndTheMemory) {
+  for (const int dimension : {2, 3}) {
+    ThinningOptions options{.cell = 0.75, .choice = GetParam(), .dimension = dimension};
+    Cloud points = cloud(60'000, 100);
+    const Cloud truth = expected(points, options);
+    std::mt19937 random(1);
+    for (const std::uint64_t memory : {std::uint64_t{64} << 20, std::uint64_t{0}}) {
+      options.memory = memory;
+      std::uint64_t spilled = 0;
+      Cloud kept = thinned(points, options, &spilled);
+      EXPECT_EQ(spilled > 0, memory == 0);
+      std::sort(kept.begin(), kept.end());
+      EXPECT_EQ(kept, truth);
+      std::shuffle(points.begin(), points.end(), random);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Choices, EveryChoice,
+                         testing::Values(ThinChoice::kFirst, ThinChoice::kLowest,
+                                         ThinChoice::kHighest, ThinChoice::kCenter));
+
+TEST(Thinning, CellsAreThoseOfOutputCoordinates) {
+  ThinningOptions options{.cell = 2, .choice = ThinChoice::kCenter, .dimension = 3};
+  options.lattice = Lattice{{0.25, 0.25, 0.25}, {1000.5, -3, 0}};
+  const Cloud points = cloud(20'000, 100);
+  Cloud kept = thinned(points, options);
+  std::sort(kept.begin(), kept.end());
+  EXPECT_EQ(kept, expected(points, options));
+}
+
+TEST(Thinning, KeepsTheOrderOfThePointsInMemory) {
+  const Cloud points = cloud(5'000, 100);
+  const Cloud kept = thinned(points, {.cell = 3, .memory = 64 << 20});
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+}
+
+TEST(Thinning, AttributesComeThrough) {
+  for (const std::uint64_t memory : {std::uint64_t{64} << 20, std::uint64_t{0}}) {
+    const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+    Thinning thinning({.cell = 1, .memory = memory}, *scratch);
+    PointBlock block;
+    for (std::uint64_t i = 0; i < 5000; ++i) {
+      block.points.push_back({1.0 * static_cast<double>(i), 0, 0});
+      block.index.push_back(i);
+      block.attributes.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i % 16),
+                                  static_cast<std::uint8_t>(i / 16 % 16),
+                                  static_cast<std::uint8_t>(i / 256 % 16)});
+    }
+    const PointBlock all = block;
+    thinning.add(block);
+    std::size_t kept = 0;
+    while (thinning.next(block)) {
+      ASSERT_EQ(block.attributes.size(), block.size());
+      kept += block.size();
+      for (std::size_t i = 0; i < block.size(); ++i) {
+        ASSERT_EQ(block.attributes[i], all.attributes[block.index[i]]);
+      }
+    }
+    EXPECT_EQ(kept, 5000U);
+  }
+}
+
+TEST(Thinning, CellsThatCannotBeCountedAreRefused) {
+  try {
+    thinned({{{1e6, 0, 0}, 0}}, {.cell = 1e-12});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("cells of 1e-12 are too small"));
+  }
+}
+
+TEST(Thinning, OfNothingIsNothing) { EXPECT_EQ(thinned({}, {.cell = 1}), Cloud{}); }
+
+}  // namespace
+}  // namespace spillway

@@ -1,0 +1,3 @@
+spillway_test(terrain_test unit
+  SOURCES terrain/surface_test.cpp terrain/triangle_pixels_test.cpp
+  LIBS spillway_terrain spillway_delaunay)

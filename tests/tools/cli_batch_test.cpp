@@ -1,0 +1,143 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/tools/command_runner.h"
+
+namespace spillway::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+/// A workspace with three point files in `in`, of which bad.las is broken.
+class Batch : public ::testing::Test {
+ protected:
+  Batch() {
+    space.succeed(
+        "mkdir in && spillway generate terrain -n 2000 --seed 1 -o in/north.las &&"
+        "spillway generate uniform --dim 3 -n 1000 --seed 2 -o in/south.spp &&"
+        "head -c 5000 in/north.las > in/bad.las");
+  }
+
+  [[nodiscard]] nlohmann::json record(const std::string& job) const {
+    return nlohmann::json::parse(space.read("out/" + job + ".status.json"));
+  }
+
+  Workspace space;
+};
+
+TEST_F(Batch, DoesTheOtherJobsWhenOneFails) {
+  const Result result = space.run("spillway batch in --output-dir out --to ply");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(space.has("out/north.ply"));
+  EXPECT_TRUE(space.has("out/south.ply"));
+  EXPECT_FALSE(space.has("out/bad.ply"));
+  EXPECT_THAT(result.err, HasSubstr("3 jobs: 2 done, 1 failed, 0 unchanged"));
+  EXPECT_THAT(result.err, HasSubstr("failed: bad (out/bad.log)"));
+  EXPECT_THAT(space.read("out/bad.log"), HasSubstr("the file ends at byte 5000"));
+  EXPECT_EQ(record("bad")["status"], "failed");
+  EXPECT_THAT(record("bad")["error"].get<std::string>(), HasSubstr("the file ends"));
+  EXPECT_EQ(record("north")["status"], "done");
+}
+
+TEST_F(Batch, MakesSeveralOutputsOfOneTriangulation) {
+  space.succeed("spillway batch in/north.las --output-dir out --to ply,vtu,spm");
+  space.succeed("spillway triangulate in/north.las -o north.ply");
+  const std::string hash = space.info("north.ply")["canonical_hash"];
+  for (const char* name : {"out/north.ply", "out/north.vtu", "out/north.spm"}) {
+    EXPECT_EQ(space.info(name)["canonical_hash"], hash) << name;
+  }
+}
+
+TEST_F(Batch, LeavesNoTemporaryMeshBehind) {
+  space.succeed(
+      "mkdir tmp && spillway batch in/north.las --output-dir out --to ply,vtu --tmpdir tmp");
+  EXPECT_EQ(space.succeed("ls -A tmp"), "");
+  EXPECT_FALSE(space.has("out/north.spm"));
+}
+
+TEST_F(Batch, PassesOptionsOnToTheJobs) {
+  space.succeed("spillway batch in/south.spp --output-dir out --to ply --dim 3");
+  EXPECT_EQ(space.info("out/south.ply")["dimension"], 3);
+}
+
+TEST_F(Batch, ReadsAListInToml) {
+  space.write("in/jobs.toml",
+              "to = ['ply']\n[[jobs]]\nin = 'south.spp'\noptions = { dim = 3 }\n"
+              "[[jobs]]\nname = 'both'\nin = ['north.las', 'south.spp']\nto = 'obj'\n");
+  space.succeed("spillway batch in/jobs.toml --output-dir out");
+  EXPECT_EQ(space.info("out/south.ply")["dimension"], 3);
+  EXPECT_TRUE(space.has("out/both.obj"));
+}
+
+TEST_F(Batch, ReadsAListInJson) {
+  space.write("jobs.json", R"({"jobs": [{"in": "in/north.las", "to": ["off"]}]})");
+  space.succeed("spillway batch jobs.json --output-dir out");
+  EXPECT_TRUE(space.has("out/north.off"));
+}
+
+TEST_F(Batch, RefusesAListWithMistakesBeforeAnyWork) {
+  const auto error_of_list = [&](const std::string& name, const std::string& content) {
+    space.write(name, content);
+    const Result result = space.run("spillway batch " + name + " --output-dir out --to ply");
+    EXPECT_NE(result.exit_code, 0);
+    EXPECT_FALSE(space.has("out"));
+    return result.err;
+  };
+  EXPECT_THAT(error_of_list("a.json", "{"), HasSubstr("a.json, byte 2: this is no JSON"));
+  EXPECT_THAT(error_of_list("a.toml", "to = [\n\n=]"),
+              HasSubstr("a.toml, line 3: this is no TOML"));
+  EXPECT_THAT(error_of_list("b.json", "{}"), HasSubstr("there is no list \"jobs\""));
+  EXPECT_THAT(error_of_list("c.json", R"({"jobs": [{"inn": "x"}]})"),
+              HasSubstr("c.json, job 1: the key \"inn\" is not known"));
+  EXPECT_THAT(error_of_list("d.json", R"({"jobs": [{"in": "in/north.las", "to": "dwg"}]})"),
+              HasSubstr("no output can be made as \"dwg\""));
+  EXPECT_THAT(
+      error_of_list("e.json", R"({"jobs": [{"in": "in/north.las", "options": {"colour": 1}}]})"),
+      HasSubstr("knows the option --colour"));
+  EXPECT_THAT(
+      error_of_list("f.json", R"({"jobs": [{"in": "in/north.las", "options": {"dim": 5}}]})"),
+      HasSubstr("--dim"));
+  EXPECT_THAT(error_of_list("g.json", R"({"jobs": [{"in": "a/x.las"}, {"in": "b/x.las"}]})"),
+              HasSubstr("two jobs are called x"));
+}
+
+TEST_F(Batch, ResumeLeavesOutWhatIsCompleteAndUnchanged) {
+  space.succeed("rm in/bad.las");
+  const std::string command = "spillway batch in --output-dir out --to ply --resume";
+  EXPECT_THAT(space.run(command).err, HasSubstr("2 done, 0 failed, 0 unchanged"));
+  EXPECT_THAT(space.run(command).err, HasSubstr("0 done, 0 failed, 2 unchanged"));
+  EXPECT_THAT(space.run(command + " --max-edge 100").err, HasSubstr("2 done"));
+  EXPECT_THAT(space.run(command + " --max-edge 100").err, HasSubstr("2 unchanged"));
+  space.succeed("spillway generate terrain -n 2001 --seed 1 -o in/north.las");
+  EXPECT_THAT(space.run(command + " --max-edge 100").err,
+              HasSubstr("1 done, 0 failed, 1 unchanged"));
+  space.succeed("rm out/south.ply");
+  EXPECT_THAT(space.run(command + " --max-edge 100").err,
+              HasSubstr("1 done, 0 failed, 1 unchanged"));
+}
+
+TEST_F(Batch, EndsItsJobsWhenItIsInterrupted) {
+  space.succeed("mkdir tmp && spillway generate uniform -n 3e6 -o large.spp");
+  const std::string folder = space.folder().string();
+  const pid_t process = space.start({"batch", folder + "/large.spp", "--output-dir",
+                                     folder + "/out", "--to", "ply", "--tmpdir", folder + "/tmp"});
+  while (!space.has("out/large.ply.part"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  kill(process, SIGTERM);
+  EXPECT_EQ(wait_for_exit(process), 128 + SIGTERM);
+  for (int i = 0; i < 2000 && space.has("out/large.ply.part"); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_FALSE(space.has("out/large.ply.part"));
+  EXPECT_FALSE(space.has("out/large.ply"));
+}
+
+}  // namespace
+}  // namespace spillway::test

@@ -1,0 +1,116 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "tests/tools/command_runner.h"
+
+namespace spillway::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A cone of 41 x 41 points, 20 high in the middle.
+std::string cone() {
+  std::string text;
+  for (int y = 0; y <= 40; ++y) {
+    for (int x = 0; x <= 40; ++x) {
+      text += std::to_string(x) + " " + std::to_string(y) + " " +
+              std::to_string(20 - std::hypot(x - 20, y - 20)) + "\n";
+    }
+  }
+  return text;
+}
+
+nlohmann::json features(const Workspace& space, const std::string& name) {
+  return nlohmann::json::parse(space.read(name))["features"];
+}
+
+class Contour : public ::testing::Test {
+ protected:
+  Contour() { space.write("cone.txt", cone()); }
+  Workspace space;
+};
+
+TEST_F(Contour, DrawsClosedRingsWithTheirElevation) {
+  space.succeed("spillway contour cone.txt -o c.geojson --interval 5 --base 2.5");
+  int rings = 0;
+  for (const nlohmann::json& line : features(space, "c.geojson")) {
+    const auto& points = line["geometry"]["coordinates"];
+    const double height = line["properties"]["elevation"];
+    EXPECT_EQ(points[0][2], height);
+    if (height < 0) continue;
+    ++rings;
+    EXPECT_EQ(points.front(), points.back()) << height;
+    EXPECT_NEAR(std::hypot(points[0][0].get<double>() - 20, points[0][1].get<double>() - 20),
+                20 - height, 0.3);
+  }
+  EXPECT_EQ(rings, 4);  // at 2.5, 7.5, 12.5 and 17.5
+}
+
+TEST_F(Contour, DrawsTheSameOfPointsMeshesAndStreams) {
+  space.succeed(
+      "spillway triangulate cone.txt -o cone.ply && spillway triangulate cone.txt -o cone.spm "
+      "--tile 100");
+  space.succeed("spillway contour cone.txt -o points.geojson --levels 3,9.5");
+  space.succeed("spillway contour cone.ply -o mesh.geojson --levels 3,9.5");
+  space.succeed("spillway contour cone.spm -o stream.geojson --levels 3,9.5");
+  space.succeed("spillway contour - -o pipe.geojson --levels 3,9.5 < cone.spm");
+  const auto lines = [&](const std::string& name) {
+    std::multiset<std::string> set;
+    for (const nlohmann::json& line : features(space, name)) set.insert(line["geometry"].dump());
+    return set;
+  };
+  EXPECT_EQ(lines("points.geojson").size(), 2U);
+  EXPECT_EQ(lines("mesh.geojson"), lines("points.geojson"));
+  EXPECT_EQ(lines("stream.geojson"), lines("points.geojson"));
+  EXPECT_EQ(lines("pipe.geojson"), lines("points.geojson"));
+}
+
+TEST_F(Contour, WritesGeoPackagesAndShapefiles) {
+  space.succeed(
+      "spillway contour cone.txt -o c.gpkg --interval 5 && spillway contour cone.txt -o c.shp "
+      "--interval 5");
+  EXPECT_THAT(space.read("c.gpkg"), HasSubstr("SQLite format 3"));
+  EXPECT_TRUE(space.has("c.shp"));
+  EXPECT_TRUE(space.has("c.dbf"));
+}
+
+TEST_F(Contour, DropsNothingSilently) {
+  const Result result =
+      space.run("spillway contour cone.txt -o c.geojson --interval 5 --max-edge 1 --stats s.json");
+  EXPECT_NE(result.exit_code, 0);  // every triangle has a diagonal
+  EXPECT_THAT(result.err, HasSubstr("nothing is left"));
+  EXPECT_FALSE(space.has("c.geojson"));
+  space.succeed("spillway contour cone.txt -o c.geojson --interval 5 --stats s.json");
+  const auto stats = nlohmann::json::parse(space.read("s.json"));
+  EXPECT_EQ(stats["contours"]["lines"], features(space, "c.geojson").size());
+}
+
+TEST_F(Contour, SaysWhatIsWrongWithTheCommandLine) {
+  const auto error_of = [&](const std::string& options) {
+    const Result result = space.run("spillway contour cone.txt " + options);
+    EXPECT_EQ(result.exit_code, 2) << options;
+    return result.err;
+  };
+  EXPECT_THAT(error_of("-o c.gpkg"), HasSubstr("--interval"));
+  EXPECT_THAT(error_of("-o c.gpkg --interval -1"), HasSubstr("an interval is a number above 0"));
+  EXPECT_THAT(error_of("-o c.gpkg --interval 1 --levels 3"),
+              HasSubstr("--levels names all heights"));
+  EXPECT_THAT(error_of("-o c.dwg --interval 1"), HasSubstr(".gpkg, .shp or .geojson"));
+  EXPECT_EQ(space.names(), std::vector<std::string>{"cone.txt"});
+}
+
+TEST_F(Contour, RefusesAMeshOfTetrahedra) {
+  space.succeed(
+      "spillway generate uniform --dim 3 -n 50 -o p.spp && spillway triangulate p.spp --dim 3 -o "
+      "m.spm");
+  const Result result = space.run("spillway contour m.spm -o c.gpkg --interval 1");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("tetrahedra"));
+}
+
+}  // namespace
+}  // namespace spillway::test

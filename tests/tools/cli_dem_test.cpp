@@ -1,0 +1,315 @@
+// `dem`: rasters as GDAL sees them, all ways to the same bytes, and what is refused.
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/tools/command_runner.h"
+
+namespace spillway::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// A raster as GDAL reads it.
+class Opened {
+ public:
+  Opened(const Workspace& work, const std::string& name) {
+    GDALAllRegister();
+    file_.reset(GDALDataset::Open((work.folder() / name).c_str(), GDAL_OF_RASTER));
+    if (!file_) {
+      ADD_FAILURE() << "GDAL cannot open " << name;
+      std::abort();
+    }
+    file_->GetGeoTransform(transform.data());
+  }
+
+  [[nodiscard]] int columns() const { return file_->GetRasterXSize(); }
+  [[nodiscard]] int rows() const { return file_->GetRasterYSize(); }
+  [[nodiscard]] GDALDataset& file() const { return *file_; }
+  [[nodiscard]] GDALRasterBand& band(int number = 1) const { return *file_->GetRasterBand(number); }
+  [[nodiscard]] std::vector<float> pixels(int number = 1) const {
+    std::vector<float> values(static_cast<std::size_t>(columns()) * rows());
+    EXPECT_EQ(band(number).RasterIO(GF_Read, 0, 0, columns(), rows(), values.data(), columns(),
+                                    rows(), GDT_Float32, 0, 0),
+              CE_None);
+    return values;
+  }
+  [[nodiscard]] std::string structure(const char* name) const {
+    const char* const value = file_->GetMetadataItem(name, "IMAGE_STRUCTURE");
+    return value == nullptr ? "" : value;
+  }
+
+  std::array<double, 6> transform{};
+
+ private:
+  GDALDatasetUniquePtr file_;
+};
+
+/// x, y and z of a quadratic surface on a grid of `side` x `side` points, `step` apart.
+std::string surface(int side, double step) {
+  std::string text;
+  for (int i = 0; i < side * side; ++i) {
+    const double x = i % side * step;
+    const double y = i / side * step + 0.1 * (i % 3);
+    text += fmt::format("{} {} {}\n", x, y, 0.1 * x * x - 0.2 * y);
+  }
+  return text;
+}
+
+TEST(Dem, FileIsATiledCompressedGeoTiffWithNodata) {
+  const Workspace work;
+  work.write("points.txt", surface(40, 1));
+  work.succeed("spillway dem -q points.txt -o dem.tif --resolution 0.5");
+  EXPECT_THAT(work.names(), ElementsAre("dem.tif", "points.txt"));
+  const Opened dem(work, "dem.tif");
+  EXPECT_EQ(dem.structure("COMPRESSION"), "DEFLATE");
+  int width = 0;
+  int height = 0;
+  dem.band().GetBlockSize(&width, &height);
+  EXPECT_EQ(width, 256);
+  EXPECT_EQ(height, 256);
+  EXPECT_EQ(dem.band().GetNoDataValue(), -9999);
+  EXPECT_STREQ(dem.band().GetDescription(), "height");
+  EXPECT_EQ(dem.columns(), 78);
+  EXPECT_EQ(dem.transform, (std::array{0.0, 0.5, 0.0, 39.2, 0.0, -0.5}));
+}
+
+TEST(Dem, HeightsAreTheSurfacesWithinTheInterpolationBound) {
+  const Workspace work;
+  work.write("points.txt", surface(60, 0.5));
+  work.succeed("spillway dem -q points.txt -o dem.tif --resolution 0.25 --bounds 1,1,28,28");
+  const Opened dem(work, "dem.tif");
+  const std::vector<float> pixels = dem.pixels();
+  ASSERT_EQ(pixels.size(), 108U * 108);
+  for (int i = 0; i < 108 * 108; ++i) {
+    const double x = 1 + (i % 108 + 0.5) * 0.25;
+    const double y = 28 - (i / 108 + 0.5) * 0.25;
+    // A second derivative of 0.2 over triangles within a circle of radius 0.5.
+    EXPECT_NEAR(pixels[i], 0.1 * x * x - 0.2 * y, 0.2 * 0.25 / 2 + 1e-5);
+  }
+}
+
+TEST(Dem, EqualsWhatGdalGridInterpolates) {
+  const Workspace work;
+  work.succeed("command -v gdal_grid > gdal_grid.path || true");
+  if (work.read("gdal_grid.path").empty()) GTEST_SKIP() << "gdal_grid is not installed";
+  work.succeed(
+      "spillway generate -q uniform -n 2000 --dim 3 --seed 5 -o points.csv\n"
+      "spillway dem -q points.csv -o dem.tif --resolution 0.01 --bounds 0.1,0.1,0.9,0.9\n"
+      "{ echo x,y,z; grep -v '[a-z#]' points.csv | tr ' ' ','; } > table.csv\n"
+      "cat > table.vrt <<end\n"
+      "<OGRVRTDataSource><OGRVRTLayer name='table'><SrcDataSource>table.csv</SrcDataSource>\n"
+      "<GeometryType>wkbPoint</GeometryType>\n"
+      "<GeometryField encoding='PointFromColumns' x='x' y='y' z='z'/>\n"
+      "</OGRVRTLayer></OGRVRTDataSource>\n"
+      "end\n"
+      "gdal_grid -q -a linear:radius=0:nodata=-9999 -txe 0.1 0.9 -tye 0.9 0.1 -outsize 80 80 "
+      "-ot Float32 -l table table.vrt grid.tif");
+  const std::vector<float> ours = Opened(work, "dem.tif").pixels();
+  const Opened grid(work, "grid.tif");
+  EXPECT_LT(grid.transform[5], 0);
+  const std::vector<float> theirs = grid.pixels();
+  ASSERT_EQ(ours.size(), theirs.size());
+  // GDAL locates points by rounded barycentric coordinates and misses a few near edges.
+  std::size_t missed = 0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (theirs[i] == -9999) {
+      ++missed;
+    } else {
+      EXPECT_NEAR(ours[i], theirs[i], 1e-5) << i;
+    }
+  }
+  EXPECT_LT(missed, 10U);
+}
+
+TEST(Dem, ThreadsTilesAndWaysThroughMeshesGiveTheSameBytes) {
+  const Workspace work;
+  const std::string products = "--resolution 0.7 --product height,slope,aspect,hillshade,density";
+  work.succeed(
+      "spillway generate -q terrain -n 50000 -o in.las\n"
+      "spillway triangulate -q in.las -o tin.spm\n"
+      "spillway triangulate -q in.las -o tin.ply\n"
+      "spillway dem -q in.las -o one.tif --threads 1 " +
+      products +
+      "\n"
+      "spillway dem -q in.las -o two.tif --threads 2 " +
+      products +
+      "\n"
+      "spillway dem -q in.las -o tiles.tif --threads 2 --tile 2000 --base-case 300 " +
+      products + "\nspillway dem -q - -o pipe.tif < in.las " + products +
+      "\n"
+      "spillway dem -q tin.spm -o spm.tif " +
+      products +
+      "\n"
+      "spillway triangulate -q in.las -o - | spillway dem -q - -o chain.tif " +
+      products +
+      "\n"
+      "spillway dem -q tin.ply -o ply.tif " +
+      products);
+  const std::string bytes = work.read("one.tif");
+  EXPECT_GT(bytes.size(), 10'000U);
+  for (const char* name : {"two.tif", "tiles.tif", "pipe.tif", "spm.tif", "chain.tif", "ply.tif"}) {
+    EXPECT_TRUE(work.read(name) == bytes) << name;
+  }
+}
+
+TEST(Dem, ProductsBecomeBandsWithTheirNames) {
+  const Workspace work;
+  work.write("points.txt", "0 0 0\n10 0 10\n0 10 0\n10 10 10\n");
+  work.succeed(
+      "spillway dem -q points.txt -o dem.tif --resolution 1 --product slope,aspect,hillshade "
+      "--azimuth 270 --altitude 45 --nodata -1");
+  const Opened dem(work, "dem.tif");
+  ASSERT_EQ(dem.file().GetRasterCount(), 3);
+  EXPECT_STREQ(dem.band(1).GetDescription(), "slope");
+  EXPECT_STREQ(dem.band(3).GetDescription(), "hillshade");
+  EXPECT_EQ(dem.band(2).GetNoDataValue(), -1);
+  EXPECT_THAT(dem.pixels(1), ::testing::Each(45));
+  EXPECT_THAT(dem.pixels(2), ::testing::Each(270));
+  EXPECT_THAT(dem.pixels(3), ::testing::Each(::testing::FloatNear(255, 1e-4)));
+}
+
+TEST(Dem, LikeTakesGridAndCoordinateSystemOfAnotherRaster) {
+  const Workspace work;
+  work.write("points.txt", surface(20, 1));
+  work.succeed("spillway dem -q points.txt -o first.tif --resolution 2 --align");
+  {
+    const Opened first(work, "first.tif");
+    EXPECT_EQ(first.transform, (std::array{0.0, 2.0, 0.0, 20.0, 0.0, -2.0}));
+    EXPECT_EQ(first.columns(), 10);
+  }
+  {
+    GDALDatasetUniquePtr file(
+        GDALDataset::Open((work.folder() / "first.tif").c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+    OGRSpatialReference crs;
+    crs.importFromEPSG(32633);
+    file->SetSpatialRef(&crs);
+    std::array<double, 6> moved = {-3, 2.5, 0, 12, 0, -2.5};
+    file->SetGeoTransform(moved.data());
+  }
+  work.succeed("spillway dem -q points.txt -o second.tif --like first.tif");
+  const Opened second(work, "second.tif");
+  EXPECT_EQ(second.transform, (std::array{-3.0, 2.5, 0.0, 12.0, 0.0, -2.5}));
+  EXPECT_EQ(second.columns(), 10);
+  ASSERT_NE(second.file().GetSpatialRef(), nullptr);
+  EXPECT_STREQ(second.file().GetSpatialRef()->GetAuthorityCode(nullptr), "32633");
+  EXPECT_EQ(second.pixels()[0], -9999);  // west of all points
+}
+
+TEST(Dem, CloudOptimizedFilesHaveOverviews) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 20000 -o in.las\n"
+      "spillway dem -q in.las -o plain.tif --resolution 0.1\n"
+      "spillway dem -q in.las -o one.tif --resolution 0.1 --cog --threads 1 --compress zstd\n"
+      "spillway dem -q in.las -o two.tif --resolution 0.1 --cog --threads 2 --compress zstd");
+  EXPECT_THAT(work.names(), ElementsAre("in.las", "one.tif", "plain.tif", "two.tif"));
+  const Opened cog(work, "one.tif");
+  EXPECT_EQ(cog.structure("LAYOUT"), "COG");
+  EXPECT_EQ(cog.structure("COMPRESSION"), "ZSTD");
+  EXPECT_GE(cog.band().GetOverviewCount(), 1);
+  EXPECT_EQ(cog.pixels(), Opened(work, "plain.tif").pixels());
+  EXPECT_TRUE(work.read("one.tif") == work.read("two.tif"));
+}
+
+TEST(Dem, UncompressedOnRequest) {
+  const Workspace work;
+  work.write("points.txt", surface(10, 1));
+  work.succeed("spillway dem -q points.txt -o dem.tif --resolution 1 --compress none");
+  EXPECT_EQ(Opened(work, "dem.tif").structure("COMPRESSION"), "");
+}
+
+TEST(Dem, FiguresTellTheRastersSizeAndItsData) {
+  const Workspace work;
+  work.write("points.txt", "0 0 1\n10 0 1\n0 10 1\n");
+  const Result result =
+      work.run("spillway dem points.txt -o dem.tif --resolution 1 --stats run.json");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("10 x 10 pixels of 1, 55 with data"));
+  const auto json = nlohmann::json::parse(work.read("run.json"));
+  EXPECT_EQ(json["raster"]["columns"], 10);
+  EXPECT_EQ(json["raster"]["pixels_with_data"], 55);
+  EXPECT_EQ(json["simplices"], 1);
+}
+
+struct Refused {
+  const char* name;
+  const char* arguments;
+  int exit_code;
+  const char* message;
+};
+
+class DemRefuses : public ::testing::TestWithParam<Refused> {};
+
+TEST_P(DemRefuses, AndLeavesNothing) {
+  const Workspace work;
+  work.write("points.txt", surface(10, 1));
+  work.write("cloud.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto before = work.names();
+  const Result result = work.run(std::string("spillway dem -q ") + GetParam().arguments);
+  EXPECT_EQ(result.exit_code, GetParam().exit_code) << result.err;
+  EXPECT_THAT(result.err, HasSubstr(GetParam().message));
+  EXPECT_EQ(work.names(), before);
+}
+
+constexpr std::array kRefused = {
+    Refused{"NoResolution", "points.txt -o dem.tif", 2, "--resolution"},
+    Refused{"NegativeResolution", "points.txt -o dem.tif --resolution -1", 2, "--resolution"},
+    Refused{"LikeAndResolution", "points.txt -o dem.tif --resolution 1 --like x.tif", 2, "--like"},
+    Refused{"MissingLike", "points.txt -o dem.tif --like x.tif", 1, "x.tif"},
+    Refused{"LikeWithoutAPlace", "points.txt -o dem.tif --like points.txt", 1, "points.txt"},
+    Refused{"StandardOutput", "points.txt -o - --resolution 1", 2, "needs a file"},
+    Refused{"Device", "points.txt -o /dev/null --resolution 1", 2, "needs a file"},
+    Refused{"MissingFolder", "points.txt -o no/dem.tif --resolution 1", 1, "create the folder"},
+    Refused{"UnknownProduct", "points.txt -o dem.tif --resolution 1 --product height,width", 2,
+            "width"},
+    Refused{"ProductTwice", "points.txt -o dem.tif --resolution 1 --product slope,slope", 2,
+            "twice"},
+    Refused{"BoundsWithoutArea", "points.txt -o dem.tif --resolution 1 --bounds 1,1,1,5", 2,
+            "--bounds"},
+    Refused{"NodataIsNoNumber", "points.txt -o dem.tif --resolution 1 --nodata none", 2,
+            "--nodata"},
+    Refused{"TooManyPixels", "points.txt -o dem.tif --resolution 1e-9", 2, "--resolution"},
+    Refused{"TooLittleMemory", "points.txt -o dem.tif --resolution 1 --memory 32M", 2, "--memory"},
+    Refused{"EverythingTooLong", "points.txt -o dem.tif --resolution 1 --max-edge 0.01", 1,
+            "nothing is left"},
+    Refused{"FilteredMesh", "cloud.obj -o dem.tif --resolution 1 --every 2", 2, "filters"},
+    Refused{"MissingInput", "nowhere.las -o dem.tif --resolution 1", 1, "nowhere.las"},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, DemRefuses, ::testing::ValuesIn(kRefused),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(DemFaults, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 100000 -o in.las");
+  const auto before = work.names();
+  for (const char* more : {"", " --cog"}) {
+    const Result result = work.run(
+        std::string("ulimit -f 100; spillway dem -q in.las -o dem.tif --resolution 0.2") + more);
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("cannot write dem.tif"));
+    EXPECT_EQ(work.names(), before);
+  }
+}
+
+TEST(DemFaults, AFailedRunKeepsTheFileThatWasThere) {
+  const Workspace work;
+  work.write("dem.tif", "old");
+  work.write("points.txt", "0 0 0\n1 1 1\n2 2 2\n");
+  const Result result = work.run("spillway dem -q points.txt -o dem.tif --resolution 1");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(work.read("dem.tif"), "old");
+}
+
+}  // namespace
+}  // namespace spillway::test

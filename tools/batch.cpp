@@ -1,0 +1,303 @@
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formats/file_system.h"
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "tools/child_process.h"
+#include "tools/command.h"
+#include "tools/command_options.h"
+#include "tools/input_list.h"
+#include "tools/job_record.h"
+#include "tools/job_steps.h"
+#include "tools/json_text.h"
+#include "tools/text_output.h"
+
+namespace spillway {
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  spillway batch 'tiles/*.laz' --output-dir meshes --to ply\n"
+    "  spillway batch 'tiles/*.laz' --output-dir out --to spm,dem.tif --keep-class 2 --resolution "
+    "1\n"
+    "  spillway batch jobs.toml --output-dir out -j 4 --memory 8G --resume\n"
+    "Each job has a log, NAME.log, and a record, NAME.status.json, beside its outputs. A failed "
+    "one\n"
+    "does not stop the others. docs/batch.md describes lists of jobs.";
+
+/// A job needs so much memory to be worth starting.
+constexpr std::uint64_t kLeastMemory = std::uint64_t{128} << 20;
+
+struct BatchOptions {
+  std::vector<std::string> sources;
+  std::string folder;
+  std::vector<std::string> to;
+  unsigned at_a_time = 0;
+  unsigned threads = 0;
+  bool resume = false;
+  MemoryOptions memory;
+  ReportOptions report;
+  /// The options for the jobs' steps, as batch's own parser has them.
+  std::map<std::string, std::vector<std::string>> passed_values;
+  std::map<std::string, bool> passed_flags;
+
+  [[nodiscard]] JobOptions passed_on() const {
+    JobOptions options;
+    for (const auto& [name, values] : passed_values) {
+      if (!values.empty()) options[name] = values;
+    }
+    for (const auto& [name, given] : passed_flags) {
+      if (given) options[name] = {};
+    }
+    return options;
+  }
+};
+
+/// Takes every option of the subcommands that make outputs, those apart that batch decides on.
+void add_options_of_subcommands(const CLI::App& root, CLI::App& app, BatchOptions& options) {
+  for (const std::string& subcommand : job_subcommands()) {
+    for (const CLI::Option* option : root.get_subcommand(subcommand)->get_options()) {
+      if (option->get_lnames().empty()) continue;
+      const std::string& name = option->get_lnames().front();
+      const std::string flag = "--" + name;
+      const bool own = name == "help" || name == "output" || name == "stats" ||
+                       name == "simulate-cores" || name == "output-format";
+      if (own || app.get_option_no_throw(flag) != nullptr) continue;
+      CLI::Option* passed = nullptr;
+      if (option->get_type_size() == 0) {
+        passed = app.add_flag(flag, options.passed_flags[name], option->get_description());
+      } else {
+        passed = app.add_option(flag, options.passed_values[name], option->get_description());
+        passed->expected(1)->type_name(option->get_type_name());
+      }
+      passed->group("Passed on to the jobs");
+    }
+  }
+}
+
+class Batch {
+ public:
+  Batch(const CLI::App& root, const BatchOptions& options)
+      : root_(root),
+        options_(options),
+        progress_(make_progress(options.report)),
+        free_threads_(
+            static_cast<int>(options.threads == 0 ? available_threads() : options.threads)),
+        free_memory_(memory_limit(options.memory)),
+        temporary_(make_temporary_folder(scratch_parent(), "spillway-batch-")) {}
+
+  ~Batch() { remove_temporary_folder(temporary_); }
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
+
+  int run() {
+    const auto start = Clock::now();
+    prepare();
+    progress_.begin("batch", "jobs");
+    while (!waiting_.empty() || !running_.empty()) {
+      while (!waiting_.empty() && running_.size() < at_a_time()) start_next();
+      if (!running_.empty()) finish_step(wait_for_any_child());
+      progress_.update(ended_, static_cast<double>(ended_) / static_cast<double>(runs_.size()));
+    }
+    progress_.end();
+    return summarize(std::chrono::duration<double>(Clock::now() - start).count());
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// A job whose steps are being done, and what it holds of the common budget.
+  struct Running {
+    JobRun* run = nullptr;
+    std::size_t step = 0;
+    int threads = 1;
+    std::uint64_t memory = 0;
+    Clock::time_point start;
+  };
+
+  [[nodiscard]] std::string scratch_parent() const {
+    return options_.memory.scratch_parent.empty() ? std::filesystem::temp_directory_path().string()
+                                                  : options_.memory.scratch_parent;
+  }
+
+  /// Plans all jobs, so that a wrong word anywhere is told before any work.
+  void prepare() {
+    const JobPlanner planner(root_, options_.folder, temporary_);
+    const auto base = std::filesystem::path(options_.folder);
+    for (Job& job : jobs()) {
+      JobRun run;
+      run.steps = planner.plan(job);
+      for (const JobStep& step : run.steps) check_command_line(step.arguments);
+      run.log = base / (job.name + ".log");
+      run.record = base / (job.name + ".status.json");
+      run.job = std::move(job);
+      runs_.push_back(std::move(run));
+    }
+    std::filesystem::create_directories(base);
+    for (JobRun& run : runs_) {
+      if (options_.resume && is_complete_and_unchanged(run)) {
+        run.status = "unchanged";
+        ++ended_;
+      } else {
+        waiting_.push_back(&run);
+      }
+    }
+    limit_ = options_.at_a_time == 0 ? static_cast<unsigned>(free_threads_) : options_.at_a_time;
+    limit_ =
+        std::min<std::uint64_t>(limit_, std::max<std::uint64_t>(1, free_memory_ / kLeastMemory));
+  }
+
+  [[nodiscard]] std::vector<Job> jobs() const {
+    const auto passed_on = options_.passed_on();
+    if (options_.sources.size() == 1 && is_job_list(options_.sources.front())) {
+      return read_job_list(options_.sources.front(), options_.to, passed_on);
+    }
+    if (options_.to.empty()) throw UsageError("--to is missing: it names the outputs, like ply");
+    return jobs_of_files(expand_inputs(options_.sources), options_.to, passed_on);
+  }
+
+  [[nodiscard]] std::size_t at_a_time() const {
+    return std::min<std::uint64_t>(limit_, running_.size() + waiting_.size());
+  }
+
+  /// Gives the next job its share of what is free: as much as leaves the same for each that could
+  /// be started now.
+  void start_next() {
+    const std::size_t shares = at_a_time() - running_.size();
+    Running job;
+    job.run = waiting_.front();
+    waiting_.pop_front();
+    job.threads = std::max(1, free_threads_ / static_cast<int>(shares));
+    job.memory = free_memory_ / shares;
+    free_threads_ -= job.threads;
+    free_memory_ -= job.memory;
+    job.start = Clock::now();
+    job.run->status = "running";
+    std::filesystem::remove(job.run->log);
+    start_step(job);
+  }
+
+  void start_step(const Running& job) {
+    std::vector<std::string> arguments = job.run->steps[job.step].arguments;
+    const JobPlanner planner(root_, options_.folder, temporary_);
+    const auto add = [&](const std::string& option, const std::string& value) {
+      if (planner.option(arguments.front(), option) != nullptr) {
+        arguments.push_back(fmt::format("--{}={}", option, value));
+      }
+    };
+    add("threads", std::to_string(job.threads));
+    add("memory", std::to_string(job.memory));
+    add("tmpdir", scratch_parent());
+    add("progress", "none");
+    running_[start_child(arguments, job.run->log).id] = job;
+  }
+
+  void finish_step(const ChildEnd& end) {
+    const auto found = running_.find(end.id);
+    if (found == running_.end()) return;
+    Running job = found->second;
+    running_.erase(found);
+    if (end.exit_code == kExitDone && ++job.step < job.run->steps.size()) {
+      start_step(job);
+      return;
+    }
+    finish_job(job, end.exit_code);
+  }
+
+  void finish_job(const Running& job, int exit_code) {
+    free_threads_ += job.threads;
+    free_memory_ += job.memory;
+    JobRun& run = *job.run;
+    run.seconds = std::chrono::duration<double>(Clock::now() - job.start).count();
+    run.status = exit_code == kExitDone ? "done" : "failed";
+    if (exit_code != kExitDone) run.error = last_line(run.log, exit_code);
+    for (const JobStep& step : run.steps) {
+      if (step.temporary) std::filesystem::remove(step.output);
+    }
+    save_record(run);
+    ++ended_;
+    progress_.say(fmt::format("[{}/{}] {}: {} in {:.1f} s{}", ended_, runs_.size(), run.job.name,
+                              run.status, run.seconds, run.error.empty() ? "" : ": " + run.error));
+  }
+
+  static std::string last_line(const std::string& log, int exit_code) {
+    std::ifstream file(log);
+    std::string last;
+    for (std::string line; std::getline(file, line);) {
+      if (!line.empty()) last = line;
+    }
+    if (exit_code > 128) return fmt::format("ended by signal {}", exit_code - 128);
+    if (last.empty()) return fmt::format("ended with exit code {}", exit_code);
+    constexpr std::string_view kPrefix = "spillway: error: ";
+    return last.starts_with(kPrefix) ? last.substr(kPrefix.size()) : last;
+  }
+
+  [[nodiscard]] std::size_t count(std::string_view status) const {
+    return static_cast<std::size_t>(std::count_if(
+        runs_.begin(), runs_.end(), [&](const JobRun& run) { return run.status == status; }));
+  }
+
+  int summarize(double seconds) {
+    const std::size_t failed = count("failed");
+    progress_.say(fmt::format("{} jobs: {} done, {} failed, {} unchanged, {:.1f} s", runs_.size(),
+                              count("done"), failed, count("unchanged"), seconds));
+    for (const JobRun& run : runs_) {
+      if (run.status == "failed")
+        progress_.say(fmt::format("failed: {} ({})", run.job.name, run.log));
+    }
+    return failed == 0 ? kExitDone : kExitFailed;
+  }
+
+  const CLI::App& root_;
+  const BatchOptions& options_;
+  Progress progress_;
+  std::vector<JobRun> runs_;
+  std::deque<JobRun*> waiting_;
+  std::map<pid_t, Running> running_;
+  std::uint64_t limit_ = 1;  ///< jobs at a time
+  int free_threads_;         ///< below 0 with more jobs than threads
+  std::uint64_t free_memory_;
+  std::size_t ended_ = 0;
+  std::string temporary_;
+};
+
+}  // namespace
+
+Subcommand add_batch(CLI::App& root) {
+  const auto options = std::make_shared<BatchOptions>();
+  CLI::App* app = root.add_subcommand("batch", "Do many jobs, one after the other or side by side");
+  app->footer(kExamples);
+  app->add_option("JOBS", options->sources,
+                  "A list of jobs (.json, .toml), or point files, globs, folders: a job each")
+      ->required();
+  app->add_option("--output-dir", options->folder, "Where outputs, logs and records go")
+      ->required()
+      ->type_name("DIR");
+  app->add_option("--to", options->to, "Outputs of each job, like ply,dem.tif,hillshade.tif")
+      ->delimiter(',')
+      ->type_name("KIND,...");
+  app->add_option("-j,--jobs", options->at_a_time, "Most jobs at a time; 0: one a thread")
+      ->type_name("N")
+      ->capture_default_str();
+  app->add_flag("--resume", options->resume, "Leave out jobs that are complete and unchanged");
+  app->add_option("--threads", options->threads, "Threads of all jobs together; 0: all there are")
+      ->type_name("N")
+      ->capture_default_str();
+  add_memory_options(*app, options->memory);
+  add_report_options(*app, options->report);
+  add_options_of_subcommands(root, *app, *options);
+  return {app, [options, &root] { return Batch(root, *options).run(); }};
+}
+
+}  // namespace spillway

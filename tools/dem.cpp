@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "formats/gdal/gdal.h"
+#include "formats/raster_file.h"
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "stream/dem_writer.h"
+#include "stream/memory_plan.h"
+#include "tools/command.h"
+#include "tools/dem_options.h"
+#include "tools/json_text.h"
+#include "tools/output_check.h"
+#include "tools/statistics.h"
+#include "tools/terrain_input.h"
+#include "tools/text_output.h"
+
+namespace spillway {
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  spillway dem survey.laz -o dem.tif --resolution 0.5\n"
+    "  spillway dem 'tiles/*.laz' -o dtm.tif --resolution 0.5 --keep-class 2 --align --cog\n"
+    "  spillway dem survey.las -o relief.tif --resolution 1 --product height,slope,hillshade\n"
+    "  spillway dem after.las -o after.tif --like before.tif\n"
+    "  spillway triangulate survey.las -o - | spillway dem - -o dem.tif --resolution 1\n"
+    "The DEM is interpolated linearly within the triangles; docs/dem.md tells more.";
+
+constexpr std::uint64_t kLeastMemory = std::uint64_t{64} << 20;
+/// The part of --memory that is for pixels.
+constexpr std::uint64_t kPixelShare = 4;
+
+/// One run of `dem`, and what its stages share.
+class Run : public TerrainUse {
+ public:
+  explicit Run(const DemCommandOptions& options)
+      : options_(options),
+        dem_options_(dem_options(options, like_)),
+        limit_(memory_limit(options.memory)),
+        budget_(limit_ - limit_ / kPixelShare),
+        scratch_(make_scratch_folder(options.memory)),
+        progress_(make_progress(
+            options.report, std::count(options.inputs.begin(), options.inputs.end(), "-") > 0)) {
+    if (limit_ < kLeastMemory) {
+      throw UsageError("--memory is too small: 64 MiB are the least that will do for a DEM");
+    }
+    dem_options_.memory = limit_ / kPixelShare;
+    dem_options_.threads = plan_memory(budget_.limit(), 2, thread_count(options)).threads;
+    statistics_.output = options.output;
+    statistics_.output_format = "tif";
+    statistics_.memory_limit = limit_;
+  }
+
+  int run() {
+    reuse_freed_memory();
+    feed_terrain(options_, *this,
+                 {.budget = budget_,
+                  .scratch = *scratch_,
+                  .progress = progress_,
+                  .threads = dem_options_.threads},
+                 statistics_);
+    write();
+    return kExitDone;
+  }
+
+  MeshStreamWriter& begin(const TerrainHeader& header) override {
+    check_crs(header.crs);
+    crs_ = header.crs.empty() ? like_.crs : header.crs;
+    dem_options_.max_edge = header.max_edge;
+    dem_.emplace(dem_options_, header.lattice, *scratch_);
+    return writer_.emplace(*dem_);
+  }
+
+  [[nodiscard]] bool wants_extent() const override {
+    return !dem_options_.grid.bounds && !dem_options_.grid.given;
+  }
+  void extent_known(const Box<2>& extent) override { dem_->begin(extent); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void check_crs(const std::string& crs) const {
+    if (crs.empty() || like_.crs.empty() || options_.input.force_crs) return;
+    if (gdal().same_crs(crs, like_.crs)) return;
+    throw Error(fmt::format("{} is in {}, but {} in {}; reproject one of them (or --force-crs)",
+                            options_.inputs.front(), gdal().crs_name(crs), options_.like,
+                            gdal().crs_name(like_.crs)));
+  }
+
+  void write() {
+    Dem& dem = *dem_;
+    StreamFigures& stream = statistics_.stream;
+    stream.left_out += dem.left_out();
+    stream.threads = dem_options_.threads;
+    RasterOptions raster = dem.raster_options();
+    raster.path = options_.output;
+    raster.grid.crs = crs_;
+    raster.compression = options_.compression;
+    raster.cloud_optimized = options_.cloud_optimized;
+    progress_.begin("write", "pixels");
+    RasterFile file(std::move(raster));
+    const double pixels = static_cast<double>(dem.grid().columns) * dem.grid().rows;
+    with_threads(dem_options_.threads, [&] {
+      dem.write(file.raster(), [&](std::uint64_t done) {
+        progress_.update(done, std::min(1.0, static_cast<double>(done) / pixels));
+      });
+    });
+    statistics_.output_bytes = file.finish();
+    statistics_.write_seconds = progress_.end();
+    statistics_.seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    report(dem);
+  }
+
+  void report(const Dem& dem) {
+    const PixelGrid& grid = dem.grid();
+    const StreamFigures& stream = statistics_.stream;
+    if (stream.left_out > 0) {
+      progress_.say(fmt::format("{} triangles with an edge longer than {} left out",
+                                stream.left_out, *statistics_.max_edge));
+    }
+    if (dem.spilled_bytes() > 0) {
+      progress_.detail(
+          fmt::format("{} of pixels on the disk", memory_size_text(dem.spilled_bytes())));
+    }
+    if (dem.pixels_with_data() == 0) {
+      progress_.say("no pixel has a value: the raster lies beside the points");
+    }
+    progress_.say(
+        fmt::format("{} vertices, {} triangles; {} x {} pixels of {}, {} with data, "
+                    "{:.2f} s",
+                    stream.totals.vertices, stream.totals.simplices, grid.columns, grid.rows,
+                    grid.resolution, dem.pixels_with_data(), statistics_.seconds));
+    if (options_.stats_path.empty()) return;
+    nlohmann::ordered_json json = to_json(statistics_);
+    json["raster"] = {{"columns", grid.columns},
+                      {"rows", grid.rows},
+                      {"resolution", grid.resolution},
+                      {"west", grid.west},
+                      {"north", grid.north},
+                      {"bands", dem.raster_options().bands},
+                      {"pixels_with_data", dem.pixels_with_data()},
+                      {"spilled_bytes", dem.spilled_bytes()}};
+    write_text(options_.stats_path, json_text(json, 2) + "\n");
+  }
+
+  const Clock::time_point start_ = Clock::now();
+  const DemCommandOptions& options_;
+  RasterGrid like_;
+  DemOptions dem_options_;
+  std::uint64_t limit_;
+  MemoryBudget budget_;
+  std::unique_ptr<ScratchFolder> scratch_;
+  Progress progress_;
+  std::string crs_;
+  std::optional<Dem> dem_;
+  std::optional<DemWriter> writer_;
+  RunStatistics statistics_;
+};
+
+int run(const DemCommandOptions& options) {
+  if (!can_be_tried(options.output)) {
+    throw UsageError(fmt::format("-o {}: a GeoTIFF is not written in one go, so it needs a file",
+                                 options.output));
+  }
+  if (options.output == options.stats_path) {
+    throw UsageError("the raster and --stats cannot go to the same place: " + options.output);
+  }
+  check_can_create(disk(), options.output);
+  if (!options.stats_path.empty()) check_can_create(disk(), options.stats_path);
+  return Run(options).run();
+}
+
+}  // namespace
+
+Subcommand add_dem(CLI::App& root) {
+  const auto options = std::make_shared<DemCommandOptions>();
+  CLI::App* app = root.add_subcommand("dem", "Make a raster of heights, slopes or shades");
+  app->footer(kExamples);
+  add_dem_options(*app, *options);
+  return {app, [options] { return run(*options); }};
+}
+
+}  // namespace spillway

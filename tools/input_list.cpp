@@ -1,0 +1,116 @@
+#include "tools/input_list.h"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <string_view>
+#include <system_error>
+
+#include "formats/file_system.h"
+#include "formats/line_reader.h"
+#include "formats/point_format.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+namespace fs = std::filesystem;
+
+void append_folder(const std::string& folder, std::vector<std::string>& files) {
+  std::vector<std::string> found;
+  std::error_code fault;
+  for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end;
+       entry.increment(fault)) {
+    std::error_code unknown;
+    if (point_format_of_path(entry->path().string()) && !entry->is_directory(unknown)) {
+      found.push_back(entry->path().string());
+    }
+  }
+  if (fault) throw Error(fmt::format("cannot read the folder {}: {}", folder, fault.message()));
+  if (found.empty()) {
+    throw Error(
+        fmt::format("{}: the folder has no point files (.las, .laz, .txt, .xyz, .csv, "
+                    ".asc, .npy, .spp); name files or a pattern",
+                    folder));
+  }
+  std::sort(found.begin(), found.end());
+  files.insert(files.end(), found.begin(), found.end());
+}
+
+void append_name(const std::string& name, std::vector<std::string>& files) {
+  std::error_code unknown;
+  if (fs::is_directory(name, unknown)) {
+    append_folder(name, files);
+  } else {
+    files.push_back(name);
+  }
+}
+
+void append_matches(const std::string& pattern, std::vector<std::string>& files) {
+  glob_t matches{};
+  const std::unique_ptr<glob_t, void (*)(glob_t*)> owner(&matches, globfree);
+  const int result = glob(pattern.c_str(), GLOB_NOSORT, nullptr, &matches);
+  if (result == GLOB_NOSPACE) throw std::bad_alloc();
+  if (result != 0) throw Error(fmt::format("{}: no file has such a name", pattern));
+  std::vector<std::string> names(matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) append_name(name, files);
+}
+
+void append(const std::string& argument, std::vector<std::string>& files) {
+  std::error_code unknown;
+  const bool pattern = argument.find_first_of("*?[") != std::string::npos;
+  if (pattern && !fs::exists(argument, unknown)) {
+    append_matches(argument, files);
+  } else {
+    append_name(argument, files);
+  }
+}
+
+std::string_view trimmed(std::string_view line) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const std::size_t begin = line.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return line.substr(begin, line.find_last_not_of(kBlanks) - begin + 1);
+}
+
+void append_list(const std::string& list, std::vector<std::string>& files) {
+  const auto file = disk().open(list);
+  LineReader lines(*file);
+  const fs::path folder = list == "-" ? fs::path() : fs::path(list).parent_path();
+  const std::size_t before = files.size();
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view name = trimmed(line);
+    if (name.empty() || name.front() == '#') continue;
+    if (name == "-" || name.front() == '@') {
+      throw Error(
+          fmt::format("{}, line {}: a list has names of files, folders and patterns, but "
+                      "this is {}",
+                      file->name(), lines.number(), quoted(name)));
+    }
+    append((folder / name).string(), files);
+  }
+  if (files.size() == before) throw Error(fmt::format("{}: the list is empty", file->name()));
+}
+
+}  // namespace
+
+std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments) {
+  std::vector<std::string> files;
+  for (const std::string& argument : arguments) {
+    if (argument.size() > 1 && argument.front() == '@') {
+      append_list(argument.substr(1), files);
+    } else if (argument == "-") {
+      files.push_back(argument);
+    } else {
+      append(argument, files);
+    }
+  }
+  return files;
+}
+
+}  // namespace spillway

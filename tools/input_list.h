@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace spillway {
+
+/// The files that arguments stand for, in the order of the arguments:
+/// - "-" and names of files: themselves, as is what names nothing that there is;
+/// - a folder: the point files in it, by extension, sorted; not those of folders below it;
+/// - a pattern (* ? [...]) that is no file's name: what it matches, sorted;
+/// - "@LIST": the lines of that file ("@-": of standard input), each a name, folder or pattern as
+///   above, relative to the folder of the list; blank lines and those that begin with # are left
+///   out.
+/// Throws Error for a folder without point files, a pattern that matches nothing, and an empty
+/// list.
+std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments);
+
+}  // namespace spillway

@@ -1,0 +1,161 @@
+#include "tools/job_steps.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "formats/mesh_writer.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+/// What the first part of a kind like "slope.tif" stands for.
+struct Product {
+  std::string_view name;
+  std::string_view subcommand;
+  std::string_view option;  ///< and its value; may be empty
+  std::string_view value;
+};
+
+constexpr std::array kProducts = {Product{"dem", "dem", "", ""},
+                                  Product{"slope", "dem", "--product", "slope"},
+                                  Product{"aspect", "dem", "--product", "aspect"},
+                                  Product{"hillshade", "dem", "--product", "hillshade"},
+                                  Product{"density", "dem", "--product", "density"},
+                                  Product{"contour", "contour", "", ""},
+                                  Product{"render", "", ""}};
+
+/// A kind of output: what makes it, and how.
+struct Kind {
+  std::string subcommand;
+  std::vector<std::string> arguments;
+};
+
+Kind kind_by_name(const Job& job, const std::string& name) {
+  const std::size_t dot = name.find('.');
+  if (dot == std::string::npos) {
+    try {
+      mesh_format("x." + name, "");
+    } catch (const UsageError&) {
+      throw UsageError(
+          fmt::format("{}: no output can be made as \"{}\"; a mesh is one of {}, "
+                      "anything else is named like dem.tif",
+                      job.name, name, fmt::join(mesh_format_names(), ", ")));
+    }
+    return {"triangulate", {}};
+  }
+  const std::string_view first = std::string_view(name).substr(0, dot);
+  const auto* const product = std::find_if(kProducts.begin(), kProducts.end(),
+                                           [&](const Product& p) { return p.name == first; });
+  if (product == kProducts.end()) {
+    std::vector<std::string_view> names;
+    for (const Product& known : kProducts) names.push_back(known.name);
+    throw UsageError(
+        fmt::format("{}: no output can be made as \"{}\"; before the dot stands one "
+                    "of {}",
+                    job.name, name, fmt::join(names, ", ")));
+  }
+  Kind kind{std::string(product->subcommand), {}};
+  if (!product->option.empty()) {
+    kind.arguments = {std::string(product->option), std::string(product->value)};
+  }
+  return kind;
+}
+
+bool is_mesh_stream(const std::string& kind) { return kind == "spm"; }
+
+}  // namespace
+
+const std::vector<std::string>& job_subcommands() {
+  static const std::vector<std::string> names = {"triangulate", "dem", "contour"};
+  return names;
+}
+
+JobPlanner::JobPlanner(const CLI::App& root, std::string folder, std::string scratch)
+    : root_(root), folder_(std::move(folder)), scratch_(std::move(scratch)) {}
+
+const CLI::Option* JobPlanner::option(const std::string& subcommand,
+                                      const std::string& name) const {
+  return root_.get_subcommand(subcommand)->get_option_no_throw("--" + name);
+}
+
+std::vector<JobStep> JobPlanner::plan(const Job& job) const {
+  std::vector<JobStep> steps;
+  std::vector<std::string> kinds = job.to;
+  if (kinds.size() == 1) {
+    steps.push_back(step(job, kinds.front(), job.inputs, true));
+  } else {
+    const auto stream = std::find_if(kinds.begin(), kinds.end(), is_mesh_stream);
+    JobStep first = step(job, "spm", job.inputs, true);
+    if (stream != kinds.end()) {
+      kinds.erase(stream);
+    } else {
+      first.temporary = true;
+      first.output = (std::filesystem::path(scratch_) / (job.name + ".spm")).string();
+      first.arguments[first.arguments.size() - 1] = first.output;
+    }
+    steps.push_back(first);
+    for (const std::string& kind : kinds) {
+      steps.push_back(step(job, kind, {first.output}, false));
+    }
+  }
+  check_options(job, steps);
+  return steps;
+}
+
+/// The output comes last, behind -o.
+JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
+                         const std::vector<std::string>& inputs, bool of_points) const {
+  Kind kind = kind_by_name(job, kind_name);
+  if (!of_points && kind.subcommand == "triangulate") kind.subcommand = "convert";
+  JobStep step;
+  step.arguments = {kind.subcommand};
+  step.arguments.insert(step.arguments.end(), inputs.begin(), inputs.end());
+  step.arguments.insert(step.arguments.end(), kind.arguments.begin(), kind.arguments.end());
+  for (const auto& [name, values] : job.options) {
+    if (!takes_option(job, kind.subcommand, of_points, name)) continue;
+    if (values.empty()) step.arguments.push_back("--" + name);
+    for (const std::string& value : values) {
+      step.arguments.push_back(fmt::format("--{}={}", name, value));
+    }
+  }
+  step.output = (std::filesystem::path(folder_) / (job.name + "." + kind_name)).string();
+  step.arguments.insert(step.arguments.end(), {"-o", step.output});
+  return step;
+}
+
+/// Whether an option of a job is one for this step. What triangulate has concerns the points, and
+/// is nothing for a step that begins with a mesh; but where a raster is made, its bounds and
+/// resolution are meant, and the triangulation's levels of detail are not.
+bool JobPlanner::takes_option(const Job& job, const std::string& subcommand, bool of_points,
+                              const std::string& name) const {
+  if (option(subcommand, name) == nullptr) return false;
+  const bool of_raster = name == "bounds" || name == "resolution";
+  if (of_raster && subcommand == "dem") return true;
+  if (name == "resolution") {
+    return std::none_of(job.to.begin(), job.to.end(), [&](const std::string& kind) {
+      return kind_by_name(job, kind).subcommand == "dem";
+    });
+  }
+  return of_points || option("triangulate", name) == nullptr;
+}
+
+void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps) const {
+  for (const auto& [name, values] : job.options) {
+    const bool known = std::any_of(steps.begin(), steps.end(), [&](const JobStep& s) {
+      return option(s.arguments.front(), name) != nullptr;
+    });
+    if (!known) {
+      throw UsageError(
+          fmt::format("{}: none of its outputs knows the option --{}", job.name, name));
+    }
+  }
+}
+
+}  // namespace spillway

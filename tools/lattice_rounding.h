@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
+#include "src/geometry/point.h"
+
+namespace spillway {
+
+/// The lattice that points are to be rounded to.
+struct LatticeChoice {
+  std::vector<double> scale{};   ///< none, one for all axes, or three
+  std::vector<double> offset{};  ///< likewise
+
+  [[nodiscard]] bool empty() const { return scale.empty() && offset.empty(); }
+};
+
+/// The lattice of a choice. What it leaves open comes from `source` (the lattice that the points
+/// have), if there is one; else the scale is 1e-7 for x and y that can be degrees and 0.001
+/// otherwise, and the offset 0 where the points of `extent` are 32-bit integers then, otherwise a
+/// round number near their centre.
+Lattice chosen_lattice(const LatticeChoice& choice, const std::optional<Lattice>& source,
+                       const Box<3>& extent);
+
+/// Rounds points to the nearest ones of a lattice, and remembers how far they moved.
+class LatticeRounding {
+ public:
+  /// Points come as integers of `source`, if that is set, else in output coordinates. `output` is
+  /// where they go, for messages.
+  LatticeRounding(std::string output, const Lattice& target, const std::optional<Lattice>& source)
+      : output_(std::move(output)), target_(target), source_(source) {}
+
+  /// Replaces points by integers of the target lattice. Throws Error that names the first point
+  /// whose integers would take more than 32 bits; `index` has the points' numbers in the input.
+  void round(std::span<Point<3>> points, std::span<const std::uint64_t> index);
+
+  /// How far a coordinate has moved at most; in output units.
+  [[nodiscard]] double farthest() const { return farthest_; }
+
+  [[nodiscard]] const Lattice& target() const { return target_; }
+
+ private:
+  std::string output_;
+  Lattice target_;
+  std::optional<Lattice> source_;
+  double farthest_ = 0;
+};
+
+/// "0.001", or "0.01, 0.01, 0.001" if the axes differ.
+std::string axes_text(const std::array<double, 3>& values);
+
+}  // namespace spillway

@@ -1,0 +1,29 @@
+#pragma once
+// What `generate` and `convert` have in common: where points go, and as what.
+
+#include <CLI/App.hpp>
+#include <string>
+
+namespace spillway {
+
+/// -o, --output-format and --las-version.
+struct PointOutput {
+  std::string path = "-";
+  std::string format;       ///< empty: by name; spp on standard output
+  std::string las_version;  ///< "1.2", "1.4" or empty
+
+  /// For messages.
+  [[nodiscard]] std::string name() const { return path == "-" ? "standard output" : path; }
+};
+
+/// Adds --las-version.
+void add_las_version(CLI::App& app, PointOutput& output);
+
+/// The format by name for open_point_writer(); empty if the extension is to tell. Throws UsageError
+/// if bytes would go to a terminal.
+std::string format_name_of(const PointOutput& output);
+
+/// `crs` as WKT if it is a code and GDAL is there to tell; else empty.
+std::string wkt_of_code(const std::string& crs);
+
+}  // namespace spillway

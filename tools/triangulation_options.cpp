@@ -1,0 +1,96 @@
+#include "tools/triangulation_options.h"
+
+#include <fmt/format.h>
+#include <malloc.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "src/delaunay/base_case.h"
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "stream/heights.h"
+
+namespace spillway {
+namespace {
+
+DivisionScheme division_by_name(const std::string& name) {
+  if (name == "cycling") return DivisionScheme::kCyclingAxis;
+  if (name == "constant") return DivisionScheme::kConstantAxis;
+  return DivisionScheme::kLongestExtent;
+}
+
+}  // namespace
+
+void add_triangulation_options(CLI::App& app, TriangulationOptions& options) {
+  options.duplicates_option =
+      add_choice(app, "--duplicates", options.duplicates, height_choice_names(),
+                 "Which z a vertex of several points of equal x, y gets");
+  app.add_option("--max-edge", options.max_edge, "Leave out simplices with an edge longer than L")
+      ->type_name("L");
+  add_input_options(app, options.input);
+  app.add_option("--threads", options.threads, "Threads to use; 0: all there are")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096).description(""))
+      ->capture_default_str();
+  add_memory_options(app, options.memory);
+  app.add_option("--stats", options.stats_path, "Write figures and the task tree of the run")
+      ->type_name("FILE");
+  app.add_option("--base-case", options.base_case_size,
+                 "Most points of one sequential base case (a leaf); 0: chosen by number and memory")
+      ->type_name("N")
+      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->capture_default_str();
+  app.add_option("--tile", options.tile_capacity,
+                 "Most points of a tile that is loaded at a time; 0: chosen by the memory")
+      ->type_name("N")
+      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->capture_default_str();
+  add_choice(app, "--division", options.division, {"longest", "cycling", "constant"},
+             "Which axis the division of points cuts");
+  app.add_option("--children", options.children, "Parts that are merged at a time")
+      ->type_name("K")
+      ->check(CLI::Range(2, 1024).description(""))
+      ->capture_default_str();
+  add_choice(app, "--kernel", options.kernel, {"spillway", "cgal"},
+             "What triangulates base cases in the plane; both give the same mesh");
+}
+
+unsigned thread_count(const TriangulationOptions& options) {
+  return options.threads == 0 ? available_threads() : options.threads;
+}
+
+std::optional<double> parse_max_edge(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  double length = 0;
+  const bool number = CLI::detail::lexical_cast(text, length);
+  if (!number || !(length > 0) || !std::isfinite(length)) {
+    throw UsageError(fmt::format("--max-edge: \"{}\" is no length; give a number above 0", text));
+  }
+  return length;
+}
+
+StreamOptions stream_options(const TriangulationOptions& options, Progress& progress) {
+  set_base_case_kernel(options.kernel == "cgal" ? BaseCaseKernel::kCgal : BaseCaseKernel::kOwn);
+  StreamOptions stream;
+  stream.threads = thread_count(options);
+  stream.tile_capacity = options.tile_capacity;
+  stream.leaf_size = options.base_case_size;
+  stream.division = division_by_name(options.division);
+  stream.children = options.children;
+  stream.heights = height_choice_by_name(options.duplicates);
+  stream.max_edge = parse_max_edge(options.max_edge);
+  stream.begin_phase = [&progress](const char* phase) { progress.begin(phase, "points"); };
+  stream.end_phase = [&progress] { progress.end(); };
+  stream.progress = [&progress](std::uint64_t points, std::optional<double> fraction) {
+    progress.update(points, fraction);
+  };
+  return stream;
+}
+
+void reuse_freed_memory() {
+  mallopt(M_MMAP_THRESHOLD, 4 << 20);
+  mallopt(M_TRIM_THRESHOLD, 16 << 20);
+}
+
+}  // namespace spillway

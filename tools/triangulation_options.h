@@ -1,0 +1,51 @@
+#pragma once
+// What subcommands that triangulate points have in common.
+
+#include <CLI/App.hpp>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stream/pipeline.h"
+#include "tools/command_options.h"
+#include "tools/input_options.h"
+
+namespace spillway {
+
+/// As on the command line.
+struct TriangulationOptions {
+  std::vector<std::string> inputs;
+  InputOptions input;
+  std::string duplicates = "first";
+  const CLI::Option* duplicates_option = nullptr;
+  std::string max_edge;
+  unsigned threads = 0;
+  MemoryOptions memory;
+  std::string stats_path;
+  std::size_t base_case_size = 0;
+  std::size_t tile_capacity = 0;
+  std::string division = "longest";
+  unsigned children = 2;
+  std::string kernel = "spillway";
+  ReportOptions report;
+};
+
+/// All but IN and those of ReportOptions: --duplicates, --max-edge, the input's, --threads, the
+/// memory's, --stats, and how the work is divided.
+void add_triangulation_options(CLI::App& app, TriangulationOptions& options);
+
+/// The number of threads that --threads asks for.
+unsigned thread_count(const TriangulationOptions& options);
+
+/// The length that --max-edge gives; nothing if it is not given. Throws UsageError.
+std::optional<double> parse_max_edge(const std::string& text);
+
+/// The pipeline's options, phases and progress going to `progress`, which must outlive them.
+StreamOptions stream_options(const TriangulationOptions& options, Progress& progress);
+
+/// Buffers of some megabytes come and go with every leaf: taken from the system anew each time,
+/// they would cost a fifth of the run in page faults.
+void reuse_freed_memory();
+
+}  // namespace spillway
