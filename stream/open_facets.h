@@ -27,6 +27,10 @@ class OpenFacets {
 
   [[nodiscard]] std::uint64_t count() const { return open_.size(); }
 
+  /// The facets in any order, each as D numbers in ascending order.
+  [[nodiscard]] auto begin() const { return open_.begin(); }
+  [[nodiscard]] auto end() const { return open_.end(); }
+
  private:
   using Facet = std::array<std::uint64_t, D>;
   struct Hash {

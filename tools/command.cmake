@@ -31,6 +31,9 @@ add_library(spillway_command STATIC
   point_output.cpp
   progress.cpp
   progress_line.cpp
+  relief_scene.cpp
+  render.cpp
+  space_scene.cpp
   terrain_input.cpp
   text_output.cpp
   statistics.cpp

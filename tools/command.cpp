@@ -24,6 +24,7 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  spillway triangulate survey.las -o tin.ply     a surface mesh of a LiDAR file\n"
     "  spillway dem survey.las -o dem.tif --resolution 0.5  a raster of its heights\n"
+    "  spillway render survey.las -o view.png         a picture of it\n"
     "  spillway check tin.ply --points survey.las     prove that it is the Delaunay triangulation\n"
     "  spillway info survey.las tin.ply               what the files hold\n"
     "  spillway convert tin.spm -o tin.ply            another format\n"
@@ -71,7 +72,7 @@ class CommandTree {
     root_.require_subcommand(1);
     root_.footer(kExamples);
     for (const auto add :
-         {add_triangulate, add_dem, add_contour, add_info, add_generate, add_check,
+         {add_triangulate, add_dem, add_contour, add_render, add_info, add_generate, add_check,
           add_convert, add_batch, add_completion, add_manual}) {
       subcommands_.push_back(add(root_));
     }

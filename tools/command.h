@@ -22,6 +22,7 @@ struct Subcommand {
 Subcommand add_triangulate(CLI::App& root);
 Subcommand add_dem(CLI::App& root);
 Subcommand add_contour(CLI::App& root);
+Subcommand add_render(CLI::App& root);
 Subcommand add_info(CLI::App& root);
 Subcommand add_convert(CLI::App& root);
 Subcommand add_generate(CLI::App& root);

@@ -29,7 +29,7 @@ constexpr std::array kProducts = {Product{"dem", "dem", "", ""},
                                   Product{"hillshade", "dem", "--product", "hillshade"},
                                   Product{"density", "dem", "--product", "density"},
                                   Product{"contour", "contour", "", ""},
-                                  Product{"render", "", ""}};
+                                  Product{"render", "render", "", ""}};
 
 /// A kind of output: what makes it, and how.
 struct Kind {
@@ -73,7 +73,7 @@ bool is_mesh_stream(const std::string& kind) { return kind == "spm"; }
 }  // namespace
 
 const std::vector<std::string>& job_subcommands() {
-  static const std::vector<std::string> names = {"triangulate", "dem", "contour"};
+  static const std::vector<std::string> names = {"triangulate", "dem", "contour", "render"};
   return names;
 }
 

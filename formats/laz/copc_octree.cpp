@@ -23,6 +23,7 @@ struct NodeKey {
   std::int32_t level = 0;
   std::array<std::int32_t, 3> cell{};
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
   auto operator<=>(const NodeKey&) const = default;
 };
 
@@ -159,7 +160,8 @@ class Hierarchy {
   }
 
   void check(const Entry& entry) const {
-    const auto& [level, cell] = entry.key;
+    const std::int32_t level = entry.key.level;
+    const std::array<std::int32_t, 3>& cell = entry.key.cell;
     const bool exists = level >= 0 && level <= kDeepestLevel &&
                         std::all_of(cell.begin(), cell.end(), [&](std::int32_t c) {
                           return c >= 0 && c < std::int64_t{1} << level;

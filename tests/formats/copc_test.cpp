@@ -231,7 +231,7 @@ std::string error_of_octree(const CopcFile& file) {
   const std::string bytes = file.bytes();
   EXPECT_EQ(read_content("a.laz", bytes, selection({}, 0)).points.size(), 26U)
       << "all points can be read without the octree";
-  const std::string message = error_of_content("a.laz", bytes, selection({}, 0.001));
+  std::string message = error_of_content("a.laz", bytes, selection({}, 0.001));
   EXPECT_THAT(message, HasSubstr("a.laz: the COPC octree is corrupt: "));
   return message;
 }

@@ -16,6 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 constexpr std::size_t kPoints = 120;
+constexpr std::size_t kLayerSizes = 4 * std::size_t{11};  // bytes, in the layered format below
 
 LazFormat pointwise_format(int version = 2) {
   LazFormat format;
@@ -48,7 +49,7 @@ LazFormat variable(LazFormat format) {
 }
 
 std::string error_of_file(const std::string& bytes, bool seekable = true) {
-  const std::string message = error_of([&] { read_laz(bytes, seekable); });
+  std::string message = error_of([&] { read_laz(bytes, seekable); });
   EXPECT_THAT(message, StartsWith("a.laz: "));
   return message;
 }
@@ -260,7 +261,7 @@ TEST(LazCorruption, EmptyFirstLayer) {
   std::uint32_t first = 0;
   std::memcpy(&first, &chunk[sizes], 4);
   put(chunk, sizes, std::uint32_t{0});
-  chunk.erase(sizes + 4 * 11, first);
+  chunk.erase(sizes + kLayerSizes, first);
   file.table[0].bytes -= first;
   expect_error_from_everywhere(file.bytes(), "no coordinates");
 }
@@ -270,7 +271,8 @@ TEST(LazCorruption, StreamBeginsWithAnImpossibleValue) {
   put(pointwise.chunks[1].bytes, pointwise.las.record_length(), std::uint32_t{0xffffffff});
   expect_error_from_everywhere(pointwise.bytes(), "a.laz");
   LazFile layered = make_file(layered_format());
-  put(layered.chunks[1].bytes, layered.las.record_length() + 4 + 4 * 11, std::uint32_t{0xffffffff});
+  put(layered.chunks[1].bytes, layered.las.record_length() + 4 + kLayerSizes,
+      std::uint32_t{0xffffffff});
   expect_error_from_everywhere(layered.bytes(), "a.laz");
 }
 

@@ -31,6 +31,7 @@ std::string file_of(const LazFormat& format, std::size_t count) {
 
 std::vector<Point<3>> points_of(const std::vector<std::string>& records) {
   std::vector<Point<3>> points;
+  points.reserve(records.size());
   for (const std::string& record : records) points.push_back(point_of_record(record));
   return points;
 }

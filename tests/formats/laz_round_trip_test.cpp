@@ -36,9 +36,9 @@ struct Coding {
   int version;
 };
 
-void PrintTo(const Coding& coding, std::ostream* out) {
-  *out << "format " << coding.point_format << ", compressor " << coding.compressor << ", version "
-       << coding.version;
+std::ostream& operator<<(std::ostream& out, const Coding& coding) {
+  return out << "format " << coding.point_format << ", compressor " << coding.compressor
+             << ", version " << coding.version;
 }
 
 std::vector<Coding> all_codings() {
@@ -68,8 +68,8 @@ class LazRoundTrip : public ::testing::TestWithParam<Coding> {
 
   [[nodiscard]] std::vector<std::string> records(std::size_t count,
                                                  std::size_t extra_bytes = 0) const {
-    const auto seed = static_cast<unsigned>(100 * GetParam().point_format + 10 * extra_bytes +
-                                            GetParam().version);
+    const auto form = static_cast<unsigned>(100 * GetParam().point_format + GetParam().version);
+    const unsigned seed = form + 10 * static_cast<unsigned>(extra_bytes);
     return RandomRecords{GetParam().point_format, extra_bytes, count, seed}.make();
   }
 

@@ -34,3 +34,7 @@ spillway_command_test(cli_batch_tests cli
 spillway_command_test(cli_dem_tests cli
   tools/cli_dem_test.cpp)
 target_link_libraries(cli_dem_tests PRIVATE PkgConfig::gdal)
+
+spillway_command_test(cli_render_tests cli
+  tools/cli_render_test.cpp)
+target_link_libraries(cli_render_tests PRIVATE PNG::PNG)

@@ -1,0 +1,157 @@
+#include "src/picture/relief.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "src/parallel/parallel.h"
+
+namespace spillway {
+namespace {
+
+/// From low to high, each lighter than the one before.
+constexpr std::array<Colour, 7> kHeightColours = {{{0.16F, 0.40F, 0.34F},
+                                                   {0.33F, 0.56F, 0.38F},
+                                                   {0.60F, 0.70F, 0.44F},
+                                                   {0.83F, 0.79F, 0.52F},
+                                                   {0.87F, 0.74F, 0.56F},
+                                                   {0.88F, 0.77F, 0.66F},
+                                                   {0.91F, 0.86F, 0.80F}}};
+
+/// What is left of a colour where there is no light, and how near to white it comes in full light.
+constexpr float kDarkest = 0.28F;
+constexpr float kLightest = 0.4F;
+
+/// Percentiles are taken of so many pixels at most.
+constexpr std::size_t kLargestSample = 1'000'000;
+
+/// The slope that this share of the pixels is below is brought into a range in which light and
+/// shade tell much: a plain is exaggerated, and what has other units of height than of x and y is
+/// made flatter.
+constexpr double kShareOfSlopes = 0.6;
+constexpr double kLeastSlope = 0.12;
+constexpr double kLargestSlope = 0.8;
+
+constexpr std::size_t kRowsAtATime = 16;
+
+/// The value that a share of the values is below; the values are left in another order.
+float percentile(std::vector<float>& values, double share) {
+  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + place, values.end());
+  return values[place];
+}
+
+/// Calls `visit` for evenly chosen pixels that are all covered, or for all if there are none.
+template <typename Visit>
+void for_some_pixels(const HeightPixels& heights, const Visit& visit) {
+  const std::size_t count = std::size_t{heights.columns()} * heights.rows();
+  // An odd step does not run down columns.
+  const std::size_t step = (count / kLargestSample) | 1U;
+  constexpr std::uint8_t kAll = HeightPixels::kSamples * HeightPixels::kSamples;
+  for (const std::uint8_t least : {kAll, std::uint8_t{1}}) {
+    bool any = false;
+    for (std::size_t i = 0; i < count; i += step) {
+      if (heights.samples(i) < least) continue;
+      any = true;
+      visit(i);
+    }
+    if (any) return;
+  }
+}
+
+double rounded_to_two_digits(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::round(value / unit) * unit;
+}
+
+double visible_exaggeration(const HeightPixels& heights, double side) {
+  std::vector<float> slopes;
+  for_some_pixels(heights, [&](std::size_t i) {
+    const Gradient gradient =
+        heights.gradient(static_cast<std::uint32_t>(i % heights.columns()),
+                         static_cast<std::uint32_t>(i / heights.columns()), side);
+    slopes.push_back(static_cast<float>(std::hypot(gradient[0], gradient[1])));
+  });
+  const double slope = slopes.empty() ? 0 : percentile(slopes, kShareOfSlopes);
+  const double factor = std::clamp(slope, kLeastSlope, kLargestSlope) / slope;
+  return slope > 0 && std::isfinite(factor) ? rounded_to_two_digits(factor) : 1;
+}
+
+Colour shaded(const Colour& colour, double brightness, double level_brightness) {
+  const double relative = brightness / level_brightness;
+  if (relative <= 1) {
+    return mix(kBlack, colour, kDarkest + (1 - kDarkest) * static_cast<float>(relative));
+  }
+  const double above = (brightness - level_brightness) / (255 - level_brightness);
+  return mix(colour, kWhite, kLightest * static_cast<float>(above));
+}
+
+}  // namespace
+
+HeightPixels::HeightPixels(std::uint32_t columns, std::uint32_t rows)
+    : columns_(columns),
+      rows_(rows),
+      sums_(std::size_t{columns} * rows),
+      samples_(std::size_t{columns} * rows) {}
+
+void HeightPixels::add(std::uint32_t sample_column, std::uint32_t sample_row, float height) {
+  if (empty_) base_ = height;
+  empty_ = false;
+  const std::size_t pixel =
+      std::size_t{sample_row / kSamples} * columns_ + sample_column / kSamples;
+  sums_[pixel] += height - base_;
+  ++samples_[pixel];
+}
+
+Gradient HeightPixels::gradient(std::uint32_t column, std::uint32_t row, double side) const {
+  const std::size_t centre = std::size_t{row} * columns_ + column;
+  std::array<std::array<double, 3>, 3> z{};
+  for (int r = -1; r <= 1; ++r) {
+    for (int c = -1; c <= 1; ++c) {
+      const std::int64_t near_row = std::int64_t{row} + r;
+      const std::int64_t near_column = std::int64_t{column} + c;
+      std::size_t pixel = centre;
+      if (near_row >= 0 && near_row < rows_ && near_column >= 0 && near_column < columns_) {
+        pixel =
+            static_cast<std::size_t>(near_row) * columns_ + static_cast<std::size_t>(near_column);
+        if (samples_[pixel] == 0) pixel = centre;
+      }
+      z[r + 1][c + 1] = height(pixel);
+    }
+  }
+  const auto column_sum = [&z](int c) { return z[0][c] + 2 * z[1][c] + z[2][c]; };
+  const auto row_sum = [&z](int r) { return z[r][0] + 2 * z[r][1] + z[r][2]; };
+  return {(column_sum(2) - column_sum(0)) / (8 * side), (row_sum(0) - row_sum(2)) / (8 * side)};
+}
+
+Relief draw_relief(const HeightPixels& heights, const ReliefStyle& style) {
+  std::vector<float> some;
+  for_some_pixels(heights, [&](std::size_t i) { some.push_back(heights.height(i)); });
+  const float lowest = some.empty() ? 0 : percentile(some, 0.02);
+  const float highest = some.empty() ? 0 : percentile(some, 0.98);
+  some = {};
+  const double exaggeration =
+      style.exaggeration ? *style.exaggeration : visible_exaggeration(heights, style.pixel_side);
+  const Point<3> light = direction_of(style.light);
+  const double level = hillshade_of({0, 0}, light);
+  Relief relief{Picture(heights.columns(), heights.rows()), exaggeration, heights.base() + lowest,
+                heights.base() + highest};
+  parallel_for(heights.rows(), kRowsAtATime, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (auto row = static_cast<std::uint32_t>(begin); row < end; ++row) {
+      for (std::uint32_t column = 0; column < heights.columns(); ++column) {
+        const std::size_t pixel = std::size_t{row} * heights.columns() + column;
+        if (heights.samples(pixel) == 0) continue;
+        const Gradient slope = heights.gradient(column, row, style.pixel_side);
+        const double brightness =
+            hillshade_of({slope[0] * exaggeration, slope[1] * exaggeration}, light);
+        const double t =
+            highest > lowest ? (heights.height(pixel) - lowest) / (highest - lowest) : 0.5;
+        relief.picture.set(column, row, shaded(colour_at(kHeightColours, t), brightness, level),
+                           heights.coverage(pixel));
+      }
+    }
+  });
+  return relief;
+}
+
+}  // namespace spillway
