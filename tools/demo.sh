@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # From points to a proved mesh: generates a million points of terrain, or takes the file that is given,
-# triangulates it to PLY, and checks the result. Installs and builds what is missing. Afterwards
+# triangulates it to PLY, checks the result, and makes a picture of it. Installs and builds what is missing. Afterwards
 # `cmake --install build/release` works.
 #
 #   tools/demo.sh [FILE]
@@ -36,4 +36,6 @@ echo "== triangulate"
 "$spillway" triangulate "$points" -o "$mesh"
 echo "== check"
 "$spillway" check "$mesh" --points "$points"
-echo "The mesh is $PWD/$mesh"
+echo "== render"
+"$spillway" render "$mesh" -o "${mesh%.ply}.png"
+echo "The mesh is $PWD/$mesh, and a picture of it ${mesh%.ply}.png"

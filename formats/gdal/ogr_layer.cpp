@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 #include <ogrsf_frmts.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
 
+#include <cctype>
 #include <cstdint>
+#include <fstream>
 #include <utility>
 
 #include "formats/gdal/crs.h"
@@ -15,6 +19,7 @@ namespace spillway {
 namespace {
 
 constexpr std::uint64_t kFeaturesPerTransaction = 100'000;
+constexpr std::uint64_t kFeaturesPerLook = 64;  ///< at the disk's free space
 constexpr const char* kElevation = "elevation";
 
 // A shapefile's parts may not pass 2 GB, for many programs count their bytes in signed 32 bits. A
@@ -26,10 +31,31 @@ constexpr std::uint64_t kShapefileHeader = 100;
 constexpr std::uint64_t kShapefileRecord = 8 + 4 + 32 + 4 + 4 + 4 + 16;
 constexpr std::uint64_t kShapefilePoint = 24;
 
+/// Whether nothing more fits on the disk where a file lies.
+bool disk_is_full(const std::string& path) {
+  struct statvfs disk {};
+  if (::statvfs(path.c_str(), &disk) != 0) return false;
+  return (::geteuid() == 0 ? disk.f_bfree : disk.f_bavail) == 0;
+}
+
+/// Whether a text file ends as JSON does.
+bool ends_as_json(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  for (std::streamoff end = file.tellg(); end > 0; --end) {
+    file.seekg(end - 1);
+    const int last = file.get();
+    if (std::isspace(last) == 0) return last == '}';
+  }
+  return false;
+}
+
 class OgrLayer : public VectorLayer {
  public:
   explicit OgrLayer(const VectorLayerOptions& options)
-      : name_(options.name), is_shapefile_(options.driver == "ESRI Shapefile") {
+      : name_(options.name),
+        path_(options.path),
+        is_shapefile_(options.driver == "ESRI Shapefile"),
+        is_json_(options.driver == "GeoJSON") {
     forget_gdal_errors();
     GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(options.driver.c_str());
     if (driver == nullptr) fail("GDAL is installed without its driver " + options.driver);
@@ -69,6 +95,7 @@ class OgrLayer : public VectorLayer {
     if (in_transaction_ && file_->CommitTransaction() != OGRERR_NONE) fail(gdal_reason());
     file_.reset();  // closing writes what is left: only now can the disk be full
     if (gdal_failed()) fail(gdal_reason());
+    if (is_json_ && !ends_as_json(path_)) fail("its end is missing; is the disk full?");
   }
 
  private:
@@ -103,6 +130,10 @@ class OgrLayer : public VectorLayer {
     if (elevation != nullptr) feature.SetField(0, *elevation);
     if (layer_->CreateFeature(&feature) != OGRERR_NONE) fail(gdal_reason());
     ++features_;
+    // GDAL's driver for GeoJSON does not notice that its writes fail.
+    if (is_json_ && features_ % kFeaturesPerLook == 0 && disk_is_full(path_)) {
+      fail("the disk is full");
+    }
     if (in_transaction_ && features_ % kFeaturesPerTransaction == 0 &&
         (file_->CommitTransaction() != OGRERR_NONE || file_->StartTransaction() != OGRERR_NONE)) {
       fail(gdal_reason());
@@ -114,7 +145,9 @@ class OgrLayer : public VectorLayer {
   }
 
   std::string name_;
+  std::string path_;
   bool is_shapefile_;
+  bool is_json_;
   GDALDatasetUniquePtr file_;
   OGRLayer* layer_ = nullptr;  // owned by file_
   bool in_transaction_ = false;
