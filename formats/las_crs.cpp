@@ -17,10 +17,6 @@
 namespace spillway {
 namespace {
 
-constexpr std::string_view kUser = "LASF_Projection";
-constexpr std::uint16_t kWktRecord = 2112;
-constexpr std::uint16_t kGeotiffRecord = 34735;
-
 /// A coordinate system as GeoTIFF keys tell it.
 struct Code {
   std::uint16_t number;
@@ -28,9 +24,8 @@ struct Code {
 };
 
 std::optional<std::uint16_t> epsg_number(std::string_view text) {
-  constexpr std::uint64_t kLargest = 32766;  // 32767 stands for user-defined
   const std::optional<std::uint64_t> number = parse_count(text);
-  if (!number || *number == 0 || *number > kLargest) return std::nullopt;
+  if (!number || *number == 0 || *number >= kGeotiffUserDefined) return std::nullopt;
   return static_cast<std::uint16_t>(*number);
 }
 
@@ -100,7 +95,7 @@ void append_record(LasCrs& crs, std::uint16_t id, std::span<const std::byte> con
                             content.size()));
   }
   std::array<std::byte, kLasVlrHeaderSize> header{};
-  std::ranges::copy(as_bytes_of(kUser), header.begin() + 2);
+  std::ranges::copy(as_bytes_of(kLasCrsUser), header.begin() + 2);
   store(&header[18], id);
   store(&header[20], static_cast<std::uint16_t>(content.size()));
   crs.bytes.insert(crs.bytes.end(), header.begin(), header.end());
@@ -109,7 +104,7 @@ void append_record(LasCrs& crs, std::uint16_t id, std::span<const std::byte> con
 }
 
 void append_wkt(LasCrs& crs, const std::string& wkt) {
-  append_record(crs, kWktRecord, std::as_bytes(std::span(wkt.c_str(), wkt.size() + 1)));
+  append_record(crs, kLasWktRecord, std::as_bytes(std::span(wkt.c_str(), wkt.size() + 1)));
 }
 
 /// A GeoTIFF directory of two keys: what the model is, and its code.
@@ -117,21 +112,20 @@ void append_geotiff_keys(LasCrs& crs, const Code& code) {
   constexpr std::uint16_t kModelType = 1024;
   constexpr std::uint16_t kProjected = 1;
   constexpr std::uint16_t kGeographic = 2;
-  constexpr std::uint16_t kGeographicType = 2048;
-  constexpr std::uint16_t kProjectedCsType = 3072;
-  const std::array<std::uint16_t, 12> keys = {1,
-                                              1,
-                                              0,
-                                              2,  // version 1.1.0, two keys
-                                              kModelType,
-                                              0,
-                                              1,
-                                              code.geographic ? kGeographic : kProjected,
-                                              code.geographic ? kGeographicType : kProjectedCsType,
-                                              0,
-                                              1,
-                                              code.number};
-  append_record(crs, kGeotiffRecord, std::as_bytes(std::span(keys)));
+  const std::array<std::uint16_t, 12> keys = {
+      1,
+      1,
+      0,
+      2,  // version 1.1.0, two keys
+      kModelType,
+      0,
+      1,
+      code.geographic ? kGeographic : kProjected,
+      code.geographic ? kGeotiffGeographicType : kGeotiffProjectedCsType,
+      0,
+      1,
+      code.number};
+  append_record(crs, kLasGeotiffRecord, std::as_bytes(std::span(keys)));
 }
 
 }  // namespace

@@ -154,18 +154,15 @@ Box<3> read_extent(std::span<const std::byte> bytes) {
 /// "EPSG:n" from the keys of a GeoTIFF directory, or nothing.
 std::string crs_of_geotiff_keys(std::span<const std::byte> keys) {
   constexpr std::size_t kEntry = 4 * sizeof(std::uint16_t);
-  constexpr std::uint16_t kGeographicType = 2048;
-  constexpr std::uint16_t kProjectedCsType = 3072;
-  constexpr std::uint16_t kUserDefined = 32767;
   std::uint16_t geographic = 0;
   std::uint16_t projected = 0;
   for (std::size_t at = kEntry; at + kEntry <= keys.size(); at += kEntry) {
     const auto key = load<std::uint16_t>(&keys[at]);
     const auto location = load<std::uint16_t>(&keys[at + 2]);
     const auto value = load<std::uint16_t>(&keys[at + 6]);
-    if (location != 0 || value == kUserDefined) continue;
-    if (key == kGeographicType) geographic = value;
-    if (key == kProjectedCsType) projected = value;
+    if (location != 0 || value == kGeotiffUserDefined) continue;
+    if (key == kGeotiffGeographicType) geographic = value;
+    if (key == kGeotiffProjectedCsType) projected = value;
   }
   const std::uint16_t code = projected != 0 ? projected : geographic;
   return code != 0 ? fmt::format("EPSG:{}", code) : "";
@@ -175,21 +172,18 @@ std::string crs_of_geotiff_keys(std::span<const std::byte> keys) {
 class Records {
  public:
   static bool tells_crs(std::string_view user, std::uint16_t record) {
-    return user == "LASF_Projection" && (record == kWkt || record == kGeotiffKeys);
+    return user == kLasCrsUser && (record == kLasWktRecord || record == kLasGeotiffRecord);
   }
 
   /// Keeps the coordinate system of a record that tells it.
   void take_crs(std::uint16_t record, std::span<const std::byte> content) {
-    if (record == kWkt) wkt_ = clean_text(as_text(content));
-    if (record == kGeotiffKeys) epsg_ = crs_of_geotiff_keys(content);
+    if (record == kLasWktRecord) wkt_ = clean_text(as_text(content));
+    if (record == kLasGeotiffRecord) epsg_ = crs_of_geotiff_keys(content);
   }
 
   [[nodiscard]] const std::string& crs() const { return wkt_.empty() ? epsg_ : wkt_; }
 
  private:
-  static constexpr std::uint16_t kWkt = 2112;
-  static constexpr std::uint16_t kGeotiffKeys = 34735;
-
   std::string wkt_;
   std::string epsg_;
 };

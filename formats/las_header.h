@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "formats/input_source.h"
 #include "formats/laz/copc_info.h"
@@ -47,6 +48,15 @@ inline constexpr std::size_t kLas14HeaderSize = 375;  ///< of LAS 1.4
 inline constexpr std::size_t kLasTextField = 32;      ///< bytes of an identifier in the header
 inline constexpr std::size_t kLasVlrHeaderSize = 54;
 inline constexpr std::size_t kLasEvlrHeaderSize = 60;  ///< of the records behind the points
+
+/// Records that tell the coordinate system: their user, WKT, and a directory of GeoTIFF keys with
+/// the keys that have an EPSG code and the value that stands for none.
+inline constexpr std::string_view kLasCrsUser = "LASF_Projection";
+inline constexpr std::uint16_t kLasWktRecord = 2112;
+inline constexpr std::uint16_t kLasGeotiffRecord = 34735;
+inline constexpr std::uint16_t kGeotiffGeographicType = 2048;
+inline constexpr std::uint16_t kGeotiffProjectedCsType = 3072;
+inline constexpr std::uint16_t kGeotiffUserDefined = 32767;
 
 /// Shortest record of each point format, in bytes; longer ones carry extra bytes at their end.
 inline constexpr std::array<std::size_t, 11> kLasRecordLengths = {20, 28, 26, 34, 57, 63,

@@ -27,6 +27,7 @@ target_sources(spillway_formats PRIVATE
   ply_reader.cpp
   ply_values.cpp
   ply_writer.cpp
+  private_output.cpp
   stl_reader.cpp
   stl_writer.cpp
   triangle_stream_writer.cpp

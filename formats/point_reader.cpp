@@ -96,6 +96,7 @@ bool PointReader::read(PointBlock& block) {
   block.clear();
   while (block.size() == 0 && fetch(raw)) {
     decode(raw, block);
+    raw.clear();
     withheld += std::exchange(block.withheld, 0);
   }
   block.withheld = withheld;

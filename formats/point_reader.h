@@ -57,6 +57,12 @@ struct RawPoints {
   std::uint64_t count = 0;       ///< of records in `bytes`
 
   [[nodiscard]] std::uint64_t records() const { return count + decoded.size() + decoded.withheld; }
+  /// As new, but for the memory it has.
+  void clear() {
+    decoded.clear();
+    bytes.clear();
+    offset = first = count = 0;
+  }
 };
 
 /// What a source says about its points before any is read.
@@ -93,9 +99,9 @@ class PointReader {
 
   [[nodiscard]] virtual const PointHeader& header() const = 0;
 
-  /// Replaces `raw` by the next piece (some tens of thousands of points); false at the end. Throws
-  /// Error with the source's name and the byte, line or point index for anything that is not a
-  /// finite point.
+  /// Fills `raw`, which comes cleared, with the next piece (some tens of thousands of points);
+  /// false at the end. Throws Error with the source's name and the byte, line or point index for
+  /// anything that is not a finite point.
   virtual bool fetch(RawPoints& raw) = 0;
 
   /// Replaces `block` by the points of a piece, which is used up. Safe for many threads at a time.

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
 
 #include "formats/gdal/raster.h"
+#include "formats/private_output.h"
 
 namespace spillway {
 
@@ -15,20 +15,16 @@ class RasterFile {
   /// Begins the file `options.path`; the name of the options is set here. Throws Error if it cannot
   /// be created.
   explicit RasterFile(RasterOptions options);
-  ~RasterFile();
-  RasterFile(const RasterFile&) = delete;
-  RasterFile& operator=(const RasterFile&) = delete;
 
   [[nodiscard]] Raster& raster() { return *raster_; }
 
-  /// Completes the file and replaces what was there of that name. Returns its bytes.
+  /// Completes the file and replaces what was there of that name; overviews, masks and statistics
+  /// that an older one had beside itself are removed. Returns its bytes.
   std::uint64_t finish();
 
  private:
-  std::string target_;  ///< the final path, through symbolic links
-  std::string folder_;  ///< the temporary one
-  std::string path_;    ///< of the file in it
-  std::unique_ptr<Raster> raster_;
+  PrivateOutput output_;
+  std::unique_ptr<Raster> raster_;  ///< writes to output_, so it goes first
 };
 
 }  // namespace spillway

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
 
 #include "formats/gdal/vector_layer.h"
+#include "formats/private_output.h"
 
 namespace spillway {
 
@@ -16,9 +16,6 @@ class VectorFile {
   /// Begins the file `options.path` with a layer that is named after it; name and layer of the
   /// options are set here. Throws Error if it cannot be created.
   explicit VectorFile(VectorLayerOptions options);
-  ~VectorFile();
-  VectorFile(const VectorFile&) = delete;
-  VectorFile& operator=(const VectorFile&) = delete;
 
   [[nodiscard]] VectorLayer& layer() { return *layer_; }
 
@@ -29,11 +26,8 @@ class VectorFile {
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
  private:
-  void move_files();
-
-  std::string path_;    // the final one
-  std::string folder_;  // the temporary one
-  std::unique_ptr<VectorLayer> layer_;
+  PrivateOutput output_;
+  std::unique_ptr<VectorLayer> layer_;  ///< writes to output_, so it goes first
   std::uint64_t bytes_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "formats/point_reader.h"
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
@@ -30,15 +31,22 @@ struct CommonLattice {
   std::vector<LatticeMap> maps;  ///< one for each of the others, in their order
 };
 
-/// The coarsest lattice that has all points of `lattices` (32-bit integers), with one scale for the
-/// axes that are triangulated: all of their scales are whole multiples of its scale, and all
-/// offsets differ by whole steps. Nothing if there is none with integers below 2^52.
+/// The largest integer of any coordinate that a source may give, its sign aside: 2^31 for LAS; for
+/// spp up to 2^53, unless its extent says less.
+double largest_integer(const PointHeader& header);
+
+/// The coarsest lattice that has all points of `lattices`, with one positive scale for the axes
+/// that are triangulated: all of their scales, which may be negative, are whole multiples of its
+/// scale, and all offsets differ by whole steps. `largest` has the largest integer of each, or is
+/// empty: 2^31 for all. Nothing if there is none with integers below 2^52; those that stay as they
+/// are may have any size.
 ///
 /// Scales and offsets are decimal numbers, rounded to doubles. So a multiple may be off by 2^-51 of
-/// itself, which no 32-bit integer carries further than 1e-6 of a step; an offset by 1e-6 of a
-/// step, or by one unit in its last place, if that is below 1e-3 of a step. The result does not
+/// itself, if the largest integer carries that no further than 1e-6 of a step; an offset by 1e-6 of
+/// a step, or by one unit in its last place, if that is below 1e-3 of a step. The result does not
 /// depend on the order of `lattices`: the scale is theirs where all agree, and the offset is the
 /// least one.
-std::optional<CommonLattice> find_common_lattice(std::span<const Lattice> lattices, int dimension);
+std::optional<CommonLattice> find_common_lattice(std::span<const Lattice> lattices, int dimension,
+                                                 std::span<const double> largest = {});
 
 }  // namespace spillway

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
+
+#include "src/geometry/longest_edge.h"
 
 namespace spillway {
 
@@ -35,12 +36,8 @@ std::vector<Corner> ContourWriter::corners_of(const MeshBlock& block) const {
 
 bool ContourWriter::too_long(const std::array<Corner, 3>& corners) const {
   if (!options_.max_edge) return false;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Point<3>& a = corners[i].point;
-    const Point<3>& b = corners[(i + 1) % 3].point;
-    if (std::hypot(b[0] - a[0], b[1] - a[1]) > *options_.max_edge) return true;
-  }
-  return false;
+  const std::array points = {corners[0].point, corners[1].point, corners[2].point};
+  return has_longer_edge<2>(points, *options_.max_edge);
 }
 
 void ContourWriter::write(MeshBlock&& block) {
@@ -48,7 +45,6 @@ void ContourWriter::write(MeshBlock&& block) {
   for (std::size_t c = 0; c < block.corners.size(); c += 3) {
     const std::array<Corner, 3> triangle = {
         corners[block.corners[c]], corners[block.corners[c + 1]], corners[block.corners[c + 2]]};
-    ++triangles_;
     if (too_long(triangle)) {
       ++left_out_;
       continue;
@@ -56,6 +52,10 @@ void ContourWriter::write(MeshBlock&& block) {
     segments_.clear();
     append_segments(triangle, options_.levels, segments_);
     for (const IsoSegment& segment : segments_) joiner_.add(segment);
+  }
+  for (std::size_t v = 0; v < block.vertices.size(); ++v) {
+    lowest_ = std::min(lowest_, corners[v].point[2]);
+    highest_ = std::max(highest_, corners[v].point[2]);
   }
   std::vector<bool> finalized(corners.size());
   for (const std::uint32_t v : block.finalized) {

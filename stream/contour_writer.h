@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -34,7 +35,9 @@ class ContourWriter : public MeshStreamWriter {
   [[nodiscard]] std::uint64_t bytes_written() const override { return 0; }
 
   [[nodiscard]] std::uint64_t lines() const { return joiner_.lines(); }
-  [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
+  /// The least and the greatest height that came; in reverse order if none did.
+  [[nodiscard]] double lowest() const { return lowest_; }
+  [[nodiscard]] double highest() const { return highest_; }
   /// Triangles with too long an edge.
   [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
   [[nodiscard]] std::uint64_t spilled_bytes() const { return joiner_.spilled_bytes(); }
@@ -49,7 +52,8 @@ class ContourWriter : public MeshStreamWriter {
   std::vector<IsoSegment> segments_;
   std::unordered_map<std::uint64_t, Point<3>> live_;  ///< vertices to come again, placed
   std::uint64_t announced_ = 0;
-  std::uint64_t triangles_ = 0;
+  double lowest_ = std::numeric_limits<double>::infinity();
+  double highest_ = -std::numeric_limits<double>::infinity();
   std::uint64_t left_out_ = 0;
 };
 

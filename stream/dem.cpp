@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "src/error.h"
+#include "src/geometry/longest_edge.h"
 #include "src/parallel/parallel.h"
 #include "stream/memory_budget.h"
 
@@ -161,7 +162,7 @@ void Dem::paint(std::span<const Point<3>> vertices, std::span<const std::uint32_
       if (window.empty() && !options_.max_edge) continue;
       const Triangle canonical =
           in_canonical_order({vertices[v[0]], vertices[v[1]], vertices[v[2]]});
-      if (options_.max_edge && too_long(canonical)) {
+      if (options_.max_edge && has_longer_edge<2>(in_output(canonical), *options_.max_edge)) {
         ++left_out_;
         continue;
       }
@@ -189,19 +190,6 @@ Triangle Dem::in_output(const Triangle& placed) const {
       p = {lattice_->to_world(0, p[0]), lattice_->to_world(1, p[1]), p[2]};
   }
   return triangle;
-}
-
-bool Dem::too_long(const Triangle& triangle) const {
-  const Triangle world = in_output(triangle);
-  const double most = *options_.max_edge * *options_.max_edge;
-  for (int i = 0; i < 3; ++i) {
-    const Point<3>& a = world[i];
-    const Point<3>& b = world[(i + 1) % 3];
-    const double dx = a[0] - b[0];
-    const double dy = a[1] - b[1];
-    if (dx * dx + dy * dy > most) return true;
-  }
-  return false;
 }
 
 /// Paints a triangle of many tiles: each tile is held once, and many threads work on it.

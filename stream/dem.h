@@ -87,7 +87,6 @@ class Dem {
   struct Work;
 
   [[nodiscard]] Triangle in_output(const Triangle& placed) const;
-  [[nodiscard]] bool too_long(const Triangle& triangle) const;
   void paint_pixels(const Triangle& canonical, const PixelWindow& window, Work& work);
   void paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work);
   void paint_large(const Triangle& canonical, const PixelWindow& whole);

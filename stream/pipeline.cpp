@@ -97,7 +97,7 @@ class Pipeline {
     tile_options_.leaf_size =
         options_.leaf_size > 0 ? options_.leaf_size : leaf_size_for(points, D, plan_);
     root_ = tree_.template nodes<D>();
-    if (!root_) throw Error("the input has no points");
+    if (!root_) throw Error("the input has no points: " + describe(source_.counts()));
     const Box<D>& box = root_->box;
     options_.extent_known({{box.lo[0], box.lo[1]}, {box.hi[0], box.hi[1]}});
     add_node(*root_, nullptr, {}, figures_.tasks);

@@ -118,11 +118,14 @@ void PointSource::check_coordinate_systems() {
 
 void PointSource::find_lattice() {
   std::vector<Lattice> lattices;
+  std::vector<double> largest;
   for (const Input& input : inputs_) {
-    if (input.header.lattice) lattices.push_back(*input.header.lattice);
+    if (!input.header.lattice) continue;
+    lattices.push_back(*input.header.lattice);
+    largest.push_back(largest_integer(input.header));
   }
   if (lattices.size() == inputs_.size()) {
-    if (const auto common = find_common_lattice(lattices, options_.dimension)) {
+    if (const auto common = find_common_lattice(lattices, options_.dimension, largest)) {
       lattice_ = common->lattice;
       heights_on_lattice_ = common->heights;
       for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i].map = common->maps[i];
@@ -145,7 +148,8 @@ void PointSource::explain_lattice() {
   for (const Input& input : inputs_) {
     const bool fits =
         first.lattice && input.header.lattice &&
-        find_common_lattice(std::vector{*first.lattice, *input.header.lattice}, options_.dimension);
+        find_common_lattice(std::vector{*first.lattice, *input.header.lattice}, options_.dimension,
+                            std::vector{largest_integer(first), largest_integer(input.header)});
     if (fits) continue;
     const bool alone = &input == &inputs_.front();
     options_.detail(fmt::format(
@@ -241,6 +245,7 @@ bool PointSource::fetch_input(SourcePiece& piece) {
   for (; current_ < inputs_.size(); finish_input()) {
     Input& input = inputs_[current_];
     if (!input.reader) input.reader = open_point_reader(files_, input.path, options_.reader);
+    piece.raw.clear();
     if (!input.reader->fetch(piece.raw)) continue;
     piece.input = current_;
     piece.first_index = records_before_;

@@ -16,12 +16,12 @@
 
 namespace spillway {
 
-/// What is in a pixel of one band. Nothing is not-a-number. All others are put there by put() and
-/// what comes out in the end does not depend on the order.
+/// What is in a pixel of one band. Nothing is not-a-number. All else is put there by put_pixel(),
+/// and what comes out in the end does not depend on the order.
 enum class PixelRule : std::uint8_t {
   kEqual,      ///< whatever is put there is equal
   kPreferred,  ///< values from 0; the preferred one if there is one, else the smallest
-  kSum,        ///< all of them added; whole numbers
+  kSum,        ///< all of them added; whole numbers, up to 2^24
 };
 
 /// Puts a value into a pixel; so may other threads at the same time.
@@ -84,7 +84,6 @@ class RasterStore {
   /// none. When no hand holds it. May be called by many threads.
   void take(std::uint64_t number, std::vector<float>& pixels);
 
-  [[nodiscard]] const std::vector<PixelRule>& bands() const { return bands_; }
   [[nodiscard]] std::uint64_t spilled_bytes() const;
 
  private:

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include "src/geometry/longest_edge.h"
+
 namespace spillway {
 namespace {
 
 // What a vertex is used by, as bits.
 constexpr std::uint8_t kByFinal = 1;
 constexpr std::uint8_t kByBorder = 2;
+constexpr std::uint8_t kByEmitted = 4;  ///< a final one that is not left out
 
 template <int D>
 class Settlement {
@@ -45,7 +48,10 @@ class Settlement {
   void mark_uses() {
     use_.resize(input_.vertices.size());
     for (std::size_t s = 0; s < input_.simplices.size(); ++s) {
-      const std::uint8_t use = input_.is_final[s] != 0 ? kByFinal : kByBorder;
+      std::uint8_t use = kByBorder;
+      if (input_.is_final[s] != 0) {
+        use = is_left_out(input_.simplices[s]) ? kByFinal : kByFinal | kByEmitted;
+      }
       for (const VertexId v : input_.simplices[s]) {
         if (v != kInfiniteVertex) use_[v] |= use;
       }
@@ -69,7 +75,7 @@ class Settlement {
     for (VertexId v = 0; v < count; ++v) {
       const BorderVertex<D>& vertex = input_.vertices[v];
       const bool kept = (use_[v] & kByBorder) != 0;
-      if (vertex.place.announced() && ((use_[v] & kByFinal) != 0 || !kept)) {
+      if (vertex.place.announced() && ((use_[v] & kByEmitted) != 0 || !kept)) {
         short_number_[v] = next++;
         result_.imported.push_back(vertex.place);
       }
@@ -93,37 +99,32 @@ class Settlement {
     }
   }
 
+  [[nodiscard]] std::array<Point<D>, D + 1> positions(const Corners& corners) const {
+    std::array<Point<D>, D + 1> world;
+    for (int i = 0; i <= D; ++i) world[i] = world_[corners[i]];
+    return world;
+  }
+
+  /// Whether a final simplex has too long an edge.
+  [[nodiscard]] bool is_left_out(const Corners& corners) const {
+    if (!output_.max_edge) return false;
+    const bool infinite =
+        std::find(corners.begin(), corners.end(), kInfiniteVertex) != corners.end();
+    return !infinite && has_longer_edge<D>(positions(corners), *output_.max_edge);
+  }
+
   void emit(const Corners& corners) {
     ++result_.final_simplices;
-    std::array<Point<D>, D + 1> world;
-    for (int i = 0; i <= D; ++i) {
-      if (corners[i] == kInfiniteVertex) {
-        ++result_.hull_facets;
-        return;
-      }
-      world[i] = world_[corners[i]];
+    if (std::find(corners.begin(), corners.end(), kInfiniteVertex) != corners.end()) {
+      ++result_.hull_facets;
+      return;
     }
-    if (too_long(world)) {
+    if (is_left_out(corners)) {
       ++result_.left_out;
       return;
     }
-    result_.hash.add(world);
+    result_.hash.add(positions(corners));
     for (const VertexId v : corners) result_.mesh.corners.push_back(short_number_[v]);
-  }
-
-  [[nodiscard]] bool too_long(const std::array<Point<D>, D + 1>& corners) const {
-    if (!output_.max_edge) return false;
-    const double most = *output_.max_edge * *output_.max_edge;
-    for (int i = 0; i <= D; ++i) {
-      for (int j = 0; j < i; ++j) {
-        double squared = 0;
-        for (int k = 0; k < D; ++k) {
-          squared += (corners[i][k] - corners[j][k]) * (corners[i][k] - corners[j][k]);
-        }
-        if (squared > most) return true;
-      }
-    }
-    return false;
   }
 
   void keep(Corners corners) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "src/geometry/longest_edge.h"
+
 namespace spillway {
 namespace {
 
@@ -41,7 +43,7 @@ void TetrahedronWriter::write(MeshBlock&& block) {
       of[i] = numbers[block.corners[c + i]];
       corners[i] = vertices[block.corners[c + i]];
     }
-    if (too_long(corners)) {
+    if (max_edge_ && has_longer_edge<3>(corners, *max_edge_)) {
       ++left_out_;
     } else {
       add(of, corners);
@@ -61,17 +63,6 @@ void TetrahedronWriter::write(MeshBlock&& block) {
 void TetrahedronWriter::finish(const MeshTotals& /*totals*/) {
   for (const auto& [number, vertex] : live_) retire(number, vertex);
   live_.clear();
-}
-
-bool TetrahedronWriter::too_long(const Corners& corners) const {
-  if (!max_edge_) return false;
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const Point<3> edge = difference(corners[i], corners[j]);
-      if (std::hypot(edge[0], edge[1], edge[2]) > *max_edge_) return true;
-    }
-  }
-  return false;
 }
 
 void HullWriter::add(const std::array<std::uint64_t, 4>& numbers,

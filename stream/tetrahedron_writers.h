@@ -38,8 +38,6 @@ class TetrahedronWriter : public MeshStreamWriter {
   /// A vertex that comes no more.
   virtual void retire(std::uint64_t number, const Point<3>& vertex) = 0;
 
-  [[nodiscard]] bool too_long(const Corners& corners) const;
-
   const std::optional<Lattice> lattice_;
   const std::optional<double> max_edge_;
   std::unordered_map<std::uint64_t, Point<3>> live_;  ///< by stream number

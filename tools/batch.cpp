@@ -3,12 +3,15 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <deque>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "formats/file_system.h"
@@ -75,7 +78,7 @@ void add_options_of_subcommands(const CLI::App& root, CLI::App& app, BatchOption
                        name == "simulate-cores" || name == "output-format";
       if (own || app.get_option_no_throw(flag) != nullptr) continue;
       CLI::Option* passed = nullptr;
-      if (option->get_type_size() == 0) {
+      if (option->get_expected_max() == 0) {
         passed = app.add_flag(flag, options.passed_flags[name], option->get_description());
       } else {
         passed = app.add_option(flag, options.passed_values[name], option->get_description());
@@ -184,8 +187,13 @@ class Batch {
     free_memory_ -= job.memory;
     job.start = Clock::now();
     job.run->status = "running";
-    std::filesystem::remove(job.run->log);
-    start_step(job);
+    try {
+      job.run->inputs = input_fingerprints(job.run->job);
+      std::filesystem::remove(job.run->log);
+      start_step(job);
+    } catch (const std::exception& error) {
+      finish_job(job, error.what());
+    }
   }
 
   void start_step(const Running& job) {
@@ -208,24 +216,37 @@ class Batch {
     if (found == running_.end()) return;
     Running job = found->second;
     running_.erase(found);
-    if (end.exit_code == kExitDone && ++job.step < job.run->steps.size()) {
-      start_step(job);
-      return;
+    if (end.exit_code != kExitDone) {
+      finish_job(job, last_line(job.run->log, end.exit_code));
+    } else if (++job.step == job.run->steps.size()) {
+      finish_job(job, "");
+    } else {
+      try {
+        start_step(job);
+      } catch (const std::exception& error) {
+        finish_job(job, error.what());
+      }
     }
-    finish_job(job, end.exit_code);
   }
 
-  void finish_job(const Running& job, int exit_code) {
+  /// `error` is empty if all went well.
+  void finish_job(const Running& job, const std::string& error) {
     free_threads_ += job.threads;
     free_memory_ += job.memory;
     JobRun& run = *job.run;
     run.seconds = std::chrono::duration<double>(Clock::now() - job.start).count();
-    run.status = exit_code == kExitDone ? "done" : "failed";
-    if (exit_code != kExitDone) run.error = last_line(run.log, exit_code);
+    run.status = error.empty() ? "done" : "failed";
+    run.error = error;
+    std::error_code ignored;  // the whole folder is removed at the end
     for (const JobStep& step : run.steps) {
-      if (step.temporary) std::filesystem::remove(step.output);
+      if (step.temporary) std::filesystem::remove(step.output, ignored);
     }
-    save_record(run);
+    try {
+      save_record(run);
+    } catch (const std::exception& failure) {
+      run.status = "failed";
+      run.error = failure.what();
+    }
     ++ended_;
     progress_.say(fmt::format("[{}/{}] {}: {} in {:.1f} s{}", ended_, runs_.size(), run.job.name,
                               run.status, run.seconds, run.error.empty() ? "" : ": " + run.error));
@@ -248,13 +269,22 @@ class Batch {
         runs_.begin(), runs_.end(), [&](const JobRun& run) { return run.status == status; }));
   }
 
+  /// Failures are said with -q, too.
+  void say_failure(const std::string& text) {
+    if (options_.report.quiet) {
+      fmt::print(stderr, "spillway: {}\n", text);
+    } else {
+      progress_.say(text);
+    }
+  }
+
   int summarize(double seconds) {
     const std::size_t failed = count("failed");
     progress_.say(fmt::format("{} jobs: {} done, {} failed, {} unchanged, {:.1f} s", runs_.size(),
                               count("done"), failed, count("unchanged"), seconds));
     for (const JobRun& run : runs_) {
       if (run.status == "failed")
-        progress_.say(fmt::format("failed: {} ({})", run.job.name, run.log));
+        say_failure(fmt::format("failed: {} ({})", run.job.name, run.log));
     }
     return failed == 0 ? kExitDone : kExitFailed;
   }

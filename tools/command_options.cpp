@@ -103,6 +103,18 @@ Progress make_progress(const ReportOptions& options, bool reads_pipe) {
   return {style, options.quiet, options.verbose};
 }
 
+std::string check_whole_number(const std::string& text) {
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  if (digits && text.find_first_not_of('0') != std::string::npos) return "";
+  return fmt::format("\"{}\" is no whole number above 0", text);
+}
+
+std::string check_positive_number(const std::string& text) {
+  double number = 0;
+  if (CLI::detail::lexical_cast(text, number) && number > 0 && std::isfinite(number)) return "";
+  return fmt::format("\"{}\" is no number above 0", text);
+}
+
 std::uint64_t parse_point_count(std::string_view text) {
   std::uint64_t count = 0;
   const char* end = text.data() + text.size();

@@ -55,6 +55,11 @@ std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options)
 CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,
                         const std::vector<std::string>& words, const std::string& description);
 
+/// Checks for CLI::Validator: what is wrong with a text that is no whole number above 0, or no
+/// finite number above 0; empty if nothing is.
+std::string check_whole_number(const std::string& text);
+std::string check_positive_number(const std::string& text);
+
 /// Reads a number of things: digits, or with an exponent (1e6, 2.5e6). Throws UsageError for
 /// anything else, negative and fractional numbers included.
 std::uint64_t parse_point_count(std::string_view text);

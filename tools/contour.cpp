@@ -157,6 +157,10 @@ int run(const ContourCommandOptions& options) {
     progress.say(fmt::format("{} triangles with an edge longer than {} left out",
                              statistics.stream.left_out, *statistics.max_edge));
   }
+  if (use.writer().lines() == 0) {
+    progress.say(fmt::format("no level lies within the heights, which are {} to {}",
+                             use.writer().lowest(), use.writer().highest()));
+  }
   progress.say(fmt::format("{} vertices, {} triangles; {} lines of {} points, {:.2f} s",
                            statistics.stream.totals.vertices, statistics.stream.totals.simplices,
                            use.writer().lines(), use.points(), statistics.seconds));

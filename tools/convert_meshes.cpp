@@ -45,25 +45,32 @@ MeshTotals totals_of(const Mesh& mesh) {
   return totals;
 }
 
-/// The vertices as a stream with this lattice has them. A height need not be on it.
-std::vector<Point<3>> stream_vertices(const Mesh& mesh, std::optional<Lattice>& lattice) {
+/// The vertices with so many of their axes on the lattice; nothing if one is not on it.
+std::optional<std::vector<Point<3>>> on_lattice(const Mesh& mesh, const Lattice& lattice,
+                                                int axes) {
   std::vector<Point<3>> vertices = mesh.vertices;
-  if (!lattice) return vertices;
-  if (mesh.header.dimension == 2) {
-    lattice->scale[2] = 1;
-    lattice->offset[2] = 0;
-  }
   for (Point<3>& vertex : vertices) {
-    for (int k = 0; k < mesh.header.dimension; ++k) {
-      const auto integer = lattice->to_integer(k, vertex[k]);
-      if (!integer) {
-        lattice.reset();
-        return mesh.vertices;
-      }
+    for (int k = 0; k < axes; ++k) {
+      const auto integer = lattice.to_integer(k, vertex[k]);
+      if (!integer) return std::nullopt;
       vertex[k] = *integer;
     }
   }
   return vertices;
+}
+
+/// The vertices as a stream with this lattice has them. In the plane heights need not be on it;
+/// then they have the identity map.
+std::vector<Point<3>> stream_vertices(const Mesh& mesh, std::optional<Lattice>& lattice) {
+  if (!lattice) return mesh.vertices;
+  if (auto vertices = on_lattice(mesh, *lattice, 3)) return *std::move(vertices);
+  if (mesh.header.dimension == 2) {
+    lattice->scale[2] = 1;
+    lattice->offset[2] = 0;
+    if (auto vertices = on_lattice(mesh, *lattice, 2)) return *std::move(vertices);
+  }
+  lattice.reset();
+  return mesh.vertices;
 }
 
 /// Writes a whole mesh as one block.

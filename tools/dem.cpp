@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "formats/gdal/gdal.h"
+#include "formats/point_format.h"
 #include "formats/raster_file.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
@@ -77,13 +78,17 @@ class Run : public TerrainUse {
     crs_ = header.crs.empty() ? like_.crs : header.crs;
     dem_options_.max_edge = header.max_edge;
     dem_.emplace(dem_options_, header.lattice, *scratch_);
+    // What is too large is told before the points are read.
+    if (!wants_extent()) dem_->begin(Box<2>{});
     return writer_.emplace(*dem_);
   }
 
   [[nodiscard]] bool wants_extent() const override {
     return !dem_options_.grid.bounds && !dem_options_.grid.given;
   }
-  void extent_known(const Box<2>& extent) override { dem_->begin(extent); }
+  void extent_known(const Box<2>& extent) override {
+    if (wants_extent()) dem_->begin(extent);
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -171,11 +176,21 @@ int run(const DemCommandOptions& options) {
     throw UsageError(fmt::format("-o {}: a GeoTIFF is not written in one go, so it needs a file",
                                  options.output));
   }
+  const std::string extension = extension_of(options.output);
+  if (extension != "tif" && extension != "tiff") {
+    throw UsageError(
+        fmt::format("-o {}: a DEM is a GeoTIFF: give it a name that ends in .tif", options.output));
+  }
   if (options.output == options.stats_path) {
     throw UsageError("the raster and --stats cannot go to the same place: " + options.output);
   }
   check_can_create(disk(), options.output);
   if (!options.stats_path.empty()) check_can_create(disk(), options.stats_path);
+  RasterOptions raster;
+  raster.name = options.output;
+  raster.compression = options.compression;
+  raster.cloud_optimized = options.cloud_optimized;
+  gdal().check_raster_driver(raster);
   return Run(options).run();
 }
 

@@ -80,8 +80,7 @@ void add_input_options(CLI::App& app, InputOptions& options) {
       ->group(group);
   app.add_option("--every", options.every, "Use records 0, N, 2N, ... of each input")
       ->type_name("N")
-      ->check(
-          CLI::Range(std::uint64_t{1}, std::numeric_limits<std::uint64_t>::max()).description(""))
+      ->check(CLI::Validator(check_whole_number, ""))
       ->group(group);
   add("--keep-class", options.keep_class, "LIST", "Use points of these classes, as 2,3-5");
   add("--drop-class", options.drop_class, "LIST", "Leave out points of these classes");
@@ -94,7 +93,7 @@ void add_input_options(CLI::App& app, InputOptions& options) {
   app.add_option("--resolution", options.resolution,
                  "Of COPC files, read the levels needed for points so far apart")
       ->type_name("R")
-      ->check(CLI::Validator(CLI::PositiveNumber).description(""))
+      ->check(CLI::Validator(check_positive_number, ""))
       ->group(group);
 }
 

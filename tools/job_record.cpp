@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <fstream>
 
 #include "tools/input_list.h"
@@ -26,7 +27,7 @@ Json fingerprint(const std::string& path) {
 }
 
 /// All that decides whether a job has to be done again.
-Json description(const JobRun& run) {
+Json description(const JobRun& run, const Json& inputs) {
   Json json;
   json["version"] = SPILLWAY_VERSION;
   json["steps"] = Json::array();
@@ -41,31 +42,36 @@ Json description(const JobRun& run) {
     json["steps"].push_back(arguments);
     if (!step.temporary) json["outputs"].push_back(fingerprint(step.output));
   }
-  json["inputs"] = Json::array();
-  for (const std::string& input : expand_inputs(run.job.inputs)) {
-    json["inputs"].push_back(fingerprint(input));
-  }
+  json["inputs"] = inputs;
   return json;
 }
 
 }  // namespace
 
+Json input_fingerprints(const Job& job) {
+  Json json = Json::array();
+  for (const std::string& input : expand_inputs(job.inputs)) json.push_back(fingerprint(input));
+  return json;
+}
+
 void save_record(const JobRun& run) {
   Json json = {{"name", run.job.name}, {"status", run.status}, {"seconds", run.seconds}};
   json["error"] = run.error.empty() ? Json(nullptr) : Json(run.error);
   // A failed job may have failed for want of its inputs.
-  json["job"] = run.status == "done" ? description(run) : Json(nullptr);
+  json["job"] = run.status == "done" ? description(run, run.inputs) : Json(nullptr);
   write_text(run.record, json_text(json, 2) + "\n");
 }
 
 bool is_complete_and_unchanged(const JobRun& run) {
   std::ifstream file(run.record);
   if (!file) return false;
-  const Json record = Json::parse(file, nullptr, false);
-  if (record.is_discarded() || !record.is_object() || record.value("status", "") != "done") {
-    return false;
+  try {
+    const Json record = Json::parse(file);
+    return record.at("status") == "done" &&
+           record.at("job") == description(run, input_fingerprints(run.job));
+  } catch (const std::exception&) {
+    return false;  // no record, or inputs that are not there: the job itself says so
   }
-  return record.value("job", Json()) == description(run);
 }
 
 }  // namespace spillway

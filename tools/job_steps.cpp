@@ -31,6 +31,10 @@ constexpr std::array kProducts = {Product{"dem", "dem", "", ""},
                                   Product{"contour", "contour", "", ""},
                                   Product{"render", "render", "", ""}};
 
+/// Options that a batch shares out among its jobs, or decides for them.
+constexpr std::array<std::string_view, 9> kShared = {
+    "threads", "memory", "tmpdir", "max-tmp", "progress", "quiet", "verbose", "output", "stats"};
+
 /// A kind of output: what makes it, and how.
 struct Kind {
   std::string subcommand;
@@ -88,6 +92,10 @@ const CLI::Option* JobPlanner::option(const std::string& subcommand,
 std::vector<JobStep> JobPlanner::plan(const Job& job) const {
   std::vector<JobStep> steps;
   std::vector<std::string> kinds = job.to;
+  for (auto kind = kinds.begin(); kind != kinds.end(); ++kind) {
+    if (std::find(kinds.begin(), kind, *kind) == kind) continue;
+    throw UsageError(fmt::format("{}: the output {} is there twice", job.name, *kind));
+  }
   if (kinds.size() == 1) {
     steps.push_back(step(job, kinds.front(), job.inputs, true));
   } else {
@@ -131,23 +139,25 @@ JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
 }
 
 /// Whether an option of a job is one for this step. What triangulate has concerns the points, and
-/// is nothing for a step that begins with a mesh; but where a raster is made, its bounds and
-/// resolution are meant, and the triangulation's levels of detail are not.
+/// is nothing for a step that begins with a mesh. Where a job makes a raster, --bounds and
+/// --resolution are the raster's, whatever else it makes: they do not change the triangulation
+/// then.
 bool JobPlanner::takes_option(const Job& job, const std::string& subcommand, bool of_points,
                               const std::string& name) const {
   if (option(subcommand, name) == nullptr) return false;
-  const bool of_raster = name == "bounds" || name == "resolution";
-  if (of_raster && subcommand == "dem") return true;
-  if (name == "resolution") {
-    return std::none_of(job.to.begin(), job.to.end(), [&](const std::string& kind) {
-      return kind_by_name(job, kind).subcommand == "dem";
-    });
-  }
+  const bool makes_raster = std::any_of(job.to.begin(), job.to.end(), [&](const std::string& kind) {
+    return kind_by_name(job, kind).subcommand == "dem";
+  });
+  if (makes_raster && (name == "bounds" || name == "resolution")) return subcommand == "dem";
   return of_points || option("triangulate", name) == nullptr;
 }
 
 void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps) const {
   for (const auto& [name, values] : job.options) {
+    if (std::find(kShared.begin(), kShared.end(), name) != kShared.end()) {
+      throw UsageError(fmt::format("{}: --{} is for all jobs together: give it to batch itself",
+                                   job.name, name));
+    }
     const bool known = std::any_of(steps.begin(), steps.end(), [&](const JobStep& s) {
       return option(s.arguments.front(), name) != nullptr;
     });

@@ -232,7 +232,7 @@ Subcommand add_render(CLI::App& root) {
   app->add_option("--exaggerate", options->exaggeration,
                   "Shade a terrain as if it were Z times as high [such that slopes are seen]")
       ->type_name("Z")
-      ->check(CLI::PositiveNumber.description(""))
+      ->check(CLI::Validator(check_positive_number, ""))
       ->group(group);
   app->add_option("--view", options->view,
                   "Look at tetrahedra from AZIMUTH,ELEVATION in degrees [30,25]")

@@ -4,7 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
 #include <memory>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include "formats/gdal/gdal_errors.h"
@@ -65,6 +70,48 @@ std::string best_code(const OGRSpatialReference& crs) {
   return best;
 }
 
+/// A system's projection as PROJ writes it, its datum apart: a word and perhaps a number each.
+std::map<std::string, std::string> projection_of(const OGRSpatialReference& crs) {
+  char* text = nullptr;
+  const OGRErr error = crs.exportToProj4(&text);
+  std::istringstream words(text_of(text));
+  std::map<std::string, std::string> result;
+  if (error != OGRERR_NONE) return result;
+  for (std::string word; words >> word;) {
+    const std::size_t equals = std::min(word.find('='), word.size());
+    const std::string key = word.substr(0, equals);
+    if (key == "+ellps" || key == "+datum" || key == "+a" || key == "+b" || key == "+rf") continue;
+    result[key] = word.substr(std::min(equals + 1, word.size()));
+  }
+  return result;
+}
+
+bool equal_numbers(const std::string& a, const std::string& b) {
+  constexpr double kRounding = 1e-10;  // of numbers that were written with too few digits
+  char* end_a = nullptr;
+  char* end_b = nullptr;
+  const double x = std::strtod(a.c_str(), &end_a);
+  const double y = std::strtod(b.c_str(), &end_b);
+  if (end_a == a.c_str() || end_b == b.c_str() || *end_a != 0 || *end_b != 0) return false;
+  return std::abs(x - y) <= kRounding * std::max(std::abs(x), std::abs(y));
+}
+
+/// Whether both have one datum by its number, and projections that differ in roundings only: what
+/// is left where programs have spelt names and digits in their own ways.
+bool equal_but_for_spelling(const OGRSpatialReference& a, const OGRSpatialReference& b) {
+  const char* const datum_a = a.GetAuthorityCode("DATUM");
+  const char* const datum_b = b.GetAuthorityCode("DATUM");
+  if (datum_a == nullptr || datum_b == nullptr || std::string(datum_a) != datum_b) return false;
+  const auto projection_a = projection_of(a);
+  const auto projection_b = projection_of(b);
+  return !projection_a.empty() &&
+         std::equal(projection_a.begin(), projection_a.end(), projection_b.begin(),
+                    projection_b.end(), [](const auto& one, const auto& other) {
+                      return one.first == other.first && (one.second == other.second ||
+                                                          equal_numbers(one.second, other.second));
+                    });
+}
+
 OGRSpatialReference horizontal(OGRSpatialReference crs) {
   crs.StripVertical();
   return crs;
@@ -98,6 +145,7 @@ bool same_crs(const std::string& a, const std::string& b) {
   const OGRSpatialReference flat_first = horizontal(first);
   const OGRSpatialReference flat_second = horizontal(second);
   if (equal(flat_first, flat_second)) return true;
+  if (equal_but_for_spelling(flat_first, flat_second)) return true;
   const std::string code = best_code(flat_first);
   return !code.empty() && code == best_code(flat_second);
 }

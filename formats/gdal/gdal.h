@@ -43,6 +43,10 @@ class Gdal {
   [[nodiscard]] virtual std::unique_ptr<TriangleLayer> open_layer(
       const std::string& path) const = 0;
 
+  /// Throws Error if GDAL lacks what create_raster() needs for these options, of which name,
+  /// compression and cloud_optimized are looked at.
+  virtual void check_raster_driver(const RasterOptions& options) const = 0;
+
   /// Begins a GeoTIFF.
   [[nodiscard]] virtual std::unique_ptr<Raster> create_raster(
       const RasterOptions& options) const = 0;

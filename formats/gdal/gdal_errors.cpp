@@ -29,6 +29,8 @@ std::string gdal_reason() {
   std::string text = first_failure();
   if (text.empty()) return "GDAL gives no reason";
   std::replace(text.begin(), text.end(), '\n', ' ');
+  constexpr std::size_t kLongest = 200;  // GDAL quotes whole SQL statements
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
   return text;
 }
 

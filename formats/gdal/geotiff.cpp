@@ -30,6 +30,27 @@ std::string upper(std::string text) {
   return text;
 }
 
+[[noreturn]] void fail_for(const RasterOptions& options, const std::string& what) {
+  throw Error(fmt::format("cannot write {}: {}", options.name, what));
+}
+
+/// The driver of that name, which must have the compression that is wished.
+GDALDriver& driver_for(const RasterOptions& options, const char* name) {
+  GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(name);
+  if (driver == nullptr) {
+    fail_for(options,
+             fmt::format("GDAL is installed without its driver {}; install one with it", name));
+  }
+  if (options.compression == "none") return *driver;
+  const std::string compression = upper(options.compression);
+  const char* const known = driver->GetMetadataItem(GDAL_DMD_CREATIONOPTIONLIST);
+  if (known == nullptr || std::string_view(known).find(compression) == std::string_view::npos) {
+    fail_for(options,
+             fmt::format("GDAL is installed without {} compression; choose another", compression));
+  }
+  return *driver;
+}
+
 class GeoTiff : public Raster {
  public:
   explicit GeoTiff(const RasterOptions& options)
@@ -37,12 +58,12 @@ class GeoTiff : public Raster {
         plain_path_(options.cloud_optimized ? options.path + ".plain" : options.path) {
     forget_gdal_errors();
     GDALSetCacheMax64(static_cast<GIntBig>(options_.memory));
-    GDALDriver* const driver = driver_named("GTiff");
+    GDALDriver& driver = driver_for(options_, "GTiff");
     const PixelGrid& grid = options_.grid.pixels;
-    const CPLStringList creation = plain_options(*driver);
-    file_.reset(driver->Create(plain_path_.c_str(), static_cast<int>(grid.columns),
-                               static_cast<int>(grid.rows), static_cast<int>(options_.bands.size()),
-                               GDT_Float32, creation.List()));
+    const CPLStringList creation = plain_options();
+    file_.reset(driver.Create(plain_path_.c_str(), static_cast<int>(grid.columns),
+                              static_cast<int>(grid.rows), static_cast<int>(options_.bands.size()),
+                              GDT_Float32, creation.List()));
     if (!file_) fail(gdal_reason());
     std::array<double, 6> transform = {grid.west, grid.resolution, 0, grid.north,
                                        0,         -grid.resolution};
@@ -75,20 +96,11 @@ class GeoTiff : public Raster {
   }
 
  private:
-  static GDALDriver* driver_named(const char* name) {
-    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(name);
-    if (driver == nullptr) {
-      throw Error(
-          fmt::format("GDAL is installed without its driver {}; install one with it", name));
-    }
-    return driver;
-  }
-
   [[nodiscard]] GDALRasterBand& band(std::size_t number) {
     return *file_->GetRasterBand(static_cast<int>(number) + 1);
   }
 
-  [[nodiscard]] CPLStringList plain_options(GDALDriver& driver) const {
+  [[nodiscard]] CPLStringList plain_options() const {
     CPLStringList creation;
     creation.SetNameValue("TILED", "YES");
     creation.SetNameValue("BLOCKXSIZE", fmt::format("{}", kRasterTile).c_str());
@@ -97,12 +109,7 @@ class GeoTiff : public Raster {
     creation.SetNameValue("BIGTIFF", "IF_SAFER");
     creation.SetNameValue("NUM_THREADS", fmt::format("{}", options_.threads).c_str());
     if (options_.compression == "none") return creation;
-    const std::string compression = upper(options_.compression);
-    const char* const known = driver.GetMetadataItem(GDAL_DMD_CREATIONOPTIONLIST);
-    if (known == nullptr || std::string_view(known).find(compression) == std::string_view::npos) {
-      fail(fmt::format("GDAL is installed without {} compression; choose another", compression));
-    }
-    creation.SetNameValue("COMPRESS", compression.c_str());
+    creation.SetNameValue("COMPRESS", upper(options_.compression).c_str());
     creation.SetNameValue("PREDICTOR", "3");
     creation.SetNameValue("ZLEVEL", kDeflateLevel);
     creation.SetNameValue("ZSTD_LEVEL", kZstdLevel);
@@ -111,7 +118,7 @@ class GeoTiff : public Raster {
 
   /// Makes the file of what was written beside it.
   void optimize() const {
-    GDALDriver* const driver = driver_named("COG");
+    GDALDriver& driver = driver_for(options_, "COG");
     const GDALDatasetUniquePtr plain(GDALDataset::Open(plain_path_.c_str(), GDAL_OF_RASTER));
     if (!plain) fail(gdal_reason());
     CPLStringList creation;
@@ -124,18 +131,17 @@ class GeoTiff : public Raster {
     creation.SetNameValue("NUM_THREADS", fmt::format("{}", options_.threads).c_str());
     creation.SetNameValue("OVERVIEW_RESAMPLING",
                           options_.averaged_overviews ? "AVERAGE" : "NEAREST");
-    GDALDatasetUniquePtr optimized(driver->CreateCopy(options_.path.c_str(), plain.get(), 0,
-                                                      creation.List(), nullptr, nullptr));
+    GDALDatasetUniquePtr optimized(driver.CreateCopy(options_.path.c_str(), plain.get(), 0,
+                                                     creation.List(), nullptr, nullptr));
     if (!optimized) fail(gdal_reason());
     optimized.reset();
     if (gdal_failed()) fail(gdal_reason());
-    std::error_code ignored;  // it goes with its folder
-    std::filesystem::remove(plain_path_, ignored);
+    std::error_code error;
+    std::filesystem::remove(plain_path_, error);
+    if (error) fail(error.message());
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("cannot write {}: {}", options_.name, what));
-  }
+  [[noreturn]] void fail(const std::string& what) const { fail_for(options_, what); }
 
   const RasterOptions options_;
   const std::string plain_path_;
@@ -143,6 +149,11 @@ class GeoTiff : public Raster {
 };
 
 }  // namespace
+
+void check_geotiff_driver(const RasterOptions& options) {
+  static_cast<void>(driver_for(options, "GTiff"));
+  if (options.cloud_optimized) static_cast<void>(driver_for(options, "COG"));
+}
 
 std::unique_ptr<Raster> create_geotiff(const RasterOptions& options) {
   return std::make_unique<GeoTiff>(options);

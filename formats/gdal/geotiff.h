@@ -8,6 +8,9 @@
 
 namespace spillway {
 
+/// What Gdal::check_raster_driver() does.
+void check_geotiff_driver(const RasterOptions& options);
+
 /// What Gdal::create_raster() returns.
 std::unique_ptr<Raster> create_geotiff(const RasterOptions& options);
 

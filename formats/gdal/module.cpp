@@ -41,6 +41,9 @@ class LoadedGdal : public Gdal {
   [[nodiscard]] std::unique_ptr<TriangleLayer> open_layer(const std::string& path) const override {
     return open_ogr_layer(path);
   }
+  void check_raster_driver(const RasterOptions& options) const override {
+    check_geotiff_driver(options);
+  }
   [[nodiscard]] std::unique_ptr<Raster> create_raster(const RasterOptions& options) const override {
     return create_geotiff(options);
   }

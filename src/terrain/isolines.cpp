@@ -74,7 +74,14 @@ std::int64_t Levels::first_above(double low) const {
   }
   // The quotient is rounded, so the number is found by the levels themselves.
   auto number = static_cast<std::int64_t>(estimate) - 1;
-  while (height(number) <= low) ++number;
+  for (; height(number) <= low; ++number) {
+    if (height(number + 1) == height(number)) {
+      throw Error(
+          fmt::format("{} is too small an interval: at height {} its levels cannot be told apart; "
+                      "choose a larger one",
+                      interval_, low));
+    }
+  }
   return number;
 }
 

@@ -3,15 +3,28 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "src/geometry/box.h"
 #include "src/geometry/canonical_hash.h"
 #include "src/geometry/lattice.h"
+#include "src/geometry/longest_edge.h"
 #include "tests/geometry/point_families.h"
 
 namespace spillway {
 namespace {
+
+TEST(LongestEdgeTest, EveryEdgeIsMeasuredInTheFirstCoordinatesOnly) {
+  const std::array<Point<3>, 3> triangle = {{{0, 0, 0}, {3, 4, 9}, {0, 1, 0}}};
+  EXPECT_FALSE(has_longer_edge<2>(triangle, 5));
+  EXPECT_TRUE(has_longer_edge<2>(triangle, std::nextafter(5, 0)));
+  EXPECT_TRUE(has_longer_edge<3>(triangle, 5));
+  const std::array<Point<3>, 4> tetrahedron = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 2}}};
+  EXPECT_TRUE(has_longer_edge<3>(tetrahedron, 2));
+  EXPECT_FALSE(has_longer_edge<3>(tetrahedron, 2.25));
+}
 
 TEST(BoxTest, DefaultBoxIsEmptyAndContainsNothing) {
   const Box<3> box;

@@ -68,12 +68,13 @@ TEST(CommonLattice, JoinsTheAxesOfOneInput) {
 
 TEST(CommonLattice, LeavesOutHeightsThatDoNotFit) {
   const std::vector<Lattice> lattices = {{{0.01, 0.01, 0.01}, {0, 0, 0}},
-                                         {{0.01, 0.01, 0.01}, {0, 0, 0.0033}}};
+                                         {{0.01, 0.01, 0.01}, {0, 0, -0.0033}}};
   const auto common = find_common_lattice(lattices, 2);
   ASSERT_TRUE(common);
   EXPECT_FALSE(common->heights);
   EXPECT_EQ(common->lattice.scale[2], 1);
   EXPECT_EQ(common->lattice.offset[2], 0);
+  EXPECT_EQ(common->maps, std::vector<LatticeMap>(2));
   EXPECT_FALSE(find_common_lattice(lattices, 3));
 }
 
@@ -89,6 +90,49 @@ TEST(CommonLattice, IsRefusedWhereASmallErrorOfTheScaleAddsUpToSteps) {
 TEST(CommonLattice, IsRefusedWhereIntegersWouldNotFit) {
   EXPECT_FALSE(find_common_lattice(std::vector{lattice(1e-9), lattice(0.01)}, 2));
   EXPECT_FALSE(find_common_lattice(std::vector{lattice(1e-9), lattice(1e-9, 1e7)}, 2));
+}
+
+TEST(CommonLattice, NegativeScalesMirrorTheIntegers) {
+  const Lattice mirrored{{0.01, -0.01, -0.01}, {100, 200, 7}};
+  const auto own = find_common_lattice(std::vector{mirrored}, 3);
+  ASSERT_TRUE(own);
+  EXPECT_EQ(own->lattice, (Lattice{{0.01, 0.01, 0.01}, {100, 200, 7}}));
+  EXPECT_EQ(own->maps[0].factor, (std::array<double, 3>{1, -1, -1}));
+  EXPECT_EQ(own->lattice.to_world(1, own->maps[0].map(1, 12345)), mirrored.to_world(1, 12345));
+  const auto both = find_common_lattice(std::vector{lattice(-0.02, 1), lattice(0.01)}, 2);
+  ASSERT_TRUE(both);
+  EXPECT_EQ(both->maps[0], (LatticeMap{{-2, -2, -2}, {100, 100, 100}}));
+  EXPECT_FALSE(find_common_lattice(std::vector{lattice(-0.01 * (1 + 1e-9)), lattice(0.001)}, 2));
+}
+
+TEST(CommonLattice, LargeIntegersAreRefusedWhereTheyWouldNotFit) {
+  const std::vector lattices = {lattice(0.01), lattice(0.01, 1)};
+  const std::vector<double> all_of_spp = {0x1p31, 0x1p53};
+  EXPECT_TRUE(find_common_lattice(lattices, 2));
+  EXPECT_FALSE(find_common_lattice(lattices, 2, all_of_spp));
+  EXPECT_TRUE(find_common_lattice(lattices, 2, std::vector<double>{0x1p31, 0x1p51}));
+  const std::vector unmoved = {lattice(0.01), lattice(0.01)};
+  EXPECT_TRUE(find_common_lattice(unmoved, 2, all_of_spp));
+}
+
+TEST(CommonLattice, LargeIntegersCarryAnErrorOfTheScaleFurther) {
+  const double next = std::nextafter(0.01, 1);
+  const std::vector lattices = {lattice(0.01), lattice(next)};
+  EXPECT_TRUE(find_common_lattice(lattices, 2));
+  EXPECT_FALSE(find_common_lattice(lattices, 2, std::vector<double>{0x1p31, 0x1p50}));
+}
+
+TEST(CommonLattice, LargestIntegerIsThatOfTheFormatOrTheExtent) {
+  PointHeader header;
+  header.format = "laz";
+  header.lattice = lattice(-0.5, 10);
+  EXPECT_EQ(largest_integer(header), 0x1p31);
+  header.format = "spp";
+  EXPECT_EQ(largest_integer(header), 0x1p53);
+  header.extent = Box<3>{{0, 0, 0}, {1, 1, 1}};
+  EXPECT_EQ(largest_integer(header), 0x1p31);
+  header.extent->hi[2] = 0x1p40;
+  EXPECT_NEAR(largest_integer(header), 0x1p41, 30);
 }
 
 TEST(CommonLattice, DoesNotDependOnTheOrderOfTheInputs) {

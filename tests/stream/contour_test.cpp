@@ -164,6 +164,13 @@ TEST(Levels, CountALevelOnlyAboveTheLowerEnd) {
   EXPECT_EQ(list.height(2), 5);
 }
 
+TEST(Levels, RefuseAnIntervalThatHeightsCannotTellApart) {
+  for (const double interval : {1e-300, 1e-22, 1e-9}) {
+    const Levels levels = Levels::every(interval, 1e9);
+    EXPECT_THROW(static_cast<void>(levels.between(1e9, 1e9)), Error) << interval;
+  }
+}
+
 TEST(Levels, RefuseWhatMakesNoSense) {
   EXPECT_THROW(Levels::every(0, 0), UsageError);
   EXPECT_THROW(Levels::every(-1, 0), UsageError);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/point_writer.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "tests/faulty_file_system.h"
@@ -216,6 +217,31 @@ TEST_F(PointSourceTest, AnInputWithoutCoordinateSystemIsAWarning) {
   read({"unknown.las", "known.las"});
   EXPECT_THAT(warnings_, HasSubstr("unknown.las names no coordinate system; taken to be that of "
                                    "known.las"));
+}
+
+TEST_F(PointSourceTest, PiecesThatAreUsedAgainKeepNothingOfTheInputBefore) {
+  files_.files["a.las"] = diagonal(5).bytes();
+  files_.files["b.xyz"] = "100 0 0\n101 0 0\n";
+  PointWriterOptions one_point;
+  one_point.count = 1;
+  const auto npy = open_point_writer(files_, "c.npy", one_point);
+  npy->write(std::vector<Point<3>>{{200, 0, 0}}, {});
+  npy->finish();
+  files_.files["d.las"] = diagonal(2).bytes();
+  PointSourceOptions options;
+  options.index = true;
+  options.reader.attributes = true;
+  PointSource source(files_, {"a.las", "b.xyz", "c.npy", "d.las"}, options);
+  std::vector<std::uint64_t> index;
+  std::vector<std::size_t> attributes;
+  SourcePiece piece;
+  for (PointBlock block; source.fetch(piece);) {
+    source.decode(piece, block);
+    index.insert(index.end(), block.index.begin(), block.index.end());
+    attributes.push_back(block.attributes.size());
+  }
+  EXPECT_THAT(index, ::testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9));
+  EXPECT_THAT(attributes, ::testing::ElementsAre(5, 0, 0, 2));
 }
 
 }  // namespace

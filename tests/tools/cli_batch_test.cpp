@@ -67,6 +67,19 @@ TEST_F(Batch, PassesOptionsOnToTheJobs) {
   EXPECT_EQ(space.info("out/south.ply")["dimension"], 3);
 }
 
+TEST_F(Batch, TakesFlagsWithoutValues) {
+  space.succeed(
+      "spillway batch --id in/north.las --output-dir out --to ply,dem.tif --cog --resolution 5");
+  EXPECT_EQ(space.info("out/north.ply")["input_index"], true);
+  EXPECT_TRUE(space.has("out/north.dem.tif"));
+}
+
+TEST_F(Batch, SaysFailuresWithQuietToo) {
+  const Result result = space.run("spillway batch in/bad.las --output-dir out --to ply -q");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.err, "spillway: failed: bad (out/bad.log)\n");
+}
+
 TEST_F(Batch, ReadsAListInToml) {
   space.write("in/jobs.toml",
               "to = ['ply']\n[[jobs]]\nin = 'south.spp'\noptions = { dim = 3 }\n"
@@ -106,6 +119,12 @@ TEST_F(Batch, RefusesAListWithMistakesBeforeAnyWork) {
       HasSubstr("--dim"));
   EXPECT_THAT(error_of_list("g.json", R"({"jobs": [{"in": "a/x.las"}, {"in": "b/x.las"}]})"),
               HasSubstr("two jobs are called x"));
+  EXPECT_THAT(
+      error_of_list("h.json", R"({"jobs": [{"in": "in/north.las", "options": {"threads": 2}}]})"),
+      HasSubstr("--threads is for all jobs together"));
+  EXPECT_THAT(
+      error_of_list("i.json", R"({"jobs": [{"in": "in/north.las", "to": ["ply", "ply"]}]})"),
+      HasSubstr("the output ply is there twice"));
 }
 
 TEST_F(Batch, ResumeLeavesOutWhatIsCompleteAndUnchanged) {
@@ -121,6 +140,16 @@ TEST_F(Batch, ResumeLeavesOutWhatIsCompleteAndUnchanged) {
   space.succeed("rm out/south.ply");
   EXPECT_THAT(space.run(command + " --max-edge 100").err,
               HasSubstr("1 done, 0 failed, 1 unchanged"));
+}
+
+TEST_F(Batch, GoesOnWhenInputsOrRecordsOfAJobMakeNoSense) {
+  space.write("jobs.json",
+              R"({"jobs": [{"in": "in/none-*.las", "name": "none"}, {"in": "in/north.las"}]})");
+  space.succeed("mkdir out && echo '{\"status\": 3}' > out/north.status.json");
+  const Result result = space.run("spillway batch jobs.json --output-dir out --to ply --resume");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("2 jobs: 1 done, 1 failed"));
+  EXPECT_TRUE(space.has("out/north.ply"));
 }
 
 TEST_F(Batch, EndsItsJobsWhenItIsInterrupted) {

@@ -302,6 +302,40 @@ TEST(DemFaults, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
   }
 }
 
+TEST(Dem, SidecarsOfTheReplacedRasterAreRemoved) {
+  const Workspace work;
+  work.write("points.txt", surface(10, 1));
+  for (const char* name : {"dem.tif", "dem.tif.ovr", "dem.tif.aux.xml", "dem.tif.msk"}) {
+    work.write(name, "old");
+  }
+  work.write("dem.ovr", "another file's");
+  work.succeed("spillway dem -q points.txt -o dem.tif --resolution 1");
+  EXPECT_THAT(work.names(), ElementsAre("dem.ovr", "dem.tif", "points.txt"));
+}
+
+/// Points whose last line is broken: only who reads them all notices.
+std::string broken_at_its_end() { return surface(200, 1) + "no number\n"; }
+
+TEST(DemFaults, MissingPartsOfGdalAreToldBeforeThePointsAreRead) {
+  const Workspace work;
+  work.write("points.txt", broken_at_its_end());
+  const std::string dem = " spillway dem -q points.txt -o dem.tif --resolution 1";
+  const Result no_tiff = work.run("GDAL_SKIP=GTiff" + dem);
+  EXPECT_EQ(no_tiff.exit_code, 1);
+  EXPECT_THAT(no_tiff.err, HasSubstr("cannot write dem.tif: GDAL is installed without its driver"));
+  EXPECT_THAT(work.run("GDAL_SKIP=COG" + dem + " --cog").err, HasSubstr("without its driver COG"));
+  EXPECT_THAT(work.run("GDAL_SKIP=COG" + dem).err, HasSubstr("points.txt"));
+}
+
+TEST(DemFaults, ATooLargeGridIsToldBeforeThePointsAreRead) {
+  const Workspace work;
+  work.write("points.txt", broken_at_its_end());
+  const Result result =
+      work.run("spillway dem -q points.txt -o dem.tif --resolution 1e-5 --bounds 0,0,10,10");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("for its index alone"));
+}
+
 TEST(DemFaults, AFailedRunKeepsTheFileThatWasThere) {
   const Workspace work;
   work.write("dem.tif", "old");

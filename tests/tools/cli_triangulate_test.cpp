@@ -266,5 +266,16 @@ TEST(Triangulate, QuietSaysNothing) {
   EXPECT_EQ(result.out + result.err, "");
 }
 
+TEST(CliTriangulate, MaxEdgeMayLeaveOutNearlyEverything) {
+  const Workspace space;
+  space.succeed("spillway generate uniform -n 20000 --seed 3 -o p.spp");
+  for (const std::string length : {"0.001", "0.002", "0.004", "0.008"}) {
+    space.succeed("spillway triangulate p.spp -o m.spm --base-case 500 --max-edge " + length);
+    space.succeed("spillway triangulate p.spp -o m.ply --base-case 500 --max-edge " + length);
+    EXPECT_EQ(space.info("m.spm")["simplices"], space.info("m.ply")["simplices"]) << length;
+    EXPECT_EQ(space.info("m.spm")["vertices"], 20000) << length;
+  }
+}
+
 }  // namespace
 }  // namespace spillway::test

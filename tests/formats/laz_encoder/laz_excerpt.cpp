@@ -27,6 +27,11 @@ std::string LazExcerpts::file(std::size_t i) const {
     put(file, 243, std::uint32_t{0});  // extended records
     put(file, 247, chunk.count);
   }
+  if (las_.laz->chunk_points) {
+    // A chunk that is not full is the last one: without a table, too, it must end with the room.
+    const std::size_t laz_record = file.find(kLazUser) - 2 + kLasVlrHeaderSize;
+    put(file, laz_record + 12, static_cast<std::uint32_t>(chunk.count + 1));
+  }
   file += bytes_of(std::uint64_t{las_.offset_to_points + 8 + chunk.bytes});
   file += bytes_.substr(chunk.offset, chunk.bytes);
   const LazFile::TableEntry entry{static_cast<std::uint32_t>(chunk.count),
