@@ -198,9 +198,9 @@ class Batch {
 
   void start_step(const Running& job) {
     std::vector<std::string> arguments = job.run->steps[job.step].arguments;
-    const JobPlanner planner(root_, options_.folder, temporary_);
+    const CLI::App& subcommand = *root_.get_subcommand(arguments.front());
     const auto add = [&](const std::string& option, const std::string& value) {
-      if (planner.option(arguments.front(), option) != nullptr) {
+      if (subcommand.get_option_no_throw("--" + option) != nullptr) {
         arguments.push_back(fmt::format("--{}={}", option, value));
       }
     };

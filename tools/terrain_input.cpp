@@ -53,6 +53,9 @@ class TerrainFeed {
     statistics_.max_edge = parse_max_edge(options_.max_edge);
     if (!feed_one_input()) feed_points(disk());
     if (statistics_.stream.totals.simplices == 0) {
+      if (statistics_.stream.left_out == 0) {
+        throw Error(fmt::format("{}: the mesh has no {}", options_.inputs.front(), simplices()));
+      }
       throw Error(fmt::format("every one of {} {} has an edge longer than {}: nothing is left",
                               statistics_.stream.left_out, simplices(), options_.max_edge));
     }

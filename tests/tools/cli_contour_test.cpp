@@ -103,6 +103,14 @@ TEST_F(Contour, SaysWhatIsWrongWithTheCommandLine) {
   EXPECT_EQ(space.names(), std::vector<std::string>{"cone.txt"});
 }
 
+TEST_F(Contour, RefusesAMeshWithoutTriangles) {
+  space.write("empty.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  const Result result = space.run("spillway contour empty.obj -o c.gpkg --interval 1");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("empty.obj"));
+  EXPECT_FALSE(space.has("c.gpkg"));
+}
+
 TEST_F(Contour, RefusesAMeshOfTetrahedra) {
   space.succeed(
       "spillway generate uniform --dim 3 -n 50 -o p.spp && spillway triangulate p.spp --dim 3 -o "
