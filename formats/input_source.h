@@ -25,6 +25,9 @@ class InputSource : public InputFile {
 
   bool seek(std::uint64_t position) override;
 
+  /// Whether seek() can go to any byte, and the size is known.
+  [[nodiscard]] bool seekable() { return size() && seek(position_); }
+
   /// Reads and drops bytes; false if the file ends before.
   bool skip(std::uint64_t count);
 

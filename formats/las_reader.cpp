@@ -44,14 +44,17 @@ class LasReader : public PointReader {
         header_(las_point_header(las_, path)),
         attributes_(options.attributes),
         withheld_mask_(options.keep_withheld ? 0 : las_withheld_mask(las_.point_format)),
-        block_points_(std::clamp<std::size_t>(kBlockBytes / las_.record_length, 1, kBlockPoints)) {}
+        block_points_(std::clamp<std::size_t>(kBlockBytes / las_.record_length, 1, kBlockPoints)),
+        in_pieces_(path != "-" && source_->seekable()),
+        begin_(source_->position()),
+        end_(las_.count) {}
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
   bool fetch(RawPoints& raw) override {
     raw.offset = source_->position();
     raw.first = next_;
-    raw.count = std::min<std::uint64_t>(block_points_, las_.count - next_);
+    raw.count = std::min<std::uint64_t>(block_points_, end_ - next_);
     raw.bytes.resize(raw.count * las_.record_length);
     const std::size_t got = source_->read(raw.bytes);
     if (got < raw.bytes.size()) {
@@ -85,17 +88,32 @@ class LasReader : public PointReader {
     block.withheld = raw.count - kept;
   }
 
+  /// A piece is what fetch() takes at a time.
+  [[nodiscard]] std::optional<std::uint64_t> pieces() const override {
+    if (!in_pieces_) return std::nullopt;
+    return las_.count / block_points_ + (las_.count % block_points_ == 0 ? 0 : 1);
+  }
+
   [[nodiscard]] std::optional<double> fraction_read() const override {
     return las_.count == 0 ? 1.0 : static_cast<double>(next_) / static_cast<double>(las_.count);
   }
 
  private:
+  void go_to_piece(std::uint64_t piece) override {
+    next_ = piece * block_points_;
+    end_ = next_ + std::min<std::uint64_t>(block_points_, las_.count - next_);
+    source_->seek(begin_ + next_ * las_.record_length);
+  }
+
   std::unique_ptr<InputSource> source_;
   LasHeader las_;
   PointHeader header_;
   bool attributes_;
   unsigned withheld_mask_;
   std::size_t block_points_;
+  bool in_pieces_;
+  std::uint64_t begin_;     // byte of the first record
+  std::uint64_t end_;       // number of the first record that is not to be read
   std::uint64_t next_ = 0;  // number of the next record
 };
 

@@ -22,23 +22,40 @@ bool LineReader::next(std::string_view& line) {
   }
   if (line_end == nullptr && begin_ == end_) return false;
   ++number_;
+  line_begin_ = position();
   const char* const start = buffer_.data() + begin_;
   const std::size_t length = line_end != nullptr ? line_end - start : end_ - begin_;
   begin_ += length + (line_end != nullptr ? 1 : 0);
   line = {start, length};
   if (line.ends_with('\r')) line.remove_suffix(1);
-  if (number_ == 1 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+  if (line_begin_ == 0 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
   return true;
+}
+
+void LineReader::seek(std::uint64_t byte) {
+  // A line begins behind the end of another one, so the byte before tells.
+  const std::uint64_t from = byte - (byte > 0 ? 1 : 0);
+  file_.seek(from);
+  buffer_begin_ = from;
+  begin_ = end_ = 0;
+  numbered_ = false;
+  std::string_view passed;
+  if (byte > 0) next(passed);
+}
+
+std::string LineReader::name_of_line(std::uint64_t number, std::uint64_t byte) const {
+  return numbered_ ? fmt::format("line {}", number) : fmt::format("the line at byte {}", byte);
 }
 
 bool LineReader::refill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
+  buffer_begin_ += begin_;
   begin_ = 0;
   const std::span<char> space = std::span(buffer_).subspan(end_);
   if (space.empty()) {
-    throw Error(fmt::format("{}: line {} is longer than {} bytes; this is no text file of points",
-                            file_.name(), number_ + 1, kLongestLine));
+    throw Error(fmt::format("{}: {} is longer than {} bytes; this is no text file of points",
+                            file_.name(), name_of_line(number_ + 1, position()), kLongestLine));
   }
   const std::size_t got = file_.read(std::as_writable_bytes(space));
   end_ += got;

@@ -23,10 +23,25 @@ class LineReader {
   /// Sets `line` to the next one without its end, valid until the next call; false at the end.
   bool next(std::string_view& line);
 
+  /// Makes next() go on with the first line that begins at that byte or behind it. Lines have no
+  /// numbers from then on. Only for a file that can seek.
+  void seek(std::uint64_t byte);
+
+  [[nodiscard]] bool numbered() const { return numbered_; }
+
   /// Number of the line that next() gave last, counted from 1.
   [[nodiscard]] std::uint64_t number() const { return number_; }
 
+  /// The byte where that line begins, and where the next one does.
+  [[nodiscard]] std::uint64_t line_begin() const { return line_begin_; }
+  [[nodiscard]] std::uint64_t position() const { return buffer_begin_ + begin_; }
+
+  /// That line as messages call it: "line 7", or without numbers "the line at byte 123".
+  [[nodiscard]] std::string line_name() const { return name_of_line(number_, line_begin_); }
+
  private:
+  [[nodiscard]] std::string name_of_line(std::uint64_t number, std::uint64_t byte) const;
+
   /// Moves the unread bytes to the front and fills up behind them; false if there was nothing more.
   bool refill();
 
@@ -34,7 +49,10 @@ class LineReader {
   std::vector<char> buffer_;
   std::size_t begin_ = 0;  // the unread bytes are [begin_, end_)
   std::size_t end_ = 0;
+  std::uint64_t buffer_begin_ = 0;  // byte of the file where the buffer begins
+  std::uint64_t line_begin_ = 0;
   std::uint64_t number_ = 0;
+  bool numbered_ = true;
 };
 
 /// Text for messages: at most some 60 characters, nothing that is not printable, in quotes.

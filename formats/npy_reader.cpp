@@ -42,6 +42,9 @@ class NpyReader : public PointReader {
     header_.version = npy.version;
     header_.coordinates = columns_;
     header_.count = count_;
+    in_pieces_ = path != "-" && source_->seekable();
+    begin_ = source_->position();
+    end_ = count_;
     rows_.resize(std::min<std::uint64_t>(kBlockPoints, count_) * row_size());
   }
 
@@ -50,10 +53,11 @@ class NpyReader : public PointReader {
   bool fetch(RawPoints& raw) override {
     PointBlock& block = raw.decoded;
     const auto count =
-        static_cast<std::size_t>(std::min<std::uint64_t>(kBlockPoints, count_ - next_));
+        static_cast<std::size_t>(std::min<std::uint64_t>(kBlockPoints, end_ - next_));
     block.points.resize(count);
     block.index.resize(count);
     if (count == 0) {
+      if (end_ < count_) return false;
       std::byte beyond;
       if (source_->read({&beyond, 1}) > 0) fail_for_excess();
       return false;
@@ -69,11 +73,23 @@ class NpyReader : public PointReader {
     return true;
   }
 
+  /// A piece is what fetch() takes at a time.
+  [[nodiscard]] std::optional<std::uint64_t> pieces() const override {
+    if (!in_pieces_) return std::nullopt;
+    return count_ / kBlockPoints + (count_ % kBlockPoints == 0 ? 0 : 1);
+  }
+
   [[nodiscard]] std::optional<double> fraction_read() const override {
     return count_ == 0 ? 1.0 : static_cast<double>(next_) / static_cast<double>(count_);
   }
 
  private:
+  void go_to_piece(std::uint64_t piece) override {
+    next_ = piece * kBlockPoints;
+    end_ = next_ + std::min<std::uint64_t>(kBlockPoints, count_ - next_);
+    source_->seek(begin_ + next_ * row_size());
+  }
+
   [[nodiscard]] std::size_t row_size() const { return element_size_ * columns_; }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -164,7 +180,10 @@ class NpyReader : public PointReader {
   std::size_t element_size_ = 0;
   int columns_ = 0;
   std::uint64_t count_ = 0;
-  std::uint64_t next_ = 0;  // number of the next point
+  bool in_pieces_ = false;
+  std::uint64_t begin_ = 0;  // byte of the first point
+  std::uint64_t end_ = 0;    // number of the first point that is not to be read
+  std::uint64_t next_ = 0;   // number of the next point
   std::vector<std::byte> rows_;
 };
 

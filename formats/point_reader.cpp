@@ -90,6 +90,15 @@ std::unique_ptr<PointReader> open_by_format(FileSystem& files, const std::string
 
 void PointReader::decode(RawPoints& raw, PointBlock& block) const { std::swap(raw.decoded, block); }
 
+void PointReader::begin_piece(std::uint64_t piece) {
+  const std::uint64_t count = pieces().value_or(0);
+  if (piece >= count) {
+    throw Error(fmt::format("{}: there is no piece {} of {}; read it from front to back",
+                            header().name, piece, count));
+  }
+  go_to_piece(piece);
+}
+
 bool PointReader::read(PointBlock& block) {
   RawPoints raw;
   std::uint64_t withheld = 0;

@@ -32,7 +32,8 @@ struct PointAttributes {
 struct PointBlock {
   /// Lattice integers if the source has a lattice, else output coordinates.
   std::vector<Point<3>> points;
-  /// Each point's number in its source, counted from 0 over all records, dropped ones included.
+  /// Each point's number in its source, counted from 0 over all records, dropped ones included; but
+  /// see PointReader::begin_piece().
   std::vector<std::uint64_t> index;
   /// One a point if they were asked for and the source has them, else none.
   std::vector<PointAttributes> attributes;
@@ -48,7 +49,7 @@ struct PointBlock {
   }
 };
 
-/// A piece of a source as fetch() leaves it: bytes that are still to be decoded, or points.
+/// A batch of a source as fetch() leaves it: bytes that are still to be decoded, or points.
 struct RawPoints {
   PointBlock decoded;            ///< by readers whose input can only be decoded in order
   std::vector<std::byte> bytes;  ///< by the others, and what decode() needs to know of them:
@@ -90,21 +91,21 @@ struct PointReaderOptions {
   double resolution = 0;
 };
 
-/// A stream of points from one source. fetch() takes the next piece of the input, in order;
-/// decode() makes points of it and may run for many pieces at a time, so that formats that are slow
-/// to decode use all threads.
+/// A stream of points from one source. fetch() takes the next batch of the input, in order;
+/// decode() makes points of it and may run for many batches at a time, so that formats that are
+/// slow to decode use all threads. Many readers may share a file: each reads other pieces() of it.
 class PointReader {
  public:
   virtual ~PointReader() = default;
 
   [[nodiscard]] virtual const PointHeader& header() const = 0;
 
-  /// Fills `raw`, which comes cleared, with the next piece (some tens of thousands of points);
-  /// false at the end. Throws Error with the source's name and the byte, line or point index for
-  /// anything that is not a finite point.
+  /// Fills `raw`, which comes cleared, with the next batch (some tens of thousands of points);
+  /// false at the end, of the piece if one was begun. Throws Error with the source's name and the
+  /// byte, line or point index for anything that is not a finite point.
   virtual bool fetch(RawPoints& raw) = 0;
 
-  /// Replaces `block` by the points of a piece, which is used up. Safe for many threads at a time.
+  /// Replaces `block` by the points of a batch, which is used up. Safe for many threads at a time.
   /// Throws as fetch() does. A block may be empty before the end.
   virtual void decode(RawPoints& raw, PointBlock& block) const;
 
@@ -112,8 +113,25 @@ class PointReader {
   /// `block.withheld` still counts.
   bool read(PointBlock& block);
 
-  /// How far the input has been read, from 0 to 1; nothing if the source's length is unknown.
+  /// Into how many pieces the source falls that can be read in any order, also by readers of it in
+  /// other processes: the file and the options alone decide it. Pieces have about as many records
+  /// each, or are the chunks that a file has. Nothing if the source can only be read from front to
+  /// back: pipes and standard input, compressed text, spp, LAZ without a table of its chunks.
+  [[nodiscard]] virtual std::optional<std::uint64_t> pieces() const { return std::nullopt; }
+
+  /// From now on fetch() gives the points of this piece, counted from 0, and no others. All pieces
+  /// in ascending order are what front to back is. Indices are as ever if header().count is known;
+  /// else they are counted from the piece's beginning, and errors name bytes instead of lines.
+  /// Throws Error unless the piece is below pieces().
+  void begin_piece(std::uint64_t piece);
+
+  /// How far the input has been read, from 0 to 1, by the place of the last batch in it; nothing if
+  /// the source's length is unknown.
   [[nodiscard]] virtual std::optional<double> fraction_read() const = 0;
+
+ private:
+  /// begin_piece() of a piece that is there.
+  virtual void go_to_piece(std::uint64_t /*piece*/) {}
 };
 
 /// Opens a source ("-": standard input) and checks its header. The format is that of the options,

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -17,11 +19,15 @@ constexpr std::size_t kBlockPoints = 65536;
 
 class TextReader : public PointReader {
  public:
-  TextReader(std::unique_ptr<InputSource> source, const std::string& path, Compression compression)
+  TextReader(std::unique_ptr<InputSource> source, const std::string& path, Compression compression,
+             std::uint64_t piece_bytes)
       : source_(std::move(source)),
         content_(compression == Compression::kNone ? nullptr : decompressed(*source_, compression)),
-        lines_(content_ ? *content_ : *source_) {
+        lines_(content_ ? *content_ : *source_),
+        piece_bytes_(piece_bytes) {
     read_first_point();
+    begin_ = has_first_ ? lines_.line_begin() : lines_.position();
+    in_pieces_ = path != "-" && !content_ && source_->seekable();
     header_.name = path;
     header_.format = "text";
     header_.coordinates = columns_.coordinates();
@@ -35,7 +41,7 @@ class TextReader : public PointReader {
     if (has_first_) append(first_, block);
     has_first_ = false;
     Point<3> point;
-    while (block.size() < kBlockPoints && lines_.next(line_)) {
+    while (block.size() < kBlockPoints && lines_.position() < end_ && lines_.next(line_)) {
       // Comments are rare: they are looked for only where there is no point.
       if (columns_.parse(line_, point)) {
         append(point, block);
@@ -46,11 +52,25 @@ class TextReader : public PointReader {
     return block.size() > 0;
   }
 
+  [[nodiscard]] std::optional<std::uint64_t> pieces() const override {
+    if (!in_pieces_) return std::nullopt;
+    const std::uint64_t bytes = *source_->size() - std::min(begin_, *source_->size());
+    return bytes / piece_bytes_ + (bytes % piece_bytes_ == 0 ? 0 : 1);
+  }
+
   [[nodiscard]] std::optional<double> fraction_read() const override {
     return source_->fraction_read();
   }
 
  private:
+  void go_to_piece(std::uint64_t piece) override {
+    const std::uint64_t from = begin_ + piece * piece_bytes_;
+    lines_.seek(from);
+    end_ = from + piece_bytes_;
+    next_ = 0;
+    has_first_ = false;
+  }
+
   /// Reads up to the first point, which settles the columns: those that a header line names, or the
   /// first two or three.
   void read_first_point() {
@@ -88,8 +108,9 @@ class TextReader : public PointReader {
 
   void append(const Point<3>& point, PointBlock& block) {
     if (!std::isfinite(point[0] + point[1] + point[2]) && !all_finite(point)) {
-      fail(fmt::format("point {} in line {} is not finite: {}; correct or remove it", next_,
-                       lines_.number(), quoted(line_)));
+      fail(fmt::format("{} in {} is not finite: {}; correct or remove it",
+                       lines_.numbered() ? fmt::format("point {}", next_) : "the point",
+                       lines_.line_name(), quoted(line_)));
     }
     block.points.push_back(point);
     block.index.push_back(next_++);
@@ -100,7 +121,7 @@ class TextReader : public PointReader {
   }
 
   [[noreturn]] void fail_for_line() const {
-    fail(fmt::format("line {} does not hold {} numbers: {}; correct or remove it", lines_.number(),
+    fail(fmt::format("{} does not hold {} numbers: {}; correct or remove it", lines_.line_name(),
                      columns_.coordinates(), quoted(line_)));
   }
 
@@ -116,14 +137,20 @@ class TextReader : public PointReader {
   Point<3> first_{};
   bool has_first_ = false;  // first_ is still to be given out
   PointHeader header_;
-  std::uint64_t next_ = 0;  // number of the next point
+  std::uint64_t next_ = 0;  // number of the next point, in its piece if that was asked for
+
+  std::uint64_t piece_bytes_;
+  bool in_pieces_ = false;
+  std::uint64_t begin_ = 0;  // byte where the first point's line begins
+  std::uint64_t end_ = std::numeric_limits<std::uint64_t>::max();  // no line from here on is read
 };
 
 }  // namespace
 
 std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputSource> source,
-                                              const std::string& path, Compression compression) {
-  return std::make_unique<TextReader>(std::move(source), path, compression);
+                                              const std::string& path, Compression compression,
+                                              std::uint64_t piece_bytes) {
+  return std::make_unique<TextReader>(std::move(source), path, compression, piece_bytes);
 }
 
 }  // namespace spillway

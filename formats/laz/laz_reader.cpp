@@ -51,7 +51,8 @@ class LazReader : public PointReader {
         count_(las.count),
         stream_(*source_) {
     find_chunks(options);
-    count_ = header_.count.value();
+    count_ = end_ = header_.count.value();
+    number_chunks();
   }
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
@@ -60,7 +61,7 @@ class LazReader : public PointReader {
     raw.decoded.clear();
     raw.count = 0;
     if (left_ == 0) {
-      if (next_ == count_) return false;
+      if (next_ == end_) return false;
       if (las_.laz->format.layered) {
         fetch_layered(raw);
       } else {
@@ -88,11 +89,24 @@ class LazReader : public PointReader {
     give_back(std::move(decoder));
   }
 
+  /// A piece is a chunk of the list.
+  [[nodiscard]] std::optional<std::uint64_t> pieces() const override {
+    if (!chunks_ || header_.name == "-") return std::nullopt;
+    return chunks_->size();
+  }
+
   [[nodiscard]] std::optional<double> fraction_read() const override {
     return count_ == 0 ? 1.0 : static_cast<double>(next_) / static_cast<double>(count_);
   }
 
  private:
+  void go_to_piece(std::uint64_t piece) override {
+    next_chunk_ = piece;
+    next_ = first_of_chunk_[piece];
+    end_ = next_ + (*chunks_)[piece].count;
+    left_ = 0;
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(fmt::format("{}: {}", source_->name(), what));
   }
@@ -111,12 +125,15 @@ class LazReader : public PointReader {
   }
 
   void find_chunks(const PointReaderOptions& options) {
-    const bool seekable = source_->size() && source_->seek(source_->position());
+    const bool seekable = source_->seekable();
     const bool select = las_.copc && (options.bounds || options.resolution > 0);
     if (options.resolution > 0 && las_.copc && !seekable) {
       fail("levels of a COPC file cannot be chosen on a pipe; give the file by its name");
     }
-    if (las_.count == 0) return;
+    if (las_.count == 0) {
+      if (seekable) chunks_.emplace();
+      return;
+    }
     if (select && seekable) {
       chunks_ = select_copc_chunks(*source_, las_, {options.bounds, options.resolution});
       header_.count = 0;
@@ -139,6 +156,16 @@ class LazReader : public PointReader {
                       "sizes; write the file anew"
                     : "its compressed chunks have different sizes, which a table at its end tells; "
                       "give the file by its name instead of on a pipe");
+    }
+  }
+
+  void number_chunks() {
+    if (!chunks_) return;
+    std::uint64_t first = 0;
+    first_of_chunk_.reserve(chunks_->size());
+    for (const LazChunk& chunk : *chunks_) {
+      first_of_chunk_.push_back(first);
+      first += chunk.count;
     }
   }
 
@@ -357,8 +384,10 @@ class LazReader : public PointReader {
   unsigned withheld_flag_;
   std::uint64_t count_ = 0;  // of all records that come
   std::uint64_t next_ = 0;   // number of the next record
+  std::uint64_t end_ = 0;    // number of the first record that is not to be read
 
   std::optional<std::vector<LazChunk>> chunks_;  // nothing: they come one after the other
+  std::vector<std::uint64_t> first_of_chunk_;    // number of its first record
   std::size_t next_chunk_ = 0;
   std::uint64_t chunks_end_ = kUnlimited;  // as far as that is known without a list
 
