@@ -10,7 +10,14 @@
 namespace spillway {
 
 CheckedMeshWriter::CheckedMeshWriter(MeshHeader header, std::string name)
-    : header_(std::move(header)), name_(std::move(name)) {}
+    : header_(std::move(header)), name_(std::move(name)) {
+  if (!header_.global_ids) return;
+  std::uint64_t ids = 0;
+  for (const IdRun& run : *header_.global_ids) ids += run.count;
+  if (ids != header_.vertices) {
+    fail(fmt::format("{} vertices were promised, but {} ids for them", header_.vertices, ids));
+  }
+}
 
 void CheckedMeshWriter::write_vertices(std::span<const Point<3>> vertices,
                                        std::span<const std::uint64_t> input_index) {

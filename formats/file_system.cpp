@@ -199,6 +199,7 @@ class DiskOutput : public OutputFile {
   }
 
   [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] std::string temporary_path() const override { return temporary_; }
 
  private:
   void flush() {
@@ -303,6 +304,18 @@ class Disk : public FileSystem {
 FileSystem& disk() {
   static Disk instance;
   return instance;
+}
+
+OthersUnfinishedFile::OthersUnfinishedFile(std::string path) : path_(std::move(path)) {
+  UnfinishedFiles& unfinished = unfinished_files();
+  const std::lock_guard lock(unfinished.mutex);
+  unfinished.paths.insert(path_);
+}
+
+OthersUnfinishedFile::~OthersUnfinishedFile() {
+  UnfinishedFiles& unfinished = unfinished_files();
+  const std::lock_guard lock(unfinished.mutex);
+  unfinished.paths.erase(path_);
 }
 
 std::string make_temporary_folder(const std::string& parent, const std::string& prefix) {

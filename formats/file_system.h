@@ -47,6 +47,23 @@ class OutputFile {
   virtual void commit() = 0;
 
   [[nodiscard]] virtual const std::string& name() const = 0;
+
+  /// The path that the file has until commit(), for others that write to it, too; "" if it has
+  /// none.
+  [[nodiscard]] virtual std::string temporary_path() const { return ""; }
+};
+
+/// While it exists, remove_unfinished_files() also removes this file, which another process has
+/// created and is going to rename.
+class OthersUnfinishedFile {
+ public:
+  explicit OthersUnfinishedFile(std::string path);
+  ~OthersUnfinishedFile();
+  OthersUnfinishedFile(const OthersUnfinishedFile&) = delete;
+  OthersUnfinishedFile& operator=(const OthersUnfinishedFile&) = delete;
+
+ private:
+  std::string path_;
 };
 
 class FileSystem {

@@ -14,6 +14,7 @@
 #include "formats/landxml_names.h"
 #include "formats/mesh_notes.h"
 #include "formats/mesh_text.h"
+#include "formats/xml_scanner.h"
 
 namespace spillway {
 namespace {
@@ -21,29 +22,6 @@ namespace {
 constexpr double kFoot = 0.3048;
 constexpr double kSurveyFoot = 1200.0 / 3937;
 constexpr std::string_view kEpsg = "EPSG:";
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 bool is_epsg_code(std::string_view crs) {
   if (!crs.starts_with(kEpsg) || crs.size() == kEpsg.size()) return false;
@@ -71,7 +49,8 @@ std::string coordinate_system(const std::string& crs) {
     return fmt::format("  <CoordinateSystem {}=\"{}\"/>\n", landxml::kEpsgCode,
                        std::string_view(crs).substr(kEpsg.size()));
   }
-  return fmt::format("  <CoordinateSystem {}=\"{}\"/>\n", landxml::kWkt, escaped(one_line(crs)));
+  return fmt::format("  <CoordinateSystem {}=\"{}\"/>\n", landxml::kWkt,
+                     xml_escaped(one_line(crs)));
 }
 
 class LandXmlWriter : public CheckedMeshWriter {
@@ -88,7 +67,7 @@ class LandXmlWriter : public CheckedMeshWriter {
                     "  <Surfaces>\n    <Surface name=\"{}\">\n"
                     "      <Definition surfType=\"TIN\">\n<Pnts>\n",
                     units(mesh.crs), coordinate_system(mesh.crs),
-                    escaped(std::filesystem::path(output_.name()).stem().string())));
+                    xml_escaped(std::filesystem::path(output_.name()).stem().string())));
   }
 
  private:

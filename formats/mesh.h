@@ -12,6 +12,12 @@
 
 namespace spillway {
 
+/// Vertices one after another whose numbers in a larger mesh count up by one.
+struct IdRun {
+  std::uint64_t first = 0;  ///< number of the first
+  std::uint64_t count = 0;  ///< of vertices
+};
+
 /// What a mesh file says about itself.
 struct MeshHeader {
   int dimension = 2;               ///< 2: triangles, 3: tetrahedra
@@ -20,6 +26,9 @@ struct MeshHeader {
   bool has_input_index = false;    ///< each vertex carries its index in the input
   std::optional<Lattice> lattice;  ///< set if every coordinate is lattice.to_world of an integer
   std::string crs;                 ///< coordinate system as WKT or PROJ text, empty if unknown
+  /// Of a part of a larger mesh: which of its vertices these are. Only PLY and VTU have a place for
+  /// them; readers pass over it.
+  std::optional<std::vector<IdRun>> global_ids{};
 };
 
 /// A whole mesh in memory, as `check`, `info` and `convert` read it.

@@ -13,6 +13,17 @@ void append_stream_numbers(const MeshBlock& block, std::uint64_t first,
   }
 }
 
+MeshHeader header_of_mesh(const MeshStreamHeader& header, const MeshTotals& totals) {
+  MeshHeader mesh;
+  mesh.dimension = header.dimension;
+  mesh.vertices = totals.vertices;
+  mesh.simplices = totals.simplices;
+  mesh.has_input_index = header.has_input_index;
+  mesh.lattice = header.lattice;
+  mesh.crs = header.crs;
+  return mesh;
+}
+
 void move_to_world(const MeshStreamHeader& header, MeshBlock& block) {
   if (!header.lattice) return;
   for (Point<3>& vertex : block.vertices) vertex = header.lattice->to_world(vertex);

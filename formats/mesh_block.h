@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "formats/mesh.h"
 #include "formats/mesh_stream.h"
 
 namespace spillway {
@@ -12,6 +13,9 @@ namespace spillway {
 /// numbered from `first` on.
 void append_stream_numbers(const MeshBlock& block, std::uint64_t first,
                            std::vector<std::uint64_t>& corners);
+
+/// What a mesh file says of the whole that the stream has become.
+MeshHeader header_of_mesh(const MeshStreamHeader& header, const MeshTotals& totals);
 
 /// Maps the vertices of a block to output coordinates.
 void move_to_world(const MeshStreamHeader& header, MeshBlock& block);

@@ -13,6 +13,7 @@ target_sources(spillway_formats PRIVATE
   local_origin.cpp
   mesh_checks.cpp
   mesh_notes.cpp
+  mesh_parts.cpp
   mesh_reader.cpp
   mesh_text.cpp
   mesh_writer.cpp
@@ -25,6 +26,7 @@ target_sources(spillway_formats PRIVATE
   off_writer.cpp
   ply_header.cpp
   ply_reader.cpp
+  ply_records.cpp
   ply_values.cpp
   ply_writer.cpp
   private_output.cpp

@@ -7,6 +7,7 @@
 #include <bit>
 #include <memory>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include "formats/bytes.h"
@@ -26,25 +27,37 @@ constexpr std::uint32_t kFar = kNarrow + (kFarByte - kNarrow) * 256;
 
 // Fans of more triangles are not looked for: the search takes the square of their number.
 constexpr std::size_t kLargestFan = 24;
+// Groups of fewer triangles have a loop of their own for each size.
+constexpr std::uint32_t kUnusualFan = 7;
 
 template <int D>
 using Rest = std::array<std::uint32_t, D>;  // the corners of a simplex but the first, less that
 
-/// The simplex turned by an even permutation so that its smallest corner is first. Without a
-/// branch, as nobody can tell which corner that is.
-std::array<std::uint32_t, 3> turned(const std::array<std::uint32_t, 3>& s) {
+// Which corner of a simplex is the smallest. Without a branch, as nobody can tell.
+unsigned smallest_place(const std::uint32_t* s, std::integral_constant<int, 2> /*dimension*/) {
   const unsigned second = static_cast<unsigned>(s[1] < s[0]) & static_cast<unsigned>(s[1] <= s[2]);
   const unsigned third = static_cast<unsigned>(s[2] < s[0]) & static_cast<unsigned>(s[2] < s[1]);
-  const unsigned first = second + 2 * third;
-  const std::array<std::uint32_t, 5> twice{s[0], s[1], s[2], s[0], s[1]};
-  return {twice[first], twice[first + 1], twice[first + 2]};
+  return second + 2 * third;
 }
 
-std::array<std::uint32_t, 4> turned(const std::array<std::uint32_t, 4>& s) {
-  unsigned first = 0;
-  for (unsigned i = 1; i < 4; ++i) first = s[i] < s[first] ? i : first;
-  return {s[first], s[first ^ 1U], s[first ^ 2U], s[first ^ 3U]};
+unsigned smallest_place(const std::uint32_t* s, std::integral_constant<int, 3> /*dimension*/) {
+  const unsigned low = static_cast<unsigned>(s[1] < s[0]);
+  const unsigned high = 2 + static_cast<unsigned>(s[3] < s[2]);
+  return s[high] < s[low] ? high : low;
 }
+
+/// The places of the other corners, by that of the smallest, so that the whole is an even
+/// permutation.
+template <int D>
+constexpr auto kOtherPlaces = [] {
+  std::array<std::array<std::uint8_t, D>, D + 1> others{};
+  for (unsigned first = 0; first <= D; ++first) {
+    for (unsigned k = 0; k < D; ++k) {
+      others[first][k] = static_cast<std::uint8_t>(D == 2 ? (first + k + 1) % 3 : first ^ (k + 1));
+    }
+  }
+  return others;
+}();
 
 /// Rows of numbers, most of them small.
 class NumberRows {
@@ -53,23 +66,18 @@ class NumberRows {
       : low_(std::make_unique_for_overwrite<std::uint8_t[]>(most + 1)),
         high_(std::make_unique_for_overwrite<std::uint8_t[]>(most + 1)) {}
 
-  void put(std::uint32_t number) { put_if(true, number); }
+  /// Puts all numbers, but the first of a triangle that continues a fan.
+  void put_triangles(std::span<const Rest<2>> triangles, const std::uint8_t* continues) {
+    put_all(triangles.size(), [&](std::size_t i, const auto& put) {
+      put(continues[i] == 0, triangles[i][0]);
+      put(true, triangles[i][1]);
+    });
+  }
 
-  /// Without a branch but for the last numbers of large blocks, as nobody can tell which are taken
-  /// and which are narrow.
-  void put_if(bool taken, std::uint32_t number) {
-    if (number >= kFar) {
-      if (!taken) return;
-      low_[low_size_++] = kFarByte;
-      far_.push_back(number);
-      return;
-    }
-    const bool wide = number >= kNarrow;
-    const std::uint32_t over = number - kNarrow;
-    low_[low_size_] = static_cast<std::uint8_t>(wide ? kNarrow + (over >> 8U) : number);
-    low_size_ += static_cast<std::size_t>(taken);
-    high_[high_size_] = static_cast<std::uint8_t>(over);
-    high_size_ += static_cast<std::size_t>(taken) & static_cast<std::size_t>(wide);
+  void put_tetrahedra(std::span<const Rest<3>> tetrahedra) {
+    put_all(tetrahedra.size(), [&](std::size_t i, const auto& put) {
+      for (const std::uint32_t number : tetrahedra[i]) put(true, number);
+    });
   }
 
   void put_apart(std::uint32_t number) { far_.push_back(number); }
@@ -81,6 +89,32 @@ class NumberRows {
   }
 
  private:
+  /// Calls put_simplex(i, put) for each i. put(taken, number) has no branch but for the last
+  /// numbers of large blocks, as nobody can tell which are taken and which are narrow. Bytes may
+  /// alias anything, so the rows' ends are kept in variables of this function alone.
+  template <typename PutSimplex>
+  void put_all(std::size_t count, const PutSimplex& put_simplex) {
+    std::uint8_t* low = low_.get() + low_size_;
+    std::uint8_t* high = high_.get() + high_size_;
+    const auto put = [&low, &high, this](bool taken, std::uint32_t number) {
+      if (number >= kFar) {
+        if (!taken) return;
+        *low++ = kFarByte;
+        far_.push_back(number);
+        return;
+      }
+      const bool wide = number >= kNarrow;
+      const std::uint32_t over = number - kNarrow;
+      *low = static_cast<std::uint8_t>(wide ? kNarrow + (over >> 8U) : number);
+      low += static_cast<std::ptrdiff_t>(taken);
+      *high = static_cast<std::uint8_t>(over);
+      high += static_cast<std::ptrdiff_t>(taken) & static_cast<std::ptrdiff_t>(wide);
+    };
+    for (std::size_t i = 0; i < count; ++i) put_simplex(i, put);
+    low_size_ = static_cast<std::size_t>(low - low_.get());
+    high_size_ = static_cast<std::size_t>(high - high_.get());
+  }
+
   static void append(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
     out.insert(out.end(), bytes.begin(), bytes.end());
   }
@@ -102,24 +136,21 @@ struct Sorted {
 template <int D>
 Sorted<D> sort_by_first(std::uint32_t numbers, std::span<const std::uint32_t> corners) {
   const std::size_t count = corners.size() / (D + 1);
-  const auto simplex_at = [corners](std::size_t i) {
-    std::array<std::uint32_t, D + 1> simplex;
-    std::copy_n(corners.data() + (D + 1) * i, D + 1, simplex.begin());
-    return simplex;
-  };
+  constexpr std::integral_constant<int, D> kDimension;
   Sorted<D> sorted{std::vector<std::uint32_t>(std::size_t{numbers} + 1),
                    std::make_unique_for_overwrite<Rest<D>[]>(count)};
   for (std::size_t i = 0; i < count; ++i) {
-    std::uint32_t first = corners[(D + 1) * i];
-    for (int k = 1; k <= D; ++k) first = std::min(first, corners[(D + 1) * i + k]);
-    ++sorted.ends[first + 1];
+    const std::uint32_t* const simplex = &corners[(D + 1) * i];
+    ++sorted.ends[simplex[smallest_place(simplex, kDimension)] + 1];
   }
   std::partial_sum(sorted.ends.begin(), sorted.ends.end(), sorted.ends.begin());
   // Now these are the begins of the simplices, which putting them there makes ends.
   for (std::size_t i = 0; i < count; ++i) {
-    const auto simplex = turned(simplex_at(i));
-    Rest<D>& rest = sorted.rests[sorted.ends[simplex[0]]++];
-    for (int k = 0; k < D; ++k) rest[k] = simplex[k + 1] - simplex[0];
+    const std::uint32_t* const simplex = &corners[(D + 1) * i];
+    const unsigned place = smallest_place(simplex, kDimension);
+    const std::uint32_t first = simplex[place];
+    Rest<D>& rest = sorted.rests[sorted.ends[first]++];
+    for (int k = 0; k < D; ++k) rest[k] = simplex[kOtherPlaces<D>[place][k]] - first;
   }
   return sorted;
 }
@@ -127,14 +158,6 @@ Sorted<D> sort_by_first(std::uint32_t numbers, std::span<const std::uint32_t> co
 /// Orders triangles that have one corner in common in fans, each triangle but a fan's first
 /// beginning with the corner where the one before ends. `continues` becomes 1 for those others.
 void order_in_fans(std::span<Rest<2>> group, std::uint8_t* continues) {
-  if (group.size() == 2) {
-    const unsigned swapped = group[1][1] == group[0][0] ? 1 : 0;
-    const std::array<Rest<2>, 2> both{group[0], group[1]};
-    group[0] = both[swapped];
-    group[1] = both[1 - swapped];
-    continues[1] = group[0][1] == group[1][0] ? 1 : 0;
-    return;
-  }
   const auto find_behind = [group](std::size_t i, auto what) {
     return std::find_if(group.begin() + static_cast<std::ptrdiff_t>(i) + 1, group.end(), what);
   };
@@ -154,6 +177,83 @@ void order_in_fans(std::span<Rest<2>> group, std::uint8_t* continues) {
   }
 }
 
+/// The same for so many triangles, which nearly always are one fan: without a branch until it is
+/// known whether they are.
+template <std::size_t kSize>
+void order_in_one_fan(Rest<2>* group, std::uint8_t* continues) {
+  constexpr unsigned kAll = (1U << kSize) - 1;
+  std::array<Rest<2>, kSize> triangles;
+  std::copy_n(group, kSize, triangles.begin());
+  // Masks over all triangles take the place of choices.
+  Rest<2> begin{};     // the triangle that has no other before it
+  unsigned taken = 0;  // its bit
+  for (std::size_t i = 0; i < kSize; ++i) {
+    unsigned follows = 0;
+    for (std::size_t j = 0; j < kSize; ++j) follows |= unsigned{triangles[j][1] == triangles[i][0]};
+    const unsigned mask = follows - 1;
+    begin[0] |= mask & triangles[i][0];
+    begin[1] |= mask & triangles[i][1];
+    taken |= mask & 1U << i;
+  }
+  unsigned ambiguous = taken & (taken - 1);
+  std::array<Rest<2>, kSize> fan;
+  fan[0] = taken == 0 ? triangles[0] : begin;  // a fan that closes begins anywhere
+  taken += taken == 0 ? 1 : 0;
+  for (std::size_t k = 1; k < kSize; ++k) {
+    const std::uint32_t end = fan[k - 1][1];
+    std::uint32_t next_end = 0;
+    unsigned next = 0;
+    for (std::size_t i = 0; i < kSize; ++i) {
+      const unsigned mask = 0U - unsigned{triangles[i][0] == end};
+      next_end |= mask & triangles[i][1];
+      next |= mask & 1U << i;
+    }
+    ambiguous |= next & (next - 1);
+    taken |= next;
+    fan[k] = {end, next_end};
+  }
+  if (taken != kAll || ambiguous != 0) return order_in_fans({group, kSize}, continues);
+  std::copy_n(fan.begin(), kSize, group);
+  std::fill_n(continues + 1, kSize - 1, std::uint8_t{1});
+}
+
+/// Orders all groups, whose ends are given, those of one size after those of another: nobody can
+/// tell the size of the next one.
+std::vector<std::uint8_t> order_all_in_fans(std::span<const std::uint32_t> ends,
+                                            std::span<Rest<2>> rests) {
+  std::vector<std::uint8_t> continues(rests.size() + 7);
+  std::array<std::uint32_t, kUnusualFan + 1> places{};  // of groups, by size
+  const auto for_each_group = [ends](const auto& visit) {
+    std::uint32_t begin = 0;
+    for (const std::uint32_t end : ends) {
+      visit(begin, end - begin);
+      begin = end;
+    }
+  };
+  for_each_group(
+      [&](std::uint32_t /*begin*/, std::uint32_t size) { ++places[std::min(size, kUnusualFan)]; });
+  std::exclusive_scan(places.begin(), places.end(), places.begin(), std::uint32_t{0});
+  const auto groups = std::make_unique_for_overwrite<std::uint32_t[]>(ends.size());
+  for_each_group([&](std::uint32_t begin, std::uint32_t size) {
+    if (size < kUnusualFan) {
+      groups[places[size]++] = begin;
+    } else if (size <= kLargestFan) {
+      order_in_fans(rests.subspan(begin, size), &continues[begin]);
+    }
+  });
+  const auto order = [&]<std::size_t kSize>(std::integral_constant<std::size_t, kSize>) {
+    for (std::uint32_t g = places[kSize - 1]; g < places[kSize]; ++g) {
+      order_in_one_fan<kSize>(&rests[groups[g]], &continues[groups[g]]);
+    }
+  };
+  order(std::integral_constant<std::size_t, 2>());
+  order(std::integral_constant<std::size_t, 3>());
+  order(std::integral_constant<std::size_t, 4>());
+  order(std::integral_constant<std::size_t, 5>());
+  order(std::integral_constant<std::size_t, 6>());
+  return continues;
+}
+
 void append_counts(std::vector<std::byte>& out, std::span<const std::uint32_t> ends,
                    NumberRows& rows) {
   const std::size_t begin = out.size();
@@ -169,30 +269,20 @@ void append_counts(std::vector<std::byte>& out, std::span<const std::uint32_t> e
 
 void append_rests(std::vector<std::byte>& out, std::span<const std::uint32_t> ends,
                   std::span<Rest<2>> rests, NumberRows& rows) {
-  std::vector<std::uint8_t> continues(rests.size() + 7);
-  std::uint32_t begin = 0;
-  for (const std::uint32_t end : ends) {
-    if (end - begin >= 2 && end - begin <= kLargestFan) {
-      order_in_fans(rests.subspan(begin, end - begin), continues.data() + begin);
-    }
-    begin = end;
-  }
-  for (std::size_t i = 0; i < rests.size(); ++i) {
-    rows.put_if(continues[i] == 0, rests[i][0]);
-    rows.put(rests[i][1]);
-  }
+  const std::vector<std::uint8_t> continues = order_all_in_fans(ends, rests);
+  rows.put_triangles(rests, continues.data());
+  const std::size_t begin = out.size();
+  out.resize(begin + (rests.size() + 7) / 8);
   for (std::size_t i = 0; i < rests.size(); i += 8) {
     unsigned bits = 0;
     for (unsigned k = 0; k < 8; ++k) bits |= unsigned{continues[i + k]} << k;
-    out.push_back(static_cast<std::byte>(bits));
+    out[begin + i / 8] = static_cast<std::byte>(bits);
   }
 }
 
 void append_rests(std::vector<std::byte>& /*out*/, std::span<const std::uint32_t> /*ends*/,
                   std::span<Rest<3>> rests, NumberRows& rows) {
-  for (const Rest<3>& rest : rests) {
-    for (const std::uint32_t number : rest) rows.put(number);
-  }
+  rows.put_tetrahedra(rests);
 }
 
 template <int D>

@@ -7,46 +7,17 @@
 
 #include "formats/block.h"
 #include "formats/bytes.h"
-#include "formats/columns.h"
 #include "formats/spm_block.h"
 #include "formats/spm_format.h"
+#include "formats/spm_part.h"
 #include "src/error.h"
 
 namespace spillway {
 namespace {
 
 template <typename T>
-void append_value(std::vector<std::byte>& out, const T& value) {
-  const std::size_t at = out.size();
-  out.resize(at + sizeof(T));
-  store(out.data() + at, value);
-}
-
-template <typename T>
 void release(std::vector<T>& values) {
   std::vector<T>().swap(values);
-}
-
-std::vector<std::byte> header_content(const MeshStreamHeader& header) {
-  std::vector<std::byte> content;
-  append_value(content, kSpmVersion);
-  append_value(content, static_cast<std::uint32_t>(header.dimension));
-  append_value(content, (header.lattice ? kSpmHasLattice : 0) |
-                            (header.points ? kSpmHasPoints : 0) |
-                            (header.extent ? kSpmHasExtent : 0) |
-                            (header.has_input_index ? kSpmHasInputIndex : 0));
-  if (header.lattice) {
-    append_value(content, header.lattice->scale);
-    append_value(content, header.lattice->offset);
-  }
-  if (header.points) append_value(content, *header.points);
-  if (header.extent) {
-    append_value(content, header.extent->lo);
-    append_value(content, header.extent->hi);
-  }
-  const std::span<const std::byte> crs = as_bytes_of(header.crs);
-  content.insert(content.end(), crs.begin(), crs.end());
-  return content;
 }
 
 /// A prepared block is its counts, as they are in memory, and the bytes for the file.
@@ -54,9 +25,7 @@ class SpmWriter : public MeshStreamWriter {
  public:
   SpmWriter(std::unique_ptr<OutputFile> file, MeshStreamHeader header)
       : file_(std::move(file)), header_(std::move(header)) {
-    if (header_.extent && header_.extent->empty()) header_.extent.reset();
-    put(as_bytes_of(kSpmMagic));
-    put_block(kSpmHeader, header_content(header_));
+    put(spm_head(header_));
   }
 
   void prepare(MeshBlock& block) const override {
@@ -69,7 +38,8 @@ class SpmWriter : public MeshStreamWriter {
     } catch (const Error& error) {
       fail(error.what());
     }
-    append_value(block.prepared, counts);
+    block.prepared.resize(sizeof counts);
+    store(block.prepared.data(), counts);
     append_block(block.prepared, kSpmMesh, content);
     block.prepared.shrink_to_fit();
     release(block.vertices);
@@ -97,12 +67,7 @@ class SpmWriter : public MeshStreamWriter {
       fail(fmt::format("{} vertices and {} simplices were promised, but {} and {} came",
                        totals.vertices, totals.simplices, vertices_, simplices_));
     }
-    std::vector<std::byte> content;
-    for (const std::uint64_t number : {totals.vertices, totals.simplices, totals.hull_facets,
-                                       totals.points, totals.duplicates, totals.canonical_hash}) {
-      append_value(content, number);
-    }
-    put_block(kSpmTrailer, content);
+    put(spm_trailer(totals));
     file_->commit();
   }
 
@@ -119,16 +84,9 @@ class SpmWriter : public MeshStreamWriter {
       fail(
           fmt::format("a block imports vertex {}, but only {} came before it", largest, vertices_));
     }
-    std::vector<std::byte> content;
-    append_value(content, static_cast<std::uint32_t>(imported.size()));
-    append_column(content, imported);
-    put_block(kSpmImported, content);
-  }
-
-  void put_block(std::uint32_t kind, std::span<const std::byte> content) {
-    std::vector<std::byte> block;
-    append_block(block, kind, content);
-    put(block);
+    std::vector<std::byte> bytes;
+    append_spm_imported(bytes, imported);
+    put(bytes);
   }
 
   void put(std::span<const std::byte> bytes) {

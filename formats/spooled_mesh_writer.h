@@ -3,14 +3,12 @@
 #include <cstddef>
 #include <memory>
 
+#include "formats/mesh_spool.h"
 #include "formats/mesh_stream.h"
 #include "formats/mesh_writer.h"
 #include "formats/scratch_folder.h"
 
 namespace spillway {
-
-/// What a spool keeps in memory before it goes to the disk.
-inline constexpr std::size_t kSpoolMemory = std::size_t{8} << 20;
 
 /// Writes a mesh in a format whose counts come first: blocks are spooled, encoded as in spm, and
 /// finish() reads the spool twice, for vertices and for simplices. A spool of at most `memory`

@@ -11,8 +11,9 @@ inline constexpr const char* kDimension = "spillway_dimension";
 inline constexpr const char* kLattice = "spillway_lattice";
 inline constexpr const char* kCrs = "spillway_crs";
 
-// Point array.
+// Point arrays.
 inline constexpr const char* kInputIndex = "input_index";
+inline constexpr const char* kGlobalIds = "GlobalPointIds";  // what VTK calls it
 
 // Cell types.
 inline constexpr std::uint8_t kTriangle = 5;

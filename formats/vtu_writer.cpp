@@ -11,6 +11,7 @@
 #include "formats/block_output.h"
 #include "formats/bytes.h"
 #include "formats/checked_mesh_writer.h"
+#include "formats/global_ids.h"
 #include "formats/mesh_notes.h"
 #include "formats/vtu_names.h"
 
@@ -103,10 +104,7 @@ class VtuWriter : public CheckedMeshWriter {
         header().vertices, header().simplices);
     text += arrays.declare("Points", "Float64", 3, points_bytes());
     text += "      </Points>\n";
-    if (header().has_input_index) {
-      text += "      <PointData>\n        " +
-              arrays.declare(vtu::kInputIndex, "Int64", 1, index_bytes()) + "      </PointData>\n";
-    }
+    text += point_data(arrays);
     // One statement each: the offsets depend on the order of the calls.
     text += "      <Cells>\n        ";
     text += arrays.declare("connectivity", "Int64", 1, connectivity_bytes());
@@ -118,6 +116,21 @@ class VtuWriter : public CheckedMeshWriter {
         "      </Cells>\n    </Piece>\n  </UnstructuredGrid>\n"
         "  <AppendedData encoding=\"raw\">\n_";
     return text;
+  }
+
+  /// The element of the arrays that go with the points; nothing if there are none.
+  [[nodiscard]] std::string point_data(AppendedArrays& arrays) const {
+    std::string declared;
+    if (header().has_input_index) {
+      declared += "        " + arrays.declare(vtu::kInputIndex, "Int64", 1, index_bytes());
+    }
+    if (header().global_ids) {
+      declared += "        " + arrays.declare(vtu::kGlobalIds, "Int64", 1, index_bytes());
+    }
+    if (declared.empty()) return "";
+    const std::string ids =
+        header().global_ids ? fmt::format(" GlobalIds=\"{}\"", vtu::kGlobalIds) : "";
+    return fmt::format("      <PointData{}>\n{}      </PointData>\n", ids, declared);
   }
 
   void put_vertices(std::span<const Point<3>> vertices,
@@ -140,6 +153,13 @@ class VtuWriter : public CheckedMeshWriter {
       append_value(index_bytes());
       output_.append(as_text(std::as_bytes(std::span(input_index_))));
       input_index_ = {};
+    }
+    if (header().global_ids) {
+      append_value(index_bytes());
+      GlobalIds ids(*header().global_ids);
+      for (std::uint64_t vertex = 0; vertex < header().vertices; ++vertex) {
+        append_value(ids.next());
+      }
     }
     append_value(connectivity_bytes());
   }

@@ -15,6 +15,29 @@ std::string_view XmlTag::attribute(std::string_view key) const {
   return found == attributes.end() ? std::string_view() : found->second;
 }
 
+std::string xml_escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
 XmlScanner::Result XmlScanner::next(XmlTag& tag) {
   while (true) {
     position_ = text_.find('<', position_);

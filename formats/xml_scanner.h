@@ -17,6 +17,9 @@ struct XmlTag {
   [[nodiscard]] std::string_view attribute(std::string_view key) const;
 };
 
+/// Text as it stands in XML, between tags or in quotes.
+std::string xml_escaped(std::string_view text);
+
 /// Goes through the tags of an XML text, as far as VTK's headers need it: comments and processing
 /// instructions are passed over, entities stay as they are.
 class XmlScanner {

@@ -36,7 +36,21 @@ CutTree::Place CutTree::make_cut(std::uint32_t tile, int axis, double value) {
   }
   parents_[tile] = place;
   parents_.push_back(place);
+  cuts_above_.push_back(++cuts_above_[tile]);
+  most_cuts_ = std::max(most_cuts_, cuts_above_.back());
   return place;
+}
+
+void CutTree::find_tiles(std::span<const Point<3>> points, std::span<std::uint32_t> tiles) const {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Place place = root_;
+    for (int step = 0; step < most_cuts_; ++step) {
+      const Cut& cut = cuts_[std::max(place, 0)];
+      const Place next = cut.sides[points[i][cut.axis] >= cut.value ? 1 : 0];
+      place = place >= 0 ? next : place;
+    }
+    tiles[i] = tile_at(place);
+  }
 }
 
 void CutTree::cut(std::uint32_t tile, int axis, double value) { make_cut(tile, axis, value); }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "src/geometry/point.h"
@@ -16,14 +17,9 @@ class CutTree {
   /// One tile, number 0, that holds everything. Only the first `dimension` axes are cut.
   explicit CutTree(int dimension) : dimension_(dimension) {}
 
-  [[nodiscard]] std::uint32_t tile_of(const Point<3>& point) const {
-    std::int32_t place = root_;
-    while (place >= 0) {
-      const Cut& cut = cuts_[place];
-      place = cut.sides[point[cut.axis] >= cut.value ? 1 : 0];
-    }
-    return static_cast<std::uint32_t>(-place - 1);
-  }
+  /// The tile of each point. In as many steps for each as for the deepest one: nobody can tell
+  /// where a walk ends.
+  void find_tiles(std::span<const Point<3>> points, std::span<std::uint32_t> tiles) const;
 
   [[nodiscard]] std::uint32_t tiles() const { return tiles_; }
 
@@ -56,6 +52,8 @@ class CutTree {
   void split_sample(std::uint32_t tile, Point<3>* begin, Point<3>* end, std::size_t parts);
 
   int dimension_;
+  int most_cuts_ = 0;               ///< above a tile
+  std::vector<int> cuts_above_{0};  ///< by tile
   Place root_ = place_of(0);
   std::uint32_t tiles_ = 1;
   std::vector<Cut> cuts_;

@@ -288,8 +288,9 @@ RasterOptions Dem::raster_options() const {
 }
 
 /// Takes a tile from the store and makes of it what is written.
-void Dem::finish_tile(std::uint64_t number, std::vector<float>& pixels) {
-  store_->take(number, pixels);
+void Dem::finish_tile(std::uint64_t number, std::span<const std::vector<std::byte>> others,
+                      std::vector<float>& pixels) {
+  store_->take(number, pixels, others);
   const auto row = static_cast<std::uint32_t>(number / tiles_across_ * kRasterTile);
   const auto column = static_cast<std::uint32_t>(number % tiles_across_ * kRasterTile);
   const std::uint32_t rows = std::min(kRasterTile, grid_.rows - row);
@@ -317,25 +318,30 @@ void Dem::finish_tile(std::uint64_t number, std::vector<float>& pixels) {
   pixels_with_data_ += with_data;
 }
 
-void Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress) {
+void Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
+                const OtherParts& others) {
   const std::uint64_t tiles = std::uint64_t{tiles_across_} * tiles_down_;
   const std::size_t slots = options_.threads + 2;
   struct Slot {
     std::uint64_t number = 0;
+    std::vector<std::vector<std::byte>> others;
     std::vector<float> pixels;
   };
   std::vector<Slot> in_work(slots);
   std::uint64_t next = 0;
   std::uint64_t done = 0;
   const auto source = [&](std::size_t slot) {
-    in_work[slot].number = next;
-    return next++ < tiles;
+    if (next == tiles) return false;
+    if (others) in_work[slot].others = others(next);
+    in_work[slot].number = next++;
+    return true;
   };
   const auto take = [&](std::size_t slot) {
-    finish_tile(in_work[slot].number, in_work[slot].pixels);
+    finish_tile(in_work[slot].number, in_work[slot].others, in_work[slot].pixels);
   };
   const auto write_tile = [&](std::size_t slot) {
-    const auto& [number, pixels] = in_work[slot];
+    const std::uint64_t number = in_work[slot].number;
+    const std::vector<float>& pixels = in_work[slot].pixels;
     for (std::size_t b = 0; b < options_.products.size(); ++b) {
       raster.write_tile(
           b, static_cast<std::uint32_t>(number % tiles_across_),

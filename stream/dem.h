@@ -2,6 +2,7 @@
 // Rasters of a triangulated terrain, made while its triangles pass by.
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -74,8 +75,18 @@ class Dem {
   [[nodiscard]] const PixelGrid& grid() const { return grid_; }
   [[nodiscard]] RasterOptions raster_options() const;
 
-  /// Writes all tiles, row by row, and forgets them. `progress` is told the pixels so far.
-  void write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress);
+  /// What another Dem of the same grid has of a tile; called tile by tile, in order.
+  using OtherParts = std::function<std::vector<std::vector<std::byte>>(std::uint64_t tile)>;
+
+  /// Writes all tiles, row by row, and forgets them. `progress` is told the pixels so far. Of other
+  /// Dems of the same grid, which have painted other triangles, `others` gives what they have.
+  void write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
+             const OtherParts& others = nullptr);
+
+  /// For another Dem of the same grid: the tiles that are not empty, in ascending order, and one of
+  /// them, which is forgotten.
+  [[nodiscard]] std::vector<std::uint64_t> tiles() const { return store_->tiles(); }
+  std::vector<std::byte> take_part(std::uint64_t tile) { return store_->take_part(tile); }
 
   /// Pixels of the first band that have a value; after write().
   [[nodiscard]] std::uint64_t pixels_with_data() const { return pixels_with_data_; }
@@ -90,7 +101,8 @@ class Dem {
   void paint_pixels(const Triangle& canonical, const PixelWindow& window, Work& work);
   void paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work);
   void paint_large(const Triangle& canonical, const PixelWindow& whole);
-  void finish_tile(std::uint64_t number, std::vector<float>& pixels);
+  void finish_tile(std::uint64_t number, std::span<const std::vector<std::byte>> others,
+                   std::vector<float>& pixels);
   [[nodiscard]] std::uint64_t tile_number(std::uint32_t row, std::uint32_t column) const;
 
   const DemOptions options_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,7 +23,15 @@ HeightChoice height_choice_by_name(const std::string& name);
 /// the whole identity of the point that has it: its input index becomes that point's (the first
 /// one, if several have that z). For the mean, the height of the vertex's point is replaced; it is
 /// summed in ascending order, so that it does not depend on the order of the points.
+/// `order` has, by place in `heights`, numbers that ascend in the order of the input; none if the
+/// places do.
 void choose_heights(std::span<const Duplicate> duplicates, HeightChoice choice,
-                    std::span<VertexId> input_index, std::span<double> heights);
+                    std::span<VertexId> input_index, std::span<double> heights,
+                    std::span<const std::uint64_t> order = {});
+
+/// Gives each vertex of several points the identity of the first one, by `order`. A base case has
+/// done that if `order` is empty.
+void keep_first(std::span<const Duplicate> duplicates, std::span<VertexId> input_index,
+                std::span<const std::uint64_t> order);
 
 }  // namespace spillway

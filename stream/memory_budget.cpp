@@ -33,7 +33,9 @@ std::uint64_t available_memory() {
 
 }  // namespace
 
-std::uint64_t default_memory_limit() { return std::min(kLargestDefault, available_memory() / 4); }
+std::uint64_t default_memory_limit(unsigned processes) {
+  return std::min(kLargestDefault, available_memory() / 4 / processes);
+}
 
 std::uint64_t parse_memory_size(const std::string& text) {
   double number = 0;

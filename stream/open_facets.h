@@ -14,15 +14,22 @@ namespace spillway {
 template <int D>
 class OpenFacets {
  public:
+  using Facet = std::array<std::uint64_t, D>;
+
   void add(const std::array<std::uint64_t, D + 1>& corners) {
     for (int i = 0; i <= D; ++i) {
       Facet facet;
       std::copy(corners.begin(), corners.begin() + i, facet.begin());
       std::copy(corners.begin() + i + 1, corners.end(), facet.begin() + i);
       std::sort(facet.begin(), facet.end());
-      const auto [place, is_new] = open_.insert(facet);
-      if (!is_new) open_.erase(place);
+      toggle(facet);
     }
+  }
+
+  /// One simplex more at a facet, given by its vertices in ascending order.
+  void toggle(const Facet& facet) {
+    const auto [place, is_new] = open_.insert(facet);
+    if (!is_new) open_.erase(place);
   }
 
   [[nodiscard]] std::uint64_t count() const { return open_.size(); }
@@ -32,7 +39,6 @@ class OpenFacets {
   [[nodiscard]] auto end() const { return open_.end(); }
 
  private:
-  using Facet = std::array<std::uint64_t, D>;
   struct Hash {
     std::size_t operator()(const Facet& facet) const {
       std::uint64_t hash = 0;

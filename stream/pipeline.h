@@ -1,70 +1,12 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "formats/mesh_stream.h"
 #include "formats/scratch_folder.h"
-#include "src/delaunay/divide.h"
-#include "src/delaunay/schedule.h"
-#include "src/geometry/box.h"
-#include "stream/heights.h"
 #include "stream/memory_budget.h"
 #include "stream/point_source.h"
-#include "stream/stage_times.h"
+#include "stream/stream_options.h"
 
 namespace spillway {
-
-/// How `triangulate_stream` does its work. Of these only max_edge and heights change the mesh; the
-/// order of the stream depends on memory and the sizes, never on threads.
-struct StreamOptions {
-  unsigned threads = 1;
-  std::size_t tile_capacity = 0;    ///< points of a tile; 0: chosen by the memory limit
-  std::size_t buffered_points = 0;  ///< waiting in memory before any is spilled; 0: likewise
-  std::size_t leaf_size = 0;        ///< points of a leaf; 0: chosen by D, n and the memory limit
-  DivisionScheme division = DivisionScheme::kLongestExtent;
-  unsigned children = 2;  ///< parts of a tile that are merged at a time
-  HeightChoice heights = HeightChoice::kFirst;
-  std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, in output units
-  bool input_index = false;
-  /// Told the box around all points in x and y, in the coordinates in which the source gives them,
-  /// before the first block is written.
-  std::function<void(const Box<2>&)> extent_known = [](const Box<2>&) {};
-  /// Called when a phase begins ("read", "triangulate"), and when it has ended.
-  std::function<void(const char* phase)> begin_phase = [](const char*) {};
-  std::function<void()> end_phase = [] {};
-  /// Told how many points have been through the phase; called by many threads.
-  std::function<void(std::uint64_t points, std::optional<double> fraction)> progress =
-      [](std::uint64_t, std::optional<double>) {};
-};
-
-/// What a run was like.
-struct StreamFigures {
-  MeshTotals totals;
-  std::uint64_t left_out = 0;  ///< simplices with an edge longer than max_edge
-  unsigned threads = 1;        ///< that were used
-  std::uint64_t tiles = 0;
-  std::uint64_t leaves = 0;
-  std::size_t tile_capacity = 0;
-  std::size_t leaf_size = 0;
-  std::uint64_t spilled_points = 0;  ///< written to the disk, a point written twice counted twice
-  std::uint64_t spilled_bytes = 0;
-  std::uint64_t final_in_leaves = 0;          ///< simplices, infinite ones included
-  std::uint64_t final_in_tiles = 0;           ///< by merges inside tiles
-  std::vector<std::uint64_t> final_by_level;  ///< by merges of tiles, the lowest level first
-  std::uint64_t retriangulated = 0;           ///< points in triangulations of borders
-  std::uint64_t border_simplices = 0;         ///< most that were resident at a time
-  std::uint64_t border_bytes = 0;
-  double read_seconds = 0;         ///< wall time of reading, dealing and spilling
-  double triangulate_seconds = 0;  ///< wall time of all that follows
-  /// Seconds of all threads together, by Stage.
-  std::array<double, kStageNames.size()> stage_seconds{};
-  Task tasks;
-};
 
 /// The pipeline: reads all points of `source`, deals them into tiles, triangulates tile by tile and
 /// writes what is final to `writer`, which is not finished yet. Throws Error if the points do not

@@ -52,8 +52,7 @@ double share_of(const Box<3>& part, const Box<3>& whole) {
 PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
                          PointSourceOptions options)
     : files_(files), options_(std::move(options)), records_(0) {
-  options_.reader.attributes |= options_.filter.needs_attributes();
-  if (options_.filter.bounds) options_.reader.bounds = widened(*options_.filter.bounds);
+  set_reader_options();
   std::vector<std::string> faults;
   for (const std::string& path : paths) {
     try {
@@ -70,12 +69,34 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
                             fmt::join(faults, "\n  ")));
   }
   check_coordinate_systems();
+  relate_inputs();
+}
+
+PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
+                         PointSourceOptions options, const SourceFacts& facts)
+    : files_(files), options_(std::move(options)), records_(0), crs_(facts.crs) {
+  set_reader_options();
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    add_input(paths[i], facts.inputs[i]);
+  }
+  relate_inputs();
+}
+
+SourceFacts PointSource::facts() const {
+  SourceFacts facts;
+  for (const Input& input : inputs_) facts.inputs.push_back(input.facts);
+  facts.crs = crs_;
+  return facts;
+}
+
+/// Finds out what all inputs have in common.
+void PointSource::relate_inputs() {
   find_lattice();
   find_extent();
   find_expected();
   for (Input& input : inputs_) {
     input.as_it_is =
-        !input.header.lattice || (lattice_ && heights_on_lattice_ && input.map.is_identity());
+        !input.facts.header.lattice || (lattice_ && heights_on_lattice_ && input.map.is_identity());
   }
   if (const auto& thinning = options_.thinning) {
     thinning_.emplace(ThinningOptions{.cell = thinning->cell,
@@ -87,12 +108,14 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
   }
 }
 
+void PointSource::set_reader_options() {
+  options_.reader.attributes |= options_.filter.needs_attributes();
+  if (options_.filter.bounds) options_.reader.bounds = widened(*options_.filter.bounds);
+}
+
 void PointSource::inspect(const std::string& path) {
-  Input input;
-  input.path = path;
-  input.reader = open_point_reader(files_, path, options_.reader);
-  input.header = input.reader->header();
-  const PointHeader& header = input.header;
+  std::shared_ptr<PointReader> reader = open_point_reader(files_, path, options_.reader);
+  const PointHeader& header = reader->header();
   if (options_.dimension == 3 && header.coordinates == 2) {
     throw Error(header.name + ": the points have no z: triangulate them with --dim 2");
   }
@@ -103,16 +126,26 @@ void PointSource::inspect(const std::string& path) {
                     "--drop-class and --returns cannot be used with it",
                     header.name, header.format));
   }
-  records_ = records_ && header.count ? std::optional(*records_ + *header.count) : std::nullopt;
   std::error_code unknown;
   const bool opens_again = path != "-" && std::filesystem::is_regular_file(path, unknown);
-  if (opens_again) input.reader.reset();
-  inputs_.push_back(std::move(input));
+  // The n-th records of an input can be told in its pieces only if these know what comes before.
+  const bool in_pieces = opens_again && (options_.filter.every == 1 || header.count);
+  add_input(path, {header, in_pieces ? reader->pieces() : std::nullopt, !opens_again});
+  if (!opens_again) inputs_.back().reader = std::move(reader);
+}
+
+void PointSource::add_input(const std::string& path, SourceFacts::Input facts) {
+  const std::optional<std::uint64_t>& count = facts.header.count;
+  records_ = records_ && count ? std::optional(*records_ + *count) : std::nullopt;
+  Input& input = inputs_.emplace_back();
+  input.path = path;
+  input.facts = std::move(facts);
 }
 
 void PointSource::check_coordinate_systems() {
   std::vector<InputCrs> systems;
-  for (const Input& input : inputs_) systems.push_back({input.header.name, input.header.crs});
+  for (const Input& input : inputs_)
+    systems.push_back({input.facts.header.name, input.facts.header.crs});
   crs_ = common_crs(systems, options_.force_crs, options_.warn);
 }
 
@@ -120,9 +153,9 @@ void PointSource::find_lattice() {
   std::vector<Lattice> lattices;
   std::vector<double> largest;
   for (const Input& input : inputs_) {
-    if (!input.header.lattice) continue;
-    lattices.push_back(*input.header.lattice);
-    largest.push_back(largest_integer(input.header));
+    if (!input.facts.header.lattice) continue;
+    lattices.push_back(*input.facts.header.lattice);
+    largest.push_back(largest_integer(input.facts.header));
   }
   if (lattices.size() == inputs_.size()) {
     if (const auto common = find_common_lattice(lattices, options_.dimension, largest)) {
@@ -137,7 +170,7 @@ void PointSource::find_lattice() {
 /// Says on which lattice the points come, if it is not that of the only input; without one, which
 /// input is the first that does not fit to the first of all.
 void PointSource::explain_lattice() {
-  const PointHeader& first = inputs_.front().header;
+  const PointHeader& first = inputs_.front().facts.header;
   if (lattice_) {
     if (inputs_.size() == 1 && lattice_ == first.lattice) return;
     options_.detail(fmt::format("points come on a lattice of step {}, heights {}",
@@ -147,13 +180,14 @@ void PointSource::explain_lattice() {
   }
   for (const Input& input : inputs_) {
     const bool fits =
-        first.lattice && input.header.lattice &&
-        find_common_lattice(std::vector{*first.lattice, *input.header.lattice}, options_.dimension,
-                            std::vector{largest_integer(first), largest_integer(input.header)});
+        first.lattice && input.facts.header.lattice &&
+        find_common_lattice(
+            std::vector{*first.lattice, *input.facts.header.lattice}, options_.dimension,
+            std::vector{largest_integer(first), largest_integer(input.facts.header)});
     if (fits) continue;
     const bool alone = &input == &inputs_.front();
     options_.detail(fmt::format(
-        "{}: {}, so points come in output coordinates", input.header.name,
+        "{}: {}, so points come in output coordinates", input.facts.header.name,
         alone ? "its axes have no common scale" : "not on one lattice with the first input"));
     return;
   }
@@ -163,8 +197,8 @@ void PointSource::explain_lattice() {
 void PointSource::find_extent() {
   Box<3> extent;
   for (const Input& input : inputs_) {
-    if (!input.header.extent) return;
-    extent.expand(*input.header.extent);
+    if (!input.facts.header.extent) return;
+    extent.expand(*input.facts.header.extent);
   }
   if (options_.filter.bounds) extent = common_part(extent, *options_.filter.bounds);
   if (extent.empty()) return;
@@ -182,9 +216,9 @@ void PointSource::find_expected() {
   if (!records_ || options_.thinning) return;
   double expected = 0;
   for (const Input& input : inputs_) {
-    double count = static_cast<double>(*input.header.count);
-    if (options_.filter.bounds && input.header.extent) {
-      const Box<3>& whole = *input.header.extent;
+    double count = static_cast<double>(*input.facts.header.count);
+    if (options_.filter.bounds && input.facts.header.extent) {
+      const Box<3>& whole = *input.facts.header.extent;
       count *= share_of(common_part(whole, *options_.filter.bounds), whole);
     }
     expected += count;
@@ -201,21 +235,21 @@ std::optional<std::uint64_t> PointSource::count() const {
 
 std::vector<PointHeader> PointSource::headers() const {
   std::vector<PointHeader> headers;
-  for (const Input& input : inputs_) headers.push_back(input.header);
+  for (const Input& input : inputs_) headers.push_back(input.facts.header);
   return headers;
 }
 
 bool PointSource::has_attributes() const {
   return options_.reader.attributes && std::ranges::any_of(inputs_, [](const Input& input) {
-           return input.header.point_format >= 0;
+           return input.facts.header.point_format >= 0;
          });
 }
 
 Point<3> PointSource::placed(const Input& input, const Point<3>& point) const {
-  if (!lattice_) return input.header.lattice->to_world(point);
+  if (!lattice_) return input.facts.header.lattice->to_world(point);
   return {input.map.map(0, point[0]), input.map.map(1, point[1]),
           heights_on_lattice_ ? input.map.map(2, point[2])
-                              : input.header.lattice->to_world(2, point[2])};
+                              : input.facts.header.lattice->to_world(2, point[2])};
 }
 
 bool PointSource::fetch(SourcePiece& piece) {
@@ -241,7 +275,36 @@ bool PointSource::read(PointBlock& block) {
   return block.size() > 0;
 }
 
+void PointSource::begin_piece(std::size_t input, std::optional<std::uint64_t> piece) {
+  if (!by_pieces_ || input != current_) {
+    if (by_pieces_) inputs_[current_].reader.reset();
+    current_ = input;
+    records_before_ = 0;
+    for (std::size_t i = 0; i < input; ++i) {
+      records_before_ += inputs_[i].facts.header.count.value_or(0);
+    }
+  }
+  by_pieces_ = true;
+  first_of_piece_.reset();
+  Input& current = inputs_[current_];
+  if (!current.reader) current.reader = open_point_reader(files_, current.path, options_.reader);
+  if (piece) current.reader->begin_piece(*piece);
+}
+
+/// Where indices cannot count through all inputs, those of a piece begin with 0.
+bool PointSource::fetch_piece(SourcePiece& piece) {
+  Input& input = inputs_[current_];
+  piece.raw.clear();
+  if (!input.reader->fetch(piece.raw)) return false;
+  if (!first_of_piece_) first_of_piece_ = numbers_pieces() ? 0 : piece.raw.first;
+  piece.input = current_;
+  piece.first_index = numbers_pieces() ? records_before_ : 0 - *first_of_piece_;
+  piece.reader = input.reader;
+  return true;
+}
+
 bool PointSource::fetch_input(SourcePiece& piece) {
+  if (by_pieces_) return fetch_piece(piece);
   for (; current_ < inputs_.size(); finish_input()) {
     Input& input = inputs_[current_];
     if (!input.reader) input.reader = open_point_reader(files_, input.path, options_.reader);
@@ -267,6 +330,7 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   counts.read = block.size() + block.withheld;
   if (options_.filter.active()) apply_filter(options_.filter, lattice_, block, counts);
   for (std::uint64_t& index : block.index) index += piece.first_index;
+  if (!piece.counted) return;
   const std::lock_guard lock(counts_mutex_);
   counts_ += counts;
 }
@@ -296,10 +360,10 @@ void PointSource::thin_inputs() {
 
 void PointSource::finish_input() {
   Input& input = inputs_[current_++];
-  options_.detail(fmt::format("{}: {}{}{}, {} records read", input.header.name, input.header.format,
-                              input.header.version.empty() ? "" : " ", input.header.version,
-                              input.records));
-  records_before_ += input.header.count.value_or(input.records);
+  options_.detail(fmt::format(
+      "{}: {}{}{}, {} records read", input.facts.header.name, input.facts.header.format,
+      input.facts.header.version.empty() ? "" : " ", input.facts.header.version, input.records));
+  records_before_ += input.facts.header.count.value_or(input.records);
   input.reader.reset();
 }
 
@@ -323,7 +387,7 @@ std::optional<double> PointSource::fraction_read() const {
   if (!fraction) return fraction;
   if (records_ && *records_ > 0) {
     const double before = static_cast<double>(records_before_);
-    const double now = *fraction * static_cast<double>(*input.header.count);
+    const double now = *fraction * static_cast<double>(*input.facts.header.count);
     return (before + now) / static_cast<double>(*records_);
   }
   return (static_cast<double>(current_) + *fraction) / static_cast<double>(inputs_.size());

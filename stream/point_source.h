@@ -48,7 +48,19 @@ struct SourcePiece {
   RawPoints raw;
   std::size_t input = 0;
   std::uint64_t first_index = 0;              ///< what the piece's numbers are counted from
+  bool counted = true;                        ///< decode() counts what becomes of its records
   std::shared_ptr<const PointReader> reader;  ///< lives until its last piece is decoded
+};
+
+/// What one look at all inputs tells.
+struct SourceFacts {
+  struct Input {
+    PointHeader header;
+    std::optional<std::uint64_t> pieces;  ///< that can be read in any order, filters considered
+    bool opens_once = false;              ///< a pipe: the rest of it is with who looked at it
+  };
+  std::vector<Input> inputs;
+  std::string crs;  ///< of the first input that names a coordinate system
 };
 
 /// All inputs as one: one after the other, each in its own order, filtered, in common coordinates.
@@ -58,6 +70,21 @@ class PointSource {
   /// Reads all headers. Throws Error that names all inputs that cannot be opened or do not have
   /// what the filter looks at, or two of different coordinate systems.
   PointSource(FileSystem& files, const std::vector<std::string>& paths, PointSourceOptions options);
+
+  /// The same inputs, looked at by another process: none is opened before it is read.
+  PointSource(FileSystem& files, const std::vector<std::string>& paths, PointSourceOptions options,
+              const SourceFacts& facts);
+
+  [[nodiscard]] SourceFacts facts() const;
+
+  /// From now on fetch() gives a piece of one input, or one whole input, and then false. Indices
+  /// count through all inputs where all headers tell their counts, else from the piece's beginning.
+  void begin_piece(std::size_t input, std::optional<std::uint64_t> piece);
+
+  /// Whether indices count through all inputs also in pieces.
+  [[nodiscard]] bool numbers_pieces() const { return records_.has_value(); }
+  /// Whether the inputs are thinned, for which fetch() has to read all of them.
+  [[nodiscard]] bool thins() const { return thinning_.has_value(); }
 
   /// Takes the next piece of the inputs, in order; false at the end.
   bool fetch(SourcePiece& piece);
@@ -101,21 +128,24 @@ class PointSource {
  private:
   struct Input {
     std::string path;
-    PointHeader header;
+    SourceFacts::Input facts;
     std::shared_ptr<PointReader> reader;  ///< kept from the start only for what opens just once
     LatticeMap map;                       ///< from its integers to those of lattice_
     bool as_it_is = false;                ///< its coordinates are those of read()
     std::uint64_t records = 0;            ///< fetched so far
   };
 
-  [[nodiscard]] PointReaderOptions reader_options() const;
+  void set_reader_options();
   void inspect(const std::string& path);
+  void add_input(const std::string& path, SourceFacts::Input facts);
+  void relate_inputs();
   void check_coordinate_systems();
   void find_lattice();
   void explain_lattice();
   void find_extent();
   void find_expected();
   bool fetch_input(SourcePiece& piece);
+  bool fetch_piece(SourcePiece& piece);
   void decode_input(SourcePiece& piece, PointBlock& block);
   void thin_inputs();
   void finish_input();
@@ -134,8 +164,10 @@ class PointSource {
   std::string crs_;
   std::optional<Thinning> thinning_;
   bool thinned_ = false;
-  std::uint64_t records_before_ = 0;  ///< of all inputs before the current one
-  mutable std::mutex counts_mutex_;   ///< guards the next one
+  std::uint64_t records_before_ = 0;             ///< of all inputs before the current one
+  bool by_pieces_ = false;                       ///< fetch() ends with the piece that was begun
+  std::optional<std::uint64_t> first_of_piece_;  ///< number of its first record, where that counts
+  mutable std::mutex counts_mutex_;              ///< guards the next one
   PointCounts counts_;
 };
 

@@ -175,7 +175,8 @@ void RasterStore::append(std::uint64_t number, std::span<const float> pixels) {
   tiles_[number].parts.push_back(part);
 }
 
-void RasterStore::take(std::uint64_t number, std::vector<float>& pixels) {
+/// What is provisional stays so.
+void RasterStore::take_as_it_is(std::uint64_t number, std::vector<float>& pixels) {
   std::vector<Part> parts;
   {
     const std::lock_guard lock(mutex_);
@@ -194,7 +195,19 @@ void RasterStore::take(std::uint64_t number, std::vector<float>& pixels) {
     }
   }
   if (pixels.empty()) pixels.assign(tile_floats(), kNothing);
-  for (const Part& part : parts) add_part(part, pixels);
+  for (const Part& part : parts) {
+    std::vector<std::byte> bytes(part.bytes);
+    file_->read(part.offset, bytes);
+    add_part(bytes, fmt::format("{}, byte {}", file_->name(), part.offset), pixels);
+  }
+}
+
+void RasterStore::take(std::uint64_t number, std::vector<float>& pixels,
+                       std::span<const std::vector<std::byte>> others) {
+  take_as_it_is(number, pixels);
+  for (const std::vector<std::byte>& part : others) {
+    add_part(part, "pixels from another rank", pixels);
+  }
   for (std::size_t b = 0; b < bands_.size(); ++b) {
     if (bands_[b] != PixelRule::kPreferred) continue;
     for (float& pixel : std::span(pixels).subspan(b * kTilePixels, kTilePixels)) {
@@ -203,14 +216,28 @@ void RasterStore::take(std::uint64_t number, std::vector<float>& pixels) {
   }
 }
 
+std::vector<std::byte> RasterStore::take_part(std::uint64_t number) {
+  std::vector<float> pixels;
+  take_as_it_is(number, pixels);
+  return encode(pixels, runs_of(pixels));
+}
+
+std::vector<std::uint64_t> RasterStore::tiles() const {
+  std::vector<std::uint64_t> numbers;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [number, tile] : tiles_) numbers.push_back(number);
+  }
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
 /// Adds what one part has to a tile.
-void RasterStore::add_part(const Part& part, std::vector<float>& pixels) const {
-  std::vector<std::byte> bytes(part.bytes);
-  file_->read(part.offset, bytes);
-  const std::string where = fmt::format("{}, byte {}", file_->name(), part.offset);
-  const BlockHead head = decode_block_head(std::span(bytes).first<kBlockHeadSize>(), where);
+void RasterStore::add_part(std::span<const std::byte> part, const std::string& where,
+                           std::vector<float>& pixels) const {
+  const BlockHead head = decode_block_head(part.first<kBlockHeadSize>(), where);
   std::vector<std::byte> content;
-  decode_block(head, std::span(bytes).subspan(kBlockHeadSize), content, where);
+  decode_block(head, part.subspan(kBlockHeadSize), content, where);
   const auto count = load<std::uint32_t>(content.data());
   const std::byte* run = content.data() + sizeof(count);
   const std::byte* value = run + count * sizeof(Run);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -80,9 +81,17 @@ class RasterStore {
     std::size_t next_ = 0;  ///< to be let go of
   };
 
-  /// Takes a tile out of the store, all parts put together; nothing but not-a-number if it has
-  /// none. When no hand holds it. May be called by many threads.
-  void take(std::uint64_t number, std::vector<float>& pixels);
+  /// Takes a tile out of the store, all parts put together, also `others`, which take_part() of
+  /// stores like this one has given; nothing but not-a-number if it has none. When no hand holds
+  /// it. May be called by many threads.
+  void take(std::uint64_t number, std::vector<float>& pixels,
+            std::span<const std::vector<std::byte>> others = {});
+
+  /// Takes a tile out of the store, for another one.
+  std::vector<std::byte> take_part(std::uint64_t number);
+
+  /// The tiles that have been written to, in ascending order.
+  [[nodiscard]] std::vector<std::uint64_t> tiles() const;
 
   [[nodiscard]] std::uint64_t spilled_bytes() const;
 
@@ -103,7 +112,9 @@ class RasterStore {
   std::vector<float> empty_tile(std::unique_lock<std::mutex>& lock);
   [[nodiscard]] std::size_t tile_floats() const { return bands_.size() * kTilePixels; }
   void append(std::uint64_t number, std::span<const float> pixels);
-  void add_part(const Part& part, std::vector<float>& pixels) const;
+  void take_as_it_is(std::uint64_t number, std::vector<float>& pixels);
+  void add_part(std::span<const std::byte> part, const std::string& where,
+                std::vector<float>& pixels) const;
 
   const std::vector<PixelRule> bands_;
   const std::size_t most_tiles_;

@@ -68,7 +68,7 @@ void Sequencer<D>::write(Waiting&& waiting) {
   MeshBlock& mesh = waiting.mesh;
   mesh.imported.reserve(waiting.imported.size());
   for (const StreamPlace& place : waiting.imported) {
-    mesh.imported.push_back(first_vertex_[place.block.slot][place.block.block] + place.vertex);
+    mesh.imported.push_back(number_of_written(place));
   }
   if (counts_facets_) {
     for (std::size_t i = 0; i < waiting.corners.size(); i += D + 1) {
@@ -84,6 +84,17 @@ void Sequencer<D>::write(Waiting&& waiting) {
   simplices_ += waiting.simplices;
   const bool empty = waiting.vertices == 0 && waiting.simplices == 0 && mesh.imported.empty();
   if (!empty) writer_.write(std::move(mesh));
+}
+
+template <int D>
+std::uint64_t Sequencer<D>::number_of_written(const StreamPlace& place) const {
+  return first_vertex_[place.block.slot][place.block.block] + place.vertex;
+}
+
+template <int D>
+std::uint64_t Sequencer<D>::number_of(const StreamPlace& place) const {
+  const std::lock_guard lock(mutex_);
+  return number_of_written(place);
 }
 
 template <int D>

@@ -36,6 +36,12 @@ class Sequencer {
   /// Ends all waiting, now and later, for a run that has failed.
   void give_up();
 
+  /// The number that a vertex has got in the stream; its block has been written.
+  [[nodiscard]] std::uint64_t number_of(const StreamPlace& place) const;
+
+  /// The facets of one simplex only, where simplices are left out; once all blocks are written.
+  [[nodiscard]] const OpenFacets<D>& open_facets() const { return open_facets_; }
+
   /// Vertices, simplices, hash and, where simplices were left out, hull facets of all blocks.
   [[nodiscard]] MeshTotals totals() const;
 
@@ -51,6 +57,7 @@ class Sequencer {
 
   void write_what_is_due();
   void write(Waiting&& waiting);
+  [[nodiscard]] std::uint64_t number_of_written(const StreamPlace& place) const;
 
   MeshStreamWriter& writer_;
   StageTimes& times_;

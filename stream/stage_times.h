@@ -10,6 +10,7 @@ namespace spillway {
 /// Where the threads of a run spend their time.
 enum class Stage {
   kRead,      ///< decoding the input
+  kExchange,  ///< moving points between ranks: finding each one's, encoding, sending, waiting
   kDeal,      ///< finding each point's tile
   kSpill,     ///< encoding points and writing them to the scratch files
   kLoad,      ///< reading and decoding tiles
@@ -21,8 +22,9 @@ enum class Stage {
   kWrite,     ///< the output
 };
 
-inline constexpr std::array kStageNames = {"read",   "deal",     "spill", "load",   "divide",
-                                           "leaves", "finality", "merge", "encode", "write"};
+inline constexpr std::array kStageNames = {"read",  "exchange", "deal",   "spill",
+                                           "load",  "divide",   "leaves", "finality",
+                                           "merge", "encode",   "write"};
 
 /// Seconds of all threads together, by stage; added to by many threads at once.
 class StageTimes {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats/point_reader.h"
+#include "src/delaunay/working_memory.h"
 #include "src/geometry/point.h"
 #include "stream/point_buffer.h"
 
@@ -22,9 +23,9 @@ struct TilePoints {
   std::vector<std::uint64_t> index;  ///< one a point, or none
 
   void resize(std::size_t count, bool with_index) {
-    points.resize(count);
-    if constexpr (D == 2) heights.resize(count);
-    if (with_index) index.resize(count);
+    resize(points, count);
+    if constexpr (D == 2) resize(heights, count);
+    if (with_index) resize(index, count);
   }
   /// Puts a point into a place.
   void set(std::size_t place, const Point<3>& point) {
@@ -34,6 +35,14 @@ struct TilePoints {
     } else {
       points[place] = point;
     }
+  }
+
+ private:
+  template <typename T>
+  static void resize(std::vector<T>& values, std::size_t count) {
+    values.reserve(count);
+    ask_for_huge_pages(values.data(), count * sizeof(T));
+    values.resize(count);
   }
 };
 
@@ -48,8 +57,21 @@ struct TileBlock {
 /// offsets are counted from the beginning of `bytes`.
 std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes);
 
+/// Appends one block of points, at most PointBuffer::kPiece. `index` has one entry a point, or
+/// none.
+void append_points(std::vector<std::byte>& bytes, std::span<const Point<3>> points,
+                   std::span<const std::uint64_t> index);
+
+/// Appends any number of points, as blocks one after the other.
+void append_all_points(std::vector<std::byte>& bytes, std::span<const Point<3>> points,
+                       std::span<const std::uint64_t> index);
+
 /// Replaces `points` by those of one block, given by its bytes. Throws Error, beginning with
 /// `where`, if the block is corrupt.
 void decode_points(std::span<const std::byte> block, const std::string& where, PointBlock& points);
+
+/// Likewise, by what append_all_points() wrote.
+void decode_all_points(std::span<const std::byte> blocks, const std::string& where,
+                       PointBlock& points);
 
 }  // namespace spillway

@@ -60,8 +60,8 @@ void TileTree::fill(const PointFeed& source) {
 
 void TileTree::fill(const std::function<bool(PointBlock&)>& source) {
   fill({.fetch = [&](SourcePiece& piece) { return source(piece.raw.decoded); },
-        .decode =
-            [](SourcePiece& piece, PointBlock& block) { std::swap(piece.raw.decoded, block); }});
+        .decode = [](SourcePiece& piece,
+                     PointBlock& block) { std::swap(piece.raw.decoded, block); }});
 }
 
 void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
@@ -92,33 +92,7 @@ void TileTree::deal(Batch& batch) const {
     const std::lock_guard lock(cuts_mutex_);
     batch.dealt_by = cuts_;
   }
-  const CutTree& cuts = *batch.dealt_by;
-  const std::vector<Point<3>>& points = batch.points.points;
-  const std::vector<std::uint64_t>& index = batch.points.index;
-  batch.tile.resize(points.size());
-  std::vector<std::size_t> next(cuts.tiles() + 1);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    batch.tile[i] = cuts.tile_of(points[i]);
-    ++next[batch.tile[i] + 1];
-  }
-  batch.runs.clear();
-  std::vector<std::uint32_t> run_of_tile(cuts.tiles());
-  for (std::uint32_t t = 0; t < cuts.tiles(); ++t) {
-    if (next[t + 1] > 0) {
-      run_of_tile[t] = static_cast<std::uint32_t>(batch.runs.size());
-      batch.runs.push_back({t, next[t], next[t] + next[t + 1], {}});
-    }
-    next[t + 1] += next[t];
-  }
-  batch.dealt.points.resize(points.size());
-  batch.dealt.index.resize(index.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t tile = batch.tile[i];
-    const std::size_t place = next[tile]++;
-    batch.dealt.points[place] = points[i];
-    batch.runs[run_of_tile[tile]].box.expand(points[i]);
-    if (!index.empty()) batch.dealt.index[place] = index[i];
-  }
+  batch.dealt.deal(*batch.dealt_by, batch.points);
 }
 
 /// Puts a batch into the tiles' buffers, and takes out what has to go to the disk.
@@ -133,14 +107,14 @@ void TileTree::append(Batch& batch) {
 }
 
 void TileTree::append_runs(Batch& batch) {
-  for (const Run& run : batch.runs) {
+  for (const PointRun& run : batch.dealt.runs) {
     Tile& tile = tiles_[run.tile];
     const std::size_t count = run.end - run.begin;
-    const auto points = std::span(batch.dealt.points).subspan(run.begin, count);
+    const auto points = std::span(batch.dealt.points.points).subspan(run.begin, count);
     const auto index =
-        batch.dealt.index.empty()
+        batch.dealt.points.index.empty()
             ? std::span<const std::uint64_t>()
-            : std::span<const std::uint64_t>(batch.dealt.index).subspan(run.begin, count);
+            : std::span<const std::uint64_t>(batch.dealt.points.index).subspan(run.begin, count);
     for (; tile.next_sample < tile.points + count;) {
       tile.sample.push_back(points[tile.next_sample - tile.points]);
       // Jittered: rows of grids and scan lines have a period.

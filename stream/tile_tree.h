@@ -13,6 +13,7 @@
 #include "formats/scratch_folder.h"
 #include "src/geometry/box.h"
 #include "stream/cut_tree.h"
+#include "stream/deal.h"
 #include "stream/point_buffer.h"
 #include "stream/point_source.h"
 #include "stream/stage_times.h"
@@ -93,13 +94,6 @@ class TileTree {
   [[nodiscard]] std::uint64_t bytes_written() const { return bytes_written_; }
 
  private:
-  /// Points on their way to one tile.
-  struct Run {
-    std::uint32_t tile = 0;
-    std::size_t begin = 0;  ///< of Batch::dealt
-    std::size_t end = 0;
-    Box<3> box;
-  };
   /// Points on their way from one tile's buffer to its file.
   struct Spill {
     std::uint32_t tile = 0;
@@ -110,13 +104,11 @@ class TileTree {
   /// What goes through the pipeline at a time.
   struct Batch {
     PointBlock points;
-    SourcePiece piece;                ///< as it came from the source
-    std::vector<std::byte> stored;    ///< the points as read back from a file
-    std::string where;                ///< in which file
-    std::vector<std::uint32_t> tile;  ///< by point
-    std::shared_ptr<const CutTree> dealt_by;  ///< the cuts that `runs` come from
-    PointBlock dealt;                         ///< the points, grouped by tile
-    std::vector<Run> runs;
+    SourcePiece piece;                        ///< as it came from the source
+    std::vector<std::byte> stored;            ///< the points as read back from a file
+    std::string where;                        ///< in which file
+    std::shared_ptr<const CutTree> dealt_by;  ///< the cuts that `dealt` comes from
+    DealtPoints dealt;
     std::vector<Spill> spills;
   };
   struct Tile {

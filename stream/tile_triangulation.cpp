@@ -38,15 +38,26 @@ Box<D> whole_space() {
   return box;
 }
 
-/// Counts what has been settled, passes on what is final, and returns the border.
+template <int D>
+void count_settled(const Settled<D>& settled, StreamCounts& counts) {
+  counts.hull_facets += settled.hull_facets;
+  counts.left_out += settled.left_out;
+  counts.borders.add(settled.border.simplices.size(), settled.border.bytes());
+}
+
+/// Passes on what is final, and returns the border.
+template <int D>
+Border<D> submit(Settled<D> settled, BlockPlace block, Sequencer<D>& sequencer) {
+  sequencer.submit(block, std::move(settled.mesh), std::move(settled.imported), settled.hash);
+  return std::move(settled.border);
+}
+
+/// The same, and counts what has been settled.
 template <int D>
 Border<D> pass_on(Settled<D> settled, BlockPlace block, Sequencer<D>& sequencer,
                   StreamCounts& counts) {
-  counts.hull_facets += settled.hull_facets;
-  counts.left_out += settled.left_out;
-  sequencer.submit(block, std::move(settled.mesh), std::move(settled.imported), settled.hash);
-  counts.borders.add(settled.border.simplices.size(), settled.border.bytes());
-  return std::move(settled.border);
+  count_settled(settled, counts);
+  return submit(std::move(settled), block, sequencer);
 }
 
 /// merge_borders() of borders that are counted as resident; its result is not yet.
@@ -76,6 +87,11 @@ Border<D> pass_up(Border<D> border, BlockPlace block, Sequencer<D>& sequencer,
   return border;
 }
 
+template <int D>
+Fate final_fate(const ConflictRegion<D>& region) {
+  return region.infinite() ? Fate::kFinalFacet : Fate::kFinal;
+}
+
 /// Which simplices of a merged border are final: nothing of `trees` may change them.
 template <int D, typename MayBeChanged>
 Settled<D> settle_merged(const MergedBorder<D>& merged, BlockPlace block,
@@ -85,20 +101,15 @@ Settled<D> settle_merged(const MergedBorder<D>& merged, BlockPlace block,
   const Border<D>& border = merged.border;
   std::vector<Point<D>> positions(border.vertices.size());
   for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = border.vertices[v].position;
-  std::vector<std::uint8_t> is_final(border.simplices.size());
-  parallel_for(is_final.size() - merged.tested, kGrain,
+  std::vector<Fate> fates(border.simplices.size(), Fate::kKept);
+  parallel_for(fates.size() - merged.tested, kGrain,
                [&](std::size_t, std::size_t begin, std::size_t end) {
                  for (std::size_t s = merged.tested + begin; s < merged.tested + end; ++s) {
                    const ConflictRegion<D> region(border.simplices[s], positions);
-                   is_final[s] = may_be_changed(region) ? 0 : 1;
+                   if (!may_be_changed(region)) fates[s] = final_fate(region);
                  }
                });
-  return settle<D>({.dimension = border.dimension,
-                    .block = block,
-                    .simplices = border.simplices,
-                    .is_final = is_final,
-                    .vertices = border.vertices},
-                   output);
+  return settle<D>(MergeToSettle<D>{.block = block, .merged = border, .fates = fates}, output);
 }
 
 template <int D>
@@ -207,33 +218,25 @@ class TileRun {
     counts_.duplicates += leaf.duplicates.size();
     ++counts_.leaves;
     if constexpr (D == 2) {
-      choose_heights(leaf.duplicates, options_.heights, input_index_, tile_.heights);
+      choose_heights(leaf.duplicates, options_.heights, input_index_, tile_.heights, tile_.index);
+    } else {
+      keep_first(leaf.duplicates, input_index_, tile_.index);
     }
     if (leaf.dimension < D) {
       return pass_up(open_border(part, leaf), BlockPlace{slot_, part.block}, sequencer_, counts_);
     }
-    Settled<D> settled = settle_leaf(node, std::move(leaf.simplices), points);
+    Settled<D> settled = settle_leaf(node, std::exchange(leaf.simplices, {}));
     counts_.final_in_leaves += settled.final_simplices;
     return pass_on(std::move(settled), BlockPlace{slot_, part.block}, sequencer_, counts_);
   }
 
-  Settled<D> settle_leaf(const Node& node, std::vector<Simplex<D>> leaf,
-                         std::span<const Point<D>> points) {
+  Settled<D> settle_leaf(const Node& node, const std::vector<Simplex<D>>& simplices) {
     const StageTimer timer(counts_.times, Stage::kFinality);
-    std::vector<std::array<VertexId, D + 1>> simplices(leaf.size());
-    for (std::size_t s = 0; s < simplices.size(); ++s) {
-      simplices[s] = leaf[s].vertices;
-      for (VertexId& v : simplices[s]) {
-        if (v != kInfiniteVertex) v -= node.part->begin;
-      }
-    }
-    leaf = {};
-    return settle<D>({.dimension = D,
-                      .block = {slot_, node.part->block},
-                      .simplices = simplices,
-                      .is_final = final_in_leaf(node, points, simplices),
-                      .vertices = leaf_vertices(*node.part)},
-                     options_.output);
+    LeafToSettle<D> leaf = leaf_of(*node.part);
+    leaf.simplices = simplices;
+    const std::vector<Fate> fates = fates_in_leaf(node, leaf);
+    leaf.fates = fates;
+    return settle<D>(leaf, options_.output);
   }
 
   BaseCase<D> base_case(const Part<D>& part, std::span<const Point<D>> points) {
@@ -244,47 +247,60 @@ class TileRun {
          .first_vertex = part.begin});
   }
 
-  [[nodiscard]] std::vector<BorderVertex<D>> leaf_vertices(const Part<D>& part) const {
-    std::vector<BorderVertex<D>> vertices(part.size());
-    for (std::size_t v = 0; v < vertices.size(); ++v) {
-      vertices[v].position = tile_.points[part.begin + v];
-      const VertexId input = input_index_[part.begin + v];
-      if constexpr (D == 2) vertices[v].height = tile_.heights[input];
-      if (!tile_.index.empty()) vertices[v].input_index = tile_.index[input];
-    }
-    return vertices;
+  /// What can be settled of a leaf, but for its simplices.
+  [[nodiscard]] LeafToSettle<D> leaf_of(const Part<D>& part) const {
+    LeafToSettle<D> leaf;
+    leaf.block = {slot_, part.block};
+    leaf.first_vertex = part.begin;
+    leaf.points = std::span(tile_.points).subspan(part.begin, part.size());
+    leaf.input_index = std::span(input_index_).subspan(part.begin, part.size());
+    if constexpr (D == 2) leaf.heights = tile_.heights;
+    leaf.index = tile_.index;
+    return leaf;
   }
 
   /// A leaf without simplices: all its distinct points.
-  [[nodiscard]] Border<D> open_border(const Part<D>& part, const BaseCase<D>& leaf) const {
-    const std::vector<BorderVertex<D>> vertices = leaf_vertices(part);
+  [[nodiscard]] Border<D> open_border(const Part<D>& part, const BaseCase<D>& base_case) const {
+    const LeafToSettle<D> leaf = leaf_of(part);
     Border<D> border;
-    border.dimension = leaf.dimension;
-    auto duplicate = leaf.duplicates.begin();
-    for (std::size_t v = 0; v < vertices.size(); ++v) {
-      if (duplicate != leaf.duplicates.end() && duplicate->dropped == part.begin + v) {
+    border.dimension = base_case.dimension;
+    auto duplicate = base_case.duplicates.begin();
+    for (VertexId v = 0; v < part.size(); ++v) {
+      if (duplicate != base_case.duplicates.end() && duplicate->dropped == part.begin + v) {
         ++duplicate;
       } else {
-        border.vertices.push_back(vertices[v]);
+        border.vertices.push_back(leaf.vertex(v));
       }
     }
     return border;
   }
 
-  [[nodiscard]] std::vector<std::uint8_t> final_in_leaf(
-      const Node& node, std::span<const Point<D>> points,
-      const std::vector<std::array<VertexId, D + 1>>& simplices) const {
+  [[nodiscard]] std::vector<Fate> fates_in_leaf(const Node& node,
+                                                const LeafToSettle<D>& leaf) const {
     std::vector<const Part<D>*> siblings = siblings_up(node);
     Box<D> cell = whole_space<D>();
     for (const Part<D>* part : siblings) cut_back(cell, node.part->box, part->box);
     for (const TileNode<D>* tile : outside_) cut_back(cell, node.part->box, tile->box);
     const auto may_be_changed = change_test(std::move(siblings));
-    std::vector<std::uint8_t> is_final(simplices.size());
-    for (std::size_t s = 0; s < simplices.size(); ++s) {
-      const ConflictRegion<D> region(simplices[s], points);
-      is_final[s] = region.inside(cell) || !may_be_changed(region) ? 1 : 0;
+    std::vector<Fate> fates(leaf.simplex_count(), Fate::kFinal);
+    SimplexBatch<D> batch{};
+    for (std::size_t begin = 0; begin < fates.size(); begin += batch.kSize) {
+      const std::size_t count = std::min(batch.kSize, fates.size() - begin);
+      for (std::size_t s = 0; s < count; ++s) {
+        // An infinite one becomes a point, of which the test of a batch knows nothing.
+        const bool infinite = leaf.simplices[begin + s].infinite();
+        const std::array<VertexId, D + 1> corners = leaf.finite_simplex(begin + s);
+        batch.set(s, [&](int i) { return leaf.points[infinite ? 0 : corners[i]]; });
+      }
+      const auto inside = well_inside<D>(batch, cell);
+      for (std::size_t s = 0; s < count; ++s) {
+        if (inside[s]) continue;
+        const ConflictRegion<D> region(leaf.simplex(begin + s), leaf.points);
+        const bool is_final = region.inside(cell) || !may_be_changed(region);
+        fates[begin + s] = is_final ? final_fate(region) : Fate::kKept;
+      }
     }
-    return is_final;
+    return fates;
   }
 
   Border<D> merge_node(const Node& node) {
@@ -331,25 +347,36 @@ Border<D> triangulate_tile(TilePoints<D> tile, const Outside<D>& outside,
 }
 
 template <int D>
+Settled<D> merge_borders_of(std::span<Border<D>> children, const TileNode<D>& node,
+                            const Outside<D>& outside, const TileOptions& options,
+                            StreamCounts& counts, BlockPlace place, Task& task) {
+  std::vector<const TileNode<D>*> trees;
+  for (const TileNode<D>& child : node.children) trees.push_back(&child);
+  MergedBorder<D> merged = merge_resident(children, trees, *options.budget, counts, task);
+  Settled<D> settled;
+  if (merged.border.open()) {
+    settled.border = std::move(merged.border);
+  } else {
+    const auto may_be_changed = [&](const ConflictRegion<D>& region) {
+      return std::any_of(outside.begin(), outside.end(),
+                         [&](const TileNode<D>* tile) { return region.may_meet_leaf(*tile); });
+    };
+    settled = settle_merged(merged, place, options.output, may_be_changed, counts.times);
+  }
+  count_settled(settled, counts);
+  return settled;
+}
+
+template <int D>
 Border<D> merge_tiles(std::span<Border<D>> children, const TileNode<D>& node,
                       const Outside<D>& outside, const TileOptions& options,
                       Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t slot,
                       std::uint64_t& final_simplices, Task& task) {
-  const BlockPlace block{slot, 0};
+  const BlockPlace place{slot, 0};
   sequencer.open_slot(slot, 1);
-  std::vector<const TileNode<D>*> trees;
-  for (const TileNode<D>& child : node.children) trees.push_back(&child);
-  MergedBorder<D> merged = merge_resident(children, trees, *options.budget, counts, task);
-  if (merged.border.open()) {
-    return pass_up(std::move(merged.border), block, sequencer, counts);
-  }
-  const auto may_be_changed = [&](const ConflictRegion<D>& region) {
-    return std::any_of(outside.begin(), outside.end(),
-                       [&](const TileNode<D>* tile) { return region.may_meet_leaf(*tile); });
-  };
-  Settled<D> settled = settle_merged(merged, block, options.output, may_be_changed, counts.times);
+  Settled<D> settled = merge_borders_of(children, node, outside, options, counts, place, task);
   final_simplices += settled.final_simplices;
-  return pass_on(std::move(settled), block, sequencer, counts);
+  return submit(std::move(settled), place, sequencer);
 }
 
 template Border<2> triangulate_tile(TilePoints<2>, const Outside<2>&, const TileOptions&,
@@ -358,6 +385,10 @@ template Border<2> triangulate_tile(TilePoints<2>, const Outside<2>&, const Tile
 template Border<3> triangulate_tile(TilePoints<3>, const Outside<3>&, const TileOptions&,
                                     Sequencer<3>&, StreamCounts&, std::uint32_t,
                                     const std::function<void()>&, Task&);
+template Settled<2> merge_borders_of(std::span<Border<2>>, const TileNode<2>&, const Outside<2>&,
+                                     const TileOptions&, StreamCounts&, BlockPlace, Task&);
+template Settled<3> merge_borders_of(std::span<Border<3>>, const TileNode<3>&, const Outside<3>&,
+                                     const TileOptions&, StreamCounts&, BlockPlace, Task&);
 template Border<2> merge_tiles(std::span<Border<2>>, const TileNode<2>&, const Outside<2>&,
                                const TileOptions&, Sequencer<2>&, StreamCounts&, std::uint32_t,
                                std::uint64_t&, Task&);

@@ -83,8 +83,15 @@ Border<D> triangulate_tile(TilePoints<D> tile, const Outside<D>& outside,
                            StreamCounts& counts, std::uint32_t slot,
                            const std::function<void()>& progress, Task& task);
 
-/// Merges the borders of a node of the tree over tiles and settles what is final now, as the one
-/// block of `slot`. Adds the number of simplices that became final to `final_simplices`.
+/// Merges the borders of a node of the tree over tiles and settles what is final now, as block
+/// `place`; counts it, but writes nothing.
+template <int D>
+Settled<D> merge_borders_of(std::span<Border<D>> children, const TileNode<D>& node,
+                            const Outside<D>& outside, const TileOptions& options,
+                            StreamCounts& counts, BlockPlace place, Task& task);
+
+/// The same, and sends what is final to `sequencer`, as the one block of `slot`. Adds the number of
+/// simplices that became final to `final_simplices`.
 template <int D>
 Border<D> merge_tiles(std::span<Border<D>> children, const TileNode<D>& node,
                       const Outside<D>& outside, const TileOptions& options,

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "formats/file_system.h"
+#include "src/distributed/ranks.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "tools/child_process.h"
@@ -106,6 +107,7 @@ class Batch {
 
   int run() {
     const auto start = Clock::now();
+    distributed::forget_launch();  // each job is a process on its own
     prepare();
     progress_.begin("batch", "jobs");
     while (!waiting_.empty() || !running_.empty()) {

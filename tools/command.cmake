@@ -36,6 +36,8 @@ add_library(spillway_command STATIC
   space_scene.cpp
   terrain_input.cpp
   text_output.cpp
+  rank_job.cpp
+  rank_statistics.cpp
   statistics.cpp
   suggestion.cpp
   triangulate.cpp
@@ -46,7 +48,7 @@ target_link_libraries(spillway_command
   PRIVATE spillway_generators spillway_checker fmt::fmt)
 
 add_executable(spillway main.cpp)
-target_link_libraries(spillway PRIVATE spillway_command fmt::fmt)
+target_link_libraries(spillway PRIVATE spillway_command)
 
 # The man page and the shell completions come out of the command itself.
 set(SPILLWAY_MANUAL ${CMAKE_CURRENT_BINARY_DIR}/spillway.1)

@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "src/distributed/ranks.h"
 #include "src/error.h"
 #include "tools/command_options.h"
 #include "tools/option_tree.h"
+#include "tools/rank_job.h"
 #include "tools/suggestion.h"
 #include "tools/text_output.h"
 
@@ -83,7 +85,15 @@ class CommandTree {
   /// Does what the parsed command line says.
   [[nodiscard]] int run() const {
     for (const Subcommand& subcommand : subcommands_) {
-      if (subcommand.app->parsed()) return subcommand.run();
+      if (!subcommand.app->parsed()) continue;
+      if (distributed::launch().ranks > 1 && !subcommand.over_ranks) {
+        throw UsageError(fmt::format("{} is done by one process: start it without mpirun",
+                                     subcommand.app->get_name()));
+      }
+      if (distributed::launch().ranks > 1) {
+        check_same_options(subcommand.app->get_name() + '\n' + subcommand.app->config_to_str());
+      }
+      return subcommand.run();
     }
     throw UsageError("no subcommand given");
   }
@@ -115,10 +125,10 @@ int run_command(int argc, const char* const* argv) {
   try {
     root.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    write_text("-", root.help());
+    if (is_first_rank()) write_text("-", root.help());
     return kExitDone;
   } catch (const CLI::CallForVersion&) {
-    write_text("-", root.version() + "\n");
+    if (is_first_rank()) write_text("-", root.version() + "\n");
     return kExitDone;
   } catch (const CLI::ParseError& error) {
     throw usage_error(root, error);

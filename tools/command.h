@@ -16,6 +16,7 @@ inline constexpr int kExitClosedPipe = 141;  ///< 128 + SIGPIPE, as shells repor
 struct Subcommand {
   CLI::App* app;
   std::function<int()> run;  ///< returns the exit code
+  bool over_ranks = false;   ///< works together with the other processes of mpirun
 };
 
 /// One for each subcommand: adds it to the tree. Each is defined in the file of its name.

@@ -11,8 +11,10 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "src/distributed/ranks.h"
 #include "src/error.h"
 #include "stream/memory_budget.h"
+#include "tools/rank_job.h"
 
 namespace spillway {
 namespace {
@@ -56,7 +58,8 @@ void add_memory_options(CLI::App& app, MemoryOptions& options) {
 }
 
 std::uint64_t memory_limit(const MemoryOptions& options) {
-  return options.limit.empty() ? default_memory_limit() : parse_size("--memory", options.limit);
+  if (!options.limit.empty()) return parse_size("--memory", options.limit);
+  return default_memory_limit(static_cast<unsigned>(distributed::launch().ranks_here));
 }
 
 std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options) {
@@ -89,6 +92,7 @@ void add_report_options(CLI::App& app, ReportOptions& options) {
 }
 
 Progress make_progress(const ReportOptions& options, bool reads_pipe) {
+  if (!is_first_rank()) return {ProgressStyle::kNone, true, false};
   ProgressStyle style = ProgressStyle::kPlain;
   if (options.quiet || options.progress == "none") {
     style = ProgressStyle::kNone;

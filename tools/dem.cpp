@@ -16,10 +16,12 @@
 #include "src/parallel/parallel.h"
 #include "stream/dem_writer.h"
 #include "stream/memory_plan.h"
+#include "stream/ranks/raster_merge.h"
 #include "tools/command.h"
 #include "tools/dem_options.h"
 #include "tools/json_text.h"
 #include "tools/output_check.h"
+#include "tools/rank_job.h"
 #include "tools/statistics.h"
 #include "tools/terrain_input.h"
 #include "tools/text_output.h"
@@ -67,9 +69,14 @@ class Run : public TerrainUse {
                  {.budget = budget_,
                   .scratch = *scratch_,
                   .progress = progress_,
-                  .threads = dem_options_.threads},
+                  .threads = dem_options_.threads,
+                  .ranks = ranks_},
                  statistics_);
-    write();
+    if (is_first_rank()) {
+      write();
+    } else {
+      with_threads(dem_options_.threads, [&] { send_raster(*dem_, *ranks_); });
+    }
     return kExitDone;
   }
 
@@ -89,6 +96,7 @@ class Run : public TerrainUse {
   void extent_known(const Box<2>& extent) override {
     if (wants_extent()) dem_->begin(extent);
   }
+  void add_merged(const MergedPart& part) override { paint_merged(*dem_, part); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -114,10 +122,15 @@ class Run : public TerrainUse {
     progress_.begin("write", "pixels");
     RasterFile file(std::move(raster));
     const double pixels = static_cast<double>(dem.grid().columns) * dem.grid().rows;
+    const auto progress = [&](std::uint64_t done) {
+      progress_.update(done, std::min(1.0, static_cast<double>(done) / pixels));
+    };
     with_threads(dem_options_.threads, [&] {
-      dem.write(file.raster(), [&](std::uint64_t done) {
-        progress_.update(done, std::min(1.0, static_cast<double>(done) / pixels));
-      });
+      if (ranks_ != nullptr) {
+        write_raster_of_ranks(dem, file.raster(), progress, *ranks_);
+      } else {
+        dem.write(file.raster(), progress);
+      }
     });
     statistics_.output_bytes = file.finish();
     statistics_.write_seconds = progress_.end();
@@ -163,6 +176,7 @@ class Run : public TerrainUse {
   DemOptions dem_options_;
   std::uint64_t limit_;
   MemoryBudget budget_;
+  const distributed::Ranks* const ranks_ = join_ranks();
   std::unique_ptr<ScratchFolder> scratch_;
   Progress progress_;
   std::string crs_;
@@ -184,8 +198,10 @@ int run(const DemCommandOptions& options) {
   if (options.output == options.stats_path) {
     throw UsageError("the raster and --stats cannot go to the same place: " + options.output);
   }
-  check_can_create(disk(), options.output);
-  if (!options.stats_path.empty()) check_can_create(disk(), options.stats_path);
+  if (is_first_rank()) {
+    check_can_create(disk(), options.output);
+    if (!options.stats_path.empty()) check_can_create(disk(), options.stats_path);
+  }
   RasterOptions raster;
   raster.name = options.output;
   raster.compression = options.compression;
@@ -201,7 +217,7 @@ Subcommand add_dem(CLI::App& root) {
   CLI::App* app = root.add_subcommand("dem", "Make a raster of heights, slopes or shades");
   app->footer(kExamples);
   add_dem_options(*app, *options);
-  return {app, [options] { return run(*options); }};
+  return {app, [options] { return run(*options); }, true};
 }
 
 }  // namespace spillway

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "src/error.h"
+#include "stream/ranks/rank_pipeline.h"
 #include "tools/command_options.h"
 #include "tools/input_list.h"
 
@@ -182,7 +183,7 @@ std::unique_ptr<PointSource> make_point_source(FileSystem& files,
                                                ScratchFolder& scratch, Progress& progress) {
   PointSourceOptions how;
   how.dimension = use.dimension;
-  how.index = use.index;
+  how.index = use.index || use.ranks != nullptr;
   how.reader = {.format = options.format,
                 .keep_withheld = options.keep_withheld,
                 .attributes = use.attributes,
@@ -199,10 +200,13 @@ std::unique_ptr<PointSource> make_point_source(FileSystem& files,
   how.progress = [&progress](std::uint64_t points, std::optional<double> fraction) {
     progress.update(points, fraction);
   };
-  const std::vector<std::string> paths = expand_inputs(arguments);
+  const bool looks = use.ranks == nullptr || use.ranks->rank() == 0;
+  const std::vector<std::string> paths =
+      looks ? expand_inputs(arguments) : std::vector<std::string>();
   if (std::count(paths.begin(), paths.end(), "-") > 1) {
     throw UsageError("standard input can be read only once: give - once");
   }
+  if (use.ranks != nullptr) return open_shared_source(files, paths, how, *use.ranks);
   return std::make_unique<PointSource>(files, paths, std::move(how));
 }
 

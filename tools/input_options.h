@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/scratch_folder.h"
+#include "src/distributed/ranks.h"
 #include "stream/point_filter.h"
 #include "stream/point_source.h"
 #include "tools/progress.h"
@@ -39,14 +40,16 @@ void add_input_options(CLI::App& app, InputOptions& options);
 /// What a source is made for.
 struct SourceUse {
   int dimension = 2;
-  bool index = false;        ///< points are to have their index
-  bool attributes = false;   ///< and their attributes, where all inputs have them
-  std::uint64_t memory = 0;  ///< --memory, of which thinning takes a share
+  bool index = false;                         ///< points are to have their index
+  bool attributes = false;                    ///< and their attributes, where all inputs have them
+  std::uint64_t memory = 0;                   ///< --memory, of which thinning takes a share
+  const distributed::Ranks* ranks = nullptr;  ///< share the source, if there are any
 };
 
 /// The files that the arguments stand for (expand_inputs), as one source of the points that the
 /// options ask for. Warnings, details and the progress of thinning go to `progress`. `files` and
-/// `scratch` must outlive it. Throws UsageError for wrong options, and Error as PointSource does.
+/// `scratch` must outlive it. Collective for ranks: the first one looks for the files. Throws
+/// UsageError for wrong options, and Error as PointSource does.
 std::unique_ptr<PointSource> make_point_source(FileSystem& files,
                                                const std::vector<std::string>& arguments,
                                                const InputOptions& options, const SourceUse& use,

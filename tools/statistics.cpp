@@ -90,7 +90,11 @@ Json to_json(const RunStatistics& statistics) {
           {{"cores", run.cores}, {"seconds", run.seconds}, {"speed_up", run.speed_up}});
     }
   }
-  json["tasks"] = to_json(stream.tasks);
+  if (statistics.ranks) {
+    json["ranks"] = *statistics.ranks;
+  } else {
+    json["tasks"] = to_json(stream.tasks);
+  }
   return json;
 }
 

@@ -27,6 +27,7 @@ struct RunStatistics {
   double seconds = 0;        ///< of the whole run
   double write_seconds = 0;  ///< completing the output, after the last simplex
   std::vector<SimulatedRun> simulated;
+  std::optional<nlohmann::ordered_json> ranks{};  ///< of a run over ranks: what each has done
 };
 
 nlohmann::ordered_json to_json(const RunStatistics& statistics);

@@ -24,21 +24,19 @@ void StreamBlock<D>::examine(const StreamCoordinates<D>& coordinates, const Chec
 template <int D>
 void StreamBlock<D>::examine_simplices(const StreamCoordinates<D>& coordinates,
                                        const CheckOptions& options, StreamTask task) {
-  outputs_.resize(points.size());
-  for (std::size_t v = 0; v < points.size(); ++v) outputs_[v] = coordinates.to_output(points[v]);
+  hashes_.resize(points.size());
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    hashes_[v] = vertex_hash<D>(coordinates.to_output(points[v]));
+  }
+  CanonicalHash<D> hash;
+  hash.add(block.corners, hashes_);
+  canonical_hash = hash.value();
   used.assign(points.size(), false);
   positive.assign(simplices(), true);
   not_positive = 0;
-  CanonicalHash<D> hash;
   Faults faults(found, options.most_faults);
   for (std::size_t s = 0; s < positive.size(); ++s) {
-    std::array<Point<D>, D + 1> output;
-    for (int i = 0; i <= D; ++i) {
-      const std::uint32_t corner = block.corners[s * (D + 1) + i];
-      output[i] = outputs_[corner];
-      used[corner] = true;
-    }
-    hash.add(output);
+    for (int i = 0; i <= D; ++i) used[block.corners[s * (D + 1) + i]] = true;
     if (task == StreamTask::kCount) continue;
     const int o = orientation<D>(simplex(s));
     if (o > 0) continue;
@@ -47,7 +45,6 @@ void StreamBlock<D>::examine_simplices(const StreamCoordinates<D>& coordinates,
     faults.add("{} is {}", text(s, coordinates),
                o < 0 ? "negatively oriented" : "degenerate: it has no volume");
   }
-  canonical_hash = hash.value();
 }
 
 // Every facet first looks for its like among the open ones with the same smallest vertex, which are

@@ -114,9 +114,9 @@ class StreamBlock {
                    const StreamCoordinates<D>& coordinates, Faults& faults,
                    const CheckOptions& options);
 
-  std::vector<std::uint32_t> heads_;  // by smallest vertex: its first open facet
-  std::vector<Link> links_;           // by facet
-  std::vector<Point<D>> outputs_;     // of vertices, by short number
+  std::vector<std::uint32_t> heads_;   // by smallest vertex: its first open facet
+  std::vector<Link> links_;            // by facet
+  std::vector<std::uint64_t> hashes_;  // of vertices, by short number
 };
 
 }  // namespace spillway

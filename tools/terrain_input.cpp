@@ -15,6 +15,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "tools/command_options.h"
+#include "tools/rank_statistics.h"
 
 namespace spillway {
 namespace {
@@ -64,6 +65,7 @@ class TerrainFeed {
  private:
   /// Feeds the input if it is a mesh. What was looked at of an input of points goes on to these.
   bool feed_one_input() {
+    if (tools_.ranks != nullptr) return refuse_mesh();
     const std::string& path = options_.inputs.front();
     const bool one = options_.inputs.size() == 1 && options_.input.format.empty() &&
                      (path == "-" || std::filesystem::is_regular_file(path));
@@ -83,6 +85,18 @@ class TerrainFeed {
     return true;
   }
 
+  /// Over ranks there are points only. What is none of them is said when they are opened.
+  [[nodiscard]] bool refuse_mesh() const {
+    const std::string& path = options_.inputs.front();
+    if (tools_.ranks->rank() == 0 && path != "-" && std::filesystem::is_regular_file(path)) {
+      ProbedInput input(disk(), path);
+      if (!options_.mesh_format.empty() || kind_of_input(input) != InputKind::kPoints) {
+        throw UsageError(path + " is a mesh, which one process reads: start it without mpirun");
+      }
+    }
+    return false;
+  }
+
   [[nodiscard]] InputKind kind_by_format() const {
     const bool streams = options_.mesh_format == "spm" || options_.mesh_format == "sma";
     return streams ? InputKind::kMeshStream : InputKind::kMesh;
@@ -100,14 +114,23 @@ class TerrainFeed {
   void feed_points_in(FileSystem& files) {
     statistics_.dimension = D;
     StreamOptions stream = stream_options(options_, tools_.progress);
-    const auto source = make_point_source(files, options_.inputs, options_.input,
-                                          {.dimension = D, .memory = tools_.budget.limit()},
-                                          tools_.scratch, tools_.progress);
+    const auto source =
+        make_point_source(files, options_.inputs, options_.input,
+                          {.dimension = D, .memory = tools_.budget.limit(), .ranks = tools_.ranks},
+                          tools_.scratch, tools_.progress);
     MeshStreamWriter& writer = use_.begin({D, source->lattice(), source->crs(), std::nullopt});
     stream.extent_known = [this](const Box<2>& extent) { use_.extent_known(extent); };
-    statistics_.stream =
-        triangulate_stream<D>(*source, writer, tools_.scratch, tools_.budget, stream);
-    statistics_.input = source->counts();
+    if (tools_.ranks != nullptr) {
+      const RankMesh mesh = triangulate_over_ranks<D>(*source, writer, tools_.scratch,
+                                                      tools_.budget, stream, *tools_.ranks);
+      for (const MergedPart& part : mesh.merged) use_.add_merged(part);
+      statistics_.input = source->counts();
+      share_statistics(statistics_, mesh, *tools_.ranks);
+    } else {
+      statistics_.stream =
+          triangulate_stream<D>(*source, writer, tools_.scratch, tools_.budget, stream);
+      statistics_.input = source->counts();
+    }
     statistics_.on_lattice = source->lattice().has_value();
     if (statistics_.input.dropped() > 0) tools_.progress.say(describe(statistics_.input));
     writer.finish(statistics_.stream.totals);

@@ -11,6 +11,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 #include "stream/memory_budget.h"
+#include "stream/ranks/rank_pipeline.h"
 #include "tools/progress.h"
 #include "tools/statistics.h"
 #include "tools/triangulation_options.h"
@@ -51,6 +52,10 @@ class TerrainUse {
   /// The box around all vertices, in the coordinates in which they come, before the first triangle.
   /// It may be empty where it is not wanted, or where tetrahedra come.
   virtual void extent_known(const Box<2>& extent) = 0;
+
+  /// Over ranks, after the last block of this rank's own tiles: what merges with others have made
+  /// final here.
+  virtual void add_merged(const MergedPart& /*part*/) {}
 };
 
 /// What a run works with.
@@ -59,10 +64,12 @@ struct TerrainTools {
   ScratchFolder& scratch;
   Progress& progress;
   unsigned threads = 1;
+  const distributed::Ranks* ranks = nullptr;  ///< that share the work, if there are any
 };
 
-/// Sends all triangles of the input to `use`, and counts them in `statistics`. Throws Error for a
-/// mesh of tetrahedra, unless the options allow it, and if nothing is left.
+/// Sends all triangles of the input to `use`, and counts them in `statistics`; over ranks those
+/// that this rank finds, of points. Throws Error for a mesh of tetrahedra, unless the options allow
+/// it, and if nothing is left.
 void feed_terrain(const TerrainOptions& options, TerrainUse& use, const TerrainTools& tools,
                   RunStatistics& statistics);
 

@@ -4,22 +4,29 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "formats/mesh_stream_writer.h"
 #include "formats/scratch_folder.h"
+#include "src/distributed/ranks.h"
 #include "src/error.h"
 #include "src/geometry/canonical_hash.h"
 #include "stream/memory_budget.h"
 #include "stream/pipeline.h"
+#include "stream/ranks/mesh_output.h"
+#include "stream/ranks/rank_pipeline.h"
+#include "stream/ranks/together.h"
 #include "tools/command.h"
 #include "tools/command_options.h"
 #include "tools/core_simulation.h"
 #include "tools/input_options.h"
 #include "tools/json_text.h"
 #include "tools/output_check.h"
+#include "tools/rank_job.h"
+#include "tools/rank_statistics.h"
 #include "tools/statistics.h"
 #include "tools/text_output.h"
 #include "tools/triangulation_options.h"
@@ -37,6 +44,7 @@ constexpr const char* kExamples =
     "  spillway triangulate survey.las -o tin.spm --memory 512M --tmpdir /scratch\n"
     "  spillway triangulate 'tiles/*.la[sz]' -o ground.ply --keep-class 2 --thin 0.5:lowest\n"
     "  spillway generate terrain -n 1e8 | spillway triangulate - -o - | spillway info -\n"
+    "  mpirun -n 8 spillway triangulate survey.las -o tin.spm --tmpdir /local\n"
     "The output gets its name when it is complete, so it may replace an input.";
 
 struct TriangulateOptions : TriangulationOptions {
@@ -45,6 +53,7 @@ struct TriangulateOptions : TriangulationOptions {
   std::string dimension = "2";
   bool input_index = false;
   std::string core_list;
+  bool parts = false;
 
   [[nodiscard]] bool simulates() const { return !core_list.empty(); }
 };
@@ -59,6 +68,9 @@ void add_options(CLI::App& app, TriangulateOptions& options) {
   add_choice(app, "--dim", options.dimension, {"2", "3"},
              "2: triangles over x, y, with z carried along; 3: tetrahedra");
   app.add_flag("--id", options.input_index, "Write each vertex's index in the input");
+  app.add_flag(
+      "--parts", options.parts,
+      "Under mpirun: a file for each rank, NAME.0.EXT, NAME.1.EXT, ... (vtu: and NAME.pvtu)");
   add_choice(app, "--output-format", options.output_format, mesh_format_names(),
              "Format of the mesh, where the name does not tell");
   add_triangulation_options(app, options);
@@ -103,8 +115,14 @@ void report(const TriangulateOptions& options, const RunStatistics& statistics,
   }
 }
 
+void check_not_empty(const RunStatistics& statistics) {
+  if (statistics.stream.totals.simplices > 0) return;
+  throw Error(fmt::format("every one of {} simplices has an edge longer than {}: nothing is left",
+                          statistics.stream.left_out, *statistics.max_edge));
+}
+
 template <int D>
-int run(const TriangulateOptions& options, MeshFormat format, RunStatistics& statistics) {
+int run(const TriangulateOptions& options, const MeshTarget& target, RunStatistics& statistics) {
   const auto start = std::chrono::steady_clock::now();
   reuse_freed_memory();
   const auto& inputs = options.inputs;
@@ -114,11 +132,13 @@ int run(const TriangulateOptions& options, MeshFormat format, RunStatistics& sta
   if (options.simulates()) stream.threads = 1;
   stream.input_index = options.input_index;
   statistics.max_edge = stream.max_edge;
+  const distributed::Ranks* const ranks = join_ranks();
   MemoryBudget budget(memory_limit(options.memory));
   const auto scratch = make_scratch_folder(options.memory);
   const auto points = make_point_source(
       disk(), options.inputs, options.input,
-      {.dimension = D, .index = options.input_index, .memory = budget.limit()}, *scratch, progress);
+      {.dimension = D, .index = options.input_index, .memory = budget.limit(), .ranks = ranks},
+      *scratch, progress);
   PointSource& source = *points;
   MeshStreamHeader header;
   header.dimension = D;
@@ -127,26 +147,37 @@ int run(const TriangulateOptions& options, MeshFormat format, RunStatistics& sta
   header.points = source.count();
   header.crs = source.crs();
   header.extent = source.world_extent();
-  const auto writer = open_mesh_stream_writer(disk(), options.output, format, header, *scratch);
-
-  statistics.stream = triangulate_stream<D>(source, *writer, *scratch, budget, stream);
-  if (statistics.stream.threads < stream.threads) {
-    progress.detail(fmt::format("{} of {} threads used: more of them need more --memory",
-                                statistics.stream.threads, stream.threads));
-  }
   statistics.memory_limit = budget.limit();
-  statistics.input = source.counts();
   statistics.on_lattice = source.lattice().has_value();
-  const MeshTotals& totals = statistics.stream.totals;
-  if (totals.simplices == 0) {
-    throw Error(fmt::format("every one of {} simplices has an edge longer than {}: nothing is left",
-                            statistics.stream.left_out, *statistics.max_edge));
+  const auto finish = [&](const std::function<void(const MeshTotals&)>& finish_output) {
+    const MeshTotals& totals = statistics.stream.totals;
+    progress.begin("write", D == 2 ? "triangles" : "tetrahedra");
+    finish_output(totals);
+    progress.update(totals.simplices, 1);
+    statistics.write_seconds = progress.end();
+  };
+  if (ranks != nullptr) {
+    const auto output = open_mesh_output(disk(), target, header, *scratch, *ranks);
+    RankMesh mesh =
+        triangulate_over_ranks<D>(source, output->writer(), *scratch, budget, stream, *ranks);
+    statistics.input = source.counts();
+    share_statistics(statistics, mesh, *ranks);
+    do_together(*ranks, [&] { check_not_empty(statistics); });
+    finish([&](const MeshTotals&) { statistics.output_bytes = output->finish(mesh); });
+    if (ranks->rank() != 0) return kExitDone;
+  } else {
+    const auto writer =
+        open_mesh_stream_writer(disk(), target.path, target.format, header, *scratch);
+    statistics.stream = triangulate_stream<D>(source, *writer, *scratch, budget, stream);
+    if (statistics.stream.threads < stream.threads) {
+      progress.detail(fmt::format("{} of {} threads used: more of them need more --memory",
+                                  statistics.stream.threads, stream.threads));
+    }
+    statistics.input = source.counts();
+    check_not_empty(statistics);
+    finish([&](const MeshTotals& totals) { writer->finish(totals); });
+    statistics.output_bytes = writer->bytes_written();
   }
-  progress.begin("write", D == 2 ? "triangles" : "tetrahedra");
-  writer->finish(totals);
-  progress.update(totals.simplices, 1);
-  statistics.write_seconds = progress.end();
-  statistics.output_bytes = writer->bytes_written();
 
   if (options.simulates()) {
     statistics.simulated =
@@ -167,6 +198,9 @@ int run(const TriangulateOptions& options) {
     if (options.threads > 1) {
       throw UsageError("--simulate-cores measures tasks on one thread: leave --threads away");
     }
+    if (distributed::launch().as_ranks) {
+      throw UsageError("--simulate-cores is for one process: start it without mpirun");
+    }
   }
   if (options.dimension == "3" && options.duplicates_option->count() > 0) {
     throw UsageError(
@@ -175,18 +209,25 @@ int run(const TriangulateOptions& options) {
   if (options.output == options.stats_path) {
     throw UsageError("the mesh and --stats cannot go to the same place: " + options.output);
   }
-  const MeshFormat format = mesh_format(options.output, options.output_format);
-  if (options.output == "-" && ::isatty(STDOUT_FILENO) != 0 && options.output_format.empty()) {
+  const MeshTarget target = mesh_target(options.output, options.output_format, options.parts);
+  if (target.parts && !distributed::launch().as_ranks) {
+    throw UsageError("parts are a file for each rank: start it with mpirun");
+  }
+  // mpirun gives its processes a terminal as standard output, whatever its own is.
+  const bool on_terminal = ::isatty(STDOUT_FILENO) != 0 && !distributed::launch().as_ranks;
+  if (options.output == "-" && on_terminal && options.output_format.empty()) {
     throw UsageError("a mesh stream is nothing for a terminal: name a file, or pipe it on");
   }
   RunStatistics statistics;
   statistics.dimension = options.dimension == "3" ? 3 : 2;
   statistics.inputs = options.inputs;
   statistics.output = options.output;
-  statistics.output_format = mesh_format_names().at(static_cast<std::size_t>(format));
-  if (!options.stats_path.empty()) check_can_create(disk(), options.stats_path);
-  return statistics.dimension == 3 ? run<3>(options, format, statistics)
-                                   : run<2>(options, format, statistics);
+  statistics.output_format = mesh_format_names().at(static_cast<std::size_t>(target.format));
+  if (!options.stats_path.empty() && is_first_rank()) {
+    check_can_create(disk(), options.stats_path);
+  }
+  return statistics.dimension == 3 ? run<3>(options, target, statistics)
+                                   : run<2>(options, target, statistics);
 }
 
 }  // namespace
@@ -196,7 +237,7 @@ Subcommand add_triangulate(CLI::App& root) {
   CLI::App* app = root.add_subcommand("triangulate", "Make a Delaunay mesh of points");
   app->footer(kExamples);
   add_options(*app, *options);
-  return {app, [options] { return run(*options); }};
+  return {app, [options] { return run(*options); }, true};
 }
 
 }  // namespace spillway

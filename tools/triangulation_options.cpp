@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "src/delaunay/base_case.h"
+#include "src/distributed/ranks.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "stream/heights.h"
@@ -53,11 +56,16 @@ void add_triangulation_options(CLI::App& app, TriangulationOptions& options) {
       ->check(CLI::Range(2, 1024).description(""))
       ->capture_default_str();
   add_choice(app, "--kernel", options.kernel, {"spillway", "cgal"},
-             "What triangulates base cases in the plane; both give the same mesh");
+             "What triangulates base cases; both give the same mesh");
 }
 
 unsigned thread_count(const TriangulationOptions& options) {
-  return options.threads == 0 ? available_threads() : options.threads;
+  if (options.threads > 0) return options.threads;
+  const unsigned available = available_threads();
+  // Ranks of one machine share its processors, unless each has been bound to some of its own.
+  const bool bound = available < static_cast<unsigned>(::sysconf(_SC_NPROCESSORS_ONLN));
+  const auto sharing = static_cast<unsigned>(distributed::launch().ranks_here);
+  return bound ? available : std::max(1U, available / sharing);
 }
 
 std::optional<double> parse_max_edge(const std::string& text) {

@@ -6,7 +6,9 @@
 
 #include "src/delaunay/affine_basis.h"
 #include "src/delaunay/kernel_2d/kernel_2d.h"
+#include "src/delaunay/kernel_3d/kernel_3d.h"
 #include "src/delaunay/kernel_arena.h"
+#include "src/delaunay/working_memory.h"
 
 namespace spillway {
 namespace {
@@ -36,10 +38,12 @@ std::vector<Duplicate> find_duplicates(const BaseCaseInput<D>& input) {
 
 template <int D>
 BaseCase<D> triangulate_spanning(const BaseCaseInput<D>& input, std::span<const VertexId> basis) {
+  if (chosen_kernel == BaseCaseKernel::kCgal) return cgal_base_case<D>(input, basis);
   if constexpr (D == 2) {
-    if (chosen_kernel == BaseCaseKernel::kOwn) return kernel_2d_base_case(input, basis);
+    return kernel_2d_base_case(input, basis);
+  } else {
+    return kernel_3d_base_case(input, basis);
   }
-  return cgal_base_case<D>(input, basis);
 }
 
 }  // namespace
@@ -58,7 +62,7 @@ BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input) {
 
 void release_base_case_memory() {
   KernelArena::release_kept_memory();
-  release_kernel_2d_memory();
+  BorrowedMemory::release_kept_memory();
 }
 
 template BaseCase<2> triangulate_base_case<2>(const BaseCaseInput<2>&);

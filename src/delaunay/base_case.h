@@ -27,9 +27,9 @@ struct BaseCase {
   int dimension = -1;                 ///< of the points' affine hull
 };
 
-/// What triangulates base cases in the plane. In space it is always CGAL.
+/// What triangulates base cases.
 enum class BaseCaseKernel : std::uint8_t {
-  kOwn,   ///< kernel_2d
+  kOwn,   ///< kernel_2d and kernel_3d
   kCgal,  ///< CGAL's incremental triangulation: same result, several times the time
 };
 

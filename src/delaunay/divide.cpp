@@ -30,7 +30,9 @@ class Divider {
     part.end = end;
     std::vector<Box<D>> boxes(grain_count(part.size(), kBoxGrain));
     parallel_for(part.size(), kBoxGrain, [&](std::size_t g, std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) boxes[g].expand(points_[begin + i]);
+      Box<D> box;  // in registers, as boxes[g] could not be
+      for (std::size_t i = first; i < last; ++i) box.expand(points_[begin + i]);
+      boxes[g] = box;
     });
     for (const Box<D>& box : boxes) part.box.expand(box);
     return part;

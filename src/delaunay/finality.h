@@ -20,6 +20,9 @@ class ConflictRegion {
   /// Of a simplex whose corners are positions of `points`, or kInfiniteVertex.
   ConflictRegion(const std::array<VertexId, D + 1>& vertices, std::span<const Point<D>> points);
 
+  /// Whether it is that of an infinite simplex.
+  [[nodiscard]] bool infinite() const { return infinite_; }
+
   /// False only if the region certainly has no point of the box.
   [[nodiscard]] bool may_meet(const Box<D>& box) const;
 

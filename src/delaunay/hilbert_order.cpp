@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <utility>
+
+#include "src/delaunay/working_memory.h"
 
 namespace spillway {
 namespace {
@@ -71,8 +72,8 @@ std::uint32_t spread(std::uint32_t x) {
   return (x | x << 2) & 0x09249249;
 }
 
-/// The cell's number along the curve in space (J. Skilling's algorithm).
-std::uint32_t hilbert_key(std::array<std::uint32_t, 3> cell) {
+/// The cell's number along the curve in space, by the rule (J. Skilling's algorithm).
+std::uint32_t hilbert_key_by_rule(std::array<std::uint32_t, 3> cell) {
   for (std::uint32_t bit = 1U << (kMostBits<3> - 1); bit > 1; bit >>= 1) {
     const std::uint32_t below = bit - 1;
     for (int k = 0; k < 3; ++k) {
@@ -93,6 +94,107 @@ std::uint32_t hilbert_key(std::array<std::uint32_t, 3> cell) {
   return key;
 }
 
+/// The curve in space, two levels at a time. Inside each octant of a cube it is the whole curve,
+/// mirrored and with the axes exchanged.
+class SpaceCurveTable {
+ public:
+  SpaceCurveTable() {
+    for (std::uint32_t octant = 0; octant < kOctants; ++octant) {
+      place_[octant] = key_of_octants({octant}) >> (kKeyBits - 3);
+      turn_[octant] = find_turn(octant);
+    }
+    for (std::uint32_t state = 0; state < kTurns; ++state) {
+      for (std::uint32_t cell = 0; cell < kOctants * kOctants; ++cell) {
+        const std::uint32_t first = turned(state, cell >> 3);
+        const std::uint32_t inside = composed(turn_[first], state);
+        const std::uint32_t second = turned(inside, cell & 7);
+        entries_[state][cell] = {static_cast<std::uint8_t>(place_[first] << 3 | place_[second]),
+                                 static_cast<std::uint8_t>(composed(turn_[second], inside))};
+      }
+    }
+  }
+
+  [[nodiscard]] std::uint32_t key(const std::array<std::uint32_t, 3>& cell) const {
+    // The cell's octants, the largest first.
+    const std::uint32_t octants = spread(cell[0]) << 2 | spread(cell[1]) << 1 | spread(cell[2]);
+    std::uint32_t key = 0;
+    std::uint32_t state = 0;
+    for (int shift = kKeyBits - 6; shift >= 0; shift -= 6) {
+      const Entry& entry = entries_[state][octants >> shift & 63];
+      key = key << 6 | entry.digits;
+      state = entry.state;
+    }
+    return key;
+  }
+
+ private:
+  struct Entry {
+    std::uint8_t digits;  ///< the cell's number along the curve
+    std::uint8_t state;   ///< of the curve inside the cell: a turn
+  };
+  static constexpr int kKeyBits = 3 * kMostBits<3>;
+  static constexpr std::uint32_t kOctants = 8;
+  /// Turns: one of six orders of the axes, and bits that are inverted, 8 * order + bits.
+  static constexpr std::uint32_t kTurns = 48;
+  static constexpr std::array<std::array<std::uint8_t, 3>, 6> kOrders{
+      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+
+  static std::uint32_t turned(std::uint32_t turn, std::uint32_t octant) {
+    const auto& order = kOrders[turn >> 3];
+    std::uint32_t result = turn & 7;
+    for (std::uint32_t k = 0; k < 3; ++k) result ^= (octant >> order[k] & 1) << k;
+    return result;
+  }
+
+  /// The turn that does what `second` does to the result of `first`.
+  static std::uint32_t composed(std::uint32_t second, std::uint32_t first) {
+    for (std::uint32_t turn = 0; turn < kTurns; ++turn) {
+      bool same = true;
+      for (std::uint32_t octant = 0; octant < kOctants; ++octant) {
+        same &= turned(turn, octant) == turned(second, turned(first, octant));
+      }
+      if (same) return turn;
+    }
+    return 0;
+  }
+
+  /// The key of a cell given by its octants, the largest first; those that are missing are 0.
+  static std::uint32_t key_of_octants(std::array<std::uint32_t, 3> octants) {
+    std::array<std::uint32_t, 3> cell{};
+    for (std::size_t level = 0; level < octants.size(); ++level) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        cell[k] |= (octants[level] >> (2 - k) & 1) << (kMostBits<3> - 1 - level);
+      }
+    }
+    return hilbert_key_by_rule(cell);
+  }
+
+  /// How the curve inside an octant lies, found by comparing two levels of it with the whole.
+  static std::uint32_t find_turn(std::uint32_t octant) {
+    for (std::uint32_t turn = 0; turn < kTurns; ++turn) {
+      bool same = true;
+      for (std::uint32_t cell = 0; cell < kOctants * kOctants; ++cell) {
+        const std::uint32_t first = cell >> 3;
+        const std::uint32_t second = cell & 7;
+        same &= (key_of_octants({octant, first, second}) >> (kKeyBits - 9) & 63) ==
+                key_of_octants({turned(turn, first), turned(turn, second)}) >> (kKeyBits - 6);
+      }
+      if (same) return turn;
+    }
+    return 0;
+  }
+
+  std::array<std::uint32_t, kOctants> place_{};
+  std::array<std::uint32_t, kOctants> turn_{};
+  std::array<std::array<Entry, kOctants * kOctants>, kTurns> entries_{};
+};
+
+/// The cell's number along the curve in space.
+std::uint32_t hilbert_key(const std::array<std::uint32_t, 3>& cell) {
+  static const SpaceCurveTable table;
+  return table.key(cell);
+}
+
 /// Sorts places by key. An item has the key in its upper half, the place in its lower one.
 template <int D>
 class Sorter {
@@ -100,8 +202,8 @@ class Sorter {
   explicit Sorter(std::span<const Point<D>> points)
       : points_(points),
         count_(points.size()),
-        items_(std::make_unique_for_overwrite<Item[]>(count_)),
-        other_(std::make_unique_for_overwrite<Item[]>(count_)) {
+        items_(static_cast<Item*>((*memory_).simplices.reserve(2 * count_ * sizeof(Item)))),
+        other_(items_ + count_) {
     for (std::size_t i = 0; i < count_; ++i) items_[i] = i;
   }
 
@@ -221,8 +323,9 @@ class Sorter {
 
   std::span<const Point<D>> points_;
   std::size_t count_;
-  std::unique_ptr<Item[]> items_;
-  std::unique_ptr<Item[]> other_;
+  BorrowedMemory memory_;  ///< of base cases, of which one is likely to follow
+  Item* items_;
+  Item* other_;
 };
 
 }  // namespace

@@ -59,4 +59,10 @@ struct Box {
   }
 };
 
+/// The x and y of a box.
+template <int D>
+Box<2> plane_of(const Box<D>& box) {
+  return {{box.lo[0], box.lo[1]}, {box.hi[0], box.hi[1]}};
+}
+
 }  // namespace spillway

@@ -5,25 +5,42 @@
 #include <xxhash.h>
 
 #include <bit>
-#include <utility>
 
 namespace spillway {
+namespace {
 
 static_assert(std::endian::native == std::endian::little,
-              "the canonical hash is defined on little-endian doubles");
+              "the canonical hash is defined on little-endian numbers");
+
+std::uint64_t simplex_hash(std::uint64_t sum_of_vertices) {
+  return XXH3_64bits(&sum_of_vertices, sizeof sum_of_vertices);
+}
+
+}  // namespace
+
+template <int D>
+std::uint64_t vertex_hash(Point<D> position) {
+  for (double& coordinate : position) coordinate += 0.0;  // turns -0.0 into +0.0
+  return XXH3_64bits(position.data(), sizeof position);
+}
 
 template <int D>
 requires SupportedDimension<D>
-void CanonicalHash<D>::add(std::array<Point<D>, D + 1> simplex) {
-  for (auto& vertex : simplex) {
-    for (double& coordinate : vertex) coordinate += 0.0;  // turns -0.0 into +0.0
+void CanonicalHash<D>::add(const std::array<Point<D>, D + 1>& simplex) {
+  std::uint64_t vertices = 0;
+  for (const Point<D>& position : simplex) vertices += vertex_hash<D>(position);
+  sum_ += simplex_hash(vertices);
+}
+
+template <int D>
+requires SupportedDimension<D>
+void CanonicalHash<D>::add(std::span<const std::uint32_t> corners,
+                           std::span<const std::uint64_t> vertices) {
+  for (std::size_t s = 0; s < corners.size(); s += D + 1) {
+    std::uint64_t sum = 0;
+    for (int i = 0; i <= D; ++i) sum += vertices[corners[s + i]];
+    sum_ += simplex_hash(sum);
   }
-  for (int i = 1; i <= D; ++i) {  // insertion, the fastest for so few
-    for (int j = i; j > 0 && simplex[j] < simplex[j - 1]; --j) {
-      std::swap(simplex[j], simplex[j - 1]);
-    }
-  }
-  sum_ += XXH3_64bits(simplex.data(), sizeof(simplex));
 }
 
 std::string hash_to_hex(std::uint64_t hash) {
@@ -34,6 +51,8 @@ std::string hash_to_hex(std::uint64_t hash) {
   return hex;
 }
 
+template std::uint64_t vertex_hash<2>(Point<2>);
+template std::uint64_t vertex_hash<3>(Point<3>);
 template class CanonicalHash<2>;
 template class CanonicalHash<3>;
 

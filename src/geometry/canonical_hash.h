@@ -2,23 +2,32 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "src/geometry/point.h"
 
 namespace spillway {
 
+/// The fingerprint of a vertex: XXH3-64 of its output coordinates (x, y or x, y, z as little-endian
+/// doubles, negative zero counted as zero).
+template <int D>
+std::uint64_t vertex_hash(Point<D> position);
+
 /// The order-independent fingerprint of a triangulation: the sum modulo 2^64, over its finite
-/// simplices, of XXH3-64 of the D+1 vertices' coordinates (x, y or x, y, z as little-endian
-/// doubles, negative zero counted as zero), the vertices sorted lexicographically. It depends
-/// neither on the order of simplices or vertices nor on orientation, so runs and formats can be
-/// compared by it.
+/// simplices, of XXH3-64 of the sum modulo 2^64 (as a little-endian integer) of their D+1 vertices'
+/// fingerprints. It depends neither on the order of simplices or vertices nor on orientation, so
+/// runs and formats can be compared by it.
 template <int D>
 requires SupportedDimension<D>
 class CanonicalHash {
  public:
   /// Adds one finite simplex, given by its output coordinates in any order.
-  void add(std::array<Point<D>, D + 1> simplex);
+  void add(const std::array<Point<D>, D + 1>& simplex);
+
+  /// Adds finite simplices of D+1 corners each, one after the other: places of `vertices`, the
+  /// fingerprints of all vertices.
+  void add(std::span<const std::uint32_t> corners, std::span<const std::uint64_t> vertices);
 
   /// Adds the simplices that another hash has seen.
   void add(const CanonicalHash& other) { sum_ += other.sum_; }

@@ -19,6 +19,12 @@ constexpr double kLargestCentre = 0x1p400;
 constexpr double kErrorSlack = 1 + 0x1p-40;   // for the roundings of the error bound itself
 constexpr double kRadiusSlack = 1 + 0x1p-48;  // 1 + 32u, for those of may_meet
 
+// The names are those of "Many balls at once".
+constexpr double kFlat = 0x1p-30;
+constexpr double kShortestEdge = 0x1p-60;
+constexpr double kLongestEdge = 0x1p60;
+constexpr double kMargin = 1 + 0x1p-10;  // of the squared radius
+
 // A determinant, rounded, and the sum of the absolute values of its monomials, rounded.
 struct Rounded {
   double value;
@@ -68,6 +74,63 @@ Quotient<3> circumcentre(const Vectors<3, 3, double>& a) {
     }
   }
   return q;
+}
+
+// What follows is for loops over several simplices at once: no branches, and no std::max, which
+// hands out references.
+double larger(double a, double b) { return a < b ? b : a; }
+double smaller(double a, double b) { return b < a ? b : a; }
+
+// The circumcentre's numerators, and last its denominator, without bounds.
+std::array<double, 3> circumcentre_fraction(const Vectors<2, 2, double>& a) {
+  const double s0 = squared_length(a[0]);
+  const double s1 = squared_length(a[1]);
+  return {s0 * a[1][1] - s1 * a[0][1], s1 * a[0][0] - s0 * a[1][0], 2 * minor_xy(a[0], a[1])};
+}
+
+std::array<double, 4> circumcentre_fraction(const Vectors<3, 3, double>& a) {
+  std::array<double, 4> fraction{};
+  for (int i = 0; i < 3; ++i) {
+    const auto& b = a[(i + 1) % 3];
+    const auto& c = a[(i + 2) % 3];
+    const std::array<double, 3> cross{b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2],
+                                      b[0] * c[1] - b[1] * c[0]};
+    const double s = squared_length(a[i]);
+    for (int k = 0; k < 3; ++k) fraction[k] += s * cross[k];
+    if (i == 0) fraction[3] = 2 * (a[0][0] * cross[0] + a[0][1] * cross[1] + a[0][2] * cross[2]);
+  }
+  return fraction;
+}
+
+// The names are those of docs/algorithm.md ("Many balls at once"). Positive if the circumsphere is
+// certainly inside.
+template <int D>
+double room_around(const std::array<Point<D>, D + 1>& simplex, const Box<D>& box) {
+  Vectors<D, D, double> edges;
+  double longest = 0;
+  for (int i = 0; i < D; ++i) {
+    for (int k = 0; k < D; ++k) {
+      edges[i][k] = simplex[i + 1][k] - simplex[0][k];
+      longest = larger(longest, std::abs(edges[i][k]));
+    }
+  }
+  const std::array<double, D + 1> fraction = circumcentre_fraction(edges);
+  const double sign = fraction[D] < 0 ? -1 : 1;
+  const double denominator = std::abs(fraction[D]);
+  double squared_radius = 0;
+  double room = 0;
+  for (int k = 0; k < D; ++k) {
+    const double centre = sign * fraction[k];
+    const double below = (simplex[0][k] - box.lo[k]) * denominator + centre;
+    const double above = (box.hi[k] - simplex[0][k]) * denominator - centre;
+    squared_radius += centre * centre;
+    room = k == 0 ? smaller(below, above) : smaller(room, smaller(below, above));
+  }
+  const double volume = D == 2 ? longest * longest : longest * longest * longest;
+  const double shape = denominator - kFlat * volume;
+  const double range = smaller(longest - kShortestEdge, kLongestEdge - longest);
+  // The first two are not positive where the last proves nothing, or are NaN and stay it.
+  return smaller(smaller(shape, range), room * std::abs(room) - kMargin * squared_radius);
 }
 
 }  // namespace
@@ -135,6 +198,23 @@ bool inside(const CertifiedBall<D>& ball, const Box<D>& box) {
 }
 
 template <int D>
+std::array<bool, SimplexBatch<D>::kSize> well_inside(const SimplexBatch<D>& simplices,
+                                                     const Box<D>& box) {
+  constexpr std::size_t kSize = SimplexBatch<D>::kSize;
+  std::array<double, kSize> room;
+  for (std::size_t s = 0; s < kSize; ++s) {
+    std::array<Point<D>, D + 1> simplex;
+    for (int i = 0; i <= D; ++i) {
+      for (int k = 0; k < D; ++k) simplex[i][k] = simplices.corners[i][k][s];
+    }
+    room[s] = room_around<D>(simplex, box);
+  }
+  std::array<bool, kSize> result;
+  for (std::size_t s = 0; s < kSize; ++s) result[s] = room[s] > 0;
+  return result;
+}
+
+template <int D>
 bool half_space_meets(const std::array<Point<D>, D>& facet, const Box<D>& box) {
   if (box.empty()) return false;
   std::array<Point<D>, D + 1> simplex;
@@ -152,6 +232,10 @@ template bool may_meet<2>(const CertifiedBall<2>&, const Box<2>&);
 template bool may_meet<3>(const CertifiedBall<3>&, const Box<3>&);
 template bool inside<2>(const CertifiedBall<2>&, const Box<2>&);
 template bool inside<3>(const CertifiedBall<3>&, const Box<3>&);
+template std::array<bool, SimplexBatch<2>::kSize> well_inside<2>(const SimplexBatch<2>&,
+                                                                 const Box<2>&);
+template std::array<bool, SimplexBatch<3>::kSize> well_inside<3>(const SimplexBatch<3>&,
+                                                                 const Box<3>&);
 template bool half_space_meets<2>(const std::array<Point<2>, 2>&, const Box<2>&);
 template bool half_space_meets<3>(const std::array<Point<3>, 3>&, const Box<3>&);
 

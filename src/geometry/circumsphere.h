@@ -5,6 +5,7 @@
 // The bounds are derived in docs/algorithm.md ("Certified balls").
 
 #include <array>
+#include <cstddef>
 #include <limits>
 
 #include "src/geometry/box.h"
@@ -40,6 +41,30 @@ bool may_meet(const CertifiedBall<D>& ball, const Box<D>& box);
 /// sides, which may be infinite.
 template <int D>
 bool inside(const CertifiedBall<D>& ball, const Box<D>& box);
+
+/// The corners of some simplices, coordinate by coordinate, so that several are tested at a time.
+template <int D>
+struct SimplexBatch {
+  static constexpr std::size_t kSize = 64;
+  std::array<std::array<std::array<double, kSize>, D>, D + 1> corners;  ///< [corner][axis][simplex]
+
+  /// Sets one simplex; `at(i)` is its i-th corner.
+  template <typename At>
+  void set(std::size_t simplex, const At& at) {
+    for (int i = 0; i <= D; ++i) {
+      const Point<D>& corner = at(i);
+      for (int k = 0; k < D; ++k) corners[i][k][simplex] = corner[k];
+    }
+  }
+};
+
+/// For each simplex of a batch whether its closed circumsphere is certainly inside the box and
+/// touches none of its sides, which may be infinite. With less work than certified_ball() and
+/// inside(), for which it must have a thousandth of its radius between it and the sides, and not be
+/// of a very flat simplex.
+template <int D>
+std::array<bool, SimplexBatch<D>::kSize> well_inside(const SimplexBatch<D>& simplices,
+                                                     const Box<D>& box);
 
 /// True if and only if the closed half-space beyond `facet` has a point in common with the box.
 /// `facet` is listed so that orientation(facet, p) is positive for p beyond. Exact. True if the

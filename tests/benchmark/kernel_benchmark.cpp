@@ -1,6 +1,6 @@
-// The 2D kernel beside CGAL's Delaunay_triangulation_2, in one process, in turns, on one core.
-// Prints one Markdown table; times are the thread's processor time, medians over the turns, and
-// include the sorting of the points on both sides.
+// The own kernels beside CGAL's Delaunay_triangulation_2 and _3, in one process, in turns, on one
+// core. Prints one Markdown table; times are the thread's processor time, medians over the turns,
+// and include the sorting of the points on both sides.
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -9,12 +9,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <fstream>
 #include <string>
 #include <vector>
 
 #include "src/delaunay/base_case.h"
 #include "src/delaunay/hilbert_order.h"
+#include "src/delaunay/kernel_3d/kernel_3d.h"
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "src/generators/random.h"
@@ -23,19 +24,21 @@
 namespace spillway {
 namespace {
 
-using Points = std::vector<Point<2>>;
+template <int D>
+using Points = std::vector<Point<D>>;
 
-void shuffle(Points& points) {
+template <int D>
+void shuffle(Points<D>& points) {
   Random random(7);
   for (std::size_t i = points.size(); i > 1; --i) std::swap(points[i - 1], points[random.below(i)]);
 }
 
 /// Uniform in a square, on a lattice of centimetres far from the origin, a point to half a square
 /// metre on average.
-Points lattice_points(std::size_t count) {
+Points<2> lattice_points(std::size_t count) {
   Random random(42);
   const double side = 70 * std::sqrt(static_cast<double>(count));
-  Points points(count);
+  Points<2> points(count);
   for (Point<2>& p : points) {
     p = {std::round(random.uniform() * side) + 5e7, std::round(random.uniform() * side) + 4e8};
   }
@@ -43,10 +46,10 @@ Points lattice_points(std::size_t count) {
 }
 
 /// Circles beside each other, each with 1,536 points with integer coordinates.
-Points integer_circles(std::size_t count) {
+Points<2> integer_circles(std::size_t count) {
   constexpr std::int64_t kSquaredRadius = 837'346'264'625;  // 5^3 13^2 17 29 37 41 53
   const auto radius = static_cast<std::int64_t>(std::sqrt(static_cast<double>(kSquaredRadius)));
-  Points circle;
+  Points<2> circle;
   for (std::int64_t x = -radius; x <= radius; ++x) {
     const std::int64_t squared_y = kSquaredRadius - x * x;
     const std::int64_t y = std::llround(std::sqrt(static_cast<double>(squared_y)));
@@ -57,7 +60,7 @@ Points integer_circles(std::size_t count) {
   const std::size_t circles = count / circle.size() + 1;
   const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(circles)));
   const double distance = 3 * static_cast<double>(radius);
-  Points points;
+  Points<2> points;
   for (std::size_t i = 0; i < circles; ++i) {
     const std::size_t column = i % columns;
     const std::size_t row = i / columns;
@@ -67,54 +70,81 @@ Points integer_circles(std::size_t count) {
     }
   }
   points.resize(count);
-  shuffle(points);
+  shuffle<2>(points);
   return points;
 }
 
-Points make_points(const std::string& set, std::size_t count) {
-  if (set == "las") return lattice_points(count);
-  if (set == "integer-circles") return integer_circles(count);
-  if (set == "metres") {
-    Points points = lattice_points(count);
-    for (Point<2>& p : points) p = {p[0] * 0.01, p[1] * 0.01};
-    return points;
+/// Integers of 30 bits.
+Points<3> random_integers(std::size_t count) {
+  Random random(42);
+  Points<3> points(count);
+  for (Point<3>& p : points) {
+    for (double& c : p) c = static_cast<double>(random.below(std::uint64_t{1} << 30));
   }
-  Points points = generate_points<2>({.family = family_by_name(set), .count = count});
-  if (set == "lattice") shuffle(points);
   return points;
 }
 
-/// The memory that is in use, whether it was taken in small pieces or mapped.
-std::size_t bytes_in_use() {
-  const struct mallinfo2 info = mallinfo2();
-  return info.uordblks + info.hblkhd;
+template <int D>
+Points<D> make_points(const std::string& set, std::size_t count) {
+  if constexpr (D == 2) {
+    if (set == "las") return lattice_points(count);
+    if (set == "integer-circles") return integer_circles(count);
+    if (set == "metres") {
+      Points<2> points = lattice_points(count);
+      for (Point<2>& p : points) p = {p[0] * 0.01, p[1] * 0.01};
+      return points;
+    }
+  } else {
+    if (set == "integers") return random_integers(count);
+    if (set == "sphere") return make_points<3>("circle", count);
+  }
+  Points<D> points = generate_points<D>({.family = family_by_name(set), .count = count});
+  if (set == "lattice") shuffle<D>(points);
+  return points;
 }
+
+/// What the process has in memory, or had at most since the last call of forget_peak().
+std::size_t resident_bytes(const char* name) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with(name)) return std::stoull(line.substr(line.find(':') + 1)) * 1024;
+  }
+  return 0;
+}
+
+void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
 struct OwnRun {
   Timing timing{};
-  std::size_t bytes = 0;  ///< at the end, the result and the kernel's working memory
+  std::size_t bytes = 0;  ///< at the peak, the result and the kernel's working memory
 };
 
 /// Sorts and triangulates as `divide` and its callers do with a leaf.
-OwnRun run_own(const Points& points) {
+template <int D>
+OwnRun run_own(const Points<D>& points, bool measure_memory) {
   OwnRun run;
-  const std::size_t bytes_before = bytes_in_use();
-  BaseCase<2> base_case;
+  BaseCase<D> base_case;
+  Points<D> sorted(points.size());
+  std::vector<VertexId> input_index;
   {
     const ProcessorStopwatch watch(run.timing.processor_seconds);
-    Box<2> box;
-    for (const Point<2>& p : points) box.expand(p);
-    const std::vector<VertexId> input_index = hilbert_order<2>(points, box);
-    Points sorted(points.size());
+    Box<D> box;
+    for (const Point<D>& p : points) box.expand(p);
+    input_index = hilbert_order<D>(points, box);
     constexpr std::size_t kAhead = 16;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (i + kAhead < points.size()) __builtin_prefetch(&points[input_index[i + kAhead]]);
       sorted[i] = points[input_index[i]];
     }
-    base_case = triangulate_base_case<2>({.points = sorted, .input_index = input_index});
+  }
+  if (measure_memory) forget_peak();
+  const std::size_t bytes_before = resident_bytes("VmRSS");
+  {
+    const ProcessorStopwatch watch(run.timing.processor_seconds);
+    base_case = triangulate_base_case<D>({.points = sorted, .input_index = input_index});
   }
   run.timing.simplices = base_case.simplices.size() - base_case.hull.size();
-  run.bytes = bytes_in_use() - bytes_before;
+  run.bytes = resident_bytes("VmHWM") - bytes_before;
   return run;
 }
 
@@ -123,18 +153,21 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+template <int D>
 void compare(const std::string& set, std::size_t count, unsigned repetitions) {
-  const Points points = make_points(set, count);
+  const Points<D> points = make_points<D>(set, count);
   release_base_case_memory();
-  const std::size_t bytes = run_own(points).bytes;  // later base cases find its working memory
+  malloc_trim(0);
+  const std::size_t bytes =
+      run_own<D>(points, true).bytes;  // later base cases find its working memory
   std::vector<double> cgal;
   std::vector<double> own;
   for (unsigned r = 0; r < repetitions; ++r) {
-    const Timing reference = time_cgal_sequential<2>(points);
-    const Timing ours = run_own(points).timing;
+    const Timing reference = time_cgal_sequential<D>(points);
+    const Timing ours = run_own<D>(points, false).timing;
     if (ours.simplices != reference.simplices) {
       throw Error(
-          fmt::format("{}: {} triangles, CGAL has {}", set, ours.simplices, reference.simplices));
+          fmt::format("{}: {} simplices, CGAL has {}", set, ours.simplices, reference.simplices));
     }
     cgal.push_back(reference.processor_seconds);
     own.push_back(ours.processor_seconds);
@@ -146,26 +179,50 @@ void compare(const std::string& set, std::size_t count, unsigned repetitions) {
   std::fflush(stdout);
 }
 
+/// The sets that are timed if none are asked for.
+std::vector<std::string> usual_sets(int dimension) {
+  if (dimension == 3) return {"uniform", "terrain", "lattice", "integers", "sphere"};
+  return {"uniform", "terrain",  "las",    "metres",
+          "lattice", "clusters", "circle", "integer-circles"};
+}
+
 }  // namespace
 }  // namespace spillway
 
 int main(int argc, char** argv) {
-  std::vector<std::string> sets{"uniform", "terrain",  "las",    "metres",
-                                "lattice", "clusters", "circle", "integer-circles"};
-  std::vector<std::size_t> counts{50'000, 100'000, 200'000, 1'000'000};
+  int dimension = 2;
+  std::vector<std::string> sets;
+  std::vector<std::size_t> counts;
   unsigned repetitions = 5;
-  CLI::App app("Times CGAL's 2D Delaunay triangulation and the 2D kernel in turns");
-  app.add_option("--sets", sets, "Families of points, las, metres or integer-circles")
+  int vectors = 4;
+  CLI::App app("Times CGAL's Delaunay triangulations and the own kernels in turns");
+  app.add_option("--dim", dimension, "Dimension")->check(CLI::Range(2, 3));
+  app.add_option("--sets", sets,
+                 "Families of points; in the plane also las, metres, integer-circles, in space "
+                 "integers, sphere")
       ->delimiter(',');
   app.add_option("-n,--points", counts, "Points of each set")->delimiter(',');
   app.add_option("-r,--repetitions", repetitions, "Turns; medians are printed");
+  app.add_option("--vectors", vectors, "At most so many doubles at a time, in space: 2 or 4")
+      ->check(CLI::IsMember({2, 4}));
   CLI11_PARSE(app, argc, argv);
+  if (sets.empty()) sets = spillway::usual_sets(dimension);
+  if (counts.empty()) {
+    counts = {50'000, 100'000, dimension == 2 ? std::size_t{200'000} : 300'000, 1'000'000};
+  }
+  spillway::limit_vectors(vectors);
   try {
+    if (dimension == 3) {
+      fmt::print("Vectors of {} doubles\n\n", std::min(vectors, spillway::widest_vectors()));
+    }
     fmt::print(
         "| points | n | CGAL us a point | ours us a point | CGAL / ours | bytes a point |\n"
         "|---|---|---|---|---|---|\n");
     for (const std::string& set : sets) {
-      for (const std::size_t count : counts) spillway::compare(set, count, repetitions);
+      for (const std::size_t count : counts) {
+        dimension == 2 ? spillway::compare<2>(set, count, repetitions)
+                       : spillway::compare<3>(set, count, repetitions);
+      }
     }
   } catch (const spillway::Error& error) {
     fmt::print(stderr, "kernel_benchmark: {}\n", error.what());

@@ -11,7 +11,7 @@
 
 #include "src/error.h"
 #include "src/generators/random.h"
-#include "tests/delaunay/kernel_2d_sets.h"
+#include "tests/delaunay/kernel_sets.h"
 #include "tests/generators/family_cases.h"
 
 namespace spillway {
@@ -20,7 +20,7 @@ namespace {
 using Points = std::vector<Point<2>>;
 
 void expect_equal_to_cgal(const Points& points) {
-  EXPECT_EQ(compare_kernel_with_cgal(points, 0), "");
+  EXPECT_EQ(compare_kernel_with_cgal<2>(points, 0), "");
 }
 
 Points scaled(Points points, int exponent) {
@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Families, Kernel2dOfFamily, testing::ValuesIn(planar_ca
 
 TEST(Kernel2d, EqualsCgalOnSmallHardSets) {
   for (std::uint64_t seed = 1; seed <= 3'000; ++seed) {
-    ASSERT_EQ(compare_kernel_with_cgal(hard_set(seed), seed), "") << "seed " << seed;
+    ASSERT_EQ(compare_kernel_with_cgal<2>(hard_set<2>(seed), seed), "") << "seed " << seed;
   }
 }
 
@@ -75,7 +75,7 @@ TEST(Kernel2d, EqualsCgalOnWheelsOfManySpokes) {
     wheel.push_back({std::cos(2 * M_PI * i / kSpokes), std::sin(2 * M_PI * i / kSpokes)});
   }
   wheel.push_back({0x1p-40, 0x1p-41});
-  EXPECT_EQ(compare_kernel_with_cgal(wheel, 1), "");
+  EXPECT_EQ(compare_kernel_with_cgal<2>(wheel, 1), "");
 }
 
 TEST(Kernel2d, EqualsCgalWhateverThePowerOfTwo) {

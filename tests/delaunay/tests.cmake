@@ -11,15 +11,20 @@ spillway_test(delaunay_property_test property
   LIBS spillway_delaunay spillway_generators cgal_oracle
   TIMEOUT 900)
 
-add_library(kernel_2d_sets STATIC delaunay/kernel_2d_sets.cpp)
-target_link_libraries(kernel_2d_sets PUBLIC spillway_delaunay spillway_generators
+add_library(kernel_sets STATIC delaunay/kernel_sets.cpp)
+target_link_libraries(kernel_sets PUBLIC spillway_delaunay spillway_generators
                       PRIVATE cgal_oracle fmt::fmt)
 
 spillway_test(kernel_2d_test property
   SOURCES delaunay/kernel_2d_test.cpp delaunay/kernel_2d_predicates_test.cpp
-  LIBS kernel_2d_sets
+  LIBS kernel_sets
+  TIMEOUT 300)
+
+spillway_test(kernel_3d_test property
+  SOURCES delaunay/kernel_3d_test.cpp delaunay/kernel_3d_predicates_test.cpp
+  LIBS kernel_sets
   TIMEOUT 300)
 
 # Not a test: runs as long as asked.
-add_executable(kernel_driver delaunay/kernel_2d_driver.cpp)
-target_link_libraries(kernel_driver PRIVATE kernel_2d_sets CLI11::CLI11 fmt::fmt)
+add_executable(kernel_driver delaunay/kernel_driver.cpp)
+target_link_libraries(kernel_driver PRIVATE kernel_sets CLI11::CLI11 fmt::fmt)

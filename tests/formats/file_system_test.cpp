@@ -94,6 +94,22 @@ TEST_F(Disk, RemovesUnfinishedFiles) {
   EXPECT_THAT(error_of([&] { first->commit(); }), HasSubstr("cannot write"));
 }
 
+TEST_F(Disk, RemovesWhatOtherProcessesHaveNotFinished) {
+  put_content(path("a.part"), "x");
+  put_content(path("b.part"), "x");
+  const OthersUnfinishedFile others(path("a.part"));
+  OthersUnfinishedFile(path("b.part"));
+  remove_unfinished_files();
+  EXPECT_FALSE(fs::exists(path("a.part")));
+  EXPECT_TRUE(fs::exists(path("b.part"))) << "its owner has gone on";
+}
+
+TEST_F(Disk, TellsTheTemporaryPathToThoseWhoWriteThere) {
+  const auto file = disk().create(path("a"));
+  EXPECT_EQ(file->temporary_path(), path("a") + ".part");
+  EXPECT_EQ(disk().create("/dev/null")->temporary_path(), "");
+}
+
 TEST_F(Disk, DoesNotRemoveFinishedFiles) {
   const auto file = disk().create(path("a"));
   file->commit();

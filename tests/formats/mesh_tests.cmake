@@ -1,5 +1,5 @@
 spillway_test(mesh_writer_test unit
-  SOURCES formats/mesh_writer_test.cpp
+  SOURCES formats/mesh_parts_test.cpp formats/mesh_writer_test.cpp
   LIBS spillway_formats)
 spillway_test(mesh_reader_test unit
   SOURCES formats/mesh_corruption_test.cpp formats/mesh_reader_test.cpp

@@ -1,9 +1,13 @@
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <span>
 
 #include "formats/block.h"
 #include "formats/bytes.h"
 #include "formats/spm_block.h"
+#include "formats/spm_corners.h"
 #include "formats/spm_format.h"
 #include "src/delaunay/delaunay.h"
 #include "src/generators/generators.h"
@@ -132,6 +136,47 @@ StreamedMesh terrain_block(std::size_t count) {
   mesh.totals.vertices = block.vertices.size();
   mesh.totals.simplices = block.corners.size() / 3;
   return mesh;
+}
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Triangles turned so that the smallest corner is first, and sorted.
+std::vector<Triangle> known_by(std::span<const std::uint32_t> corners) {
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    Triangle triangle{corners[i], corners[i + 1], corners[i + 2]};
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()),
+                triangle.end());
+    triangles.push_back(triangle);
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+TEST(Spm, TrianglesAroundACornerComeBackWhateverTheyAre) {
+  // Fans, several of them, closed ones, triangles twice, and what no mesh has.
+  constexpr std::uint32_t kNumbers = 7;
+  std::uint64_t random = 1;
+  const auto next = [&random](std::uint64_t below) {
+    random = random * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<std::uint32_t>((random >> 33U) % below);
+  };
+  for (int trial = 0; trial < 20000; ++trial) {
+    std::vector<std::uint32_t> corners;
+    for (std::uint32_t triangles = 1 + next(8); triangles > 0; --triangles) {
+      const std::uint32_t second = 1 + next(kNumbers - 1);
+      const std::uint32_t third = 1 + (second + next(kNumbers - 2)) % (kNumbers - 1);
+      Triangle triangle{0, second, third};
+      std::rotate(triangle.begin(), triangle.begin() + next(3), triangle.end());
+      corners.insert(corners.end(), triangle.begin(), triangle.end());
+    }
+    std::vector<std::byte> bytes;
+    append_corners(bytes, 2, kNumbers, corners);
+    std::vector<std::uint32_t> read;
+    const auto count = static_cast<std::uint32_t>(corners.size() / 3);
+    ASSERT_TRUE(read_corners(bytes, 2, kNumbers, count, read, "here").empty());
+    ASSERT_EQ(known_by(read), known_by(corners));
+  }
 }
 
 TEST(Spm, ATerrainTakesLessThan24BytesAPoint) {

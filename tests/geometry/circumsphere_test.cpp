@@ -200,6 +200,133 @@ TYPED_TEST(CertifiedBallTest, InfiniteAndEmptyBoxesAreUnderstood) {
   EXPECT_TRUE(may_meet<D>(ball, half_space));
 }
 
+// Boxes that a simplex's circumsphere is in, or sticks out of, by little, by much and by a side
+// that is infinite; and the largest.
+template <int D>
+std::vector<Box<D>> boxes_around(const CertifiedBall<D>& ball, Random& random) {
+  std::vector<Box<D>> boxes;
+  const double radius = ball.error == kInfinity ? 1 : std::sqrt(ball.squared_radius);
+  for (const double room : {-1e-3, -1e-15, 0.0, 1e-15, 1e-12, 1e-4, 6e-4, 1e-2, 1.0, 1e6}) {
+    Box<D> box;
+    for (int k = 0; k < D; ++k) {
+      const double centre = ball.anchor[k] + (ball.error == kInfinity ? 0 : ball.centre[k]);
+      box.lo[k] = centre - radius * (1 + random.uniform(0, 3));
+      box.hi[k] = centre + radius * (1 + random.uniform(0, 3));
+    }
+    const auto axis = random.integer(0, D - 1);
+    const double centre = ball.anchor[axis] + (ball.error == kInfinity ? 0 : ball.centre[axis]);
+    box.lo[axis] = centre - radius * (1 + room);
+    if (random.integer(0, 2) == 0) box.hi[axis] = kInfinity;
+    boxes.push_back(box);
+  }
+  Box<D> everything;
+  everything.lo.fill(-kInfinity);
+  everything.hi.fill(kInfinity);
+  boxes.push_back(everything);
+  boxes.push_back({});
+  return boxes;
+}
+
+TYPED_TEST(CertifiedBallTest, WhatIsWellInsideIsInside) {
+  constexpr int D = TypeParam::value;
+  constexpr std::size_t kSize = SimplexBatch<D>::kSize;
+  Random random(29);
+  std::size_t proofs = 0;
+  for (const Hard family : testing::kAllHard) {
+    SCOPED_TRACE(testing::name_of(family));
+    const auto groups = testing::hard_groups<D>(family, 2 * kSize, 30);
+    for (std::size_t begin = 0; begin < groups.size(); begin += kSize) {
+      SimplexBatch<D> batch;
+      for (std::size_t s = 0; s < kSize; ++s) {
+        batch.set(s, [&](int i) { return groups[begin + s][i]; });
+      }
+      for (std::size_t s = 0; s < kSize; ++s) {
+        const auto simplex = testing::simplex_of<D>(groups[begin + s]);
+        const CertifiedBall<D> ball = certified_ball<D>(simplex);
+        for (const Box<D>& box : boxes_around<D>(ball, random)) {
+          const auto found = well_inside<D>(batch, box);
+          for (std::size_t other = 0; other < kSize; ++other) {
+            if (!found[other]) continue;
+            const auto of_other = testing::simplex_of<D>(groups[begin + other]);
+            ++proofs;
+            EXPECT_TRUE(inside<D>(certified_ball<D>(of_other), box));
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(proofs, 10000U);
+}
+
+TYPED_TEST(CertifiedBallTest, WellInsideIsProvedByRationalArithmetic) {
+  constexpr int D = TypeParam::value;
+  Random random(31);
+  std::size_t proofs = 0;
+  for (const Hard family : testing::kAllHard) {
+    SCOPED_TRACE(testing::name_of(family));
+    for (const auto& group : testing::hard_groups<D>(family, 60, 32)) {
+      const auto simplex = testing::simplex_of<D>(group);
+      SimplexBatch<D> batch{};
+      batch.set(7, [&](int i) { return simplex[i]; });
+      for (const Box<D>& box : boxes_around<D>(certified_ball<D>(simplex), random)) {
+        if (!well_inside<D>(batch, box)[7]) continue;
+        ++proofs;
+        const ExactSphere<D> exact(simplex);
+        for (int k = 0; k < D; ++k) {
+          for (const double side : {box.lo[k], box.hi[k]}) {
+            if (std::isinf(side)) continue;
+            const Rational gap = exact.centre[k] - Rational(side);
+            EXPECT_GT(gap * gap, exact.squared_radius);
+          }
+          EXPECT_TRUE(std::isinf(box.lo[k]) || exact.centre[k] > Rational(box.lo[k]));
+          EXPECT_TRUE(std::isinf(box.hi[k]) || exact.centre[k] < Rational(box.hi[k]));
+        }
+      }
+    }
+  }
+  EXPECT_GT(proofs, 100U);
+}
+
+TYPED_TEST(CertifiedBallTest, WellShapedSimplicesWithALittleRoomAreWellInside) {
+  constexpr int D = TypeParam::value;
+  Random random(33);
+  for (const double offset : {0.0, 5e6}) {
+    for (int trial = 0; trial < 300; ++trial) {
+      const auto simplex = well_shaped<D>(random, random.uniform(0.5, 100), offset);
+      const CertifiedBall<D> ball = certified_ball<D>(simplex);
+      Box<D> box;
+      for (int k = 0; k < D; ++k) {
+        const double reach = 1.001 * std::sqrt(ball.squared_radius);
+        box.lo[k] = ball.anchor[k] + (ball.centre[k] - reach);
+        box.hi[k] = ball.anchor[k] + (ball.centre[k] + reach);
+      }
+      SimplexBatch<D> batch{};
+      batch.set(0, [&](int i) { return simplex[i]; });
+      EXPECT_TRUE(well_inside<D>(batch, box)[0]);
+      EXPECT_FALSE(well_inside<D>(batch, box)[1]);  // a point
+    }
+  }
+}
+
+TYPED_TEST(CertifiedBallTest, NothingIsKnownOfWhatIsNotFinite) {
+  constexpr int D = TypeParam::value;
+  Box<D> everything;
+  everything.lo.fill(-kInfinity);
+  everything.hi.fill(kInfinity);
+  for (const double strange : {kInfinity, -kInfinity, kNan, 1e308}) {
+    for (int i = 0; i <= D; ++i) {
+      for (int k = 0; k < D; ++k) {
+        std::array<Point<D>, D + 1> simplex{};
+        for (int c = 0; c < D; ++c) simplex[c + 1][c] = 1;
+        simplex[i][k] = strange;
+        SimplexBatch<D> batch{};
+        batch.set(0, [&](int c) { return simplex[c]; });
+        EXPECT_FALSE(well_inside<D>(batch, everything)[0]) << strange << ' ' << i << ' ' << k;
+      }
+    }
+  }
+}
+
 // The facet x_0 = 0 through the origin, listed so that larger x_0 is beyond.
 template <int D>
 std::array<Point<D>, D> facet_beyond_zero() {

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <set>
+#include <vector>
 
 #include "src/geometry/box.h"
 #include "src/geometry/canonical_hash.h"
@@ -132,11 +136,115 @@ TYPED_TEST(CanonicalHashTest, NegativeZeroCountsAsZero) {
   EXPECT_EQ(plus.value(), minus.value());
 }
 
+// The sum of single hashes is what a set of simplices is known by.
+template <int D>
+std::uint64_t hash_of(const std::vector<std::array<Point<D>, D + 1>>& simplices) {
+  CanonicalHash<D> hash;
+  for (const auto& simplex : simplices) hash.add(simplex);
+  return hash.value();
+}
+
+TYPED_TEST(CanonicalHashTest, EveryBitOfEveryCoordinateCounts) {
+  constexpr int D = TypeParam::value;
+  const auto simplex =
+      testing::simplex_of<D>(testing::hard_groups<D>(testing::Hard::kLidarLattice, 1, 4)[0]);
+  std::set<std::uint64_t> seen{hash_of<D>({simplex})};
+  for (int i = 0; i <= D; ++i) {
+    for (int k = 0; k < D; ++k) {
+      for (int bit = 0; bit < 64; ++bit) {
+        auto changed = simplex;
+        changed[i][k] = std::bit_cast<double>(std::bit_cast<std::uint64_t>(simplex[i][k]) ^
+                                              std::uint64_t{1} << bit);
+        if (changed[i][k] != changed[i][k]) continue;
+        EXPECT_TRUE(seen.insert(hash_of<D>({changed})).second) << i << ' ' << k << ' ' << bit;
+      }
+    }
+  }
+}
+
+TYPED_TEST(CanonicalHashTest, ChangesWhenSimplicesExchangeCornersOrCoordinates) {
+  constexpr int D = TypeParam::value;
+  for (const auto& group : testing::hard_groups<D>(testing::Hard::kUniform, 200, 5)) {
+    const auto first = testing::simplex_of<D>(group);
+    auto second = first;
+    for (auto& corner : second) corner[0] += 10;
+    const std::uint64_t before = hash_of<D>({first, second});
+    auto third = first;
+    auto fourth = second;
+    std::swap(third[0], fourth[1]);
+    EXPECT_NE(hash_of<D>({third, fourth}), before);
+    fourth = second;
+    third = first;
+    std::swap(third[0][0], fourth[0][0]);  // the same numbers, elsewhere
+    EXPECT_NE(hash_of<D>({third, fourth}), before);
+    third = first;
+    std::swap(third[0][0], third[1][0]);
+    EXPECT_NE(hash_of<D>({third}), hash_of<D>({first}));
+    third = first;
+    std::swap(third[0][0], third[0][1]);
+    EXPECT_NE(hash_of<D>({third}), hash_of<D>({first}));
+  }
+}
+
+TEST(CanonicalHashValueTest, TellsTheDiagonalsOfAGridApart) {
+  // All ways to cut the cells of a grid in two have the same corners, a cell's two ways as often.
+  constexpr int kCells = 12;
+  std::set<std::uint64_t> seen;
+  for (unsigned diagonals = 0; diagonals < 1U << kCells; ++diagonals) {
+    CanonicalHash<2> hash;
+    for (int cell = 0; cell < kCells; ++cell) {
+      const double x = cell % 4;
+      const double y = cell / 4;
+      const Point<2> a{x, y};
+      const Point<2> b{x + 1, y};
+      const Point<2> c{x + 1, y + 1};
+      const Point<2> d{x, y + 1};
+      if ((diagonals >> cell & 1U) != 0) {
+        hash.add({a, b, c});
+        hash.add({a, c, d});
+      } else {
+        hash.add({a, b, d});
+        hash.add({b, c, d});
+      }
+    }
+    EXPECT_TRUE(seen.insert(hash.value()).second) << diagonals;
+  }
+}
+
+TEST(CanonicalHashValueTest, TellsTheTwoAndThreeTetrahedraOfFivePointsApart) {
+  const Point<3> top{0.1, 0.1, 1};
+  const Point<3> bottom{0.1, 0.1, -1};
+  const Point<3> a{1, 0, 0};
+  const Point<3> b{0, 1, 0};
+  const Point<3> c{-1, -1, 0};
+  EXPECT_NE(hash_of<3>({{a, b, c, top}, {a, b, c, bottom}}),
+            hash_of<3>({{a, b, top, bottom}, {b, c, top, bottom}, {c, a, top, bottom}}));
+}
+
+TYPED_TEST(CanonicalHashTest, FingerprintsOfVerticesMakeTheSameHash) {
+  constexpr int D = TypeParam::value;
+  CanonicalHash<D> one_by_one;
+  CanonicalHash<D> listed;
+  std::vector<std::uint32_t> corners;
+  std::vector<std::uint64_t> vertices;
+  for (const auto& group : testing::hard_groups<D>(testing::Hard::kSmallLattice, 100, 6)) {
+    for (const auto& corner : testing::simplex_of<D>(group)) {
+      corners.push_back(static_cast<std::uint32_t>(vertices.size()));
+      vertices.push_back(vertex_hash<D>(corner));
+    }
+    one_by_one.add(testing::simplex_of<D>(group));
+  }
+  listed.add(corners, vertices);
+  EXPECT_EQ(listed.value(), one_by_one.value());
+}
+
 TEST(CanonicalHashValueTest, IsPartOfTheFormatAndNeverChanges) {
   CanonicalHash<2> hash;
   EXPECT_EQ(hash_to_hex(hash.value()), "0000000000000000");
   hash.add({Point<2>{0, 0}, {1, 0}, {0, 1}});
-  EXPECT_EQ(hash_to_hex(hash.value()), "6e566e50aa3c0b36");
+  EXPECT_EQ(hash_to_hex(hash.value()), "c7f69e3eeb8bb3b9");
+  EXPECT_EQ(hash_to_hex(hash_of<3>({{Point<3>{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})),
+            "4ea8ee3f5a86838e");
 }
 
 }  // namespace

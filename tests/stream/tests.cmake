@@ -20,3 +20,15 @@ spillway_test(dem_test property
   SOURCES stream/dem_test.cpp
   LIBS spillway_stream
   TIMEOUT 300)
+
+spillway_mpi_test(rank_pipeline_test
+  SOURCES stream/rank_pipeline_test.cpp
+  LIBS spillway_stream spillway_generators
+  RANKS 1 2 3 4 5 8
+  TIMEOUT 600)
+
+spillway_mpi_test(rank_output_test
+  SOURCES stream/rank_output_test.cpp
+  LIBS spillway_stream
+  RANKS 1 2 3 5
+  TIMEOUT 300)

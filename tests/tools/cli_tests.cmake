@@ -38,3 +38,7 @@ target_link_libraries(cli_dem_tests PRIVATE PkgConfig::gdal)
 spillway_command_test(cli_render_tests cli
   tools/cli_render_test.cpp)
 target_link_libraries(cli_render_tests PRIVATE PNG::PNG)
+
+spillway_command_test(cli_ranks_tests mpi
+  tools/cli_ranks_test.cpp)
+target_compile_definitions(cli_ranks_tests PRIVATE SPILLWAY_MPIRUN="${MPIEXEC_EXECUTABLE}")

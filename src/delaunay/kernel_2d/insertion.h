@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "src/delaunay/insertion_rounds.h"
 #include "src/delaunay/kernel_2d/filters.h"
 #include "src/delaunay/kernel_2d/working_points.h"
 
@@ -50,12 +51,6 @@ class TriangleArray {
   std::uint32_t* numbers_;
 };
 
-/// A point that was found to equal a vertex.
-struct Repetition {
-  VertexId point;
-  VertexId vertex;
-};
-
 /// Builds the triangulation point by point. kLattice says what WorkingPoints::lattice does.
 template <bool kLattice>
 class Insertion {
@@ -70,7 +65,7 @@ class Insertion {
 
   /// Triangles so far, the infinite ones included; they fill the array from its beginning.
   [[nodiscard]] std::uint32_t triangle_count() const { return triangle_count_; }
-  [[nodiscard]] const std::vector<Repetition>& repetitions() const { return repetitions_; }
+  [[nodiscard]] const std::vector<kernel::Repetition>& repetitions() const { return repetitions_; }
 
  private:
   /// A triangle in conflict with the query, seen from there: edge i, opposite corners[i], has the
@@ -120,7 +115,7 @@ class Insertion {
   VertexId query_vertex_ = kInfinite;
   std::vector<Open> open_;    ///< edges to be looked at, the next one last
   std::vector<Handle> free_;  ///< first handles of triangles whose memory may be used
-  std::vector<Repetition> repetitions_;
+  std::vector<kernel::Repetition> repetitions_;
 };
 
 extern template class Insertion<false>;

@@ -13,7 +13,4 @@ namespace spillway {
 /// more than it can number.
 BaseCase<2> kernel_2d_base_case(const BaseCaseInput<2>& input, std::span<const VertexId> basis);
 
-/// Gives the system the memory that was kept for coming base cases.
-void release_kernel_2d_memory();
-
 }  // namespace spillway

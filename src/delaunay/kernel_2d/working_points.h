@@ -4,14 +4,14 @@
 
 #include <span>
 
-#include "src/delaunay/kernel_2d/working_memory.h"
+#include "src/delaunay/insertion_rounds.h"
+#include "src/delaunay/working_memory.h"
 #include "src/geometry/point.h"
 
 namespace spillway::kernel_2d {
 
-/// The kernel's own vertex numbers: the infinite vertex, then the points in their order.
-inline constexpr VertexId kInfinite = 0;
-inline constexpr VertexId kFirstPoint = 1;
+using kernel::kFirstPoint;
+using kernel::kInfinite;
 
 /// One base case's points, by the kernel's vertex numbers.
 struct WorkingPoints {

@@ -1,11 +1,14 @@
 #pragma once
-// Memory for one base case of the 2D kernel, kept for those that follow: fresh memory costs about
+// Memory for one base case of the own kernels, kept for those that follow: fresh memory costs about
 // as much as a tenth of the triangulation in it.
 
 #include <cstddef>
 #include <memory>
 
-namespace spillway::kernel_2d {
+namespace spillway {
+
+/// Asks for huge pages where the memory spans some: a wish, without it everything is only slower.
+void ask_for_huge_pages(void* memory, std::size_t bytes);
 
 /// A block of memory that only grows. Blocks that span huge pages ask for them.
 class Block {
@@ -13,6 +16,15 @@ class Block {
   /// Memory for at least so many bytes, aligned for cache lines; what it held before may be lost.
   /// Throws std::bad_alloc.
   void* reserve(std::size_t bytes);
+
+  /// The same, but the first `used` bytes stay what they are. Some room is added for the next time.
+  void* grow(std::size_t bytes, std::size_t used);
+
+  /// Gives the system the huge pages that lie between these two bytes; what they held is lost, and
+  /// they come back empty when they are used again.
+  void forget(std::size_t begin, std::size_t end);
+
+  [[nodiscard]] std::size_t capacity() const { return capacity_; }
 
  private:
   struct Free {
@@ -25,7 +37,7 @@ class Block {
 /// What one base case works in.
 struct WorkingMemory {
   Block points;
-  Block triangles;
+  Block simplices;
 };
 
 /// Working memory on loan: that of an earlier base case if there is any. Gives it back at the end
@@ -49,4 +61,4 @@ class BorrowedMemory {
   std::unique_ptr<WorkingMemory> memory_;
 };
 
-}  // namespace spillway::kernel_2d
+}  // namespace spillway

@@ -1,0 +1,461 @@
+#include "src/delaunay/kernel_3d/insertion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "src/delaunay/kernel_3d/exact_predicates.h"
+#include "src/delaunay/kernel_3d/spheres.h"
+#include "src/error.h"
+
+namespace spillway::kernel_3d {
+namespace {
+
+constexpr std::size_t kFirstListSize = 512;
+constexpr Handle kNone = ~Handle{0};
+/// How far the query is outside of the cell's sphere: the difference of squares.
+SPILLWAY_INLINE double power(const Cell& cell, const double* query) {
+  const double x = query[0] - cell.centre[0];
+  const double y = query[1] - cell.centre[1];
+  const double z = query[2] - cell.centre[2];
+  return x * x + y * y + z * z - cell.squared_radius;
+}
+
+/// The determinant of a - q, b - q, c - q, in WorkingPoints::tiny.
+SPILLWAY_INLINE double exact_orientation_of_tiny(const double* q, const double* a, const double* b,
+                                                 const double* c) {
+  const double bx = b[0] - q[0];
+  const double by = b[1] - q[1];
+  const double bz = b[2] - q[2];
+  const double cx = c[0] - q[0];
+  const double cy = c[1] - q[1];
+  const double cz = c[2] - q[2];
+  return (a[0] - q[0]) * (by * cz - bz * cy) + (a[1] - q[1]) * (bz * cx - bx * cz) +
+         (a[2] - q[2]) * (bx * cy - by * cx);
+}
+
+/// Copies a short list, four at a time: both have room for that at their ends.
+SPILLWAY_INLINE void copy_words(const std::uint32_t* from, std::size_t count, std::uint32_t* to) {
+  for (std::size_t i = 0; i < count; i += 4) {
+    Words words;
+    load(from + i, words);
+    store(words, to + i);
+  }
+}
+
+}  // namespace
+
+template <bool kRanked>
+Insertion<kRanked>::Insertion(const WorkingPoints& points, Block& memory,
+                              const std::array<VertexId, 4>& first, int lanes)
+    : points_(points),
+      memory_(memory),
+      cells_(memory.reserve(kFirstListSize * sizeof(Cell))),
+      capacity_(memory.capacity() / sizeof(Cell)),
+      lanes_(lanes),
+      star_maker_(points.count) {
+  free_.resize(kAhead);
+  resize_lists(kFirstListSize);
+  std::array<VertexRef, 4> v{ref(first[0]), ref(first[1]), ref(first[2]), ref(first[3])};
+  if (orientation(points_, v) < 0) std::swap(v[2], v[3]);
+  std::copy(v.begin(), v.end(), cells_.at_first(0).vertices);
+  star_[0] = 0;
+  make_star_spheres<2>(v[0], v[0], 1, false);
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    // The infinite cell beyond the facet opposite v[k].
+    const auto& places = kPlaces[k];
+    Cell& cell = cells_.at_first(CellArray::handle(1 + k, 0));
+    cell.vertices[0] = v[places[1]];
+    cell.vertices[1] = kInfinite;
+    cell.vertices[2] = v[places[2]];
+    cell.vertices[3] = v[places[3]];
+    make_half_space(cell);
+    cells_.join(CellArray::handle(0, k), CellArray::handle(1 + k, 1));
+  }
+  const auto facet = [&](std::uint32_t k, std::uint32_t j) {
+    const Handle cell = CellArray::handle(1 + k, 0);
+    const auto vertices = vertices_of(cells_.at_first(cell));
+    return cell + static_cast<Handle>(std::find(vertices.begin(), vertices.end(), v[j]) -
+                                      vertices.begin());
+  };
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    for (std::uint32_t j = 0; j < k; ++j) cells_.join(facet(k, j), facet(j, k));
+  }
+  known_conflicts_ = 0;
+}
+
+template <bool kRanked>
+void Insertion<kRanked>::resize_lists(std::size_t size) {
+  conflicts_.resize(size);
+  answers_.resize(size);
+  boundary_.resize(size);
+  star_.resize(size);
+  next_in_conflict_.resize(size);
+}
+
+/// Finds a cell in conflict with the query, or kNone if it equals a vertex; that is remembered.
+/// From cell to cell the power of the query falls, so it comes to the cell that contains it.
+template <bool kRanked>
+Handle Insertion<kRanked>::locate(VertexRef query) {
+  const double* q = points_.at(query);
+  Handle here = hint_;
+  const Cell* cell = &cells_.at_first(here);
+  double best = power(*cell, q);
+  if (best < -tolerance_of(cell->squared_radius)) return here;
+  for (;;) {
+    Handle nearest = kNone;
+    for (const Handle neighbour : cell->neighbours) {
+      const Handle there = CellArray::first_handle(neighbour);
+      const Cell& other = cells_.at_first(there);
+      const double s = power(other, q);
+      if (s < -tolerance_of(other.squared_radius)) return there;
+      if (s < best) {
+        best = s;
+        nearest = there;
+      }
+    }
+    if (nearest == kNone) return locate_exactly(query, here);
+    here = nearest;
+    cell = &cells_.at_first(here);
+  }
+}
+
+/// The same with exact predicates.
+template <bool kRanked>
+[[gnu::noinline, gnu::cold]] Handle Insertion<kRanked>::locate_exactly(VertexRef query,
+                                                                       Handle first) {
+  std::array<VertexRef, 4> start = vertices_of(cells_.at_first(first));
+  if (const std::size_t k = infinite_slot(start); k < 4) {
+    start[k] = query;
+    if (orientation(points_, start) > 0) return first;
+    first = CellArray::first_handle(cells_.at_first(first).neighbours[k]);
+  }
+  for (;;) {
+    const Cell& cell = cells_.at_first(first);
+    const std::array<VertexRef, 4> vertices = vertices_of(cell);
+    std::size_t k = 0;
+    for (; k < 4; ++k) {
+      std::array<VertexRef, 4> replaced = vertices;
+      replaced[k] = query;
+      if (orientation(points_, replaced) < 0) break;
+    }
+    if (k == 4) {
+      for (const VertexRef v : vertices) {
+        if (points_.original(v) != points_.original(query)) continue;
+        repetitions_.push_back({query / 4, v / 4});
+        hint_ = first;
+        return kNone;
+      }
+      return first;
+    }
+    first = CellArray::first_handle(cell.neighbours[k]);
+    if (infinite_slot(vertices_of(cells_.at_first(first))) < 4) return first;
+  }
+}
+
+/// On a lattice, for a query that is on a cell's sphere: the tie rule. The largest vertex, which
+/// mostly decides, has been noted.
+template <bool kRanked>
+bool Insertion<kRanked>::noted_tie_conflicts(const Cell& cell, VertexRef query) const {
+  const std::array<VertexRef, 4> vertices = vertices_of(cell);
+  const double* q = points_.at(query);
+  if (!points_.tiny) return tie_conflicts(points_, {vertices, query});
+  const std::array<const double*, 4> v{points_.at(vertices[0]), points_.at(vertices[1]),
+                                       points_.at(vertices[2]), points_.at(vertices[3])};
+  std::size_t largest =
+      std::bit_cast<std::uint64_t>(cell.squared_radius) >> kLargestShift & std::size_t{3};
+  while (v[largest][3] > q[3]) {
+    const auto& places = kPlaces[largest];
+    const double coefficient =
+        exact_orientation_of_tiny(q, v[places[1]], v[places[2]], v[places[3]]);
+    if (coefficient != 0) return coefficient > 0;
+    const double below = v[largest][3];
+    const double* next = q;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (v[i][3] < below && v[i][3] > next[3]) {
+        next = v[i];
+        largest = i;
+      }
+    }
+    if (next == q) break;
+  }
+  return false;
+}
+
+/// Whether the query is in conflict with the cell, by the upper rungs.
+template <bool kRanked>
+bool Insertion<kRanked>::conflicts(Handle first, VertexRef query) const {
+  const Cell* cell = &cells_.at_first(first);
+  const auto tie_noted = [](const Cell& c) {
+    return kRanked && (std::bit_cast<std::int64_t>(c.squared_radius) & kTieNote) != 0;
+  };
+  if (tie_noted(*cell)) return noted_tie_conflicts(*cell, query);
+  std::array<VertexRef, 4> vertices = vertices_of(*cell);
+  if (const std::size_t k = infinite_slot(vertices); k < 4) {
+    vertices[k] = query;
+    const int side = orientation(points_, vertices);
+    if (side != 0) return side > 0;
+    // In the plane of the facet: in conflict if inside its circle, as for the neighbour.
+    cell = &cells_.at(cell->neighbours[k]);
+    vertices = vertices_of(*cell);
+    const double s = power(*cell, points_.at(query));
+    const double tolerance = tolerance_of(cell->squared_radius);
+    if (s > tolerance) return false;
+    if (s < -tolerance) return true;
+    if (tie_noted(*cell)) return noted_tie_conflicts(*cell, query);
+  }
+  const Five five{vertices, query};
+  const int side = side_of_sphere(points_, five);
+  return side != 0 ? side > 0 : tie_conflicts(points_, five);
+}
+
+/// Of the doubtful neighbours of a cell, those in conflict.
+template <bool kRanked>
+[[gnu::noinline]] std::uint32_t Insertion<kRanked>::decide(const Cell& cell, std::uint32_t doubtful,
+                                                           VertexRef query) const {
+  std::uint32_t result = 0;
+  for (; doubtful != 0; doubtful &= doubtful - 1) {
+    const int k = std::countr_zero(doubtful);
+    if (conflicts(CellArray::first_handle(cell.neighbours[k]), query)) result |= 1U << k;
+  }
+  return result;
+}
+
+/// Finds all cells in conflict with the query; the first ones are known, and listed. Marks them.
+template <bool kRanked>
+template <int kLanes>
+SPILLWAY_INLINE auto Insertion<kRanked>::find_hole(VertexRef query, std::size_t known) -> Hole {
+  const double* q = points_.at(query);
+  const CellArray cells = cells_;
+  Handle* conflicts = conflicts_.data();
+  Handle* boundary = boundary_.data();
+  Hole hole{known, 0};
+  for (std::size_t i = 0; i < known; ++i) cells.at_first(conflicts[i]).vertices[3] |= kMark;
+  for (std::size_t begin = 0; begin < hole.cells;) {
+    const std::size_t end = hole.cells;
+    const std::size_t most = std::max(hole.cells, hole.facets) + 4 * (end - begin) + kAhead;
+    if (most > conflicts_.size()) [[unlikely]] {
+      resize_lists(2 * most);
+      conflicts = conflicts_.data();
+      boundary = boundary_.data();
+    }
+    std::uint8_t* const answers = answers_.data();
+    for (std::size_t i = begin; i < end; ++i) {
+      answers[i] = static_cast<std::uint8_t>(
+          test_neighbours<kLanes>(cells, cells.at_first(conflicts[i]), q));
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      const Handle first = conflicts[i];
+      const Cell& cell = cells.at_first(first);
+      Words there;
+      load(cell.neighbours, there);
+      there &= ~7U;
+      VertexRef* last[4];
+      std::uint32_t marked = 0;
+      for (int k = 0; k < 4; ++k) {
+        last[k] = &cells.at(cell.neighbours[k]).vertices[3];
+        marked |= *last[k] >> 31 << k;
+      }
+      const std::uint32_t answer = answers[i];
+      std::uint32_t inside = (answer & 15) | marked;
+      const std::uint32_t doubtful = answer >> 4 & ~marked;
+      if (doubtful != 0) [[unlikely]] {
+        inside = (inside & ~doubtful) | decide(cell, doubtful, query);
+      }
+      for (int k = 0; k < 4; ++k) *last[k] |= inside >> k << 31;
+      hole.cells = append<kLanes>(there, inside & ~marked, conflicts, hole.cells);
+      const Words facets = first + Words{0, 1, 2, 3};
+      hole.facets = append<kLanes>(facets, inside ^ 15, boundary, hole.facets);
+    }
+    begin = end;
+  }
+  return hole;
+}
+
+/// Chooses cells for a star: free ones, then new ones.
+template <bool kRanked>
+void Insertion<kRanked>::take_cells(std::size_t count) {
+  const std::size_t used = std::min(count, free_count_);
+  free_count_ -= used;
+  copy_words(free_.data() + free_count_, used, star_.data());
+  const std::size_t fresh = count - used;
+  if (fresh == 0) return;
+  if (cell_count_ + fresh > capacity_) [[unlikely]]
+    grow_cells(cell_count_ + fresh);
+  for (std::size_t i = used; i < count; ++i) star_[i] = CellArray::handle(cell_count_++, 0);
+}
+
+template <bool kRanked>
+[[gnu::noinline, gnu::cold]] void Insertion<kRanked>::grow_cells(std::size_t count) {
+  if (count > CellArray::kMaxCells) {
+    throw Error(
+        fmt::format("a base case of {} points has more than {} cells, more than can be numbered; "
+                    "choose smaller base cases",
+                    points_.count - 1, CellArray::kMaxCells));
+  }
+  cells_ = CellArray(memory_.grow(count * sizeof(Cell), cell_count_ * sizeof(Cell)));
+  capacity_ = std::min(memory_.capacity() / sizeof(Cell), CellArray::kMaxCells);
+}
+
+/// Makes the spheres of the star and finds those of its cells that are certainly in conflict with
+/// the next point.
+template <bool kRanked>
+template <int kLanes>
+SPILLWAY_INLINE void Insertion<kRanked>::make_star_spheres(VertexRef query, VertexRef next,
+                                                           std::size_t count, bool on_hull) {
+  for (std::size_t i = count; i < count + kLanes - 1; ++i) star_[i] = star_[count - 1];
+  const StarView star{.coordinates = points_.coordinates,
+                      .largest = points_.largest,
+                      .cells = cells_,
+                      .handles = star_.data(),
+                      .query = points_.at(query),
+                      .next = points_.at(next)};
+  std::int64_t* const in_conflict = next_in_conflict_.data();
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    make_spheres<kLanes, kRanked>(star, i, in_conflict);
+  }
+  if (on_hull) [[unlikely]]
+    make_half_spaces(next, count);
+  std::size_t known = 0;
+  Handle* const conflicts = conflicts_.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    conflicts[known] = star.handles[i];
+    known -= static_cast<std::size_t>(in_conflict[i]);
+  }
+  for (std::size_t i = 0; i < known; ++i) {
+    const Cell& outer = cells_.at(cells_.at_first(conflicts[i]).neighbours[0]);
+    for (const Handle neighbour : outer.neighbours) __builtin_prefetch(&cells_.at(neighbour));
+  }
+  known_conflicts_ = known;
+  if (known == 0) choose_hint(star.next, count);
+}
+
+/// The half-spaces of the star's infinite cells.
+template <bool kRanked>
+[[gnu::noinline]] void Insertion<kRanked>::make_half_spaces(VertexRef next, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    Cell& cell = cells_.at_first(star_[i]);
+    if (infinite_slot(vertices_of(cell)) == 4) continue;
+    make_half_space(cell);
+    const double s = power(cell, points_.at(next));
+    next_in_conflict_[i] = s < -tolerance_of(cell.squared_radius) ? -1 : 0;
+  }
+}
+
+template <bool kRanked>
+void Insertion<kRanked>::make_half_space(Cell& cell) const {
+  const std::size_t k = infinite_slot(vertices_of(cell));
+  const double* anchor = points_.at(cell.vertices[0]);
+  const auto edge = [&](std::size_t slot) {
+    const double* end = points_.at(cell.vertices[slot]);
+    return Point<3>{end[0] - anchor[0], end[1] - anchor[1], end[2] - anchor[2]};
+  };
+  const auto length = [](const Point<3>& v) {
+    return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
+  };
+  const Point<3> a = edge(k % 3 + 1);
+  const Point<3> b = edge((k + 1) % 3 + 1);
+  const double edges = length(a) * length(b);
+  Point<3> normal{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  const auto scale_normal = [&normal](double scale) {
+    for (double& c : normal) c *= scale;
+    return normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+  };
+  const double radius = kBallOfHalfSpace * points_.extent;
+  const double exact = scale_normal(radius / edges);
+  const double tolerance = kHalfSpaceTolerance * points_.extent * points_.extent +
+                           kToleranceOfPlace * radius * points_.largest;
+  const std::int64_t exponent = (std::bit_cast<std::int64_t>(tolerance) >> kMantissaBits) + 1;
+  const double carrying =
+      std::bit_cast<double>((std::bit_cast<std::int64_t>(exact) & ~kCarriedMask) | exponent);
+  // The radius has fewer bits than it needs; the normal is fitted to it.
+  scale_normal(1 - (exact - carrying) / (2 * exact));
+  for (std::size_t i = 0; i < 3; ++i) cell.centre[i] = anchor[i] + normal[i];
+  cell.squared_radius =
+      edges >= kSmallestEdges ? carrying : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The search for the next point begins at the cell of the star in which its power is smallest.
+template <bool kRanked>
+[[gnu::noinline]] void Insertion<kRanked>::choose_hint(const double* next, std::size_t count) {
+  double best = std::numeric_limits<double>::infinity();
+  hint_ = star_[0];
+  for (std::size_t i = 0; i < count; ++i) {
+    const double s = power(cells_.at_first(star_[i]), next);
+    if (s < best) {
+      best = s;
+      hint_ = star_[i];
+    }
+  }
+}
+
+template <bool kRanked>
+template <int kLanes>
+SPILLWAY_INLINE void Insertion<kRanked>::insert_by(VertexRef query, VertexRef next) {
+  std::size_t known = known_conflicts_;
+  if (known == 0) {
+    const Handle found = locate(query);
+    if (found == kNone) return;
+    conflicts_[0] = found;
+    known = 1;
+  }
+  const Hole hole = find_hole<kLanes>(query, known);
+  take_cells(hole.facets);
+  const bool on_hull = star_maker_.make<kLanes>({.cells = cells_,
+                                                 .apex = query,
+                                                 .facets = boundary_.data(),
+                                                 .handles = star_.data(),
+                                                 .count = hole.facets});
+  if (free_count_ + hole.cells + kAhead > free_.size()) [[unlikely]] {
+    free_.resize(2 * (free_count_ + hole.cells + kAhead));
+  }
+  copy_words(conflicts_.data(), hole.cells, free_.data() + free_count_);
+  free_count_ += hole.cells;
+  make_star_spheres<kLanes>(query, next, hole.facets, on_hull);
+}
+
+template <bool kRanked>
+void Insertion<kRanked>::insert_by_2(VertexRef query, VertexRef next) {
+  insert_by<2>(query, next);
+}
+
+template <bool kRanked>
+void Insertion<kRanked>::insert_by_4(VertexRef query, VertexRef next) {
+  insert_by<4>(query, next);
+}
+
+template <bool kRanked>
+void Insertion<kRanked>::insert(VertexId point, VertexId next) {
+  if (lanes_ == 4) {
+    insert_by_4(ref(point), ref(next));
+  } else {
+    insert_by_2(ref(point), ref(next));
+  }
+}
+
+template <bool kRanked>
+void Insertion<kRanked>::close_gaps() {
+  // The last cells that are in use go to the lowest free places.
+  std::sort(free_.data(), free_.data() + free_count_);
+  std::size_t next_free = 0;
+  const std::size_t count = cell_count_ - free_count_;
+  for (std::uint32_t from = cell_count_; from > count; --from) {
+    const Handle old_first = CellArray::handle(from - 1, 0);
+    Cell& cell = cells_.at_first(old_first);
+    if ((cell.vertices[3] & kMark) != 0) continue;
+    const Handle new_first = free_[next_free++];
+    Cell& moved = cells_.at_first(new_first);
+    moved = cell;
+    for (std::uint32_t k = 0; k < 4; ++k) cells_.join(new_first + k, moved.neighbours[k]);
+  }
+  cell_count_ = static_cast<std::uint32_t>(count);
+  free_count_ = 0;
+}
+
+template class Insertion<false>;
+template class Insertion<true>;
+
+}  // namespace spillway::kernel_3d

@@ -1,0 +1,97 @@
+#pragma once
+// Incremental insertion (Bowyer, Watson) of points in space: the cells that a new point is in
+// conflict with are found level by level from those already known, and the hole is filled with the
+// star of the point, whose spheres are made several at a time and tested with the next point at
+// once.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "src/delaunay/insertion_rounds.h"
+#include "src/delaunay/kernel_3d/cells.h"
+#include "src/delaunay/kernel_3d/lanes.h"
+#include "src/delaunay/kernel_3d/star_maker.h"
+#include "src/delaunay/kernel_3d/working_points.h"
+#include "src/delaunay/working_memory.h"
+
+namespace spillway::kernel_3d {
+
+/// Builds the triangulation point by point. kRanked says what WorkingPoints::ranked does.
+template <bool kRanked>
+class Insertion {
+ public:
+  /// Starts with the cell of four points that are not coplanar. `lanes` is the width of the vectors
+  /// to be used: 4 or 2 doubles.
+  Insertion(const WorkingPoints& points, Block& memory, const std::array<VertexId, 4>& first,
+            int lanes);
+
+  /// Inserts a point. `next` is the one that will come next.
+  void insert(VertexId point, VertexId next);
+
+  /// Moves the last cells to where cells are free, so that those that are left, cell_count() of
+  /// them, infinite ones included, fill the array from its beginning.
+  void close_gaps();
+
+  [[nodiscard]] std::uint32_t cell_count() const { return cell_count_; }
+  [[nodiscard]] const CellArray& cells() const { return cells_; }
+  [[nodiscard]] const std::vector<kernel::Repetition>& repetitions() const { return repetitions_; }
+
+ private:
+  /// Room behind the ends of lists, for what is written ahead.
+  static constexpr std::size_t kAhead = 8;
+
+  struct Hole {
+    std::size_t cells;
+    std::size_t facets;
+  };
+
+  /// The same, for each width of vectors.
+  void insert_by_2(VertexRef query, VertexRef next);
+  SPILLWAY_TARGET("avx2,bmi,bmi2") void insert_by_4(VertexRef query, VertexRef next);
+  template <int kLanes>
+  void insert_by(VertexRef query, VertexRef next);
+
+  Handle locate(VertexRef query);
+  Handle locate_exactly(VertexRef query, Handle first);
+  template <int kLanes>
+  Hole find_hole(VertexRef query, std::size_t known);
+  std::uint32_t decide(const Cell& cell, std::uint32_t doubtful, VertexRef query) const;
+  bool conflicts(Handle first, VertexRef query) const;
+  bool noted_tie_conflicts(const Cell& cell, VertexRef query) const;
+
+  void take_cells(std::size_t count);
+  template <int kLanes>
+  void make_star_spheres(VertexRef query, VertexRef next, std::size_t count, bool on_hull);
+  void make_half_spaces(VertexRef next, std::size_t count);
+  void make_half_space(Cell& cell) const;
+  void choose_hint(const double* next, std::size_t count);
+
+  void resize_lists(std::size_t size);
+  void grow_cells(std::size_t count);
+
+  const WorkingPoints points_;
+  Block& memory_;
+  CellArray cells_;
+  std::size_t capacity_;
+  const int lanes_;
+  std::uint32_t cell_count_ = 5;
+  std::size_t free_count_ = 0;
+  std::size_t known_conflicts_ = 0;  ///< at the beginning of conflicts_, of the next point
+  Handle hint_ = 0;                  ///< a cell near the next point
+
+  std::vector<Handle> conflicts_;      ///< the cells of the hole
+  std::vector<std::uint8_t> answers_;  ///< of test_neighbours, for each of them
+  std::vector<Handle> boundary_;       ///< the facets of the hole, by handles of its cells
+  std::vector<Handle> free_;
+  std::vector<Handle> star_;                    ///< the new cells, one for each facet
+  std::vector<std::int64_t> next_in_conflict_;  ///< not 0 for those that the next point destroys
+  StarMaker star_maker_;
+  std::vector<kernel::Repetition> repetitions_;
+};
+
+extern template class Insertion<false>;
+extern template class Insertion<true>;
+
+}  // namespace spillway::kernel_3d

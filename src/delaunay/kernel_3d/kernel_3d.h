@@ -1,0 +1,22 @@
+#pragma once
+// The base case in space: exact incremental insertion along a Hilbert curve, in rounds. How it
+// works and why it is exact: docs/algorithm.md, "The 3D kernel".
+
+#include <span>
+
+#include "src/delaunay/base_case.h"
+
+namespace spillway {
+
+/// Triangulates points that span space; `basis` has the places of four that are not coplanar. Works
+/// for any finite doubles. Throws Error for more than 2^28 - 2 points, or if there are more than
+/// 2^29 cells, which is more than it can number: those of some 79 million scattered points.
+BaseCase<3> kernel_3d_base_case(const BaseCaseInput<3>& input, std::span<const VertexId> basis);
+
+/// How many doubles the kernel computes with at a time: 4 or 2, the most that the processor can.
+int widest_vectors();
+
+/// Limits that, for measurements; the result is the same. To be called before work starts.
+void limit_vectors(int doubles);
+
+}  // namespace spillway

@@ -1,0 +1,197 @@
+#pragma once
+// The first rung of the 3D kernel's predicates: cached circumspheres with a bound of their error,
+// made for several cells at once. The bounds are derived in docs/algorithm.md ("The 3D kernel").
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+#include "src/delaunay/kernel_3d/cells.h"
+#include "src/delaunay/kernel_3d/lanes.h"
+#include "src/geometry/predicate_rungs.h"
+
+namespace spillway::kernel_3d {
+
+/// A cell whose edges' product is so many times its determinant is too flat for its sphere.
+inline constexpr double kFlattest = 0x1p40;
+/// Below, products of edges may have lost too much by underflow.
+inline constexpr double kSmallestEdges = 0x1p-400;
+/// The tolerance, in units of the squared radius: for each unit of flatness, ...
+inline constexpr double kToleranceOfFlatness = 700 * rungs::kRoundoff;
+/// ... and for the bits that carry the tolerance.
+inline constexpr double kToleranceOfBits = 0x1p-37;
+/// And in units of radius and largest coordinate.
+inline constexpr double kToleranceOfPlace = 16 * rungs::kRoundoff;
+/// On a lattice, where tolerance times determinant is below, s within the tolerance means a tie.
+inline constexpr double kCertainTie = 0.4;
+/// Radius of the ball that stands for a half-space, over the extent of all points.
+inline constexpr double kBallOfHalfSpace = 0x1p24;
+/// The tolerance of s there, over the squared extent.
+inline constexpr double kHalfSpaceTolerance = 4;
+
+/// The last bits of a squared radius: the exponent of the tolerance, and notes on lattice cells.
+inline constexpr std::int64_t kExponentMask = 0x7FF;
+inline constexpr std::int64_t kTieNote = 0x1000;  ///< s within the tolerance is a tie
+inline constexpr int kLargestShift = 13;          ///< the slot of the largest vertex, two bits
+inline constexpr std::int64_t kCarriedMask = 0x7FFF;
+inline constexpr int kMantissaBits = 52;
+
+inline double tolerance_of(double squared_radius) {
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(squared_radius) << kMantissaBits);
+}
+
+/// What the spheres of a star are made of.
+struct StarView {
+  const double* coordinates;  ///< four for each point: x, y, z, rank
+  double largest;             ///< of their magnitudes
+  CellArray cells;
+  const Handle* handles;  ///< the new cells, whose first vertex is the query
+  const double* query;    ///< the record of the point just inserted
+  const double* next;     ///< that of the next one
+};
+
+/// |x| + |y| + |z|
+template <int kLanes>
+SPILLWAY_INLINE void add_magnitudes(const Records<kLanes>& v, Reals<kLanes>& sum) {
+  using I = Integers<kLanes>;
+  constexpr std::int64_t kNoSign = std::numeric_limits<std::int64_t>::max();
+  sum = (Reals<kLanes>)((I)v.x & kNoSign) + (Reals<kLanes>)((I)v.y & kNoSign) +
+        (Reals<kLanes>)((I)v.z & kNoSign);
+}
+
+/// Makes the spheres of the cells begin, begin + 1, ... of a star, as many as there are lanes, and
+/// tells which are certainly in conflict with the next point.
+template <int kLanes, bool kRanked>
+SPILLWAY_INLINE void make_spheres(const StarView& star, std::size_t begin,
+                                  std::int64_t* in_conflict) {
+  using R = Reals<kLanes>;
+  using I = Integers<kLanes>;
+  const auto corner = [&](int slot) {
+    Records<kLanes> r = gather<kLanes>([&](int i) {
+      return star.coordinates + star.cells.at_first(star.handles[begin + i]).vertices[slot];
+    });
+    r.x -= star.query[0];
+    r.y -= star.query[1];
+    r.z -= star.query[2];
+    return r;
+  };
+  const Records<kLanes> a = corner(1);
+  const Records<kLanes> b = corner(2);
+  const Records<kLanes> c = corner(3);
+  const R aa = a.x * a.x + a.y * a.y + a.z * a.z;
+  const R bb = b.x * b.x + b.y * b.y + b.z * b.z;
+  const R cc = c.x * c.x + c.y * c.y + c.z * c.z;
+  const R bc_x = b.y * c.z - b.z * c.y;
+  const R bc_y = b.z * c.x - b.x * c.z;
+  const R bc_z = b.x * c.y - b.y * c.x;
+  const R ca_x = c.y * a.z - c.z * a.y;
+  const R ca_y = c.z * a.x - c.x * a.z;
+  const R ca_z = c.x * a.y - c.y * a.x;
+  const R ab_x = a.y * b.z - a.z * b.y;
+  const R ab_y = a.z * b.x - a.x * b.z;
+  const R ab_z = a.x * b.y - a.y * b.x;
+  const R determinant = a.x * bc_x + a.y * bc_y + a.z * bc_z;
+  const R half = 0.5 / determinant;
+  Records<kLanes> sphere;  // the centre relative to the query, at first
+  sphere.x = (aa * bc_x + bb * ca_x + cc * ab_x) * half;
+  sphere.y = (aa * bc_y + bb * ca_y + cc * ab_y) * half;
+  sphere.z = (aa * bc_z + bb * ca_z + cc * ab_z) * half;
+  R edges, length_b, length_c, radius;
+  add_magnitudes<kLanes>(a, edges);
+  add_magnitudes<kLanes>(b, length_b);
+  add_magnitudes<kLanes>(c, length_c);
+  edges = edges * length_b * length_c;
+  add_magnitudes<kLanes>(sphere, radius);
+  const R squared = sphere.x * sphere.x + sphere.y * sphere.y + sphere.z * sphere.z;
+  const R tolerance = squared * (edges * half * (2 * kToleranceOfFlatness) + kToleranceOfBits) +
+                      radius * (star.largest * kToleranceOfPlace);
+  // The next power of two: its exponent.
+  I carried = (I)((Bits<kLanes>)tolerance >> kMantissaBits) + 1;
+  if constexpr (kRanked) {
+    const R bound = (R)(carried << kMantissaBits);
+    carried |= (bound * determinant < kCertainTie) & kTieNote;
+    R largest = R{} + star.query[3];
+    const auto compare = [&](const R& rank, std::int64_t slot) {
+      const I larger = rank > largest;
+      largest = larger ? rank : largest;
+      carried = larger ? (carried & (kCarriedMask >> 2)) | slot << kLargestShift : carried;
+    };
+    compare(a.w, 1);
+    compare(b.w, 2);
+    compare(c.w, 3);
+  }
+  sphere.w = (R)(((I)squared & ~kCarriedMask) | carried);
+  const I proved = (edges * (1 / kFlattest) < determinant) & (edges >= kSmallestEdges);
+  sphere.w = proved ? sphere.w : R{} + std::numeric_limits<double>::quiet_NaN();
+  sphere.x += star.query[0];
+  sphere.y += star.query[1];
+  sphere.z += star.query[2];
+  const R x = star.next[0] - sphere.x;
+  const R y = star.next[1] - sphere.y;
+  const R z = star.next[2] - sphere.z;
+  const R s = x * x + y * y + z * z - sphere.w;
+  const I conflict = s < -(R)((I)sphere.w << kMantissaBits);
+  store(conflict, in_conflict + begin);
+  scatter<kLanes>(sphere,
+                  [&](int i) { return star.cells.at_first(star.handles[begin + i]).centre; });
+}
+
+/// Tests the query with the four neighbours of a cell: bits 0 to 3 say which are in conflict, bits
+/// 4 to 7 for which of them that is not certain.
+template <int kLanes>
+SPILLWAY_INLINE std::uint32_t test_neighbours(const CellArray& cells, const Cell& cell,
+                                              const double* query) {
+  const auto at = [&](int k) -> const Cell& { return cells.at(cell.neighbours[k]); };
+  using R = Reals<kLanes>;
+  using I = Integers<kLanes>;
+  // Bits for as many neighbours as there are lanes, from their squared distances' summands.
+  const auto answer = [](const R& x, const R& y, const R& z, const R& squared_radius) {
+    const R s = x + y + z - squared_radius;
+    const R tolerance = (R)((I)squared_radius << kMantissaBits);
+    const I certain = (s > tolerance) | (s < -tolerance);
+    return mask_of(s) | (mask_of((R)certain) ^ ((1 << kLanes) - 1)) << 4;
+  };
+  if constexpr (kLanes == 2) {
+    R q_low, q_high;
+    load(query, q_low);
+    load(query + 2, q_high);
+    const auto two = [&](int k) {
+      R low[2], high[2], place[2];
+      for (int i = 0; i < 2; ++i) {
+        const Cell& other = at(k + i);
+        load(other.centre, low[i]);
+        load(other.centre + 2, place[i]);
+        low[i] = q_low - low[i];
+        low[i] = low[i] * low[i];
+        high[i] = q_high - place[i];
+        high[i] = high[i] * high[i];
+      }
+      return answer(__builtin_shufflevector(low[0], low[1], 0, 2),
+                    __builtin_shufflevector(low[0], low[1], 1, 3),
+                    __builtin_shufflevector(high[0], high[1], 0, 2),
+                    __builtin_shufflevector(place[0], place[1], 1, 3));
+    };
+    return two(0) | two(2) << 2;
+  } else {
+    R q;
+    load(query, q);
+    const auto test = [&](int k, R& result) {
+      const Cell& other = at(k);
+      R sphere;
+      load(other.centre, sphere);
+      result = q - sphere;
+      result = result * result;
+      result = __builtin_shufflevector(result, sphere, 0, 1, 2, 7);
+    };
+    R x, y, z, w;
+    test(0, x);
+    test(1, y);
+    test(2, z);
+    test(3, w);
+    transpose(x, y, z, w);
+    return answer(x, y, z, w);
+  }
+}
+
+}  // namespace spillway::kernel_3d

@@ -1,0 +1,44 @@
+#pragma once
+// The points as the 3D kernel computes with them.
+
+#include <span>
+
+#include "src/delaunay/insertion_rounds.h"
+#include "src/delaunay/kernel_3d/cells.h"
+#include "src/delaunay/working_memory.h"
+#include "src/geometry/point.h"
+
+namespace spillway::kernel_3d {
+
+using kernel::kFirstPoint;
+
+/// One base case's points, by the kernel's vertex numbers.
+struct WorkingPoints {
+  /// Four numbers for each vertex: the coordinates that CoordinateScaling makes, and a rank. NaN
+  /// for the infinite vertex, so that every comparison with it decides nothing.
+  const double* coordinates = nullptr;
+  const Point<3>* originals = nullptr;  ///< those the caller gave, from kFirstPoint on
+  bool lattice = false;
+  /// Whether ranks are in lexicographic order. They are integers below 2^53, on a lattice whose box
+  /// has fewer places, and sides up to 2^40; else they are all 0.
+  bool ranked = false;
+  /// Whether it is a lattice whose box has sides below 10^5: then a determinant of three
+  /// differences has no intermediate result above 6 * 10^15 < 2^53, and doubles compute it exactly.
+  bool tiny = false;
+  /// A power of two, at least the distance between any two of the scaled points.
+  double extent = 0;
+  double largest = 0;     ///< magnitude of a scaled coordinate
+  std::size_t count = 0;  ///< of vertices, the infinite one included
+
+  [[nodiscard]] const double* at(VertexRef v) const { return coordinates + v; }
+  [[nodiscard]] const Point<3>& original(VertexRef v) const {
+    return originals[v / 4 - kFirstPoint];
+  }
+};
+
+inline constexpr VertexRef ref(VertexId number) { return 4 * number; }
+
+/// Scales points that are not all coplanar.
+WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memory);
+
+}  // namespace spillway::kernel_3d

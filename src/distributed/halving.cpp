@@ -1,0 +1,104 @@
+#include "src/distributed/halving.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "src/delaunay/hash.h"
+#include "src/distributed/items.h"
+#include "src/geometry/box.h"
+
+namespace spillway::distributed {
+namespace {
+
+/// Cuts by so large a sample are within half a percent of the wanted share, by rank, so that ten of
+/// them in a row still balance well.
+constexpr std::uint64_t kSampleSize = 1 << 14;
+
+/// Where this rank's items are in the sequence of those of all ranks.
+struct Stretch {
+  std::uint64_t begin = 0;
+  std::uint64_t whole = 0;
+};
+
+template <std::size_t N>
+std::array<Stretch, N> stretches(const std::array<std::uint64_t, N>& counts, const Ranks& group) {
+  std::array<Stretch, N> result;
+  const auto all = gather_item(group, counts);
+  for (int rank = 0; rank < group.size(); ++rank) {
+    for (std::size_t i = 0; i < N; ++i) {
+      if (rank < group.rank()) result[i].begin += all[rank][i];
+      result[i].whole += all[rank][i];
+    }
+  }
+  return result;
+}
+
+template <int D>
+Box<D> box_of_all(const std::vector<NamedPoint<D>>& points, const Ranks& group) {
+  Box<D> box;
+  for (const auto& point : points) box.expand(point.position);
+  group.reduce(box.lo, Reduction::kLeast);
+  group.reduce(box.hi, Reduction::kMost);
+  return box;
+}
+
+/// The coordinate below which about share/whole of all points are.
+template <int D>
+double cut_value(const std::vector<NamedPoint<D>>& points, const Stretch& stretch, int axis,
+                 int share, const Ranks& group) {
+  const std::uint64_t stride = std::max<std::uint64_t>(1, stretch.whole / kSampleSize);
+  std::vector<double> own;
+  for (std::uint64_t i = stretch.begin / stride; i * stride < stretch.begin + points.size(); ++i) {
+    const std::uint64_t number = i * stride + mix64(i) % stride;
+    if (number < stretch.begin || number >= stretch.begin + points.size()) continue;
+    own.push_back(points[number - stretch.begin].position[axis]);
+  }
+  std::vector<double> sample;
+  for (const auto& bytes : group.gather(std::as_bytes(std::span(own)))) {
+    const std::vector<double> some = items_of<double>(bytes);
+    sample.insert(sample.end(), some.begin(), some.end());
+  }
+  const auto place =
+      sample.begin() + static_cast<std::ptrdiff_t>(sample.size() * share / group.size());
+  std::nth_element(sample.begin(), place, sample.end());
+  return *place;
+}
+
+}  // namespace
+
+template <int D>
+std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const Ranks& group,
+                                        int low_ranks) {
+  const auto [all] = stretches<1>({points.size()}, group);
+  if (all.whole == 0) return points;
+  const Box<D> box = box_of_all(points, group);
+  const int axis = box.longest_axis();
+  const double value = cut_value(points, all, axis, low_ranks, group);
+  // Points on the cut go up, unless nothing is below it.
+  const auto is_high = [&, nothing_below = value <= box.lo[axis]](const NamedPoint<D>& point) {
+    return nothing_below ? point.position[axis] > value : point.position[axis] >= value;
+  };
+
+  std::array<std::uint64_t, 2> counts{};
+  for (const auto& point : points) ++counts[is_high(point)];
+  auto halves = stretches(counts, group);
+  const std::array<std::uint64_t, 2> first_rank{0, static_cast<std::uint64_t>(low_ranks)};
+  const std::array<std::uint64_t, 2> ranks{first_rank[1], group.size() - first_rank[1]};
+  ItemsByRank<NamedPoint<D>> moving;
+  for (const auto& point : points) {
+    const bool high = is_high(point);
+    const std::uint64_t to = halves[high].begin++ * ranks[high] / halves[high].whole;
+    moving[static_cast<int>(first_rank[high] + to)].push_back(point);
+  }
+  points.clear();
+  for (const auto& [rank, some] : exchange_items(group, moving)) {
+    points.insert(points.end(), some.begin(), some.end());
+  }
+  return points;
+}
+
+template std::vector<NamedPoint<2>> move_to_half(std::vector<NamedPoint<2>>, const Ranks&, int);
+template std::vector<NamedPoint<3>> move_to_half(std::vector<NamedPoint<3>>, const Ranks&, int);
+
+}  // namespace spillway::distributed

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "src/distributed/ranks.h"
+#include "src/distributed/view.h"
+
+namespace spillway::distributed {
+
+template <int D>
+struct NamedPoint {
+  Point<D> position;
+  Place name;
+};
+
+/// Cuts the longest side of the box around all points of the group where a sample says, and moves
+/// the points below to the group's first `low_ranks` ranks, those above to the others: about as
+/// many to each rank. Equal points are on one side of the cut. Read from rank to rank, the points
+/// of a side keep their order. Returns this rank's. Collective.
+template <int D>
+std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const Ranks& group,
+                                        int low_ranks);
+
+}  // namespace spillway::distributed

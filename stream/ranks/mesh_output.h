@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "formats/file_system.h"
+#include "formats/mesh_spool.h"
+#include "formats/mesh_writer.h"
+#include "formats/scratch_folder.h"
+#include "src/distributed/ranks.h"
+#include "stream/ranks/rank_pipeline.h"
+
+namespace spillway {
+
+/// Where the mesh of all ranks goes.
+struct MeshTarget {
+  std::string path;
+  MeshFormat format = MeshFormat::kPly;
+  bool parts = false;  ///< a file for each rank
+};
+
+/// What the command line says, as mesh_format() takes it; `NAME.pvtu` means VTU in parts. Throws
+/// UsageError for no format, and for parts on standard output or in formats other than vtu, ply and
+/// spm. Looks at no file.
+MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts);
+
+/// The output of triangulate_over_ranks(). One of:
+/// - spm and binary PLY in a file: all ranks write to it, each at the places of its parts;
+/// - one file otherwise: rank 0 writes what the others send, some MiB at a time;
+/// - parts: each rank has a file of its own, a mesh that stands for itself, in which vertices of
+///   other ranks are repeated; for VTU also an index NAME.pvtu (docs/formats-meshes.md, "Parts").
+/// Nothing has its final name before all ranks have succeeded.
+class MeshOutput {
+ public:
+  virtual ~MeshOutput() = default;
+  MeshOutput(const MeshOutput&) = delete;
+  MeshOutput& operator=(const MeshOutput&) = delete;
+
+  /// Takes the blocks of this rank's own tiles, numbered from 0 on; not to be finished. Not
+  /// collective.
+  [[nodiscard]] MeshStreamWriter& writer() { return spool_; }
+
+  /// Completes the output and returns its bytes, of all files, at all ranks. Uses up `mesh.merged`.
+  /// Collective. Throws Error at one rank, while the others wait to be ended.
+  virtual std::uint64_t finish(RankMesh& mesh) = 0;
+
+ protected:
+  MeshOutput(const MeshStreamHeader& header, const std::string& name, ScratchFolder& scratch);
+
+  /// Ends the blocks of this rank's own tiles.
+  void finish_spool(const RankMesh& mesh);
+
+  MeshSpool spool_;
+};
+
+/// Creates the output's files, still under temporary names. Rank 0's header counts where they
+/// differ. `scratch` and `ranks` must outlive the output. Collective. Throws Error or UsageError at
+/// rank 0 if that cannot be done or the format does not hold the mesh, while the others wait to be
+/// ended.
+std::unique_ptr<MeshOutput> open_mesh_output(FileSystem& files, const MeshTarget& target,
+                                             const MeshStreamHeader& header, ScratchFolder& scratch,
+                                             const distributed::Ranks& ranks);
+
+}  // namespace spillway

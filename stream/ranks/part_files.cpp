@@ -1,0 +1,183 @@
+#include "stream/ranks/part_files.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "formats/bytes.h"
+#include "formats/mesh_block.h"
+#include "formats/mesh_parts.h"
+#include "formats/spm_part.h"
+#include "src/geometry/canonical_hash.h"
+#include "stream/open_facets.h"
+#include "stream/ranks/part_numbers.h"
+#include "stream/ranks/stream_parts.h"
+#include "stream/ranks/together.h"
+
+namespace spillway {
+namespace {
+
+using distributed::Ranks;
+using distributed::Reduction;
+
+/// A file that a writer counts as complete, but that gets its name later, from its owner.
+class HeldOutput : public OutputFile {
+ public:
+  HeldOutput(OutputFile& file, std::uint64_t& bytes) : file_(file), bytes_(bytes) {}
+
+  void write(std::span<const std::byte> bytes) override {
+    file_.write(bytes);
+    bytes_ += bytes.size();
+  }
+  bool rewrite(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    return file_.rewrite(offset, bytes);
+  }
+  void commit() override {}
+  [[nodiscard]] const std::string& name() const override { return file_.name(); }
+
+ private:
+  OutputFile& file_;
+  std::uint64_t& bytes_;
+};
+
+template <int D>
+std::uint64_t hash_of(const MergedPart& part, const std::optional<Lattice>& lattice) {
+  CanonicalHash<D> hash;
+  const std::size_t own = part.mesh.vertices.size();
+  for (std::size_t i = 0; i < part.mesh.corners.size(); i += D + 1) {
+    std::array<Point<D>, D + 1> simplex;
+    for (int k = 0; k <= D; ++k) {
+      const std::uint32_t number = part.mesh.corners[i + k];
+      Point<3> vertex =
+          number < own ? part.mesh.vertices[number] : part.imported_vertices[number - own];
+      if (lattice) vertex = lattice->to_world(vertex);
+      std::copy_n(vertex.begin(), D, simplex[k].begin());
+    }
+    hash.add(simplex);
+  }
+  return hash.value();
+}
+
+template <int D>
+std::uint64_t count_open_facets(const MeshSpool& spool) {
+  OpenFacets<D> facets;
+  const std::unique_ptr<MeshStreamReader> reader = spool.open();
+  MeshBlock block;
+  std::vector<std::uint64_t> corners;
+  for (std::uint64_t first = 0; reader->read(block); first += block.vertices.size()) {
+    corners.clear();
+    append_stream_numbers(block, first, corners);
+    for (std::size_t i = 0; i < corners.size(); i += D + 1) {
+      std::array<std::uint64_t, D + 1> simplex;
+      std::copy_n(corners.begin() + static_cast<std::ptrdiff_t>(i), D + 1, simplex.begin());
+      facets.add(simplex);
+    }
+  }
+  return facets.count();
+}
+
+/// What a part says of itself: not of the points and the extent of the whole.
+MeshStreamHeader header_of_part(MeshStreamHeader header) {
+  header.points.reset();
+  header.extent.reset();
+  return header;
+}
+
+class PartFiles : public MeshOutput {
+ public:
+  PartFiles(FileSystem& files, const MeshTarget& target, const MeshStreamHeader& header,
+            ScratchFolder& scratch, const Ranks& ranks)
+      : MeshOutput(header_of_part(header), name_of(target, ranks), scratch),
+        target_(target),
+        ranks_(ranks) {
+    do_together(ranks, [&] { file_ = files.create(name_of(target, ranks)); });
+    do_together(ranks, [&] {
+      const bool with_index = ranks.rank() == 0 && target.format == MeshFormat::kVtu;
+      if (with_index) index_ = files.create(pvtu_name(target.path));
+    });
+  }
+
+  std::uint64_t finish(RankMesh& mesh) override {
+    do_together(ranks_, [&] { write(mesh); });
+    do_together(ranks_, [&] { file_->commit(); });
+    do_together(ranks_, [&] {
+      if (!index_) return;
+      const std::string text =
+          pvtu_text(target_.path, ranks_.size(), spool_.header().has_input_index);
+      index_->write(as_bytes_of(text));
+      index_->commit();
+      bytes_ += text.size();
+    });
+    ranks_.reduce(std::span(&bytes_, 1), Reduction::kSum);
+    return bytes_;
+  }
+
+ private:
+  static std::string name_of(const MeshTarget& target, const Ranks& ranks) {
+    return mesh_part_name(target.path, target.format, ranks.rank(), ranks.size());
+  }
+
+  [[nodiscard]] bool plane() const { return spool_.header().dimension == 2; }
+
+  void write(RankMesh& mesh) {
+    PartNumbers numbers(mesh);
+    MeshTotals totals;
+    totals.canonical_hash = mesh.figures.totals.canonical_hash;
+    if (mesh.own_part) totals.simplices = mesh.parts[*mesh.own_part].simplices;
+    for (MergedPart& merged : mesh.merged) {
+      totals.simplices += mesh.parts[merged.part].simplices;
+      const std::optional<Lattice>& lattice = spool_.header().lattice;
+      totals.canonical_hash += plane() ? hash_of<2>(merged, lattice) : hash_of<3>(merged, lattice);
+      spool_.write(numbers.take(std::move(merged)));
+    }
+    mesh.merged.clear();
+    totals.vertices = numbers.vertices();
+    totals.points = totals.vertices;
+    spool_.finish(totals);
+    if (target_.format == MeshFormat::kSpm) {
+      write_stream(totals);
+    } else {
+      write_whole(totals, numbers.global_ids());
+    }
+  }
+
+  void write_stream(MeshTotals totals) {
+    totals.hull_facets = plane() ? count_open_facets<2>(spool_) : count_open_facets<3>(spool_);
+    HeldOutput file(*file_, bytes_);
+    file.write(spm_head(spool_.header()));
+    SpmPart blocks(spool_, 0);
+    std::vector<std::byte> piece;
+    while (blocks.next(piece)) {
+      file.write(piece);
+      piece.clear();
+    }
+    file.write(spm_trailer(totals));
+  }
+
+  void write_whole(const MeshTotals& totals, const std::vector<IdRun>& ids) {
+    MeshFiles files;
+    files.format = target_.format;
+    files.main = std::make_unique<HeldOutput>(*file_, bytes_);
+    MeshHeader header = header_of_mesh(spool_.header(), totals);
+    header.global_ids = ids;
+    const std::unique_ptr<MeshWriter> writer = open_mesh_writer(std::move(files), header);
+    spool_.copy_to(*writer);
+    writer->finish();
+  }
+
+  MeshTarget target_;
+  const Ranks& ranks_;
+  std::unique_ptr<OutputFile> file_;
+  std::unique_ptr<OutputFile> index_;  ///< at rank 0, for VTU
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshOutput> open_part_files(FileSystem& files, const MeshTarget& target,
+                                            const MeshStreamHeader& header, ScratchFolder& scratch,
+                                            const Ranks& ranks) {
+  return std::make_unique<PartFiles>(files, target, header, scratch, ranks);
+}
+
+}  // namespace spillway

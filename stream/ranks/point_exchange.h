@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "src/distributed/ranks.h"
+#include "stream/ranks/piece_table.h"
+#include "stream/ranks/rank_division.h"
+#include "stream/stage_times.h"
+
+namespace spillway {
+
+/// How many pieces may be on their way at a time.
+struct ExchangeRound {
+  std::uint64_t pieces_of_rank = 1;  ///< that a rank reads
+  std::uint64_t pieces = 1;          ///< that all read, since all may be for one rank
+};
+
+/// Moves all points to their ranks, in rounds: in each a rank reads some of its pieces, and sends
+/// what is for others. Each rank reads a stretch of the inputs, so that inputs in spatial order,
+/// too, have points for many ranks in a round. Points come to a rank in any order; their indices
+/// are in the order of the inputs.
+class PointExchange {
+ public:
+  /// Collective. `indexed`: points come with their indices. All others must outlive it.
+  PointExchange(PieceTable& pieces, const RankDivision& division, const distributed::Ranks& ranks,
+                const ExchangeRound& most, bool indexed, StageTimes& times);
+
+  /// Takes the next points of this rank; false at the end. Collective, in that all ranks call it
+  /// until it is false. `progress` is called after each round.
+  bool fetch(SourcePiece& batch, const std::function<void()>& progress);
+
+  /// Makes points of what fetch() gave; by many threads at a time.
+  void decode(SourcePiece& batch, PointBlock& block) const;
+
+  /// The share of all rounds that is done.
+  [[nodiscard]] double fraction() const;
+  [[nodiscard]] std::uint64_t points_sent() const { return points_sent_; }
+
+  /// Where pieces are not numbered(), indices name a piece and a record in it until all is read.
+  /// Then this gives what it takes to count them through all inputs: the records before each piece.
+  /// Collective.
+  [[nodiscard]] std::vector<std::uint64_t> records_before();
+
+ private:
+  /// A piece that this rank reads in this round.
+  struct OwnPiece {
+    std::uint64_t number = 0;
+    std::vector<SourcePiece> batches;
+    std::vector<PointBlock> kept;                  ///< by batch: points of this rank
+    std::vector<std::vector<std::byte>> for_rank;  ///< by rank, each a packed list of blocks
+    std::uint64_t sent = 0;                        ///< points
+  };
+  /// Points for this rank: ready, or as blocks that are still to be decoded.
+  struct Arrived {
+    PointBlock block;
+    std::vector<std::byte> bytes;
+  };
+
+  void choose_own_pieces();
+  void next_round();
+  void deal(OwnPiece& piece) const;
+  void send(std::vector<OwnPiece>& own);
+
+  PieceTable& pieces_;
+  const RankDivision& division_;
+  const distributed::Ranks& ranks_;
+  const bool indexed_;
+  StageTimes& times_;
+  std::uint64_t pieces_per_round_ = 1;
+  std::uint64_t turns_ = 1;         ///< ranks read in every so manieth round
+  std::vector<std::uint64_t> own_;  ///< pieces that this rank reads
+  std::uint64_t next_own_ = 0;
+  std::uint64_t round_ = 0;
+  std::uint64_t rounds_ = 0;
+  std::vector<std::uint64_t> records_;  ///< by piece; only of this rank's
+  std::uint64_t points_sent_ = 0;
+  std::deque<Arrived> arrived_;
+};
+
+/// Puts indices that count through all inputs in place of those that name pieces.
+void count_through(std::span<std::uint64_t> index, std::span<const std::uint64_t> records_before);
+
+}  // namespace spillway

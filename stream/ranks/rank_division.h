@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "src/distributed/ranks.h"
+#include "stream/cut_tree.h"
+#include "stream/ranks/piece_table.h"
+
+namespace spillway {
+
+/// Which rank each point belongs to: the top of the k-d tree, one tile for each rank. Ranks are in
+/// the order of the tree, so that the ranks below a cut follow each other.
+struct RankDivision {
+  CutTree cuts;
+  std::vector<int> rank_of_tile;  ///< by tile of `cuts`; ranks without a tile get no points
+};
+
+/// Divides space so that all ranks get about as many points, by a sample of the pieces, which are
+/// spread over all inputs. Collective; all ranks get the same.
+RankDivision divide_among_ranks(PieceTable& pieces, int dimension, const distributed::Ranks& ranks);
+
+}  // namespace spillway

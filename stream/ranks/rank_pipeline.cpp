@@ -1,0 +1,338 @@
+#include "stream/ranks/rank_pipeline.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "formats/bytes.h"
+#include "src/delaunay/base_case.h"
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "stream/ranks/messages.h"
+#include "stream/ranks/piece_table.h"
+#include "stream/ranks/point_exchange.h"
+#include "stream/ranks/rank_division.h"
+#include "stream/ranks/rank_tree.h"
+#include "stream/ranks/together.h"
+#include "stream/tile_engine.h"
+
+namespace spillway {
+namespace {
+
+using distributed::Ranks;
+using distributed::Reduction;
+
+/// Memory for a piece that is read, encoded and sent, and for one that comes from another rank; and
+/// the shares of the limit that all own pieces and all others under way may have.
+constexpr std::uint64_t kPieceBytes = std::uint64_t{6} << 20;
+constexpr std::uint64_t kArrivingBytes = std::uint64_t{1} << 20;
+constexpr double kOwnShare = 0.1;
+constexpr double kArrivingShare = 0.1;
+/// Pieces that a rank reads in a round, unless it has more threads.
+constexpr std::uint64_t kUsualPieces = 4;
+
+/// From a rank's border to the stream of all ranks, where a vertex is named by a part of the stream
+/// (as the slot) and its 64-bit number there.
+StreamPlace shared_place(std::uint32_t part, std::uint64_t number) {
+  return {{part, static_cast<std::uint32_t>(number >> 32)}, static_cast<std::uint32_t>(number)};
+}
+
+std::uint64_t number_in_part(const StreamPlace& place) {
+  return (std::uint64_t{place.block.block} << 32) | place.vertex;
+}
+
+template <int D>
+class RankRun {
+ public:
+  RankRun(PointSource& source, MeshStreamWriter& writer, ScratchFolder& scratch,
+          MemoryBudget& budget, const StreamOptions& options, const Ranks& ranks)
+      : source_(source),
+        scratch_(scratch),
+        budget_(budget),
+        options_(options),
+        ranks_(ranks),
+        engine_({source.lattice(), expected_share(), std::nullopt, is_indexed(options)}, writer,
+                scratch, budget, options) {}
+
+  RankMesh run() {
+    with_threads(engine_.threads(), [&] {
+      const RankDivision division = read();
+      options_.begin_phase("triangulate");
+      const std::optional<TileNode<D>> own = engine_.nodes();
+      const RankTree<D> tree(division, own, ranks_);
+      if (tree.nodes().empty()) refuse_empty();
+      options_.extent_known(plane_of(tree.nodes().back().tiles->box));
+      if (tree.own_node()) triangulate(tree);
+      collect(tree);
+      options_.end_phase();
+    });
+    release_base_case_memory();
+    return std::move(result_);
+  }
+
+ private:
+  /// The index tells which of several equal points comes first: in the plane heights depend on it.
+  [[nodiscard]] static bool is_indexed(const StreamOptions& options) {
+    return D == 2 || options.input_index;
+  }
+
+  [[nodiscard]] std::optional<std::uint64_t> expected_share() const {
+    const std::optional<std::uint64_t> expected = source_.expected();
+    return expected ? std::optional(*expected / static_cast<std::uint64_t>(ranks_.size()))
+                    : std::nullopt;
+  }
+
+  RankDivision read() {
+    options_.begin_phase("read");
+    PieceTable pieces(source_, ranks_, scratch_, engine_.times());
+    const RankDivision division = divide_among_ranks(pieces, D, ranks_);
+    const std::uint64_t sent_before = distributed::traffic().bytes;
+    const ExchangeRound most = round();
+    const std::uint64_t all_ranks = most.pieces_of_rank * static_cast<std::uint64_t>(ranks_.size());
+    const MemoryLease lease(
+        budget_,
+        most.pieces_of_rank * kPieceBytes + std::min(most.pieces, all_ranks) * kArrivingBytes,
+        "points on their way between ranks");
+    PointExchange exchange(pieces, division, ranks_, most, is_indexed(options_), engine_.times());
+    const auto report = [&] { options_.progress(source_.points_read(), exchange.fraction()); };
+    engine_.spill(
+        {.fetch = [&](SourcePiece& batch) { return exchange.fetch(batch, report); },
+         .decode = [&](SourcePiece& batch, PointBlock& block) { exchange.decode(batch, block); }});
+    result_.exchanged_bytes = distributed::traffic().bytes - sent_before;
+    result_.exchanged_points = exchange.points_sent();
+    if (options_.input_index && !pieces.numbered()) {
+      engine_.replace_indices([before = exchange.records_before()](std::span<std::uint64_t> index) {
+        count_through(index, before);
+      });
+    }
+    options_.end_phase();
+    return division;
+  }
+
+  /// What a round may have; the same at all ranks.
+  [[nodiscard]] ExchangeRound round() const {
+    const auto limit = static_cast<double>(budget_.limit());
+    std::array<std::uint64_t, 2> most = {
+        std::clamp<std::uint64_t>(static_cast<std::uint64_t>(limit * kOwnShare) / kPieceBytes, 1,
+                                  std::max<std::uint64_t>(kUsualPieces, engine_.threads())),
+        std::max<std::uint64_t>(
+            1, static_cast<std::uint64_t>(limit * kArrivingShare) / kArrivingBytes)};
+    ranks_.reduce(most, Reduction::kLeast);
+    return {.pieces_of_rank = most[0], .pieces = most[1]};
+  }
+
+  void refuse_empty() const {
+    const PointCounts counts = shared_counts(source_.counts(), ranks_);
+    do_together(ranks_, [&] { throw Error("the input has no points: " + describe(counts)); });
+  }
+
+  /// This rank's tiles, and those merges that it leads.
+  void triangulate(const RankTree<D>& tree) {
+    const std::uint32_t own = *tree.own_node();
+    Border<D> border = engine_.triangulate(*tree.nodes()[own].tiles, tree.nodes()[own].outside);
+    for (BorderVertex<D>& vertex : border.vertices) {
+      if (vertex.place.announced()) {
+        vertex.place = shared_place(own, engine_.number_of(vertex.place));
+      }
+    }
+    for (std::uint32_t n = 0; n < tree.nodes().size(); ++n) {
+      const auto& node = tree.nodes()[n];
+      if (!node.is_merge()) continue;
+      const int receiver = node.leader;
+      const int sender = tree.nodes()[static_cast<std::size_t>(node.below[1])].leader;
+      if (sender == ranks_.rank()) {
+        send(border, receiver);
+        return;
+      }
+      if (receiver == ranks_.rank()) border = merge(tree, n, std::move(border), sender);
+    }
+    if (border.open()) refuse_open(border, tree.nodes().back().tiles->points);
+  }
+
+  void send(const Border<D>& border, int receiver) {
+    distributed::Packer message;
+    pack(message, border, options_.input_index);
+    ranks_.send(receiver, message.bytes());
+    result_.border_bytes_sent += message.bytes().size();
+    result_.border_simplices_sent += border.simplices.size();
+    engine_.hand_over(border);
+  }
+
+  Border<D> merge(const RankTree<D>& tree, std::uint32_t number, Border<D> own, int sender) {
+    const auto& node = tree.nodes()[number];
+    MergeFigures& figures = result_.merges.emplace_back();
+    figures.level = node.level;
+    std::vector<Border<D>> borders;
+    borders.push_back(std::move(own));
+    {
+      const Stopwatch watch(figures.wait_seconds);
+      const std::vector<std::byte> bytes = ranks_.receive(sender);
+      figures.received_bytes = bytes.size();
+      distributed::Unpacker message(bytes);
+      borders.push_back(unpack_border<D>(message, options_.input_index));
+    }
+    engine_.take_in(borders[1]);
+    figures.received_simplices = borders[1].simplices.size();
+    figures.border_simplices = borders[0].simplices.size() + borders[1].simplices.size();
+    const Stopwatch watch(figures.seconds);
+    Task steps;
+    Settled<D> settled = engine_.merge(borders, *node.tiles, node.outside, {number, 0}, steps);
+    for (const Task& step : steps.after) {
+      if (step.kind == "border") figures.retriangulated = step.points;
+    }
+    hash_.add(settled.hash);
+    MergedPart part;
+    part.part = number;
+    part.mesh = std::move(settled.mesh);
+    part.imported_vertices = std::move(settled.imported_vertices);
+    part.imported_index = std::move(settled.imported_index);
+    imported_.push_back(std::move(settled.imported));
+    merged_bytes_ += part.mesh.bytes() + part.imported_vertices.size() * sizeof(Point<3>) +
+                     part.imported_index.size() * sizeof(std::uint64_t) +
+                     imported_.back().size() * (sizeof(StreamPlace) + sizeof(std::uint64_t));
+    merged_lease_ = {};
+    merged_lease_ = MemoryLease(budget_, merged_bytes_, "what merges between ranks made final");
+    result_.merged.push_back(std::move(part));
+    return std::move(settled.border);
+  }
+
+  /// Puts together what all ranks have: the parts of the stream, and the totals.
+  void collect(const RankTree<D>& tree) {
+    result_.figures = engine_.figures();
+    number_parts(tree);
+    for (std::size_t m = 0; m < result_.merged.size(); ++m) {
+      MergedPart& merged = result_.merged[m];
+      for (const StreamPlace& place : imported_[m]) {
+        merged.mesh.imported.push_back(result_.parts[place.block.slot].first_vertex +
+                                       number_in_part(place));
+      }
+    }
+    MeshTotals& totals = result_.totals;
+    totals = result_.figures.totals;
+    std::vector<std::uint64_t> sums = {totals.points, totals.duplicates,
+                                       totals.canonical_hash + hash_.value(), totals.hull_facets,
+                                       result_.figures.left_out};
+    ranks_.reduce(sums, Reduction::kSum);
+    totals = {.points = sums[0], .duplicates = sums[1], .canonical_hash = sums[2]};
+    totals.hull_facets = options_.max_edge ? open_facets() : sums[3];
+    result_.left_out = sums[4];
+    for (const StreamPart& part : result_.parts) {
+      totals.vertices += part.vertices;
+      totals.simplices += part.simplices;
+    }
+  }
+
+  void number_parts(const RankTree<D>& tree) {
+    std::vector<std::uint64_t> sizes(2 * tree.nodes().size());
+    result_.own_part = tree.own_node();
+    if (const auto own = tree.own_node()) {
+      sizes[2 * *own] = result_.figures.totals.vertices;
+      sizes[2 * *own + 1] = result_.figures.totals.simplices;
+    }
+    for (const MergedPart& merged : result_.merged) {
+      sizes[2 * merged.part] = merged.mesh.vertices.size();
+      sizes[2 * merged.part + 1] = merged.mesh.corners.size() / (D + 1);
+    }
+    ranks_.reduce(sizes, Reduction::kSum);
+    std::uint64_t first = 0;
+    for (std::size_t n = 0; n < tree.nodes().size(); ++n) {
+      const auto& node = tree.nodes()[n];
+      result_.parts.push_back({node.leader, node.level, first, sizes[2 * n], sizes[2 * n + 1]});
+      first += sizes[2 * n];
+    }
+  }
+
+  /// Facets of one simplex only, of all ranks: what is open at one rank may close what is open at
+  /// another. Needs memory for all such facets at rank 0.
+  [[nodiscard]] std::uint64_t open_facets() const {
+    OpenFacets<D> own;
+    if (result_.own_part) {
+      const std::uint64_t first = result_.parts[*result_.own_part].first_vertex;
+      for (auto facet : engine_.open_facets()) {
+        for (std::uint64_t& v : facet) v += first;
+        own.toggle(facet);
+      }
+    }
+    for (const MergedPart& merged : result_.merged) {
+      const std::uint64_t first = result_.parts[merged.part].first_vertex;
+      const MeshBlock& mesh = merged.mesh;
+      for (std::size_t i = 0; i < mesh.corners.size(); i += D + 1) {
+        std::array<std::uint64_t, D + 1> corners;
+        for (int k = 0; k <= D; ++k) {
+          const std::uint32_t v = mesh.corners[i + k];
+          const std::size_t own_vertices = mesh.vertices.size();
+          corners[k] = v < own_vertices ? first + v : mesh.imported[v - own_vertices];
+        }
+        own.add(corners);
+      }
+    }
+    const std::vector<std::array<std::uint64_t, D>> facets(own.begin(), own.end());
+    OpenFacets<D> all;
+    for (const auto& bytes : ranks_.gather(std::as_bytes(std::span(facets)), 0)) {
+      for (std::size_t at = 0; at < bytes.size(); at += sizeof(facets[0])) {
+        all.toggle(load<std::array<std::uint64_t, D>>(bytes.data() + at));
+      }
+    }
+    std::uint64_t count = all.count();
+    ranks_.reduce(std::span(&count, 1), Reduction::kMost);
+    return count;
+  }
+
+  PointSource& source_;
+  ScratchFolder& scratch_;
+  MemoryBudget& budget_;
+  const StreamOptions& options_;
+  const Ranks& ranks_;
+  TileEngine<D> engine_;
+  CanonicalHash<D> hash_;  ///< of result_.merged
+  std::vector<std::vector<StreamPlace>>
+      imported_;  ///< of result_.merged, before parts have numbers
+  std::uint64_t merged_bytes_ = 0;
+  MemoryLease merged_lease_;
+  RankMesh result_;
+};
+
+}  // namespace
+
+template <int D>
+RankMesh triangulate_over_ranks(PointSource& source, MeshStreamWriter& writer,
+                                ScratchFolder& scratch, MemoryBudget& budget,
+                                const StreamOptions& options, const Ranks& ranks) {
+  return RankRun<D>(source, writer, scratch, budget, options, ranks).run();
+}
+
+template RankMesh triangulate_over_ranks<2>(PointSource&, MeshStreamWriter&, ScratchFolder&,
+                                            MemoryBudget&, const StreamOptions&, const Ranks&);
+template RankMesh triangulate_over_ranks<3>(PointSource&, MeshStreamWriter&, ScratchFolder&,
+                                            MemoryBudget&, const StreamOptions&, const Ranks&);
+
+std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<std::string> paths,
+                                                const PointSourceOptions& options,
+                                                const Ranks& ranks) {
+  std::unique_ptr<PointSource> source;
+  distributed::Packer packer;
+  if (ranks.rank() == 0) {
+    source = std::make_unique<PointSource>(files, paths, options);
+    packer.put(std::uint64_t{paths.size()});
+    for (const std::string& path : paths) packer.put_list(path);
+    pack(packer, source->facts());
+  }
+  std::vector<std::byte> bytes = packer.take();
+  ranks.broadcast(bytes, 0);
+  if (source) return source;
+  distributed::Unpacker unpacker(bytes);
+  paths.resize(unpacker.take<std::uint64_t>());
+  for (std::string& path : paths) path = unpacker.take_list<std::string>();
+  return std::make_unique<PointSource>(files, paths, options, unpack_source_facts(unpacker));
+}
+
+PointCounts shared_counts(const PointCounts& own, const Ranks& ranks) {
+  std::vector<std::uint64_t> sums = {own.read,    own.withheld, own.every,  own.classes,
+                                     own.returns, own.bounds,   own.thinned};
+  ranks.reduce(sums, Reduction::kSum);
+  return {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6]};
+}
+
+}  // namespace spillway

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/mesh_stream.h"
+#include "formats/scratch_folder.h"
+#include "src/distributed/ranks.h"
+#include "stream/memory_budget.h"
+#include "stream/point_source.h"
+#include "stream/stream_options.h"
+
+namespace spillway {
+
+/// A part of the stream that all ranks make together: what the tiles of one rank gave, or a merge
+/// between ranks. Parts follow each other as tiles and merges do in a stream.
+struct StreamPart {
+  int rank = 0;                    ///< that has it
+  std::uint32_t level = 0;         ///< 0: a rank's tiles; merges of ranks are above
+  std::uint64_t first_vertex = 0;  ///< vertices before it
+  std::uint64_t vertices = 0;
+  std::uint64_t simplices = 0;
+};
+
+/// What a merge between ranks made final, as one block of its part of the stream.
+struct MergedPart {
+  std::uint32_t part = 0;                     ///< of RankMesh::parts
+  MeshBlock mesh;                             ///< `imported` are numbers in the whole stream
+  std::vector<Point<3>> imported_vertices;    ///< the same vertices, like the mesh's own
+  std::vector<std::uint64_t> imported_index;  ///< likewise, if vertices carry it
+};
+
+/// A merge that this rank has done, for the record.
+struct MergeFigures {
+  std::uint32_t level = 0;
+  std::uint64_t received_bytes = 0;
+  std::uint64_t received_simplices = 0;  ///< of the border that came from the other rank
+  std::uint64_t border_simplices = 0;    ///< of both borders
+  std::uint64_t retriangulated = 0;      ///< points
+  double wait_seconds = 0;               ///< for that border
+  double seconds = 0;                    ///< of the merge
+};
+
+/// What one rank knows when all of them are done.
+struct RankMesh {
+  MeshTotals totals;                      ///< of the whole mesh; the same at all ranks
+  std::uint64_t left_out = 0;             ///< likewise
+  std::vector<StreamPart> parts;          ///< likewise, in the order of the stream
+  std::optional<std::uint32_t> own_part;  ///< what the local writer was given, from number 0 on
+  std::vector<MergedPart> merged;         ///< by this rank, in the order of the stream
+  StreamFigures figures;                  ///< of this rank alone
+  std::vector<MergeFigures> merges;       ///< of this rank
+  std::uint64_t exchanged_points = 0;     ///< that it sent to other ranks
+  std::uint64_t exchanged_bytes = 0;      ///< and as how many bytes
+  std::uint64_t border_bytes_sent = 0;
+  std::uint64_t border_simplices_sent = 0;
+};
+
+/// The pipeline over ranks: they share the reading of `source`, whose points have an index; each
+/// gets the points of its part of space and triangulates them against the boxes of all tiles
+/// everywhere; what is left at the borders between them is merged by fewer and fewer ranks.
+/// `writer` takes what the tiles of this rank make final, and is not finished yet; `scratch` and
+/// `budget` are those of the rank. Collective. Errors that all ranks share are thrown by rank 0,
+/// while the others wait to be ended.
+template <int D>
+RankMesh triangulate_over_ranks(PointSource& source, MeshStreamWriter& writer,
+                                ScratchFolder& scratch, MemoryBudget& budget,
+                                const StreamOptions& options, const distributed::Ranks& ranks);
+
+/// The inputs, looked at by rank 0 alone, as a source for triangulate_over_ranks(); only rank 0's
+/// `paths` count. Collective.
+std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<std::string> paths,
+                                                const PointSourceOptions& options,
+                                                const distributed::Ranks& ranks);
+
+/// The sums over all ranks. Collective.
+PointCounts shared_counts(const PointCounts& own, const distributed::Ranks& ranks);
+
+}  // namespace spillway

@@ -1,0 +1,77 @@
+#include "stream/ranks/rank_tree.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "stream/ranks/messages.h"
+
+namespace spillway {
+
+template <int D>
+RankTree<D>::RankTree(const RankDivision& division, const std::optional<TileNode<D>>& own,
+                      const distributed::Ranks& ranks) {
+  distributed::Packer packer;
+  if (own) pack(packer, *own);
+  std::vector<std::optional<TileNode<D>>> trees;
+  for (const auto& bytes : ranks.gather(packer.bytes())) {
+    distributed::Unpacker unpacker(bytes);
+    trees.push_back(bytes.empty() ? std::nullopt : std::optional(unpack_tile_node<D>(unpacker)));
+  }
+  trees[static_cast<std::size_t>(ranks.rank())] = own;
+  std::optional<Part> all = part_at(division, division.cuts.root(), trees);
+  if (!all) return;
+  root_ = std::move(all->tiles);
+  add_node(root_, all->shape, {}, ranks.rank());
+}
+
+/// What is below a place of the division; sides without points are left out.
+template <int D>
+std::optional<typename RankTree<D>::Part> RankTree<D>::part_at(
+    const RankDivision& division, CutTree::Place place,
+    std::vector<std::optional<TileNode<D>>>& trees) const {
+  if (CutTree::is_tile(place)) {
+    const int rank = division.rank_of_tile[CutTree::tile_at(place)];
+    std::optional<TileNode<D>>& tree = trees[static_cast<std::size_t>(rank)];
+    if (!tree) return std::nullopt;
+    return Part{std::move(*tree), {rank, {}}};
+  }
+  const auto sides = division.cuts.sides(place);
+  std::optional<Part> low = part_at(division, sides[0], trees);
+  std::optional<Part> high = part_at(division, sides[1], trees);
+  if (!low || !high) return low ? std::move(low) : std::move(high);
+  Part both;
+  both.tiles.box = low->tiles.box;
+  both.tiles.box.expand(high->tiles.box);
+  both.tiles.points = low->tiles.points + high->tiles.points;
+  for (Part* side : {&*low, &*high}) {
+    both.tiles.children.push_back(std::move(side->tiles));
+    both.shape.sides.push_back(std::move(side->shape));
+  }
+  return both;
+}
+
+template <int D>
+std::uint32_t RankTree<D>::add_node(const TileNode<D>& tiles, const Shape& shape,
+                                    const Outside<D>& outside, int own_rank) {
+  Node node;
+  node.tiles = &tiles;
+  node.outside = outside;
+  node.leader = shape.rank;
+  for (std::size_t side = 0; side < shape.sides.size(); ++side) {
+    Outside<D> others = outside;
+    others.push_back(&tiles.children[1 - side]);
+    const std::uint32_t below = add_node(tiles.children[side], shape.sides[side], others, own_rank);
+    node.below[side] = static_cast<std::int32_t>(below);
+    if (side == 0) node.leader = nodes_[below].leader;
+    node.level = std::max(node.level, nodes_[below].level + 1);
+  }
+  const auto number = static_cast<std::uint32_t>(nodes_.size());
+  if (shape.rank == own_rank) own_ = number;
+  nodes_.push_back(std::move(node));
+  return number;
+}
+
+template class RankTree<2>;
+template class RankTree<3>;
+
+}  // namespace spillway

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "formats/mesh_spool.h"
+#include "formats/spm_part.h"
+#include "src/distributed/ranks.h"
+#include "stream/ranks/rank_pipeline.h"
+
+namespace spillway {
+
+/// About how many bytes of output go to a file or to another rank at a time.
+inline constexpr std::size_t kOutputPiece = std::size_t{4} << 20;
+
+/// The parts of the stream that this rank has, as the bytes that spm has for them.
+class StreamParts {
+ public:
+  /// The spool has the blocks of the own tiles, finished. Those of merges are taken out of `mesh`.
+  /// Spool and mesh must outlive it.
+  StreamParts(const MeshSpool& spool, RankMesh& mesh);
+
+  /// Bytes of each part of the stream, in their order, of all ranks. Collective.
+  [[nodiscard]] std::vector<std::uint64_t> sizes(const distributed::Ranks& ranks) const;
+
+  /// The numbers of the parts that this rank has, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> own() const;
+
+  /// Replaces `piece` by the next bytes of a part of this rank, about kOutputPiece unless it is the
+  /// last; false if there is none. Each part can be had once.
+  bool next(std::uint32_t part, std::vector<std::byte>& piece);
+
+ private:
+  struct Merged {
+    std::uint32_t part = 0;
+    std::vector<std::byte> bytes;
+  };
+
+  std::optional<std::uint32_t> own_part_;
+  std::optional<SpmPart> own_blocks_;
+  std::vector<Merged> merged_;
+  std::size_t parts_;
+};
+
+}  // namespace spillway

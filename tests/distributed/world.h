@@ -1,0 +1,11 @@
+#pragma once
+// The ranks that a test program under mpirun was started with.
+
+#include "src/distributed/ranks.h"
+
+namespace spillway::distributed {
+
+/// All ranks of the job; the main function of the test program has joined them.
+const Ranks& world();
+
+}  // namespace spillway::distributed

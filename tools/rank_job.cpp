@@ -1,0 +1,96 @@
+#include "tools/rank_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "formats/bytes.h"
+#include "formats/file_system.h"
+#include "src/error.h"
+
+namespace spillway {
+namespace {
+
+using distributed::launch;
+
+std::optional<distributed::Ranks>& joined() {
+  static std::optional<distributed::Ranks> ranks;
+  return ranks;
+}
+
+/// How long a rank waits for the end of the job that a lower one brings about: a fault that all see
+/// at the same time, such as a full disk, is to be reported once.
+constexpr std::chrono::milliseconds kTurn{200};
+constexpr std::chrono::milliseconds kFirstTurn{2000};
+constexpr int kMostTurns = 50;
+
+}  // namespace
+
+const distributed::Ranks* join_ranks() {
+  if (!launch().as_ranks) return nullptr;
+  if (!joined()) joined() = distributed::Ranks::all();
+  return &*joined();
+}
+
+/// Options that may differ from rank to rank: what they have on their machines.
+bool is_of_the_machine(std::string_view line) {
+  constexpr std::array<std::string_view, 8> kOwn = {"memory",   "tmpdir", "max-tmp", "threads",
+                                                    "progress", "quiet",  "verbose", "stats"};
+  const std::string_view name = line.substr(0, line.find('='));
+  return std::find(kOwn.begin(), kOwn.end(), name) != kOwn.end();
+}
+
+void check_same_options(const std::string& options) {
+  const distributed::Ranks& ranks = *join_ranks();
+  std::string common;
+  std::istringstream lines(options);
+  for (std::string line; std::getline(lines, line);) {
+    if (!is_of_the_machine(line)) common += line + '\n';
+  }
+  const auto all = ranks.gather(as_bytes_of(common));
+  for (std::size_t rank = 1; rank < all.size(); ++rank) {
+    if (all[rank] == all[0]) continue;
+    if (!is_first_rank()) ranks.barrier();  // never left: rank 0 ends the job
+    throw UsageError(fmt::format(
+        "rank {} was given other options than rank 0: only --tmpdir, --max-tmp, --memory, "
+        "--threads and those of reports may differ",
+        rank));
+  }
+}
+
+void leave_ranks() { joined().reset(); }
+
+bool is_first_rank() { return (joined() ? joined()->rank() : launch().rank) == 0; }
+
+int report_error(const char* message, int exit_code) {
+  if (!joined()) {
+    // The first process to end with an error ends them all, but not as fast.
+    if (launch().rank > 0) std::this_thread::sleep_for(kFirstTurn);
+    std::this_thread::sleep_for(kTurn * std::min(launch().rank, kMostTurns));
+    fmt::print(stderr, "spillway: error: {}\n", message);
+    return exit_code;
+  }
+  std::this_thread::sleep_for(kTurn * std::min(joined()->rank(), kMostTurns));
+  if (joined()->size() == 1) {
+    fmt::print(stderr, "spillway: error: {}\n", message);
+  } else {
+    fmt::print(stderr, "spillway: error: rank {}: {}\n", joined()->rank(), message);
+  }
+  return end_quietly(exit_code);
+}
+
+int end_quietly(int exit_code) {
+  if (!joined()) return exit_code;
+  remove_unfinished_files();
+  distributed::abort_job(exit_code);
+}
+
+}  // namespace spillway
