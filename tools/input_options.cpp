@@ -183,7 +183,7 @@ std::unique_ptr<PointSource> make_point_source(FileSystem& files,
                                                ScratchFolder& scratch, Progress& progress) {
   PointSourceOptions how;
   how.dimension = use.dimension;
-  how.index = use.index || use.ranks != nullptr;
+  how.index = use.index;
   how.reader = {.format = options.format,
                 .keep_withheld = options.keep_withheld,
                 .attributes = use.attributes,

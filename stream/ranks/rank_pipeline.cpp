@@ -309,8 +309,8 @@ template RankMesh triangulate_over_ranks<3>(PointSource&, MeshStreamWriter&, Scr
                                             MemoryBudget&, const StreamOptions&, const Ranks&);
 
 std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<std::string> paths,
-                                                const PointSourceOptions& options,
-                                                const Ranks& ranks) {
+                                                PointSourceOptions options, const Ranks& ranks) {
+  options.index = true;
   std::unique_ptr<PointSource> source;
   distributed::Packer packer;
   if (ranks.rank() == 0) {

@@ -70,10 +70,10 @@ RankMesh triangulate_over_ranks(PointSource& source, MeshStreamWriter& writer,
                                 ScratchFolder& scratch, MemoryBudget& budget,
                                 const StreamOptions& options, const distributed::Ranks& ranks);
 
-/// The inputs, looked at by rank 0 alone, as a source for triangulate_over_ranks(); only rank 0's
-/// `paths` count. Collective.
+/// The inputs, looked at by rank 0 alone, as a source for triangulate_over_ranks(), points with
+/// their index; only rank 0's `paths` count. Collective.
 std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<std::string> paths,
-                                                const PointSourceOptions& options,
+                                                PointSourceOptions options,
                                                 const distributed::Ranks& ranks);
 
 /// The sums over all ranks. Collective.
