@@ -32,20 +32,20 @@ constexpr std::chrono::milliseconds kTurn{200};
 constexpr std::chrono::milliseconds kFirstTurn{2000};
 constexpr int kMostTurns = 50;
 
-}  // namespace
-
-const distributed::Ranks* join_ranks() {
-  if (!launch().as_ranks) return nullptr;
-  if (!joined()) joined() = distributed::Ranks::all();
-  return &*joined();
-}
-
 /// Options that may differ from rank to rank: what they have on their machines.
 bool is_of_the_machine(std::string_view line) {
   constexpr std::array<std::string_view, 8> kOwn = {"memory",   "tmpdir", "max-tmp", "threads",
                                                     "progress", "quiet",  "verbose", "stats"};
   const std::string_view name = line.substr(0, line.find('='));
   return std::find(kOwn.begin(), kOwn.end(), name) != kOwn.end();
+}
+
+}  // namespace
+
+const distributed::Ranks* join_ranks() {
+  if (!launch().as_ranks) return nullptr;
+  if (!joined()) joined() = distributed::Ranks::all();
+  return &*joined();
 }
 
 void check_same_options(const std::string& options) {

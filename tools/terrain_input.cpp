@@ -65,7 +65,10 @@ class TerrainFeed {
  private:
   /// Feeds the input if it is a mesh. What was looked at of an input of points goes on to these.
   bool feed_one_input() {
-    if (tools_.ranks != nullptr) return refuse_mesh();
+    if (tools_.ranks != nullptr) {
+      refuse_mesh();
+      return false;
+    }
     const std::string& path = options_.inputs.front();
     const bool one = options_.inputs.size() == 1 && options_.input.format.empty() &&
                      (path == "-" || std::filesystem::is_regular_file(path));
@@ -86,7 +89,7 @@ class TerrainFeed {
   }
 
   /// Over ranks there are points only. What is none of them is said when they are opened.
-  [[nodiscard]] bool refuse_mesh() const {
+  void refuse_mesh() const {
     const std::string& path = options_.inputs.front();
     if (tools_.ranks->rank() == 0 && path != "-" && std::filesystem::is_regular_file(path)) {
       ProbedInput input(disk(), path);
@@ -94,7 +97,6 @@ class TerrainFeed {
         throw UsageError(path + " is a mesh, which one process reads: start it without mpirun");
       }
     }
-    return false;
   }
 
   [[nodiscard]] InputKind kind_by_format() const {

@@ -4,7 +4,6 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -149,11 +148,10 @@ int run(const TriangulateOptions& options, const MeshTarget& target, RunStatisti
   header.extent = source.world_extent();
   statistics.memory_limit = budget.limit();
   statistics.on_lattice = source.lattice().has_value();
-  const auto finish = [&](const std::function<void(const MeshTotals&)>& finish_output) {
-    const MeshTotals& totals = statistics.stream.totals;
+  const auto finish = [&](const auto& finish_output) {
     progress.begin("write", D == 2 ? "triangles" : "tetrahedra");
-    finish_output(totals);
-    progress.update(totals.simplices, 1);
+    statistics.output_bytes = finish_output();
+    progress.update(statistics.stream.totals.simplices, 1);
     statistics.write_seconds = progress.end();
   };
   if (ranks != nullptr) {
@@ -163,7 +161,7 @@ int run(const TriangulateOptions& options, const MeshTarget& target, RunStatisti
     statistics.input = source.counts();
     share_statistics(statistics, mesh, *ranks);
     do_together(*ranks, [&] { check_not_empty(statistics); });
-    finish([&](const MeshTotals&) { statistics.output_bytes = output->finish(mesh); });
+    finish([&] { return output->finish(mesh); });
     if (ranks->rank() != 0) return kExitDone;
   } else {
     const auto writer =
@@ -175,8 +173,10 @@ int run(const TriangulateOptions& options, const MeshTarget& target, RunStatisti
     }
     statistics.input = source.counts();
     check_not_empty(statistics);
-    finish([&](const MeshTotals& totals) { writer->finish(totals); });
-    statistics.output_bytes = writer->bytes_written();
+    finish([&] {
+      writer->finish(statistics.stream.totals);
+      return writer->bytes_written();
+    });
   }
 
   if (options.simulates()) {

@@ -8,7 +8,6 @@
 #include "formats/mesh_block.h"
 #include "formats/mesh_parts.h"
 #include "formats/spm_part.h"
-#include "src/geometry/canonical_hash.h"
 #include "stream/open_facets.h"
 #include "stream/ranks/part_numbers.h"
 #include "stream/ranks/stream_parts.h"
@@ -39,24 +38,6 @@ class HeldOutput : public OutputFile {
   OutputFile& file_;
   std::uint64_t& bytes_;
 };
-
-template <int D>
-std::uint64_t hash_of(const MergedPart& part, const std::optional<Lattice>& lattice) {
-  CanonicalHash<D> hash;
-  const std::size_t own = part.mesh.vertices.size();
-  for (std::size_t i = 0; i < part.mesh.corners.size(); i += D + 1) {
-    std::array<Point<D>, D + 1> simplex;
-    for (int k = 0; k <= D; ++k) {
-      const std::uint32_t number = part.mesh.corners[i + k];
-      Point<3> vertex =
-          number < own ? part.mesh.vertices[number] : part.imported_vertices[number - own];
-      if (lattice) vertex = lattice->to_world(vertex);
-      std::copy_n(vertex.begin(), D, simplex[k].begin());
-    }
-    hash.add(simplex);
-  }
-  return hash.value();
-}
 
 template <int D>
 std::uint64_t count_open_facets(const MeshSpool& spool) {
@@ -126,8 +107,7 @@ class PartFiles : public MeshOutput {
     if (mesh.own_part) totals.simplices = mesh.parts[*mesh.own_part].simplices;
     for (MergedPart& merged : mesh.merged) {
       totals.simplices += mesh.parts[merged.part].simplices;
-      const std::optional<Lattice>& lattice = spool_.header().lattice;
-      totals.canonical_hash += plane() ? hash_of<2>(merged, lattice) : hash_of<3>(merged, lattice);
+      totals.canonical_hash += merged.canonical_hash;
       spool_.write(numbers.take(std::move(merged)));
     }
     mesh.merged.clear();

@@ -153,14 +153,13 @@ void PointExchange::send(std::vector<OwnPiece>& own) {
   const StageTimer timer(times_, Stage::kExchange);
   std::vector<distributed::Message> messages;
   for (int rank = 0; rank < ranks_.size(); ++rank) {
-    distributed::Packer packer;
+    std::vector<std::byte> message;
     for (OwnPiece& piece : own) {
       std::vector<std::byte>& bytes = piece.for_rank[static_cast<std::size_t>(rank)];
-      if (bytes.empty()) continue;
-      packer.put_list(bytes);
+      message.insert(message.end(), bytes.begin(), bytes.end());
       bytes = {};
     }
-    if (!packer.bytes().empty()) messages.push_back({rank, packer.take()});
+    if (!message.empty()) messages.push_back({rank, std::move(message)});
   }
   for (OwnPiece& piece : own) {
     points_sent_ += piece.sent;
@@ -168,11 +167,8 @@ void PointExchange::send(std::vector<OwnPiece>& own) {
   }
   for (distributed::Message& message : ranks_.exchange(std::move(messages))) {
     const std::vector<std::byte> bytes = std::move(message.bytes);
-    for (distributed::Unpacker pieces(bytes); !pieces.empty();) {
-      const auto batches = pieces.take_list<std::vector<std::byte>>();
-      for (distributed::Unpacker some(batches); !some.empty();) {
-        arrived_.push_back({{}, some.take_list<std::vector<std::byte>>()});
-      }
+    for (distributed::Unpacker batches(bytes); !batches.empty();) {
+      arrived_.push_back({{}, batches.take_list<std::vector<std::byte>>()});
     }
   }
 }

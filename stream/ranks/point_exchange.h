@@ -51,7 +51,7 @@ class PointExchange {
     std::uint64_t number = 0;
     std::vector<SourcePiece> batches;
     std::vector<PointBlock> kept;                  ///< by batch: points of this rank
-    std::vector<std::vector<std::byte>> for_rank;  ///< by rank, each a packed list of blocks
+    std::vector<std::vector<std::byte>> for_rank;  ///< by rank, packed batches of blocks
     std::uint64_t sent = 0;                        ///< points
   };
   /// Points for this rank: ready, or as blocks that are still to be decoded.
@@ -71,7 +71,7 @@ class PointExchange {
   const bool indexed_;
   StageTimes& times_;
   std::uint64_t pieces_per_round_ = 1;
-  std::uint64_t turns_ = 1;         ///< ranks read in every so manieth round
+  std::uint64_t turns_ = 1;         ///< a rank reads in one of so many rounds
   std::vector<std::uint64_t> own_;  ///< pieces that this rank reads
   std::uint64_t next_own_ = 0;
   std::uint64_t round_ = 0;

@@ -141,7 +141,7 @@ class RankRun {
       const auto& node = tree.nodes()[n];
       if (!node.is_merge()) continue;
       const int receiver = node.leader;
-      const int sender = tree.nodes()[static_cast<std::size_t>(node.below[1])].leader;
+      const int sender = tree.nodes()[node.below[1]].leader;
       if (sender == ranks_.rank()) {
         send(border, receiver);
         return;
@@ -182,9 +182,9 @@ class RankRun {
     for (const Task& step : steps.after) {
       if (step.kind == "border") figures.retriangulated = step.points;
     }
-    hash_.add(settled.hash);
     MergedPart part;
     part.part = number;
+    part.canonical_hash = settled.hash.value();
     part.mesh = std::move(settled.mesh);
     part.imported_vertices = std::move(settled.imported_vertices);
     part.imported_index = std::move(settled.imported_index);
@@ -211,9 +211,9 @@ class RankRun {
     }
     MeshTotals& totals = result_.totals;
     totals = result_.figures.totals;
-    std::vector<std::uint64_t> sums = {totals.points, totals.duplicates,
-                                       totals.canonical_hash + hash_.value(), totals.hull_facets,
-                                       result_.figures.left_out};
+    for (const MergedPart& merged : result_.merged) totals.canonical_hash += merged.canonical_hash;
+    std::vector<std::uint64_t> sums = {totals.points, totals.duplicates, totals.canonical_hash,
+                                       totals.hull_facets, result_.figures.left_out};
     ranks_.reduce(sums, Reduction::kSum);
     totals = {.points = sums[0], .duplicates = sums[1], .canonical_hash = sums[2]};
     totals.hull_facets = options_.max_edge ? open_facets() : sums[3];
@@ -286,9 +286,7 @@ class RankRun {
   const StreamOptions& options_;
   const Ranks& ranks_;
   TileEngine<D> engine_;
-  CanonicalHash<D> hash_;  ///< of result_.merged
-  std::vector<std::vector<StreamPlace>>
-      imported_;  ///< of result_.merged, before parts have numbers
+  std::vector<std::vector<StreamPlace>> imported_;  ///< of result_.merged, before numbers are known
   std::uint64_t merged_bytes_ = 0;
   MemoryLease merged_lease_;
   RankMesh result_;

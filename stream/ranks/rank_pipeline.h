@@ -31,6 +31,7 @@ struct MergedPart {
   MeshBlock mesh;                             ///< `imported` are numbers in the whole stream
   std::vector<Point<3>> imported_vertices;    ///< the same vertices, like the mesh's own
   std::vector<std::uint64_t> imported_index;  ///< likewise, if vertices carry it
+  std::uint64_t canonical_hash = 0;           ///< of its simplices
 };
 
 /// A merge that this rank has done, for the record.

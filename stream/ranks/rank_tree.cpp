@@ -61,7 +61,7 @@ std::uint32_t RankTree<D>::add_node(const TileNode<D>& tiles, const Shape& shape
     Outside<D> others = outside;
     others.push_back(&tiles.children[1 - side]);
     const std::uint32_t below = add_node(tiles.children[side], shape.sides[side], others, own_rank);
-    node.below[side] = static_cast<std::int32_t>(below);
+    node.below[side] = below;
     if (side == 0) node.leader = nodes_[below].leader;
     node.level = std::max(node.level, nodes_[below].level + 1);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -18,10 +19,10 @@ class RankTree {
   /// A rank's tiles, or a merge of two nodes below.
   struct Node {
     const TileNode<D>* tiles = nullptr;
-    int leader = 0;                    ///< the rank that does it: the first of those below
-    std::uint32_t level = 0;           ///< 0: a rank's tiles
-    std::int32_t below[2] = {-1, -1};  ///< numbers of nodes
-    Outside<D> outside;                ///< all tiles that are not its own
+    int leader = 0;                        ///< the rank that does it: the first of those below
+    std::uint32_t level = 0;               ///< 0: a rank's tiles
+    std::array<std::uint32_t, 2> below{};  ///< numbers of nodes, of a merge
+    Outside<D> outside;                    ///< all tiles that are not its own
 
     [[nodiscard]] bool is_merge() const { return level > 0; }
   };
