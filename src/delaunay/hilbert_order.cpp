@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "src/delaunay/working_memory.h"
 
@@ -221,6 +223,12 @@ class Sorter {
   static constexpr std::size_t kFewPoints = 24;
   static constexpr std::size_t kSmallestRadixSort = 512;
 
+  /// Items [begin, end).
+  struct Range {
+    std::size_t begin, end;
+    [[nodiscard]] std::size_t size() const { return end - begin; }
+  };
+
   void sort_range(std::size_t begin, std::size_t end, const Box<D>& box) {
     const std::size_t count = end - begin;
     set_keys(begin, end, box);
@@ -231,24 +239,25 @@ class Sorter {
       // Two cells a point are enough, unless many points share one.
       while (bits > 1 && (std::size_t{1} << (D * (bits - 1))) >= 2 * count) --bits;
       radix_sort(begin, end, D * bits);
-      std::size_t crowded = 0;
-      for_each_crowded_cell(begin, end, D * bits,
-                            [&](std::size_t i, std::size_t j) { crowded += j - i; });
-      if (bits < kMostBits<D> && crowded > count / 8) {
-        bits = kMostBits<D>;
-        radix_sort(begin, end, D * bits);
-      }
     }
-    for_each_crowded_cell(begin, end, D * bits, [&](std::size_t i, std::size_t j) {
-      if (j - i < count) sort_cell(i, j);
-    });
+    std::vector<Range> crowded = crowded_cells(begin, end, D * bits);
+    const std::size_t points_there =
+        std::accumulate(crowded.begin(), crowded.end(), std::size_t{0},
+                        [](std::size_t sum, const Range& cell) { return sum + cell.size(); });
+    if (bits < kMostBits<D> && points_there > count / 8) {
+      radix_sort(begin, end, D * kMostBits<D>);
+      crowded = crowded_cells(begin, end, D * kMostBits<D>);
+    }
+    for (const Range& cell : crowded) {
+      if (cell.size() < count) sort_cell(cell);
+    }
   }
 
-  /// Calls visit(i, j) for every run [i, j) of items that share a cell with many.
-  template <typename Visit>
-  void for_each_crowded_cell(std::size_t begin, std::size_t end, int key_bits,
-                             const Visit& visit) const {
+  /// The items of each cell that has many.
+  [[nodiscard]] std::vector<Range> crowded_cells(std::size_t begin, std::size_t end,
+                                                 int key_bits) const {
     const int shift = 64 - key_bits;
+    std::vector<Range> cells;
     for (std::size_t i = begin; i + kFewPoints < end;) {
       const Item cell = items_[i] >> shift;
       if (items_[i + kFewPoints] >> shift != cell) {
@@ -259,16 +268,17 @@ class Sorter {
       }
       std::size_t j = i + kFewPoints + 1;
       while (j < end && items_[j] >> shift == cell) ++j;
-      visit(i, j);
+      cells.push_back({i, j});
       i = j;
     }
+    return cells;
   }
 
   /// A crowded cell gets a curve of its own.
-  void sort_cell(std::size_t begin, std::size_t end) {
+  void sort_cell(const Range& cell) {
     Box<D> box;
-    for (std::size_t i = begin; i < end; ++i) box.expand(point(items_[i]));
-    if (box.lo != box.hi) sort_range(begin, end, box);
+    for (std::size_t i = cell.begin; i < cell.end; ++i) box.expand(point(items_[i]));
+    if (box.lo != box.hi) sort_range(cell.begin, cell.end, box);
   }
 
   [[nodiscard]] const Point<D>& point(Item item) const {
