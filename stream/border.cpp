@@ -56,15 +56,15 @@ class Merge {
     for (std::size_t c = 0; c < children_.size(); ++c) {
       Border<D> child = std::exchange(children_[c], {});
       open_.push_back(child.open());
-      const std::vector<bool> exposed = exposed_simplices(child, c);
+      const std::vector<std::uint8_t> exposed = exposed_simplices(child, c);
       for (std::size_t s = 0; s < child.simplices.size(); ++s) {
         Corners corners = child.simplices[s];
         for (VertexId& v : corners) {
           if (v == kInfiniteVertex) continue;
           v += first_vertex_[c];
-          if (exposed[s]) wanted[v] = true;
+          if (exposed[s] != 0) wanted[v] = true;
         }
-        (exposed[s] ? exposed_ : result_.border.simplices).push_back(corners);
+        (exposed[s] != 0 ? exposed_ : result_.border.simplices).push_back(corners);
       }
       if (child.open()) {
         std::fill(wanted.begin() + first_vertex_[c], wanted.begin() + first_vertex_[c + 1], true);
@@ -80,22 +80,20 @@ class Merge {
     task.pieces = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
   }
 
-  [[nodiscard]] std::vector<bool> exposed_simplices(const Border<D>& child, std::size_t c) const {
-    std::vector<Point<D>> points(child.vertices.size());
-    for (std::size_t v = 0; v < points.size(); ++v) points[v] = child.vertices[v].position;
+  [[nodiscard]] std::vector<std::uint8_t> exposed_simplices(const Border<D>& child,
+                                                            std::size_t c) const {
+    const std::vector<Point<D>> points = child.positions();
     std::vector<std::uint8_t> exposed(child.simplices.size());
     parallel_for(exposed.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t s = begin; s < end; ++s) {
-        const ConflictRegion<D> region(child.simplices[s], points);
-        for (std::size_t other = 0; other < trees_.size(); ++other) {
-          if (other != c && region.may_meet_leaf(*trees_[other])) {
-            exposed[s] = 1;
-            break;
-          }
-        }
-      }
+      for_each_region<D>(
+          end - begin, [&](std::size_t s) { return child.simplices[begin + s]; }, points,
+          [&](std::size_t s, const ConflictRegion<D>& region) {
+            for (std::size_t other = 0; other < trees_.size() && exposed[begin + s] == 0; ++other) {
+              if (other != c && region.may_meet_leaf(*trees_[other])) exposed[begin + s] = 1;
+            }
+          });
     });
-    return {exposed.begin(), exposed.end()};
+    return exposed;
   }
 
   void triangulate(Task& task) {
@@ -118,13 +116,18 @@ class Merge {
         index.insert(simplex_hash(exposed_[e]), static_cast<std::uint32_t>(e));
       }
     });
+    std::vector<VertexId> number(mesh_.input_index.size());
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      number[v] = border_vertices_[mesh_.input_index[v]];
+    }
     for (const SimplexBlock<D>& block : mesh_.blocks) {
       std::vector<std::vector<Corners>> accepted(grain_count(block.simplices.size(), kGrain));
       parallel_for(block.simplices.size(), kGrain,
                    [&](std::size_t g, std::size_t begin, std::size_t end) {
                      for (std::size_t s = begin; s < end; ++s) {
                        if (block.simplices[s].removed()) continue;
-                       const Corners corners = renumbered(block.simplices[s].vertices);
+                       Corners corners = block.simplices[s].vertices;
+                       for (VertexId& v : corners) v = v == kInfiniteVertex ? v : number[v];
                        if (is_accepted(corners, index)) accepted[g].push_back(corners);
                      }
                    });
@@ -134,24 +137,17 @@ class Merge {
     task.pieces = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
   }
 
-  [[nodiscard]] Corners renumbered(Corners corners) const {
-    for (VertexId& v : corners) {
-      if (v != kInfiniteVertex) v = border_vertices_[mesh_.input_index[v]];
-    }
-    return corners;
-  }
-
   [[nodiscard]] bool is_accepted(const Corners& corners, const ConcurrentIndex& index) const {
-    constexpr std::size_t kNone = ~std::size_t{0};
-    std::size_t only = kNone;
+    VertexId lowest = kInfiniteVertex;
+    VertexId highest = 0;
     for (const VertexId v : corners) {
-      if (v == kInfiniteVertex) continue;
-      std::size_t c = 0;
-      while (v >= first_vertex_[c + 1]) ++c;
-      if (only != kNone && only != c) return true;  // spans children
-      only = c;
+      lowest = std::min(lowest, v);
+      highest = std::max(highest, v == kInfiniteVertex ? 0 : v);
     }
-    if (open_[only]) return true;
+    std::size_t child = 0;
+    while (lowest >= first_vertex_[child + 1]) ++child;
+    if (highest >= first_vertex_[child + 1]) return true;  // spans children
+    if (open_[child]) return true;
     return index.find(simplex_hash(corners), [&](std::uint32_t e) {
       return same_simplex(corners, exposed_[e]);
     }) != ConcurrentIndex::kNotFound;

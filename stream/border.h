@@ -53,6 +53,11 @@ struct Border {
   /// Whether the part has no simplices and gives all its points to the merge above, since they span
   /// fewer than D dimensions.
   [[nodiscard]] bool open() const { return dimension < D; }
+  [[nodiscard]] std::vector<Point<D>> positions() const {
+    std::vector<Point<D>> positions(vertices.size());
+    for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = vertices[v].position;
+    return positions;
+  }
   [[nodiscard]] std::uint64_t bytes() const {
     return vertices.size() * sizeof(vertices[0]) + simplices.size() * sizeof(simplices[0]);
   }

@@ -11,25 +11,40 @@ namespace {
 
 /// What memory is needed for, by dimension; measured, see docs/performance.md.
 struct Costs {
-  std::size_t leaf_bytes;     ///< a point: triangulation of a leaf
+  std::size_t leaf_bytes;     ///< a point: triangulation of a leaf, and what is made of it
   std::size_t tile_bytes;     ///< a point: two loaded tiles and output that waits for its turn
-  std::size_t good_leaf;      ///< leaves larger than this are slower
+  std::size_t good_leaf;      ///< leaves larger than this are no faster
   std::size_t small_leaf;     ///< leaves smaller than this lose too much to merging
+  std::size_t enough_leaves;  ///< so many are enough for every thread
+  double buffer_share;        ///< of the limit: for points that wait to be spilled
+  double leaf_share;          ///< of the limit: for a leaf of one thread
+  double leaves_share;        ///< of the limit: for those of all threads
   std::uint64_t least_limit;  ///< below this nothing works well
 };
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-constexpr Costs kPlane{400, 96, 32'768, 4'096, 32 * kMiB};
-constexpr Costs kSpace{1'200, 224, 262'144, 8'192, 96 * kMiB};
+constexpr Costs kPlane{.leaf_bytes = 400,
+                       .tile_bytes = 96,
+                       .good_leaf = 32'768,
+                       .small_leaf = 4'096,
+                       .enough_leaves = 16,
+                       .buffer_share = 0.4,
+                       .leaf_share = 0.08,
+                       .leaves_share = 0.4,
+                       .least_limit = 32 * kMiB};
+constexpr Costs kSpace{.leaf_bytes = 800,
+                       .tile_bytes = 224,
+                       .good_leaf = 196'608,
+                       .small_leaf = 16'384,
+                       .enough_leaves = 8,
+                       .buffer_share = 0.3,
+                       .leaf_share = 0.135,
+                       .leaves_share = 0.45,
+                       .least_limit = 96 * kMiB};
 
-constexpr double kBufferShare = 0.4;
 constexpr double kTileShare = 0.4;
 constexpr double kWaitingShare = 0.1;
-constexpr double kLeafShare = 0.08;   // of one thread
-constexpr double kLeavesShare = 0.4;  // of all threads
 constexpr std::size_t kBufferedPointBytes = 24;
-/// So many leaves are enough for every thread.
-constexpr std::uint64_t kEnoughLeaves = 16;
 
 const Costs& costs_of(int dimension) { return dimension == 2 ? kPlane : kSpace; }
 
@@ -47,20 +62,20 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
                                  dimension == 3 ? " in three dimensions" : ""));
   }
   MemoryPlan plan;
-  plan.buffered_points = share(limit, kBufferShare, kBufferedPointBytes);
+  plan.buffered_points = share(limit, costs.buffer_share, kBufferedPointBytes);
   plan.tile_capacity = share(limit, kTileShare, costs.tile_bytes);
-  plan.leaf_size =
-      std::min({costs.good_leaf, share(limit, kLeafShare, costs.leaf_bytes), plan.tile_capacity});
+  plan.leaf_size = std::min(
+      {costs.good_leaf, share(limit, costs.leaf_share, costs.leaf_bytes), plan.tile_capacity});
   plan.waiting_bytes = share(limit, kWaitingShare, 1);
-  const std::size_t most = share(limit, kLeavesShare, costs.leaf_bytes * plan.leaf_size);
+  const std::size_t most = share(limit, costs.leaves_share, costs.leaf_bytes * plan.leaf_size);
   plan.threads = static_cast<unsigned>(std::clamp<std::size_t>(most, 1, wanted_threads));
   return plan;
 }
 
 std::size_t leaf_size_for(std::uint64_t points, int dimension, const MemoryPlan& plan) {
-  return std::clamp<std::size_t>(points / kEnoughLeaves,
-                                 std::min(costs_of(dimension).small_leaf, plan.leaf_size),
-                                 plan.leaf_size);
+  const Costs& costs = costs_of(dimension);
+  return std::clamp<std::size_t>(points / costs.enough_leaves,
+                                 std::min(costs.small_leaf, plan.leaf_size), plan.leaf_size);
 }
 
 }  // namespace spillway

@@ -28,23 +28,30 @@ void Sequencer<D>::submit(BlockPlace place, MeshBlock mesh, std::vector<StreamPl
   }
   waiting.bytes = waiting.mesh.bytes() + waiting.imported.size() * sizeof(StreamPlace) +
                   waiting.corners.size() * sizeof(std::uint32_t);
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   hash_.add(hash);
   waiting_bytes_ += waiting.bytes;
   waiting_.emplace(place, std::move(waiting));
-  write_what_is_due();
-  turned_.notify_all();
+  if (!writing_) write_what_is_due(lock);
 }
 
+/// One thread writes at a time; the others go on, and leave it what they have submitted. After an
+/// error nothing is written any more.
 template <int D>
-void Sequencer<D>::write_what_is_due() {
+void Sequencer<D>::write_what_is_due(std::unique_lock<std::mutex>& lock) {
+  writing_ = true;
   for (auto due = waiting_.find(next_); due != waiting_.end(); due = waiting_.find(next_)) {
     Waiting turn = std::move(due->second);
     waiting_.erase(due);
-    waiting_bytes_ -= turn.bytes;
+    lock.unlock();
+    const std::uint64_t bytes = turn.bytes;
     write(std::move(turn));
+    lock.lock();
+    waiting_bytes_ -= bytes;
     if (++next_.block == blocks_[next_.slot]) next_ = {next_.slot + 1, 0};
+    turned_.notify_all();
   }
+  writing_ = false;
 }
 
 template <int D>

@@ -55,7 +55,7 @@ class Sequencer {
     std::uint64_t bytes = 0;
   };
 
-  void write_what_is_due();
+  void write_what_is_due(std::unique_lock<std::mutex>& lock);
   void write(Waiting&& waiting);
   [[nodiscard]] std::uint64_t number_of_written(const StreamPlace& place) const;
 
@@ -73,6 +73,7 @@ class Sequencer {
   CanonicalHash<D> hash_;
   bool counts_facets_;
   bool given_up_ = false;
+  bool writing_ = false;  ///< somebody is, or an error has ended it
   OpenFacets<D> open_facets_;
 };
 

@@ -15,29 +15,6 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
-/// Cuts `cell` back so that it has nothing in common with `other`, which lies apart from `box` on
-/// some axis, as the boxes of a division do.
-template <int D>
-void cut_back(Box<D>& cell, const Box<D>& box, const Box<D>& other) {
-  for (int k = 0; k < D; ++k) {
-    if (other.lo[k] > box.hi[k]) {
-      cell.hi[k] = std::min(cell.hi[k], other.lo[k]);
-      return;
-    }
-    if (other.hi[k] < box.lo[k]) {
-      cell.lo[k] = std::max(cell.lo[k], other.hi[k]);
-      return;
-    }
-  }
-}
-
-template <int D>
-Box<D> whole_space() {
-  Box<D> box;
-  std::swap(box.lo, box.hi);
-  return box;
-}
-
 template <int D>
 void count_settled(const Settled<D>& settled, StreamCounts& counts) {
   counts.hull_facets += settled.hull_facets;
@@ -99,16 +76,17 @@ Settled<D> settle_merged(const MergedBorder<D>& merged, BlockPlace block,
                          StageTimes& times) {
   const StageTimer timer(times, Stage::kFinality);
   const Border<D>& border = merged.border;
-  std::vector<Point<D>> positions(border.vertices.size());
-  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = border.vertices[v].position;
+  const std::vector<Point<D>> positions = border.positions();
   std::vector<Fate> fates(border.simplices.size(), Fate::kKept);
-  parallel_for(fates.size() - merged.tested, kGrain,
-               [&](std::size_t, std::size_t begin, std::size_t end) {
-                 for (std::size_t s = merged.tested + begin; s < merged.tested + end; ++s) {
-                   const ConflictRegion<D> region(border.simplices[s], positions);
-                   if (!may_be_changed(region)) fates[s] = final_fate(region);
-                 }
-               });
+  parallel_for(
+      fates.size() - merged.tested, kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+        const std::size_t first = merged.tested + begin;
+        for_each_region<D>(
+            end - begin, [&](std::size_t s) { return border.simplices[first + s]; }, positions,
+            [&](std::size_t s, const ConflictRegion<D>& region) {
+              if (!may_be_changed(region)) fates[first + s] = final_fate(region);
+            });
+      });
   return settle<D>(MergeToSettle<D>{.block = block, .merged = border, .fates = fates}, output);
 }
 
@@ -213,7 +191,7 @@ class TileRun {
     const Stopwatch watch(node.task->seconds);
     const Part<D>& part = *node.part;
     const auto points = std::span(tile_.points).subspan(part.begin, part.size());
-    BaseCase<D> leaf = base_case(part, points);
+    BaseCase<D> leaf = base_case(node, points);
     counts_.points += part.size();
     counts_.duplicates += leaf.duplicates.size();
     ++counts_.leaves;
@@ -225,26 +203,38 @@ class TileRun {
     if (leaf.dimension < D) {
       return pass_up(open_border(part, leaf), BlockPlace{slot_, part.block}, sequencer_, counts_);
     }
-    Settled<D> settled = settle_leaf(node, std::exchange(leaf.simplices, {}));
+    Settled<D> settled = settle_leaf(node, leaf);
+    recycle(std::move(leaf));
     counts_.final_in_leaves += settled.final_simplices;
     return pass_on(std::move(settled), BlockPlace{slot_, part.block}, sequencer_, counts_);
   }
 
-  Settled<D> settle_leaf(const Node& node, const std::vector<Simplex<D>>& simplices) {
+  Settled<D> settle_leaf(const Node& node, const BaseCase<D>& base_case) {
     const StageTimer timer(counts_.times, Stage::kFinality);
     LeafToSettle<D> leaf = leaf_of(*node.part);
-    leaf.simplices = simplices;
-    const std::vector<Fate> fates = fates_in_leaf(node, leaf);
+    leaf.simplices = base_case.simplices;
+    const std::vector<Fate> fates = fates_in_leaf(node, leaf, base_case.inside);
     leaf.fates = fates;
     return settle<D>(leaf, options_.output);
   }
 
-  BaseCase<D> base_case(const Part<D>& part, std::span<const Point<D>> points) {
+  BaseCase<D> base_case(const Node& node, std::span<const Point<D>> points) {
     const StageTimer timer(counts_.times, Stage::kLeaves);
+    const Part<D>& part = *node.part;
     return triangulate_base_case<D>(
         {.points = points,
          .input_index = std::span(input_index_).subspan(part.begin, part.size()),
-         .first_vertex = part.begin});
+         .first_vertex = part.begin,
+         .region = cell_of(node),
+         .more_follow = true});
+  }
+
+  /// The box around a leaf that has nothing in common with the box of any other part.
+  [[nodiscard]] Box<D> cell_of(const Node& node) const {
+    Box<D> cell = whole_space<D>();
+    for (const Part<D>* part : siblings_up(node)) cut_back(cell, node.part->box, part->box);
+    for (const TileNode<D>* tile : outside_) cut_back(cell, node.part->box, tile->box);
+    return cell;
   }
 
   /// What can be settled of a leaf, but for its simplices.
@@ -275,31 +265,46 @@ class TileRun {
     return border;
   }
 
-  [[nodiscard]] std::vector<Fate> fates_in_leaf(const Node& node,
-                                                const LeafToSettle<D>& leaf) const {
-    std::vector<const Part<D>*> siblings = siblings_up(node);
-    Box<D> cell = whole_space<D>();
-    for (const Part<D>* part : siblings) cut_back(cell, node.part->box, part->box);
-    for (const TileNode<D>* tile : outside_) cut_back(cell, node.part->box, tile->box);
-    const auto may_be_changed = change_test(std::move(siblings));
-    std::vector<Fate> fates(leaf.simplex_count(), Fate::kFinal);
-    SimplexBatch<D> batch{};
-    for (std::size_t begin = 0; begin < fates.size(); begin += batch.kSize) {
-      const std::size_t count = std::min(batch.kSize, fates.size() - begin);
-      for (std::size_t s = 0; s < count; ++s) {
-        // An infinite one becomes a point, of which the test of a batch knows nothing.
-        const bool infinite = leaf.simplices[begin + s].infinite();
-        const std::array<VertexId, D + 1> corners = leaf.finite_simplex(begin + s);
-        batch.set(s, [&](int i) { return leaf.points[infinite ? 0 : corners[i]]; });
+  /// The simplices of a leaf whose circumspheres are not known to lie in its cell: infinite ones,
+  /// those near the cell's sides, and some that are flat.
+  [[nodiscard]] std::vector<std::uint32_t> open_questions(
+      const Node& node, const LeafToSettle<D>& leaf, std::span<const std::uint8_t> inside) const {
+    std::vector<std::uint32_t> open;
+    if (!inside.empty()) {
+      for (std::uint32_t s = 0; s < inside.size(); ++s) {
+        if (inside[s] == 0) open.push_back(s);
       }
-      const auto inside = well_inside<D>(batch, cell);
-      for (std::size_t s = 0; s < count; ++s) {
-        if (inside[s]) continue;
-        const ConflictRegion<D> region(leaf.simplex(begin + s), leaf.points);
-        const bool is_final = region.inside(cell) || !may_be_changed(region);
-        fates[begin + s] = is_final ? final_fate(region) : Fate::kKept;
+      return open;
+    }
+    const Box<D> cell = cell_of(node);
+    SimplexBatch<D> batch{};
+    const auto count = static_cast<std::uint32_t>(leaf.simplex_count());
+    for (std::uint32_t begin = 0; begin < count; begin += batch.kSize) {
+      const std::uint32_t end = std::min<std::uint32_t>(begin + batch.kSize, count);
+      for (std::uint32_t s = begin; s < end; ++s) {
+        // An infinite one becomes a point, of which the test of a batch knows nothing.
+        const bool infinite = leaf.simplices[s].infinite();
+        const std::array<VertexId, D + 1> corners = leaf.finite_simplex(s);
+        batch.set(s - begin, [&](int i) { return leaf.points[infinite ? 0 : corners[i]]; });
+      }
+      const auto found = well_inside<D>(batch, cell);
+      for (std::uint32_t s = begin; s < end; ++s) {
+        if (!found[s - begin]) open.push_back(s);
       }
     }
+    return open;
+  }
+
+  [[nodiscard]] std::vector<Fate> fates_in_leaf(const Node& node, const LeafToSettle<D>& leaf,
+                                                std::span<const std::uint8_t> inside) const {
+    const auto may_be_changed = change_test(siblings_up(node));
+    const std::vector<std::uint32_t> open = open_questions(node, leaf, inside);
+    std::vector<Fate> fates(leaf.simplex_count(), Fate::kFinal);
+    for_each_region<D>(
+        open.size(), [&](std::size_t i) { return leaf.simplex(open[i]); }, leaf.points,
+        [&](std::size_t i, const ConflictRegion<D>& region) {
+          fates[open[i]] = may_be_changed(region) ? Fate::kKept : final_fate(region);
+        });
     return fates;
   }
 

@@ -120,10 +120,16 @@ void check_not_empty(const RunStatistics& statistics) {
                           statistics.stream.left_out, *statistics.max_edge));
 }
 
+/// For reuse_freed_memory(): the leaves of space are large, and so are their buffers.
+std::size_t kept_memory(int dimension, std::uint64_t limit) {
+  constexpr std::uint64_t kLeast = 16 << 20;
+  constexpr std::uint64_t kMost = 128 << 20;
+  return dimension == 2 ? kLeast : std::clamp(limit / 8, kLeast, kMost);
+}
+
 template <int D>
 int run(const TriangulateOptions& options, const MeshTarget& target, RunStatistics& statistics) {
   const auto start = std::chrono::steady_clock::now();
-  reuse_freed_memory();
   const auto& inputs = options.inputs;
   Progress progress =
       make_progress(options.report, std::count(inputs.begin(), inputs.end(), "-") > 0);
@@ -133,6 +139,7 @@ int run(const TriangulateOptions& options, const MeshTarget& target, RunStatisti
   statistics.max_edge = stream.max_edge;
   const distributed::Ranks* const ranks = join_ranks();
   MemoryBudget budget(memory_limit(options.memory));
+  reuse_freed_memory(kept_memory(D, budget.limit()));
   const auto scratch = make_scratch_folder(options.memory);
   const auto points = make_point_source(
       disk(), options.inputs, options.input,

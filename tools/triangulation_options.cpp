@@ -96,9 +96,9 @@ StreamOptions stream_options(const TriangulationOptions& options, Progress& prog
   return stream;
 }
 
-void reuse_freed_memory() {
-  mallopt(M_MMAP_THRESHOLD, 4 << 20);
-  mallopt(M_TRIM_THRESHOLD, 16 << 20);
+void reuse_freed_memory(std::size_t kept) {
+  mallopt(M_MMAP_THRESHOLD, static_cast<int>(kept / 4));
+  mallopt(M_TRIM_THRESHOLD, static_cast<int>(kept));
 }
 
 }  // namespace spillway

@@ -45,7 +45,8 @@ std::optional<double> parse_max_edge(const std::string& text);
 StreamOptions stream_options(const TriangulationOptions& options, Progress& progress);
 
 /// Buffers of some megabytes come and go with every leaf: taken from the system anew each time,
-/// they would cost a fifth of the run in page faults.
-void reuse_freed_memory();
+/// they would cost a fifth of the run in page faults. So much memory stays with the process, in
+/// pieces of up to a quarter of it.
+void reuse_freed_memory(std::size_t kept = std::size_t{16} << 20);
 
 }  // namespace spillway

@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 
+#include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
 namespace spillway {
@@ -24,6 +26,17 @@ class CoordinateScaling {
   [[nodiscard]] bool lattice() const { return lattice_; }
   /// The sides of the scaled points' box, rounded.
   [[nodiscard]] const Point<D>& extent() const { return extent_; }
+
+  /// A box inside the image of a box, which may have infinite sides: nearly all of it.
+  [[nodiscard]] Box<D> inner_box(const Box<D>& box) const {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Box<D> inner{(*this)(box.lo), (*this)(box.hi)};
+    for (int k = 0; k < D; ++k) {
+      inner.lo[k] = std::nextafter(inner.lo[k], kInfinity);
+      inner.hi[k] = std::nextafter(inner.hi[k], -kInfinity);
+    }
+    return inner;
+  }
 
   Point<D> operator()(const Point<D>& p) const {
     Point<D> result;

@@ -11,6 +11,7 @@
 #include "src/delaunay/finality.h"
 #include "src/delaunay/merge.h"
 #include "src/delaunay/schedule.h"
+#include "src/delaunay/working_memory.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
@@ -20,23 +21,48 @@ namespace {
 /// Smaller base cases lose more to merging, larger ones more to memory (docs/performance.md has the
 /// measurements).
 template <int D>
-constexpr std::size_t kGoodBaseCase = D == 2 ? 32'768 : 262'144;
+constexpr std::size_t kGoodBaseCase = D == 2 ? 131'072 : 524'288;
+
+/// Points that are not enough for two base cases of this size stay together.
+template <int D>
+constexpr std::size_t kSmallestBaseCase = D == 2 ? 32'768 : 65'536;
+
+/// The same as the good size for a border's points, which it pays less to divide.
+template <int D>
+constexpr std::size_t kGoodBorderBaseCase = D == 2 ? 32'768 : 262'144;
+
+/// Base cases of this size divide so many points into so many parts, a power of two, with room for
+/// cuts that miss the middle.
+std::size_t base_case_size_for(std::size_t points, std::size_t parts) {
+  constexpr double kSlack = 1.1;
+  return static_cast<std::size_t>(
+      std::ceil(static_cast<double>(points) / static_cast<double>(parts) * kSlack));
+}
+
+/// The default: of the good size, or two, so that a second thread has something to do.
+template <int D>
+std::size_t default_base_case_size(std::size_t points) {
+  const std::size_t fewest = points >= 2 * kSmallestBaseCase<D> ? 2 : 1;
+  return base_case_size_for(
+      points, std::bit_floor(std::max(fewest, (points + kGoodBaseCase<D> / 2) / kGoodBaseCase<D>)));
+}
 
 /// So many base cases that a border is divided into, to have something to do for every thread.
 constexpr std::size_t kBorderBaseCases = 2;
 constexpr std::size_t kSmallestBorderBaseCase = 4'096;
 
 std::size_t border_base_case_size(std::size_t points, std::size_t largest) {
-  return std::clamp(points / kBorderBaseCases, std::min(kSmallestBorderBaseCase, largest), largest);
+  return std::clamp(base_case_size_for(points, kBorderBaseCases),
+                    std::min(kSmallestBorderBaseCase, largest), largest);
 }
 
-/// The default: the number of parts is a power of two, with room for cuts that miss the middle.
-template <int D>
-std::size_t default_base_case_size(std::size_t points) {
-  constexpr double kSlack = 1.1;
-  const std::size_t parts =
-      std::bit_floor(std::max<std::size_t>(1, (points + kGoodBaseCase<D> / 2) / kGoodBaseCase<D>));
-  return static_cast<std::size_t>(std::ceil(static_cast<double>(points) / parts * kSlack));
+/// Room for so many items, in huge pages if it spans some.
+template <typename T>
+std::vector<T> in_huge_pages(std::size_t count) {
+  std::vector<T> items;
+  items.reserve(count);
+  ask_for_huge_pages(items.data(), count * sizeof(T));
+  return items;
 }
 
 /// Algorithm 1 on one array of points.
@@ -45,6 +71,7 @@ class Run {
  public:
   Run(std::vector<Point<D>> points, const DelaunayOptions& options) : options_(options) {
     result_.points = std::move(points);
+    result_.input_index = in_huge_pages<VertexId>(result_.points.size());
     result_.input_index.resize(result_.points.size());
     std::iota(result_.input_index.begin(), result_.input_index.end(), VertexId{0});
   }
@@ -59,7 +86,7 @@ class Run {
     duplicates_.resize(root.block + 1);
     base_case_size_ = base_case_size;
     root_block_ = root.block;
-    PartSurface surface = triangulate_part(root, task);
+    PartSurface surface = triangulate_part(root, whole_space<D>(), task);
     result_.dimension = surface.dimension;
     result_.hull = std::move(surface.hull);
     for (const auto& some : duplicates_) {
@@ -69,23 +96,28 @@ class Run {
   }
 
  private:
-  PartSurface triangulate_part(const Part<D>& part, Task& task) {
+  /// `cell` is a box around the part that has nothing in common with the boxes of others beside it.
+  PartSurface triangulate_part(const Part<D>& part, const Box<D>& cell, Task& task) {
     task.points = part.size();
-    return part.leaf() ? triangulate_leaf(part, task) : triangulate_node(part, task);
+    return part.leaf() ? triangulate_leaf(part, cell, task) : triangulate_node(part, cell, task);
   }
 
-  PartSurface triangulate_leaf(const Part<D>& part, Task& task) {
+  PartSurface triangulate_leaf(const Part<D>& part, const Box<D>& cell, Task& task) {
     task.kind = "base_case";
     const Stopwatch watch(task.seconds);
     BaseCase<D> leaf = triangulate_base_case<D>(
         {.points = std::span(result_.points).subspan(part.begin, part.size()),
          .input_index = std::span(result_.input_index).subspan(part.begin, part.size()),
-         .first_vertex = part.begin});
+         .first_vertex = part.begin,
+         .region = cell});
     PartSurface surface;
     surface.dimension = leaf.dimension;
     surface.open = leaf.dimension < D;
     for (const std::uint32_t i : leaf.hull) surface.hull.push_back({part.block, i});
     marks_[part.block].assign(leaf.simplices.size(), Mark::kInterior);
+    std::transform(
+        leaf.inside.begin(), leaf.inside.end(), marks_[part.block].begin(),
+        [](std::uint8_t inside) { return inside != 0 ? Mark::kFinal : Mark::kInterior; });
     result_.blocks[part.block].simplices = std::move(leaf.simplices);
     duplicates_[part.block] = std::move(leaf.duplicates);
     if (surface.open) surface.vertices = distinct_vertices(part);
@@ -93,13 +125,19 @@ class Run {
     return surface;
   }
 
-  PartSurface triangulate_node(const Part<D>& part, Task& task) {
+  PartSurface triangulate_node(const Part<D>& part, const Box<D>& cell, Task& task) {
     task.kind = "node";
     task.children.resize(part.children.size());
     std::vector<PartSurface> surfaces(part.children.size());
     TaskGroup group;
     for (std::size_t c = 0; c < part.children.size(); ++c) {
-      group.run([&, c] { surfaces[c] = triangulate_part(part.children[c], task.children[c]); });
+      Box<D> child_cell = cell;
+      for (const Part<D>& other : part.children) {
+        if (&other != &part.children[c]) cut_back(child_cell, part.children[c].box, other.box);
+      }
+      group.run([&, c, child_cell] {
+        surfaces[c] = triangulate_part(part.children[c], child_cell, task.children[c]);
+      });
     }
     group.wait();
     PartSurface surface = merge<D>(
@@ -177,7 +215,9 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
   Triangulation<D> result;
   Task unused;
   with_threads(options.threads == 0 ? available_threads() : options.threads, [&] {
-    result = Run<D>({points.begin(), points.end()}, options)
+    auto copy = in_huge_pages<Point<D>>(points.size());
+    copy.assign(points.begin(), points.end());
+    result = Run<D>(std::move(copy), options)
                  .triangulate(base_case_size, options.tasks == nullptr ? unused : *options.tasks);
   });
   release_base_case_memory();
@@ -186,7 +226,8 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
 
 template <int D>
 Triangulation<D> border_delaunay(std::vector<Point<D>> points, Task& task) {
-  const std::size_t base_case_size = std::max<std::size_t>(points.size() / 4, kGoodBaseCase<D>);
+  const std::size_t base_case_size =
+      std::max<std::size_t>(points.size() / 4, kGoodBorderBaseCase<D>);
   const DelaunayOptions options;
   return Run<D>(std::move(points), options).triangulate(base_case_size, task);
 }

@@ -42,19 +42,6 @@ bool ConflictRegion<D>::may_meet(const Box<D>& box) const {
 }
 
 template <int D>
-bool ConflictRegion<D>::inside(const Box<D>& box) const {
-  return !infinite_ && spillway::inside<D>(ball_, box);
-}
-
-template <int D>
-bool may_be_changed(const Simplex<D>& simplex, std::span<const Point<D>> points,
-                    std::span<const Part<D>* const> others) {
-  const ConflictRegion<D> region(simplex.vertices, points);
-  return std::any_of(others.begin(), others.end(),
-                     [&](const Part<D>* other) { return region.may_meet_leaf(*other); });
-}
-
-template <int D>
 std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
                                    std::span<const SimplexId> hull,
                                    std::span<const Part<D>* const> others,
@@ -65,29 +52,36 @@ std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
   parallel_work_queue(
       std::vector<SimplexId>(hull.begin(), hull.end()), kBorderBatch,
       [&](std::span<const SimplexId> candidates, std::vector<SimplexId>& found) {
+        std::vector<SimplexId> fresh;
+        std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(fresh),
+                     [&](SimplexId id) {
+                       return mark(id).load(std::memory_order_relaxed) == Mark::kInterior;
+                     });
         std::vector<SimplexId> mine;
-        for (const SimplexId id : candidates) {
-          if (mark(id).load(std::memory_order_relaxed) != Mark::kInterior) continue;
-          if (!may_be_changed<D>(triangulation.simplex(id), triangulation.points, others)) continue;
-          if (mark(id).exchange(Mark::kBorder, std::memory_order_relaxed) != Mark::kInterior) {
-            continue;
-          }
-          mine.push_back(id);
-          for (int i = 0; i <= D; ++i) found.push_back(triangulation.neighbour(id, i));
-        }
+        for_each_region<D>(
+            fresh.size(), [&](std::size_t s) { return triangulation.simplex(fresh[s]).vertices; },
+            triangulation.points,
+            [&](std::size_t s, const ConflictRegion<D>& region) {
+              const SimplexId id = fresh[s];
+              if (std::none_of(others.begin(), others.end(), [&](const Part<D>* other) {
+                    return region.may_meet_leaf(*other);
+                  })) {
+                return;
+              }
+              if (mark(id).exchange(Mark::kBorder, std::memory_order_relaxed) != Mark::kInterior) {
+                return;
+              }
+              mine.push_back(id);
+              for (int i = 0; i <= D; ++i) found.push_back(triangulation.neighbour(id, i));
+            });
         const std::lock_guard lock(mutex);
         border.insert(border.end(), mine.begin(), mine.end());
       });
-  std::sort(border.begin(), border.end());
   return border;
 }
 
 template class ConflictRegion<2>;
 template class ConflictRegion<3>;
-template bool may_be_changed<2>(const Simplex<2>&, std::span<const Point<2>>,
-                                std::span<const Part<2>* const>);
-template bool may_be_changed<3>(const Simplex<3>&, std::span<const Point<3>>,
-                                std::span<const Part<3>* const>);
 template std::vector<SimplexId> find_border<2>(const Triangulation<2>&, std::span<const SimplexId>,
                                                std::span<const Part<2>* const>,
                                                std::span<BlockMarks>);

@@ -20,14 +20,14 @@ class ConflictRegion {
   /// Of a simplex whose corners are positions of `points`, or kInfiniteVertex.
   ConflictRegion(const std::array<VertexId, D + 1>& vertices, std::span<const Point<D>> points);
 
+  /// Of a finite simplex with this circumsphere.
+  explicit ConflictRegion(const CertifiedBall<D>& ball) : ball_(ball) {}
+
   /// Whether it is that of an infinite simplex.
   [[nodiscard]] bool infinite() const { return infinite_; }
 
   /// False only if the region certainly has no point of the box.
   [[nodiscard]] bool may_meet(const Box<D>& box) const;
-
-  /// True only if the region certainly lies inside the box. The box may be infinite.
-  [[nodiscard]] bool inside(const Box<D>& box) const;
 
   /// Whether it may meet a leaf of a tree of boxes (Part, or anything with `box` and `children`).
   template <typename Tree>
@@ -44,24 +44,48 @@ class ConflictRegion {
   std::array<Point<D>, D> facet_;  ///< of an infinite one
 };
 
-/// False only if no point inside any of the boxes of `others` can destroy or change the simplex.
-/// Walks each part's tree of boxes down to the leaves.
-template <int D>
-bool may_be_changed(const Simplex<D>& simplex, std::span<const Point<D>> points,
-                    std::span<const Part<D>* const> others);
+/// Calls visit(s, region) for s = 0, 1, ..., count - 1 with the region of simplex s, whose corners
+/// `corners(s)` are positions of `points`, or kInfiniteVertex. Several at a time.
+template <int D, typename Corners, typename Visit>
+void for_each_region(std::size_t count, const Corners& corners, std::span<const Point<D>> points,
+                     const Visit& visit) {
+  constexpr std::size_t kSize = SimplexBatch<D>::kSize;
+  SimplexBatch<D> batch{};
+  std::array<std::array<VertexId, D + 1>, kSize> vertices;
+  std::array<CertifiedBall<D>, kSize> balls;
+  for (std::size_t begin = 0; begin < count; begin += kSize) {
+    const std::size_t end = std::min(count, begin + kSize);
+    for (std::size_t s = begin; s < end; ++s) {
+      vertices[s - begin] = corners(s);
+      const auto& v = vertices[s - begin];
+      // An infinite one becomes flat, of which nothing is certified.
+      batch.set(s - begin, [&](int i) -> const Point<D>& {
+        return points[v[i] == kInfiniteVertex ? v[i == 0 ? 1 : 0] : v[i]];
+      });
+    }
+    certify<D>(batch, balls);
+    for (std::size_t s = begin; s < end; ++s) {
+      const CertifiedBall<D>& ball = balls[s - begin];
+      const bool certified = ball.error < std::numeric_limits<double>::infinity();
+      visit(s,
+            certified ? ConflictRegion<D>(ball) : ConflictRegion<D>(vertices[s - begin], points));
+    }
+  }
+}
 
 /// What merging needs to remember of each simplex, in parallel with the blocks of a triangulation.
 enum class Mark : std::uint8_t {
   kInterior,  ///< not in the border, or not yet looked at
   kBorder,    ///< some sibling may change it
   kSurvivor,  ///< in the border, and found again in the triangulation of the border
+  kFinal,     ///< no point of another part can change it: it is in no border
 };
 using BlockMarks = std::vector<Mark>;
 
 /// The border of one part against its siblings: every simplex that a point of `others` may change,
 /// found from the infinite simplices `hull` by a search over neighbours (such simplices are
 /// connected to the hull, since all of `others` lies beyond it). Marks them kBorder and returns
-/// them sorted.
+/// them, in any order.
 template <int D>
 std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
                                    std::span<const SimplexId> hull,

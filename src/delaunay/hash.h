@@ -35,20 +35,34 @@ std::uint64_t facet_hash(const std::array<VertexId, N>& vertices, int i) {
   return simplex_hash(vertices) ^ mix64(vertices[i]);
 }
 
+/// Vertices in ascending order, and whether an even permutation brings them there. Without
+/// branches.
+template <std::size_t N>
+struct SortedVertices {
+  std::array<VertexId, N> vertices;
+  bool even = true;
+
+  explicit SortedVertices(const std::array<VertexId, N>& unsorted) : vertices(unsorted) {
+    for (std::size_t end = N; end > 1; --end) {
+      for (std::size_t i = 1; i < end; ++i) {
+        VertexId& low = vertices[i - 1];
+        VertexId& high = vertices[i];
+        const VertexId lower = low < high ? low : high;
+        even ^= low != lower;
+        high = low < high ? high : low;
+        low = lower;
+      }
+    }
+  }
+
+  bool operator==(const SortedVertices&) const = default;
+};
+
 /// Whether two simplices have the same vertices and orientation: an infinite simplex of the
 /// border's triangulation may have the vertices of a child's, but face the other way.
 template <std::size_t N>
-bool same_simplex(std::array<VertexId, N> a, const std::array<VertexId, N>& b) {
-  bool even = true;
-  for (std::size_t i = 0; i < N; ++i) {
-    const auto place = std::find(a.begin() + i, a.end(), b[i]);
-    if (place == a.end()) return false;
-    if (place != a.begin() + i) {
-      std::swap(a[i], *place);
-      even = !even;
-    }
-  }
-  return even;
+bool same_simplex(const std::array<VertexId, N>& a, const std::array<VertexId, N>& b) {
+  return SortedVertices<N>(a) == SortedVertices<N>(b);
 }
 
 /// A hash index of items kept elsewhere, filled and searched by many threads at once, but not
@@ -72,6 +86,14 @@ class ConcurrentIndex {
   }
 
   static constexpr std::uint32_t kNotFound = ~std::uint32_t{0};
+
+  /// Fetches what a search for this hash reads first.
+  void prefetch(std::uint64_t hash) const { __builtin_prefetch(&slots_[hash & mask_]); }
+
+  /// The item that a search for this hash looks at first, or kNotFound.
+  [[nodiscard]] std::uint32_t first(std::uint64_t hash) const {
+    return slots_[hash & mask_].load(std::memory_order_relaxed) - 1;
+  }
 
   /// The item of this hash for which equal(item) holds, or kNotFound.
   template <typename Equal>

@@ -1,7 +1,7 @@
 #include "src/delaunay/merge.h"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -16,14 +16,8 @@ namespace spillway {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
-
-/// Whether two facets have the same vertices.
-template <std::size_t N>
-bool same_facet(std::array<VertexId, N> a, std::array<VertexId, N> b) {
-  std::sort(a.begin(), a.end());
-  std::sort(b.begin(), b.end());
-  return a == b;
-}
+/// What is far apart in memory is fetched for so many simplices before the first is looked at.
+constexpr std::size_t kBatch = 32;
 
 /// The vertices of a simplex without the i-th.
 template <std::size_t N>
@@ -34,12 +28,16 @@ std::array<VertexId, N - 1> facet_vertices(const std::array<VertexId, N>& vertic
   return facet;
 }
 
-/// The place in `a` of the vertex that its neighbour `b` does not have.
+/// The place in `a` of the vertex that its neighbour `b` does not have. Without branches.
 template <std::size_t N>
 int opposite_place(const std::array<VertexId, N>& a, const std::array<VertexId, N>& b) {
-  int i = 0;
-  while (std::find(b.begin(), b.end(), a[i]) != b.end()) ++i;
-  return i;
+  int place = 0;
+  for (std::size_t i = 1; i < N; ++i) {
+    bool shared = false;
+    for (const VertexId v : b) shared |= a[i] == v;
+    place = shared ? place : static_cast<int>(i);
+  }
+  return place;
 }
 
 /// One merge. The steps are called in the order in which they stand here.
@@ -48,7 +46,10 @@ class Merge {
  public:
   Merge(Triangulation<D>& triangulation, std::span<BlockMarks> marks, const Part<D>& part,
         std::span<PartSurface> children)
-      : triangulation_(triangulation), marks_(marks), part_(part), children_(children) {}
+      : triangulation_(triangulation), marks_(marks), part_(part), children_(children) {
+    for (std::size_t c = 0; c + 1 < part.children.size(); ++c)
+      ends_.push_back(part.children[c].end);
+  }
 
   /// Step 1: border_ and border_vertices_.
   void find_borders(Task& task);
@@ -58,10 +59,10 @@ class Merge {
     return static_cast<double>(border_vertices_.size()) / static_cast<double>(part_.size());
   }
 
-  /// Step 2: border_mesh_, its vertices renumbered to those of triangulation_.
+  /// Step 2: border_mesh_.
   void triangulate_border(const BorderTriangulator<D>& triangulate, Task& task);
 
-  /// Step 3: targets_, the new block's vertices, marks of survivors.
+  /// Step 3: targets_, the new block's vertices, survived_, new_hull_. Renumbers border_mesh_.
   void accept(Task& task);
 
   /// Step 4: neighbours of the new simplices and back; removes what did not survive.
@@ -74,39 +75,29 @@ class Merge {
 
   /// A facet between a simplex of the border that is removed and one outside of the border.
   struct OpenFacet {
-    SimplexId removed;
-    int place;  ///< of the removed simplex's vertex opposite the facet
+    std::uint32_t removed;  ///< place in border_
+    int place;              ///< of the removed simplex's vertex opposite the facet
+    SimplexId outside;
   };
   /// Two simplices that become neighbours: a new one, and one of a child.
   struct Link {
     SimplexId created;
     int created_place;
     SimplexId old;
-    int old_place;
   };
 
-  [[nodiscard]] std::size_t child_of(VertexId v) const {
-    std::size_t c = 0;
-    while (v >= part_.children[c].end) ++c;
-    return c;
-  }
-  /// The child that has all finite vertices, or kSpans.
+  /// The child that has all finite vertices, or kSpans. Without branches for each vertex.
   static constexpr std::size_t kSpans = ~std::size_t{0};
   [[nodiscard]] std::size_t only_child(const Vertices& vertices) const {
-    std::size_t only = kSpans;
+    std::size_t lowest = ends_.size();
+    std::size_t highest = 0;
     for (const VertexId v : vertices) {
-      if (v == kInfiniteVertex) continue;
-      const std::size_t c = child_of(v);
-      if (only != kSpans && only != c) return kSpans;
-      only = c;
+      std::size_t child = 0;
+      for (const VertexId end : ends_) child += v >= end ? 1 : 0;
+      lowest = std::min(lowest, child);  // of the infinite vertex it is the last one
+      highest = std::max(highest, v == kInfiniteVertex ? 0 : child);
     }
-    return only;
-  }
-  std::atomic_ref<Mark> mark(SimplexId id) {
-    return std::atomic_ref<Mark>(marks_[id.block][id.index]);
-  }
-  [[nodiscard]] const Vertices& vertices(SimplexId id) const {
-    return triangulation_.simplex(id).vertices;
+    return lowest == highest ? lowest : kSpans;
   }
   SimplexBlock<D>& new_block() { return triangulation_.blocks[part_.block]; }
   [[nodiscard]] bool created(SimplexId target) const { return target.block == part_.block; }
@@ -114,25 +105,36 @@ class Merge {
     return first_of_block_[id.block] + id.index;
   }
 
-  [[nodiscard]] std::vector<VertexId> vertices_of(const std::vector<SimplexId>& simplices,
-                                                  const Part<D>& child) const;
+  [[nodiscard]] std::vector<Vertices> corners_of(const std::vector<SimplexId>& simplices) const;
+  [[nodiscard]] static std::vector<VertexId> vertices_of(const std::vector<Vertices>& simplices,
+                                                         const Part<D>& child);
+  [[nodiscard]] ConcurrentIndex index_border() const;
+  template <typename Body>
+  void for_mesh_simplices(std::size_t begin, std::size_t end, const Body& body) const;
+  std::uint32_t accept_grain(std::size_t begin, std::size_t end, const ConcurrentIndex& index);
   [[nodiscard]] std::vector<OpenFacet> open_facets();
   void link_simplex(SimplexId in_border_mesh, SimplexId created, const ConcurrentIndex& facet_index,
                     const std::vector<OpenFacet>& facets, std::vector<Link>& links);
+  void link_new_block(const std::vector<std::vector<Link>>& links);
+  void link_children(const std::vector<std::vector<Link>>& links, Task& task);
 
   Triangulation<D>& triangulation_;
   std::span<BlockMarks> marks_;
   const Part<D>& part_;
   std::span<PartSurface> children_;
+  std::vector<VertexId> ends_;  ///< of all children but the last
 
   std::vector<SimplexId> border_;          ///< of all children
+  std::vector<Vertices> border_corners_;   ///< its simplices' vertices
+  std::vector<std::uint8_t> survived_;     ///< whether border_mesh_ has them, too
   std::vector<VertexId> border_vertices_;  ///< sorted
   Triangulation<D> border_mesh_;
-  std::vector<SimplexId> mesh_simplices_;    ///< of border_mesh_
+  std::vector<VertexId> renumbered_;         ///< of border_mesh_, to vertices of triangulation_
   std::vector<std::size_t> first_of_block_;  ///< flat number of each block's first simplex
   /// By flat number in border_mesh_: the simplex of triangulation_ that it is or becomes, or
   /// kNoSimplex if it is dropped.
   std::vector<SimplexId> targets_;
+  std::vector<SimplexId> new_hull_;  ///< infinite simplices of the new block
 };
 
 template <int D>
@@ -141,6 +143,7 @@ void Merge<D>::find_borders(Task& task) {
   const Stopwatch watch(task.seconds);
   const std::size_t count = children_.size();
   std::vector<std::vector<SimplexId>> borders(count);
+  std::vector<std::vector<Vertices>> corners(count);
   std::vector<std::vector<VertexId>> vertices(count);
   TaskGroup group;
   for (std::size_t c = 0; c < count; ++c) {
@@ -154,25 +157,36 @@ void Merge<D>::find_borders(Task& task) {
         if (o != c) others.push_back(&part_.children[o]);
       }
       borders[c] = find_border<D>(triangulation_, children_[c].hull, others, marks_);
-      vertices[c] = vertices_of(borders[c], part_.children[c]);
+      corners[c] = corners_of(borders[c]);
+      vertices[c] = vertices_of(corners[c], part_.children[c]);
     });
   }
   group.wait();
   for (std::size_t c = 0; c < count; ++c) {
     border_.insert(border_.end(), borders[c].begin(), borders[c].end());
+    border_corners_.insert(border_corners_.end(), corners[c].begin(), corners[c].end());
     border_vertices_.insert(border_vertices_.end(), vertices[c].begin(), vertices[c].end());
   }
   task.points = border_vertices_.size();
   task.pieces = std::max<std::size_t>(1, grain_count(border_.size(), kGrain));
 }
 
+template <int D>
+auto Merge<D>::corners_of(const std::vector<SimplexId>& simplices) const -> std::vector<Vertices> {
+  std::vector<Vertices> corners(simplices.size());
+  for (std::size_t s = 0; s < simplices.size(); ++s) {
+    corners[s] = triangulation_.simplex(simplices[s]).vertices;
+  }
+  return corners;
+}
+
 /// The finite vertices of a child's simplices, sorted.
 template <int D>
-std::vector<VertexId> Merge<D>::vertices_of(const std::vector<SimplexId>& simplices,
-                                            const Part<D>& child) const {
+std::vector<VertexId> Merge<D>::vertices_of(const std::vector<Vertices>& simplices,
+                                            const Part<D>& child) {
   std::vector<bool> seen(child.size());
-  for (const SimplexId id : simplices) {
-    for (const VertexId v : vertices(id)) {
+  for (const Vertices& corners : simplices) {
+    for (const VertexId v : corners) {
       if (v != kInfiniteVertex) seen[v - child.begin] = true;
     }
   }
@@ -189,83 +203,131 @@ void Merge<D>::triangulate_border(const BorderTriangulator<D>& triangulate, Task
   points.reserve(border_vertices_.size());
   for (const VertexId v : border_vertices_) points.push_back(triangulation_.points[v]);
   border_mesh_ = triangulate(std::move(points), part_.size(), task);
-  std::vector<VertexId> renumbered(border_mesh_.input_index.size());
-  for (std::size_t v = 0; v < renumbered.size(); ++v) {
-    renumbered[v] = border_vertices_[border_mesh_.input_index[v]];
+}
+
+/// Calls body(number, id) for the simplices of border_mesh_ of these flat numbers.
+template <int D>
+template <typename Body>
+void Merge<D>::for_mesh_simplices(std::size_t begin, std::size_t end, const Body& body) const {
+  const auto after = std::upper_bound(first_of_block_.begin(), first_of_block_.end(), begin);
+  auto block = static_cast<std::uint32_t>(after - first_of_block_.begin() - 1);
+  for (std::size_t number = begin; number < end; ++block) {
+    const auto& simplices = border_mesh_.blocks[block].simplices;
+    const std::size_t first = first_of_block_[block];
+    for (; number < std::min(end, first + simplices.size()); ++number) {
+      const auto index = static_cast<std::uint32_t>(number - first);
+      if (!simplices[index].removed()) body(number, SimplexId{block, index});
+    }
   }
-  std::size_t total = 0;
-  for (SimplexBlock<D>& block : border_mesh_.blocks) {
-    first_of_block_.push_back(total);
-    total += block.simplices.size();
-    parallel_for(block.simplices.size(), kGrain,
-                 [&](std::size_t, std::size_t begin, std::size_t end) {
-                   for (std::size_t i = begin; i < end; ++i) {
-                     if (block.simplices[i].removed()) continue;
-                     for (VertexId& v : block.simplices[i].vertices) {
-                       if (v != kInfiniteVertex) v = renumbered[v];
-                     }
-                   }
-                 });
-  }
-  targets_.assign(total, kNoSimplex);
-  mesh_simplices_.reserve(total);
-  border_mesh_.for_each_simplex(
-      [&](SimplexId id, const Simplex<D>&) { mesh_simplices_.push_back(id); });
+}
+
+template <int D>
+ConcurrentIndex Merge<D>::index_border() const {
+  ConcurrentIndex index(border_.size());
+  parallel_for(border_.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::array<std::uint64_t, kBatch> hashes;
+    for (std::size_t first = begin; first < end; first += kBatch) {
+      const std::size_t last = std::min(end, first + kBatch);
+      for (std::size_t b = first; b < last; ++b) {
+        hashes[b - first] = simplex_hash(border_corners_[b]);
+        index.prefetch(hashes[b - first]);
+      }
+      for (std::size_t b = first; b < last; ++b) {
+        index.insert(hashes[b - first], static_cast<std::uint32_t>(b));
+      }
+    }
+  });
+  return index;
+}
+
+/// Sets the targets of mesh simplices. New ones are numbered from 0 on; returns their number.
+template <int D>
+std::uint32_t Merge<D>::accept_grain(std::size_t begin, std::size_t end,
+                                     const ConcurrentIndex& index) {
+  struct Search {
+    const Vertices* candidate;
+    SimplexId* target;
+    std::uint64_t hash;
+  };
+  std::vector<Search> searches;
+  searches.reserve(kBatch);
+  const auto search_all = [&] {
+    for (const Search& search : searches) {
+      const std::uint32_t b = index.first(search.hash);
+      if (b != ConcurrentIndex::kNotFound) __builtin_prefetch(&border_corners_[b]);
+    }
+    for (const Search& search : searches) {
+      const std::uint32_t b = index.find(search.hash, [&](std::uint32_t item) {
+        return same_simplex(*search.candidate, border_corners_[item]);
+      });
+      if (b == ConcurrentIndex::kNotFound) continue;
+      *search.target = border_[b];
+      survived_[b] = 1;
+    }
+    searches.clear();
+  };
+  std::uint32_t created = 0;
+  for_mesh_simplices(begin, end, [&](std::size_t number, SimplexId id) {
+    Vertices& candidate = border_mesh_.blocks[id.block].simplices[id.index].vertices;
+    for (VertexId& v : candidate) {
+      if (v != kInfiniteVertex) v = renumbered_[v];
+    }
+    const std::size_t c = only_child(candidate);
+    if (c == kSpans || children_[c].open) {
+      targets_[number] = {part_.block, created++};
+      return;
+    }
+    const std::uint64_t hash = simplex_hash(candidate);
+    index.prefetch(hash);
+    searches.push_back({&candidate, &targets_[number], hash});
+    if (searches.size() == kBatch) search_all();
+  });
+  search_all();
+  return created;
 }
 
 template <int D>
 void Merge<D>::accept(Task& task) {
   task.kind = "accept";
   task.points = border_vertices_.size();
-  task.pieces = std::max<std::size_t>(1, grain_count(mesh_simplices_.size(), kGrain));
   const Stopwatch watch(task.seconds);
 
-  ConcurrentIndex index(border_.size());
-  parallel_for(border_.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      index.insert(simplex_hash(vertices(border_[b])), static_cast<std::uint32_t>(b));
-    }
-  });
+  for (const VertexId v : border_mesh_.input_index) renumbered_.push_back(border_vertices_[v]);
+  std::size_t total = 0;
+  for (const SimplexBlock<D>& block : border_mesh_.blocks) {
+    first_of_block_.push_back(total);
+    total += block.simplices.size();
+  }
+  task.pieces = std::max<std::size_t>(1, grain_count(total, kGrain));
+  targets_.assign(total, kNoSimplex);
+  survived_.assign(border_.size(), 0);
 
-  std::vector<std::size_t> created(grain_count(mesh_simplices_.size(), kGrain) + 1);
-  parallel_for(
-      mesh_simplices_.size(), kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
-        std::uint32_t count = 0;
-        for (std::size_t m = begin; m < end; ++m) {
-          const Vertices& candidate = border_mesh_.simplex(mesh_simplices_[m]).vertices;
-          SimplexId& target = targets_[flat(mesh_simplices_[m])];
-          const std::size_t c = only_child(candidate);
-          if (c == kSpans || children_[c].open) {
-            target = {part_.block, count++};
-            continue;
-          }
-          const std::uint32_t b = index.find(simplex_hash(candidate), [&](std::uint32_t item) {
-            return same_simplex(candidate, vertices(border_[item]));
-          });
-          if (b == ConcurrentIndex::kNotFound) continue;
-          target = border_[b];
-          mark(target).store(Mark::kSurvivor, std::memory_order_relaxed);
-        }
-        created[g + 1] = count;
-      });
-  std::partial_sum(created.begin(), created.end(), created.begin());
-  if (created.back() >= Simplex<D>::kLink || border_.size() >= Simplex<D>::kLink) {
+  const ConcurrentIndex index = index_border();
+  std::vector<std::size_t> first_created(grain_count(total, kGrain) + 1);
+  parallel_for(total, kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
+    first_created[g + 1] = accept_grain(begin, end, index);
+  });
+  std::partial_sum(first_created.begin(), first_created.end(), first_created.begin());
+  const std::size_t created_count = first_created.back();
+  if (created_count >= Simplex<D>::kLink || border_.size() >= Simplex<D>::kLink) {
     throw Error("the border of " + std::to_string(border_vertices_.size()) +
                 " points has more simplices than fit into one block");
   }
 
-  new_block().simplices.resize(created.back());
-  marks_[part_.block].assign(created.back(), Mark::kInterior);
-  parallel_for(mesh_simplices_.size(), kGrain,
-               [&](std::size_t g, std::size_t begin, std::size_t end) {
-                 for (std::size_t m = begin; m < end; ++m) {
-                   SimplexId& target = targets_[flat(mesh_simplices_[m])];
-                   if (target.block != part_.block) continue;
-                   target.index += static_cast<std::uint32_t>(created[g]);
-                   new_block().simplices[target.index].vertices =
-                       border_mesh_.simplex(mesh_simplices_[m]).vertices;
-                 }
-               });
+  new_block().simplices.resize(created_count);
+  marks_[part_.block].assign(created_count, Mark::kInterior);
+  std::vector<std::vector<SimplexId>> hulls(grain_count(total, kGrain));
+  parallel_for(total, kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
+    for_mesh_simplices(begin, end, [&](std::size_t number, SimplexId id) {
+      SimplexId& target = targets_[number];
+      if (!created(target)) return;
+      target.index += static_cast<std::uint32_t>(first_created[g]);
+      Simplex<D>& simplex = new_block().simplices[target.index];
+      simplex.vertices = border_mesh_.simplex(id).vertices;
+      if (simplex.infinite()) hulls[g].push_back(target);
+    });
+  });
+  for (const auto& some : hulls) new_hull_.insert(new_hull_.end(), some.begin(), some.end());
 }
 
 template <int D>
@@ -273,11 +335,11 @@ auto Merge<D>::open_facets() -> std::vector<OpenFacet> {
   std::vector<std::vector<OpenFacet>> found(grain_count(border_.size(), kGrain));
   parallel_for(border_.size(), kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
-      if (mark(border_[b]).load(std::memory_order_relaxed) == Mark::kSurvivor) continue;
+      if (survived_[b] != 0) continue;
       for (int i = 0; i <= D; ++i) {
         const SimplexId other = triangulation_.neighbour(border_[b], i);
-        if (mark(other).load(std::memory_order_relaxed) == Mark::kInterior) {
-          found[g].push_back({border_[b], i});
+        if (marks_[other.block][other.index] != Mark::kBorder) {
+          found[g].push_back({static_cast<std::uint32_t>(b), i, other});
         }
       }
     }
@@ -300,19 +362,19 @@ void Merge<D>::link_simplex(SimplexId in_border_mesh, SimplexId created,
       continue;
     }
     if (other == kNoSimplex) {
-      const auto facet = facet_vertices(simplex.vertices, i);
+      const SortedVertices<D> facet(facet_vertices(simplex.vertices, i));
       const std::uint32_t f =
           facet_index.find(facet_hash(simplex.vertices, i), [&](std::uint32_t item) {
-            return same_facet(facet,
-                              facet_vertices(vertices(facets[item].removed), facets[item].place));
+            const OpenFacet& open = facets[item];
+            const auto found = facet_vertices(border_corners_[open.removed], open.place);
+            return facet.vertices == SortedVertices<D>(found).vertices;
           });
       if (f == ConcurrentIndex::kNotFound) {
         throw std::logic_error("merge: a new simplex has no neighbour across one of its facets");
       }
-      other = triangulation_.neighbour(facets[f].removed, facets[f].place);
+      other = facets[f].outside;
     }
-    simplex.neighbours[i] = SimplexBlock<D>::kUnlinked;
-    links.push_back({created, i, other, opposite_place(vertices(other), simplex.vertices)});
+    links.push_back({created, i, other});
   }
 }
 
@@ -320,62 +382,81 @@ template <int D>
 void Merge<D>::link(Task& task) {
   task.kind = "neighbours";
   task.points = border_vertices_.size();
-  task.pieces = std::max<std::size_t>(1, grain_count(mesh_simplices_.size(), kGrain));
-  const Stopwatch watch(task.seconds);
-
-  const std::vector<OpenFacet> facets = open_facets();
-  ConcurrentIndex facet_index(facets.size());
-  parallel_for(facets.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) {
-      facet_index.insert(facet_hash(vertices(facets[f].removed), facets[f].place),
-                         static_cast<std::uint32_t>(f));
-    }
-  });
-
-  std::vector<std::vector<Link>> links(grain_count(mesh_simplices_.size(), kGrain));
-  parallel_for(mesh_simplices_.size(), kGrain,
-               [&](std::size_t g, std::size_t begin, std::size_t end) {
-                 for (std::size_t m = begin; m < end; ++m) {
-                   const SimplexId target = targets_[flat(mesh_simplices_[m])];
-                   if (created(target)) {
-                     link_simplex(mesh_simplices_[m], target, facet_index, facets, links[g]);
-                   }
-                 }
-               });
-
-  // A block's links are one array: the new block and each child's blocks are a task of their own.
-  TaskGroup group;
-  group.run([&] {
-    for (const auto& some : links) {
-      for (const Link& link : some) {
-        new_block().set_neighbour(link.created, link.created_place, link.old);
+  task.pieces = std::max<std::size_t>(1, grain_count(targets_.size(), kGrain));
+  std::vector<std::vector<Link>> links(grain_count(targets_.size(), kGrain));
+  {
+    const Stopwatch watch(task.seconds);
+    const std::vector<OpenFacet> facets = open_facets();
+    ConcurrentIndex facet_index(facets.size());
+    parallel_for(facets.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t f = begin; f < end; ++f) {
+        facet_index.insert(facet_hash(border_corners_[facets[f].removed], facets[f].place),
+                           static_cast<std::uint32_t>(f));
       }
+    });
+    parallel_for(targets_.size(), kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
+      for_mesh_simplices(begin, end, [&](std::size_t number, SimplexId id) {
+        const SimplexId target = targets_[number];
+        if (created(target)) link_simplex(id, target, facet_index, facets, links[g]);
+      });
+    });
+    link_new_block(links);
+    parallel_for(border_.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        const SimplexId id = border_[b];
+        if (survived_[b] == 0) {
+          triangulation_.blocks[id.block].simplices[id.index].vertices[0] = kNoVertex;
+        }
+        marks_[id.block][id.index] = Mark::kInterior;
+      }
+    });
+  }
+  link_children(links, task.after.emplace_back());
+}
+
+/// Sets the neighbours of new simplices that are old ones.
+template <int D>
+void Merge<D>::link_new_block(const std::vector<std::vector<Link>>& links) {
+  std::vector<std::size_t> first_link(links.size() + 1);
+  for (std::size_t g = 0; g < links.size(); ++g)
+    first_link[g + 1] = first_link[g] + links[g].size();
+  SimplexBlock<D>& block = new_block();
+  block.links.resize(first_link.back());
+  parallel_for(links.size(), 1, [&](std::size_t g, std::size_t, std::size_t) {
+    std::size_t number = first_link[g];
+    for (const Link& link : links[g]) {
+      block.links[number] = link.old;
+      block.simplices[link.created.index].neighbours[link.created_place] =
+          Simplex<D>::kLink + static_cast<std::uint32_t>(number++);
     }
   });
+}
+
+/// Sets the neighbours of old simplices that are new ones. A block's links are one array, so each
+/// child's blocks are a task of their own.
+template <int D>
+void Merge<D>::link_children(const std::vector<std::vector<Link>>& links, Task& task) {
+  task.kind = "neighbours";
+  task.points = border_vertices_.size();
+  task.pieces = part_.children.size();
+  const Stopwatch watch(task.seconds);
+  TaskGroup group;
   std::uint32_t first_block = 0;
   for (const Part<D>& child : part_.children) {
     group.run([&, first_block, last_block = child.block] {
       for (const auto& some : links) {
         for (const Link& link : some) {
           if (link.old.block < first_block || link.old.block > last_block) continue;
-          triangulation_.blocks[link.old.block].set_neighbour(link.old, link.old_place,
-                                                              link.created);
+          SimplexBlock<D>& block = triangulation_.blocks[link.old.block];
+          const int place = opposite_place(block.simplices[link.old.index].vertices,
+                                           new_block().simplices[link.created.index].vertices);
+          block.set_neighbour(link.old, place, link.created);
         }
       }
     });
     first_block = child.block + 1;
   }
   group.wait();
-
-  parallel_for(border_.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      Mark& mark = marks_[border_[b].block][border_[b].index];
-      if (mark == Mark::kBorder) {
-        triangulation_.blocks[border_[b].block].simplices[border_[b].index].vertices[0] = kNoVertex;
-      }
-      mark = Mark::kInterior;
-    }
-  });
 }
 
 template <int D>
@@ -391,10 +472,7 @@ PartSurface Merge<D>::surface() {
     std::copy_if(child.hull.begin(), child.hull.end(), std::back_inserter(surface.hull),
                  [&](SimplexId id) { return !triangulation_.simplex(id).removed(); });
   }
-  const auto& simplices = new_block().simplices;
-  for (std::uint32_t i = 0; i < simplices.size(); ++i) {
-    if (simplices[i].infinite()) surface.hull.push_back({part_.block, i});
-  }
+  surface.hull.insert(surface.hull.end(), new_hull_.begin(), new_hull_.end());
   return surface;
 }
 

@@ -64,7 +64,7 @@ struct SimplexBlock {
     std::uint32_t& n = simplices[simplex.index].neighbours[i];
     if (other.block == simplex.block) {
       n = other.index;
-    } else if (n >= Simplex<D>::kLink && n != kUnlinked) {
+    } else if (n >= Simplex<D>::kLink) {
       links[n - Simplex<D>::kLink] = other;
     } else {
       n = Simplex<D>::kLink + static_cast<std::uint32_t>(links.size());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "src/geometry/point.h"
 
@@ -58,6 +59,29 @@ struct Box {
     return p;
   }
 };
+
+template <int D>
+Box<D> whole_space() {
+  Box<D> box;
+  std::swap(box.lo, box.hi);
+  return box;
+}
+
+/// Cuts `cell` back so that it has nothing in common with `other`, which lies apart from `box` on
+/// some axis, as the boxes of a division do.
+template <int D>
+void cut_back(Box<D>& cell, const Box<D>& box, const Box<D>& other) {
+  for (int k = 0; k < D; ++k) {
+    if (other.lo[k] > box.hi[k]) {
+      cell.hi[k] = std::min(cell.hi[k], other.lo[k]);
+      return;
+    }
+    if (other.hi[k] < box.lo[k]) {
+      cell.lo[k] = std::max(cell.lo[k], other.hi[k]);
+      return;
+    }
+  }
+}
 
 /// The x and y of a box.
 template <int D>

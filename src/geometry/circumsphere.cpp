@@ -23,7 +23,9 @@ constexpr double kRadiusSlack = 1 + 0x1p-48;  // 1 + 32u, for those of may_meet
 constexpr double kFlat = 0x1p-30;
 constexpr double kShortestEdge = 0x1p-60;
 constexpr double kLongestEdge = 0x1p60;
-constexpr double kMargin = 1 + 0x1p-10;  // of the squared radius
+constexpr double kMargin = 1 + 0x1p-10;                // of the squared radius
+constexpr double kNumeratorError = 288 * kRoundoff;    // over L^(D+1)
+constexpr double kDenominatorError = 192 * kRoundoff;  // over L^D
 
 // A determinant, rounded, and the sum of the absolute values of its monomials, rounded.
 struct Rounded {
@@ -82,13 +84,15 @@ double larger(double a, double b) { return a < b ? b : a; }
 double smaller(double a, double b) { return b < a ? b : a; }
 
 // The circumcentre's numerators, and last its denominator, without bounds.
-std::array<double, 3> circumcentre_fraction(const Vectors<2, 2, double>& a) {
+[[gnu::always_inline]] inline std::array<double, 3> circumcentre_fraction(
+    const Vectors<2, 2, double>& a) {
   const double s0 = squared_length(a[0]);
   const double s1 = squared_length(a[1]);
   return {s0 * a[1][1] - s1 * a[0][1], s1 * a[0][0] - s0 * a[1][0], 2 * minor_xy(a[0], a[1])};
 }
 
-std::array<double, 4> circumcentre_fraction(const Vectors<3, 3, double>& a) {
+[[gnu::always_inline]] inline std::array<double, 4> circumcentre_fraction(
+    const Vectors<3, 3, double>& a) {
   std::array<double, 4> fraction{};
   for (int i = 0; i < 3; ++i) {
     const auto& b = a[(i + 1) % 3];
@@ -102,19 +106,44 @@ std::array<double, 4> circumcentre_fraction(const Vectors<3, 3, double>& a) {
   return fraction;
 }
 
+template <int D>
+struct Edges {
+  Vectors<D, D, double> vectors;  // from the first corner
+  double longest = 0;             // magnitude of a component: L
+
+  explicit Edges(const std::array<Point<D>, D + 1>& simplex) {
+    for (int i = 0; i < D; ++i) {
+      for (int k = 0; k < D; ++k) {
+        vectors[i][k] = simplex[i + 1][k] - simplex[0][k];
+        longest = larger(longest, std::abs(vectors[i][k]));
+      }
+    }
+  }
+
+  [[nodiscard]] double volume() const {
+    return D == 2 ? longest * longest : longest * longest * longest;
+  }
+  // Positive if L is in the range that the proofs cover; NaN never is.
+  [[nodiscard]] double range() const {
+    return smaller(longest - kShortestEdge, kLongestEdge - longest);
+  }
+};
+
+template <int D>
+std::array<Point<D>, D + 1> corners_in(const SimplexBatch<D>& simplices, std::size_t s) {
+  std::array<Point<D>, D + 1> simplex;
+  for (int i = 0; i <= D; ++i) {
+    for (int k = 0; k < D; ++k) simplex[i][k] = simplices.corners[i][k][s];
+  }
+  return simplex;
+}
+
 // The names are those of docs/algorithm.md ("Many balls at once"). Positive if the circumsphere is
 // certainly inside.
 template <int D>
 double room_around(const std::array<Point<D>, D + 1>& simplex, const Box<D>& box) {
-  Vectors<D, D, double> edges;
-  double longest = 0;
-  for (int i = 0; i < D; ++i) {
-    for (int k = 0; k < D; ++k) {
-      edges[i][k] = simplex[i + 1][k] - simplex[0][k];
-      longest = larger(longest, std::abs(edges[i][k]));
-    }
-  }
-  const std::array<double, D + 1> fraction = circumcentre_fraction(edges);
+  const Edges<D> edges(simplex);
+  const std::array<double, D + 1> fraction = circumcentre_fraction(edges.vectors);
   const double sign = fraction[D] < 0 ? -1 : 1;
   const double denominator = std::abs(fraction[D]);
   double squared_radius = 0;
@@ -126,12 +155,43 @@ double room_around(const std::array<Point<D>, D + 1>& simplex, const Box<D>& box
     squared_radius += centre * centre;
     room = k == 0 ? smaller(below, above) : smaller(room, smaller(below, above));
   }
-  const double volume = D == 2 ? longest * longest : longest * longest * longest;
-  const double shape = denominator - kFlat * volume;
-  const double range = smaller(longest - kShortestEdge, kLongestEdge - longest);
+  const double shape = denominator - kFlat * edges.volume();
   // The first two are not positive where the last proves nothing, or are NaN and stay it.
-  return smaller(smaller(shape, range), room * std::abs(room) - kMargin * squared_radius);
+  return smaller(smaller(shape, edges.range()), room * std::abs(room) - kMargin * squared_radius);
 }
+
+// The circumcentre of a simplex, its squared radius and its error, as in CertifiedBall, if proved.
+template <int D>
+struct RoughSphere {
+  Point<D> centre;
+  double squared_radius = 0;
+  double error = 0;
+  double proved = 0;  // if positive
+
+  explicit RoughSphere(const std::array<Point<D>, D + 1>& simplex) {
+    const Edges<D> edges(simplex);
+    const std::array<double, D + 1> fraction = circumcentre_fraction(edges.vectors);
+    const double inverse = 1 / fraction[D];
+    double farthest = 0;
+    for (int k = 0; k < D; ++k) {
+      centre[k] = fraction[k] * inverse;
+      farthest = larger(farthest, std::abs(centre[k]));
+    }
+    const double volume = edges.volume();
+    const double denominator_error = kDenominatorError * volume;
+    const double denominator = std::abs(fraction[D]) - denominator_error;
+    const double numerator_error = kNumeratorError * volume * edges.longest;
+    error = kErrorSlack * ((numerator_error + farthest * denominator_error) / denominator +
+                           6 * kRoundoff * farthest);
+    for (int k = 0; k < D; ++k) {
+      const double most = std::abs(centre[k]) + error;
+      squared_radius += most * most;
+    }
+    squared_radius *= kRadiusSlack;
+    // NaN in the first stays.
+    proved = smaller(denominator - denominator_error, edges.range());
+  }
+};
 
 }  // namespace
 
@@ -187,31 +247,42 @@ bool may_meet(const CertifiedBall<D>& ball, const Box<D>& box) {
 }
 
 template <int D>
-bool inside(const CertifiedBall<D>& ball, const Box<D>& box) {
-  for (int k = 0; k < D; ++k) {
-    const double below = ball.centre[k] - (box.lo[k] - ball.anchor[k]) - ball.error;
-    const double above = (box.hi[k] - ball.anchor[k]) - ball.centre[k] - ball.error;
-    const double gap = std::min(below, above);
-    if (!(gap > 0 && gap * gap > ball.squared_radius)) return false;  // NaN fails
-  }
-  return true;
-}
-
-template <int D>
 std::array<bool, SimplexBatch<D>::kSize> well_inside(const SimplexBatch<D>& simplices,
                                                      const Box<D>& box) {
   constexpr std::size_t kSize = SimplexBatch<D>::kSize;
   std::array<double, kSize> room;
   for (std::size_t s = 0; s < kSize; ++s) {
-    std::array<Point<D>, D + 1> simplex;
-    for (int i = 0; i <= D; ++i) {
-      for (int k = 0; k < D; ++k) simplex[i][k] = simplices.corners[i][k][s];
-    }
-    room[s] = room_around<D>(simplex, box);
+    room[s] = room_around<D>(corners_in(simplices, s), box);
   }
   std::array<bool, kSize> result;
   for (std::size_t s = 0; s < kSize; ++s) result[s] = room[s] > 0;
   return result;
+}
+
+template <int D>
+void certify(const SimplexBatch<D>& simplices,
+             std::array<CertifiedBall<D>, SimplexBatch<D>::kSize>& balls) {
+  constexpr std::size_t kSize = SimplexBatch<D>::kSize;
+  std::array<std::array<double, kSize>, D> centre;
+  std::array<double, kSize> squared_radius;
+  std::array<double, kSize> error;
+  std::array<double, kSize> proved;
+  for (std::size_t s = 0; s < kSize; ++s) {
+    const RoughSphere<D> sphere(corners_in(simplices, s));
+    for (int k = 0; k < D; ++k) centre[k][s] = sphere.centre[k];
+    squared_radius[s] = sphere.squared_radius;
+    error[s] = sphere.error;
+    proved[s] = sphere.proved;
+  }
+  for (std::size_t s = 0; s < kSize; ++s) {
+    CertifiedBall<D>& ball = balls[s];
+    for (int k = 0; k < D; ++k) {
+      ball.anchor[k] = simplices.corners[0][k][s];
+      ball.centre[k] = centre[k][s];
+    }
+    ball.squared_radius = proved[s] > 0 ? squared_radius[s] : CertifiedBall<D>{}.squared_radius;
+    ball.error = proved[s] > 0 ? error[s] : CertifiedBall<D>{}.error;
+  }
 }
 
 template <int D>
@@ -230,12 +301,12 @@ template CertifiedBall<2> certified_ball<2>(const std::array<Point<2>, 3>&);
 template CertifiedBall<3> certified_ball<3>(const std::array<Point<3>, 4>&);
 template bool may_meet<2>(const CertifiedBall<2>&, const Box<2>&);
 template bool may_meet<3>(const CertifiedBall<3>&, const Box<3>&);
-template bool inside<2>(const CertifiedBall<2>&, const Box<2>&);
-template bool inside<3>(const CertifiedBall<3>&, const Box<3>&);
 template std::array<bool, SimplexBatch<2>::kSize> well_inside<2>(const SimplexBatch<2>&,
                                                                  const Box<2>&);
 template std::array<bool, SimplexBatch<3>::kSize> well_inside<3>(const SimplexBatch<3>&,
                                                                  const Box<3>&);
+template void certify<2>(const SimplexBatch<2>&, std::array<CertifiedBall<2>, 64>&);
+template void certify<3>(const SimplexBatch<3>&, std::array<CertifiedBall<3>, 64>&);
 template bool half_space_meets<2>(const std::array<Point<2>, 2>&, const Box<2>&);
 template bool half_space_meets<3>(const std::array<Point<3>, 3>&, const Box<3>&);
 

@@ -37,11 +37,6 @@ CertifiedBall<D> certified_ball(const std::array<Point<D>, D + 1>& simplex);
 template <int D>
 bool may_meet(const CertifiedBall<D>& ball, const Box<D>& box);
 
-/// True only if the closed circumsphere certainly lies inside the box and touches none of its
-/// sides, which may be infinite.
-template <int D>
-bool inside(const CertifiedBall<D>& ball, const Box<D>& box);
-
 /// The corners of some simplices, coordinate by coordinate, so that several are tested at a time.
 template <int D>
 struct SimplexBatch {
@@ -59,12 +54,18 @@ struct SimplexBatch {
 };
 
 /// For each simplex of a batch whether its closed circumsphere is certainly inside the box and
-/// touches none of its sides, which may be infinite. With less work than certified_ball() and
-/// inside(), for which it must have a thousandth of its radius between it and the sides, and not be
-/// of a very flat simplex.
+/// touches none of its sides, which may be infinite. With little work, for which it must have a
+/// thousandth of its radius between it and the sides, and not be of a very flat simplex.
 template <int D>
 std::array<bool, SimplexBatch<D>::kSize> well_inside(const SimplexBatch<D>& simplices,
                                                      const Box<D>& box);
+
+/// The certified circumspheres of the simplices of a batch, of any orientation: as true as those of
+/// certified_ball() with less work, but with larger errors where simplices are flat, and infinite
+/// ones sooner.
+template <int D>
+void certify(const SimplexBatch<D>& simplices,
+             std::array<CertifiedBall<D>, SimplexBatch<D>::kSize>& balls);
 
 /// True if and only if the closed half-space beyond `facet` has a point in common with the box.
 /// `facet` is listed so that orientation(facet, p) is positive for p beyond. Exact. True if the

@@ -16,6 +16,7 @@
 #include "src/delaunay/base_case.h"
 #include "src/delaunay/hilbert_order.h"
 #include "src/delaunay/kernel_3d/kernel_3d.h"
+#include "src/delaunay/vectors.h"
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "src/generators/random.h"

@@ -5,8 +5,10 @@
 
 #include <cmath>
 
+#include "src/delaunay/kernel_2d/circles.h"
 #include "src/delaunay/kernel_2d/exact_predicates.h"
 #include "src/delaunay/kernel_2d/filters.h"
+#include "src/delaunay/vectors.h"
 #include "src/generators/random.h"
 #include "src/geometry/predicates.h"
 
@@ -43,8 +45,7 @@ double determinant(const WorkingPoints& points) {
   const Corner from = corner_at(points.scaled[1], query);
   const Corner apex = corner_at(points.scaled[2], query);
   const Corner to = corner_at(points.scaled[3], query);
-  const Pair crosses = crosses_with(from, to, apex);
-  return to.square * crosses[0] - from.square * crosses[1] - apex.square * cross(from, to);
+  return in_circle_determinant(from, to, apex);
 }
 
 double largest(const WorkingPoints& points) {
@@ -59,23 +60,85 @@ struct Scene {
   WorkingPoints points;
 };
 
-TEST(Kernel2dPredicates, FiltersAreRightWhereTheyAnswer) {
+/// The circle of the first three points of the scene, made as part of a star whose other triangles
+/// are turned over. `lane` is its place there.
+template <int kLanes>
+Triangle circle(const WorkingPoints& points, std::size_t lane) {
+  std::array<Triangle, 4> memory{};
+  const TriangleArray triangles(memory.data());
+  std::array<Handle, 4> handles;
+  for (std::uint32_t i = 0; i < 4; ++i) handles[i] = TriangleArray::handle(i, 0);
+  const bool even = lane % 2 == 0;
+  const std::array<VertexId, 2> ends{even ? kQuad.b : kQuad.c, even ? kQuad.c : kQuad.b};
+  const std::array<VertexId, 5> ring{ends[0], ends[1], ends[0], ends[1], ends[0]};
+  const auto bits = make_circles<kLanes>({.triangles = triangles,
+                                          .scaled = points.scaled,
+                                          .handles = handles.data(),
+                                          .ring = ring.data(),
+                                          .apex = pair_of(points.scaled[kQuad.a]),
+                                          .next = pair_of(points.scaled[kQuad.query]),
+                                          .largest = points.largest},
+                                         0);
+  const double s = squared_distance(memory[lane], pair_of(points.scaled[kQuad.query]));
+  EXPECT_EQ((bits.in_conflict >> lane & 1) != 0, s < memory[lane].inner);
+  EXPECT_EQ((bits.unproved >> lane & 1) != 0, std::isnan(memory[lane].inner));
+  EXPECT_TRUE(std::isnan(memory[lane ^ 1].inner));
+  return memory[lane];
+}
+
+SPILLWAY_TARGET("avx2") Triangle wide_circle(const WorkingPoints& points, std::size_t lane) {
+  return circle<4>(points, lane);
+}
+
+TEST(Kernel2dPredicates, CirclesAreRightWhereTheyAnswer) {
+  Random random(7);
+  int answers = 0;
+  int proved = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    Four four = near_circle(random, 4 + static_cast<int>(random.below(50)));
+    const double offset = run % 3 == 0 ? std::ldexp(1.0, static_cast<int>(random.below(40))) : 0;
+    for (Point<2>& p : four) {
+      for (double& c : p) c += offset;
+    }
+    if (random.below(4) == 0) four[3][random.below(2)] *= 1 + std::ldexp(1.0, -run % 30);
+    if (orientation<2>({four[0], four[1], four[2]}) <= 0) continue;
+    const Scene scene(four);
+    const int exact = exact_side(four);
+    const std::size_t lane = random.below(4);
+    const bool wide = widest_vectors() == 4;
+    const Triangle found =
+        wide ? wide_circle(scene.points, lane) : circle<2>(scene.points, lane % 2);
+    const double s = squared_distance(found, pair_of(scene.points.scaled[kQuad.query]));
+    proved += std::isnan(found.inner) ? 0 : 1;
+    if (s < found.inner) {
+      ASSERT_EQ(exact, 1) << run;
+      ++answers;
+    }
+    if (s > found.outer) {
+      ASSERT_EQ(exact, -1) << run;
+      ++answers;
+    }
+    if (!wide) continue;
+    const Triangle narrow = circle<2>(scene.points, lane % 2);
+    ASSERT_EQ(std::isnan(narrow.inner), std::isnan(found.inner));
+    if (!std::isnan(narrow.inner)) {
+      ASSERT_EQ(narrow.inner, found.inner);
+    }
+  }
+  EXPECT_GT(answers, kRuns / 10);
+  EXPECT_GT(proved, kRuns / 2);
+}
+
+TEST(Kernel2dPredicates, FilterIsRightWhereItAnswers) {
   Random random(1);
   int answers = 0;
   for (int run = 0; run < kRuns; ++run) {
     const Four four = near_circle(random, 4 + static_cast<int>(random.below(50)));
     const Scene scene(four);
     const int exact = exact_side(four);
-    const double value = determinant(scene.points);
-    if (std::abs(value) > scene.points.certain_determinant) {
-      ASSERT_EQ(value > 0 ? 1 : -1, exact);
-      ++answers;
-    }
-    if (std::abs(value) > in_circle_bound(largest(scene.points))) {
-      ASSERT_EQ(value > 0 ? 1 : -1, exact);
-    }
     if (const auto side = in_circle_filtered(scene.points, kQuad)) {
       ASSERT_EQ(*side, exact);
+      ++answers;
     }
   }
   EXPECT_GT(answers, kRuns / 20);

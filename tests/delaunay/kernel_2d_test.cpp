@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "src/delaunay/vectors.h"
 #include "src/error.h"
 #include "src/generators/random.h"
 #include "tests/delaunay/kernel_sets.h"
@@ -169,6 +170,14 @@ TEST(Kernel2d, RefusesMorePointsThanItCanNumber) {
   const BaseCaseInput<2> input{.points = std::span(few.data(), std::size_t{1} << 28),
                                .input_index = basis};
   EXPECT_THROW(kernel_2d_base_case(input, basis), Error);
+}
+
+TEST(Kernel2d, EqualsCgalWithNarrowVectors) {
+  limit_vectors(2);
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    ASSERT_EQ(compare_kernel_with_cgal<2>(hard_set<2>(seed), seed), "") << "seed " << seed;
+  }
+  limit_vectors(4);
 }
 
 }  // namespace

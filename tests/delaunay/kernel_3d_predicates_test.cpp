@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "src/delaunay/kernel_3d/exact_predicates.h"
 #include "src/delaunay/kernel_3d/spheres.h"
@@ -52,7 +53,6 @@ struct Scene {
   Cell cell() const {
     std::array<Cell, 8> cells{};
     std::array<Handle, 8> handles{};
-    std::array<std::int64_t, 8> conflicts;
     for (std::uint32_t k = 0; k < 4; ++k) cells[0].vertices[k] = ref(1 + k);
     make_spheres<kLanes, kRanked>({.coordinates = points.coordinates,
                                    .largest = points.largest,
@@ -60,7 +60,7 @@ struct Scene {
                                    .handles = handles.data(),
                                    .query = points.at(ref(1)),
                                    .next = points.at(ref(5))},
-                                  0, conflicts.data());
+                                  0);
     return cells[0];
   }
 
@@ -126,6 +126,7 @@ TEST(Kernel3dPredicates, NotedTiesAreTies) {
 TEST(Kernel3dPredicates, InSphereRungsAreRightWhereTheyAnswer) {
   Random random(3);
   int filtered = 0;
+  int corrected = 0;
   int narrow = 0;
   int wide = 0;
   for (int run = 0; run < kRuns; ++run) {
@@ -150,11 +151,52 @@ TEST(Kernel3dPredicates, InSphereRungsAreRightWhereTheyAnswer) {
     if (const auto side = in_sphere_integer<2>(scene.points, kFive)) {
       ASSERT_EQ(*side, exact);
     }
-    ASSERT_EQ(side_of_sphere(scene.points, kFive), exact);
+    const Cell cell = scene.cell<2, false>();
+    if (const auto side = in_sphere_corrected(scene.points, kFive, cell.centre)) {
+      ASSERT_EQ(*side, exact);
+      corrected += in_sphere_filtered(scene.points, kFive) ? 0 : 1;
+    }
+    ASSERT_EQ(side_of_sphere(scene.points, kFive, cell.centre), exact);
   }
   EXPECT_GT(filtered, 1'000);
+  EXPECT_GT(corrected, 500);
   EXPECT_GT(narrow, 1'000);
   EXPECT_GT(wide, 1'000);
+}
+
+TEST(Kernel3dPredicates, WhateverSphereCorrectsTheSignIsRight) {
+  Random random(6);
+  int answers = 0;
+  for (int run = 0; run < 2 * kRuns; ++run) {
+    const FivePoints five = near_sphere(random, 20 + static_cast<int>(random.below(33)));
+    const Scene scene(five);
+    Cell cell = scene.cell<2, false>();
+    // Some roundings off, a part of the radius off, or anywhere.
+    const double shift = std::ldexp(1.0, -static_cast<int>(random.below(60)));
+    for (double& c : cell.centre) c += (random.uniform() - 0.5) * shift;
+    cell.squared_radius *= 1 + (random.uniform() - 0.5) * shift;
+    if (const auto side = in_sphere_corrected(scene.points, kFive, cell.centre)) {
+      ASSERT_EQ(*side, exact_side(five));
+      ++answers;
+    }
+  }
+  EXPECT_GT(answers, kRuns / 2);
+  const Scene flat(near_sphere(random, 52));
+  const std::array<double, 4> none{0, 0, 0, std::numeric_limits<double>::quiet_NaN()};
+  EXPECT_EQ(in_sphere_corrected(flat.points, kFive, none.data()), std::nullopt);
+}
+
+TEST(Kernel3dPredicates, RootsAreBoundedFromAbove) {
+  Random random(7);
+  for (int run = 0; run < kRuns; ++run) {
+    const double number =
+        std::ldexp(1 + random.uniform(), static_cast<int>(random.below(1600)) - 800);
+    Reals<2> root;
+    root_bound<2>(Reals<2>{number, std::exp2(std::round(std::log2(number)))}, root);
+    EXPECT_GE(root[0], std::sqrt(number));
+    EXPECT_LE(root[0], 1.07 * std::sqrt(number));
+    EXPECT_GE(root[1], std::sqrt(std::exp2(std::round(std::log2(number)))));
+  }
 }
 
 TEST(Kernel3dPredicates, OrientationRungsAreRightWhereTheyAnswer) {

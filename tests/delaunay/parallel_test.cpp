@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <stdexcept>
 
@@ -69,6 +71,24 @@ TEST_P(Parallel, IndexFindsAllItemsInsertedAtOnceInspiteOfEqualHashes) {
     }
     EXPECT_EQ(index.find(hash(0), [](std::uint32_t) { return false; }), ConcurrentIndex::kNotFound);
   });
+}
+
+TEST(SimplexHash, SimplexesAreTheSameUpToEvenPermutationsOnly) {
+  const std::array<VertexId, 4> simplex{7, 3, kInfiniteVertex, 0};
+  std::array<int, 4> places{0, 1, 2, 3};
+  do {
+    int inversions = 0;
+    std::array<VertexId, 4> other{};
+    for (int i = 0; i < 4; ++i) {
+      other[i] = simplex[places[i]];
+      for (int j = 0; j < i; ++j) inversions += places[j] > places[i] ? 1 : 0;
+    }
+    EXPECT_EQ(same_simplex(simplex, other), inversions % 2 == 0);
+    EXPECT_EQ(simplex_hash(simplex), simplex_hash(other));
+    EXPECT_EQ(SortedVertices<4>(other).vertices,
+              (std::array<VertexId, 4>{0, 3, 7, kInfiniteVertex}));
+  } while (std::next_permutation(places.begin(), places.end()));
+  EXPECT_FALSE(same_simplex<4>(simplex, {7, 3, kInfiniteVertex, 1}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 4));

@@ -22,8 +22,14 @@ spillway_test(kernel_2d_test property
 
 spillway_test(kernel_3d_test property
   SOURCES delaunay/kernel_3d_test.cpp delaunay/kernel_3d_predicates_test.cpp
+          delaunay/kernel_region_test.cpp
   LIBS kernel_sets
   TIMEOUT 300)
+
+spillway_test(kernel_shared_data_test property
+  SOURCES delaunay/kernel_shared_data_test.cpp
+  LIBS kernel_sets spillway_formats fmt::fmt
+  TIMEOUT 600)
 
 # Not a test: runs as long as asked.
 add_executable(kernel_driver delaunay/kernel_driver.cpp)

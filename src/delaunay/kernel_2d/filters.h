@@ -1,7 +1,6 @@
 #pragma once
-// The first rungs of the 2D kernel's predicates: double arithmetic with error bounds, and exact
-// double arithmetic on lattices. Inline, since nearly all answers come from here. The bounds are
-// derived in docs/algorithm.md ("The 2D kernel").
+// Rungs of the 2D kernel's predicates in double arithmetic: with error bounds, and exactly on
+// lattices. The bounds are derived in docs/algorithm.md ("The 2D kernel").
 
 #include <algorithm>
 
@@ -43,21 +42,15 @@ inline double cross(const Corner& a, const Corner& b) {
   return a.at[0] * b.at[1] - a.at[1] * b.at[0];
 }
 
-/// cross(a, c) and cross(b, c).
-inline Pair crosses_with(const Corner& a, const Corner& b, const Corner& c) {
-  const Pair swapped{c.at[1], c.at[0]};
-  const Pair of_a = a.at * swapped;
-  const Pair of_b = b.at * swapped;
-  return Pair{of_a[0], of_b[0]} - Pair{of_a[1], of_b[1]};
+/// Positive if the query is in conflict with the triangle beyond its edge from -> to, whose third
+/// vertex is the apex; NaN if that is infinite.
+inline double in_circle_determinant(const Corner& from, const Corner& to, const Corner& apex) {
+  return to.square * cross(from, apex) - from.square * cross(to, apex) -
+         apex.square * cross(from, to);
 }
 
 /// What underflow may add to the errors, in coordinates of extent 1 to 2.
 inline constexpr double kUnderflow = 0x1p-1000;
-
-/// Bound of a computed in-circle determinant's error, if no corner's square exceeds `largest`.
-inline double in_circle_bound(double largest) {
-  return 36 * rungs::kRoundoff * (largest * largest) + kUnderflow;
-}
 
 /// Bound of the error of a computed cross().
 inline double cross_bound(double largest) { return 5 * rungs::kRoundoff * largest + kUnderflow; }

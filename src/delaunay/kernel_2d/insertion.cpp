@@ -1,25 +1,22 @@
 #include "src/delaunay/kernel_2d/insertion.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
+#include "src/delaunay/kernel_2d/circles.h"
 #include "src/delaunay/kernel_2d/exact_predicates.h"
-
-// Small functions of the inner loop, which the compiler would call rather than inline.
-#define SPILLWAY_INLINE [[gnu::always_inline]] inline
 
 namespace spillway::kernel_2d {
 namespace {
 
 using Triangles = TriangleArray;
 
-constexpr std::size_t kFirstStackSize = 256;
-/// Squares below this may belong to equal points.
-constexpr double kSuspiciousSquare = 0x1p-900;
+constexpr std::size_t kFirstListSize = 256;
 constexpr Handle kNone = ~Handle{0};
 
-[[gnu::noinline, gnu::cold]] bool conflicts_by_upper_rungs(const WorkingPoints& points,
-                                                           const Quad& quad) {
+[[gnu::noinline]] bool conflicts_exactly(const WorkingPoints& points, const Quad& quad) {
   return conflicts(points, quad);
 }
 
@@ -27,236 +24,298 @@ constexpr Handle kNone = ~Handle{0};
 
 template <bool kLattice>
 Insertion<kLattice>::Insertion(const WorkingPoints& points, TriangleArray triangles,
-                               const std::array<VertexId, 3>& first)
-    : points_(points), triangles_(triangles), open_(kFirstStackSize), free_(kFirstStackSize) {
+                               const std::array<VertexId, 3>& first, int lanes)
+    : points_(points), triangles_(triangles), lanes_(lanes) {
+  resize_lists(kFirstListSize);
   std::array<VertexId, 3> v = first;
   if (side_of_line(points_, v[0], v[1], v[2]) < 0) std::swap(v[1], v[2]);
+  triangles_.set_vertices(Triangles::handle(0, 0), v[0], v[1], v[2]);
   for (std::uint32_t i = 0; i < 3; ++i) {
     // Triangle 1 + i is the infinite one beyond the edge opposite v[i].
-    triangles_.set_vertex(Triangles::handle(0, i), v[i]);
-    triangles_.set_vertex(Triangles::handle(1 + i, 0), kInfinite);
-    triangles_.set_vertex(Triangles::handle(1 + i, 1), v[(i + 2) % 3]);
-    triangles_.set_vertex(Triangles::handle(1 + i, 2), v[(i + 1) % 3]);
+    triangles_.set_vertices(Triangles::handle(1 + i, 0), kInfinite, v[(i + 2) % 3], v[(i + 1) % 3]);
     triangles_.join(Triangles::handle(0, i), Triangles::handle(1 + i, 0));
     triangles_.join(Triangles::handle(1 + i, 1), Triangles::handle(1 + (i + 2) % 3, 2));
   }
-}
-
-/// Whether the query lies to the right of the edge from the vertex at handle a to that at b.
-template <bool kLattice>
-SPILLWAY_INLINE bool Insertion<kLattice>::certainly_right(double cross_product, double largest,
-                                                          Handle a, Handle b) const {
-  if (kLattice && largest <= kExactCross) return cross_product < 0;
-  const double bound = cross_bound(largest);
-  if (cross_product > bound) return false;
-  if (cross_product < -bound) return true;
-  return side_of_line(points_, triangles_.vertex(a), triangles_.vertex(b), query_vertex_) < 0;
-}
-
-/// Finds a triangle in conflict with the query: the hint itself, if it is certainly one, or the one
-/// that contains the query.
-template <bool kLattice>
-SPILLWAY_INLINE auto Insertion<kLattice>::locate(const Sight& sight) const -> Found {
-  const Handle h = Triangles::handle(hint_, 0);
-  const Corner a = sight.corner(triangles_.vertex(h));
-  const Corner b = sight.corner(triangles_.vertex(h + 1));
-  const Corner c = sight.corner(triangles_.vertex(h + 2));
-  const double ab = cross(a, b);
-  const double bc = cross(b, c);
-  const double ca = cross(c, a);
-  const double determinant = a.square * bc + b.square * ca + c.square * ab;
-  const double largest = largest_square(a, b, c);
-  Found found{.corners = {a, b, c},
-              .edges = {triangles_.mirror(h), triangles_.mirror(h + 1), triangles_.mirror(h + 2)},
-              .crosses = {bc, ca, ab},
-              .triangle = hint_,
-              .certain = determinant > in_circle_bound(largest)};
-  if (found.certain) return found;
-  if (certainly_right(bc, largest, h + 1, h + 2)) {
-    walk(sight, found, b, c, bc, found.edges[0]);
-  } else if (certainly_right(ab, largest, h, h + 1)) {
-    walk(sight, found, a, b, ab, found.edges[2]);
-  } else if (certainly_right(ca, largest, h + 2, h)) {
-    walk(sight, found, c, a, ca, found.edges[1]);
+  for (std::uint32_t i = 0; i < triangle_count_; ++i) {
+    Triangle& triangle = triangles_.at_first(Triangles::handle(i, 0));
+    std::fill_n(triangle.centre, 2, 0);
+    triangle.inner = triangle.outer = std::numeric_limits<double>::quiet_NaN();
   }
-  return found;
+  star_[0] = Triangles::handle(0, 0);
 }
 
-/// Walks to the query through edges u -> v that have it on their right side; `edge` is that of the
-/// triangle beyond.
 template <bool kLattice>
-void Insertion<kLattice>::walk(const Sight& sight, Found& found, Corner u, Corner v,
-                               double cross_uv, Handle edge) const {
-  for (;;) {
-    const VertexId apex = triangles_.vertex(edge);
-    const Corner w = sight.corner(apex);
-    const Handle at_v = Triangles::next(edge);
-    const Handle at_u = Triangles::previous(edge);
-    const double uw = cross(u, w);
-    const double wv = cross(w, v);
-    const double largest = largest_square(u, v, w);
-    if (apex != kInfinite && certainly_right(uw, largest, at_u, edge)) {
-      edge = triangles_.mirror(at_v);
-      v = w;
-      cross_uv = uw;
-    } else if (apex != kInfinite && certainly_right(wv, largest, edge, at_v)) {
-      edge = triangles_.mirror(at_u);
-      u = w;
-      cross_uv = wv;
-    } else {
-      found.corners = {w, v, u};
-      found.edges = {triangles_.mirror(edge), triangles_.mirror(at_v), triangles_.mirror(at_u)};
-      found.crosses = {-cross_uv, uw, wv};
-      found.triangle = Triangles::triangle_of(edge);
-      return;
+[[gnu::noinline]] void Insertion<kLattice>::resize_lists(std::size_t size) {
+  open_.resize(size);
+  boundary_.resize(size);
+  star_.resize(size);
+  ring_.resize(size);
+}
+
+/// The handle of a triangle's infinite vertex, or kNone.
+template <bool kLattice>
+Handle Insertion<kLattice>::infinite_vertex(Handle first) const {
+  for (Handle h = first; h < first + 3; ++h) {
+    if (triangles_.vertex(h) == kInfinite) return h;
+  }
+  return kNone;
+}
+
+/// Finds a triangle in conflict with the query, or kNone if it equals a vertex; that is remembered.
+/// From triangle to triangle the power of the query falls, so it comes to the one that contains it.
+template <bool kLattice>
+[[gnu::noinline]] Handle Insertion<kLattice>::locate(const Pair& query) {
+  const auto power = [&query](const Triangle& t) { return squared_distance(t, query) - t.inner; };
+  double best = std::numeric_limits<double>::infinity();
+  Handle here = star_[0];
+  for (std::size_t i = 0; i < star_count_; ++i) {
+    const double s = power(triangles_.at_first(star_[i]));
+    if (s < best) {
+      best = s;
+      here = star_[i];
     }
   }
-}
-
-/// Whether the query equals a vertex of the triangle that contains it; if so, that is remembered.
-template <bool kLattice>
-bool Insertion<kLattice>::repeats_vertex(const Found& found) {
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    if (!(found.corners[i].square <= kSuspiciousSquare)) continue;
-    // Corner i is opposite edge i.
-    const VertexId v = triangles_.vertex(triangles_.mirror(found.edges[i]));
-    if (points_.original(v) == points_.original(query_vertex_)) {
-      repetitions_.push_back({query_vertex_, v});
-      return true;
+  while (!(best < 0)) {
+    Handle nearest = kNone;
+    for (Handle h = here; h < here + 3; ++h) {
+      const Handle there = Triangles::first_handle(triangles_.mirror(h));
+      const double s = power(triangles_.at_first(there));
+      if (s < best) {
+        best = s;
+        nearest = there;
+      }
     }
+    if (nearest == kNone) return locate_exactly(here);
+    here = nearest;
   }
-  return false;
+  return here;
 }
 
-/// The sign of an in-circle determinant that the static filter leaves open.
+/// The same with exact predicates: through edges that have the query on their outer side.
 template <bool kLattice>
-SPILLWAY_INLINE bool Insertion<kLattice>::decide(const Open& open, const Corner& from,
-                                                 double determinant) const {
-  const double largest = largest_square(from, open.to, open.apex);
-  if (kLattice && largest <= kExactInCircle) {
-    if (determinant == 0) return tie_conflicts(from, open.to, open.apex);
-    if (determinant == determinant) return determinant > 0;
-  } else if (std::abs(determinant) > in_circle_bound(largest)) {
-    return determinant > 0;
-  }
-  return conflicts_by_upper_rungs(
-      points_, {triangles_.vertex(Triangles::previous(open.edge)), triangles_.vertex(open.edge),
-                triangles_.vertex(Triangles::next(open.edge)), query_vertex_});
-}
-
-/// Looks at the triangle beyond an edge.
-template <bool kLattice>
-SPILLWAY_INLINE auto Insertion<kLattice>::look(const Sight& sight, const Corner& from,
-                                               const Corner& to, double cross_from_to,
-                                               Handle edge) const -> Open {
-  Open open;
-  open.to = to;
-  open.apex = sight.corner(triangles_.vertex(edge));
-  open.crosses = crosses_with(from, to, open.apex);
-  open.edge = edge;
-  const double determinant = to.square * open.crosses[0] - from.square * open.crosses[1] -
-                             open.apex.square * cross_from_to;
-  open.conflict = determinant > 0;
-  if (!(std::abs(determinant) > sight.certain_determinant)) [[unlikely]] {
-    open.conflict = decide(open, from, determinant);
-  }
-  return open;
-}
-
-/// Removes the triangles in conflict and fills the hole with those at the query.
-template <bool kLattice>
-SPILLWAY_INLINE void Insertion<kLattice>::dig(const Sight& sight, const Found& found,
-                                              VertexId next) {
-  const Pair towards = pair_of(sight.scaled[next]) - sight.query;
-  const Pair direction{towards[1], -towards[0]};
-  const auto side_of = [&direction](const Corner& c) {
-    const Pair products = c.at * direction;
-    return products[0] + products[1];
+[[gnu::noinline, gnu::cold]] Handle Insertion<kLattice>::locate_exactly(Handle first) {
+  const auto outside = [this](Handle h) {
+    return side_of_line(points_, triangles_.next_vertex(h),
+                        triangles_.vertex(Triangles::previous(h)), query_vertex_) < 0;
   };
-  const TriangleArray triangles = triangles_;
-  const VertexId query_vertex = query_vertex_;
-  std::uint32_t* free = free_.data();
-  Open* open = open_.data();
-  std::size_t stack_size = open_.size();
-  free[0] = Triangles::handle(triangle_count_ + 1, 0);
-  free[1] = Triangles::handle(triangle_count_, 0);
-  free[2] = Triangles::handle(found.triangle, 0);
-  std::size_t free_count = 3;
-  triangle_count_ += 2;
-
-  const auto& corners = found.corners;
-  open[0] = look(sight, corners[0], corners[1], found.crosses[2], found.edges[2]);
-  open[1] = look(sight, corners[2], corners[0], found.crosses[1], found.edges[1]);
-  Open now = look(sight, corners[1], corners[2], found.crosses[0], found.edges[0]);
-  std::size_t open_count = 2;
-
-  Corner from = corners[1];
-  VertexId from_vertex = triangles.vertex(Triangles::previous(found.edges[0]));
-  double side_of_from = side_of(from);
-  // The triangles at the query, each by the handle of the query.
-  Handle ahead = kNone;
-  Handle first = kNone;
-  Handle last = Triangles::handle(triangle_count_, 0);  // of no triangle yet: nobody reads it
+  if (const Handle h = infinite_vertex(first); h != kNone) {
+    const Handle inner = triangles_.mirror(h);
+    if (outside(inner)) return first;
+    first = Triangles::first_handle(inner);
+  }
   for (;;) {
-    if (now.conflict) {
+    Handle h = first;
+    while (h < first + 3 && !outside(h)) ++h;
+    if (h == first + 3) break;
+    first = Triangles::first_handle(triangles_.mirror(h));
+    if (infinite_vertex(first) != kNone) return first;
+  }
+  for (Handle h = first; h < first + 3; ++h) {
+    const VertexId v = triangles_.vertex(h);
+    if (points_.original(v) != points_.original(query_vertex_)) continue;
+    repetitions_.push_back({query_vertex_, v});
+    return kNone;
+  }
+  return first;
+}
+
+/// Whether the query is in conflict with the triangle beyond an edge, by the upper rungs.
+template <bool kLattice>
+template <int kLanes>
+SPILLWAY_INLINE bool Insertion<kLattice>::conflicts_beyond(Handle edge, const Pair& query) const {
+  const Quad quad{triangles_.vertex(Triangles::previous(edge)), triangles_.vertex(edge),
+                  triangles_.next_vertex(edge), query_vertex_};
+  if constexpr (kLattice) {
+    const Corner from = corner_at(points_.scaled[quad.a], query);
+    const Corner apex = corner_at(points_.scaled[quad.b], query);
+    const Corner to = corner_at(points_.scaled[quad.c], query);
+    const double determinant = in_circle_determinant(from, to, apex);
+    if (largest_square(from, to, apex) <= kExactInCircle) {
+      if (determinant == 0) return tie_conflicts(from, to, apex);
+      if (!std::isnan(determinant)) return determinant > 0;
+    }
+  }
+  return conflicts_exactly(points_, quad);
+}
+
+/// Begins with the triangles of the star that are known to be in conflict: they lie side by side.
+template <bool kLattice>
+template <int kLanes>
+SPILLWAY_INLINE auto Insertion<kLattice>::start_from_star() -> Start {
+  Handle* const star = star_.data();
+  Handle* const open = open_.data() + kKnownFan;
+  const std::uint64_t known = known_conflicts_;
+  const auto firsts = known & ~(known << 1 | known >> (star_count_ - 1));
+  const auto first = static_cast<std::size_t>(std::countr_zero(firsts));
+  const std::uint64_t turned = known >> first | known << (star_count_ - first);
+  const auto length = std::min(static_cast<std::size_t>(std::countr_one(turned)), kKnownFan);
+  std::array<Handle, kKnownFan> fan;
+  for (std::size_t k = 0; k < kKnownFan; ++k) fan[k] = star[first + k];
+  // All of kKnownFan, for want of a branch; what is too much comes to lie where it does no harm.
+  for (std::size_t k = 0; k < kKnownFan; ++k) {
+    star[2 + k] = fan[k];
+    open[static_cast<std::ptrdiff_t>(1 + length - k)] = triangles_.mirror(fan[k]);
+  }
+  open[0] = triangles_.mirror(fan[0] + 2);
+  open[1] = triangles_.mirror(fan[length - 1] + 1);
+  return {2 + length, 2 + length};
+}
+
+/// Begins with a triangle that is in conflict.
+template <bool kLattice>
+template <int kLanes>
+SPILLWAY_INLINE auto Insertion<kLattice>::start_from(Handle first) -> Start {
+  Handle* const open = open_.data() + kKnownFan;
+  open[0] = triangles_.mirror(first + 2);
+  open[1] = triangles_.mirror(first + 1);
+  open[2] = triangles_.mirror(first);
+  star_[2] = first;
+  return {3, 3};
+}
+
+/// Lists the triangles in conflict, to be reused, and the edges around them. Returns how many those
+/// are.
+template <bool kLattice>
+template <int kLanes>
+SPILLWAY_INLINE std::size_t Insertion<kLattice>::find_hole(const Pair& query, const Start& start) {
+  const TriangleArray triangles = triangles_;
+  Handle* open = open_.data() + kKnownFan;
+  Handle* slots = star_.data();
+  Handle* boundary = boundary_.data();
+  std::size_t most = star_.size() - kAhead;
+  std::size_t open_count = start.open;
+  std::size_t slot_count = start.slots;
+  std::size_t boundary_count = 0;
+  Handle edge = open[--open_count];
+  for (;;) {
+    const Triangle& triangle = triangles.at(edge);
+    const double s = squared_distance(triangle, query);
+    bool conflict = s < triangle.inner;
+    if (!conflict && !(s > triangle.outer)) [[unlikely]] {
+      conflict = conflicts_beyond<kLanes>(edge, query);
+    }
+    if (conflict) {
       // The edge gives way to the two others of the triangle beyond it.
-      const Handle left = triangles.mirror(Triangles::next(now.edge));
-      const Handle right = triangles.mirror(Triangles::previous(now.edge));
-      free[free_count++] = Triangles::first_handle(now.edge);
-      open[open_count++] = look(sight, now.apex, now.to, -now.crosses[1], right);
-      now = look(sight, from, now.apex, now.crosses[0], left);
-      if (std::max(free_count, open_count) == stack_size) [[unlikely]] {
-        grow_stacks();
-        stack_size = open_.size();
-        free = free_.data();
-        open = open_.data();
+      slots[slot_count++] = Triangles::first_handle(edge);
+      open[open_count++] = triangles.mirror(Triangles::previous(edge));
+      edge = triangles.mirror(Triangles::next(edge));
+      if (slot_count == most) [[unlikely]] {
+        resize_lists(2 * star_.size());
+        open = open_.data() + kKnownFan;
+        slots = star_.data();
+        boundary = boundary_.data();
+        most = star_.size() - kAhead;
       }
     } else {
-      const Handle h = free[--free_count];
-      const VertexId to_vertex = triangles.vertex(Triangles::next(now.edge));
-      triangles.set_vertex(h, query_vertex);
-      triangles.set_vertex(h + 1, from_vertex);
-      triangles.set_vertex(h + 2, to_vertex);
-      triangles.join(h, now.edge);
-      triangles.join(h + 2, last + 1);
-      first = first == kNone ? h : first;
-      last = h;
-      from = now.to;
-      from_vertex = to_vertex;
-      const double side_of_to = side_of(from);
-      ahead = (side_of_from >= 0) & (side_of_to < 0) ? h : ahead;
-      side_of_from = side_of_to;
-      if (open_count == 0) break;
-      now = open[--open_count];
+      boundary[boundary_count++] = edge;
+      if (open_count == 0) return boundary_count;
+      edge = open[--open_count];
     }
   }
-  triangles.join(first + 2, last + 1);
-  if (ahead == kNone) [[unlikely]] {
-    // The next point lies beyond the hull. Of the infinite triangles here one has a finite one
-    // across the edge at the query.
-    ahead = last;
-    for (const Handle h : {last + 1, last + 2}) {
-      if (triangles.vertex(h) == kInfinite) ahead = triangles.mirror(h);
-    }
+}
+
+/// Fills the hole.
+template <bool kLattice>
+template <int kLanes>
+SPILLWAY_INLINE void Insertion<kLattice>::make_star(const Pair& query, std::size_t count,
+                                                    VertexId next) {
+  const TriangleArray triangles = triangles_;
+  const VertexId query_vertex = query_vertex_;
+  Handle* const star = star_.data();
+  VertexId* const ring = ring_.data();
+  const Handle* const boundary = boundary_.data();
+  Handle last = star[count - 1];
+  VertexId from = triangles.vertex(Triangles::previous(boundary[0]));
+  ring[0] = from;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Handle edge = boundary[i];
+    const Handle h = star[i];
+    const VertexId to = triangles.next_vertex(edge);
+    triangles.set_vertices(h, query_vertex, from, to);
+    triangles.join(h, edge);
+    triangles.join(h + 2, last + 1);
+    last = h;
+    from = to;
+    ring[i + 1] = to;
   }
-  hint_ = Triangles::triangle_of(ahead);
+  const std::array<Handle, 3> first_handles{star[0], star[1], star[2]};
+  const std::array<VertexId, 3> first_vertices{ring[1], ring[2], ring[3]};
+  for (std::size_t k = 0; k < 3; ++k) star[count + k] = first_handles[k];
+  for (std::size_t k = 0; k < 3; ++k) ring[count + 1 + k] = first_vertices[k];
+  star_count_ = count;
+
+  const StarView view{.triangles = triangles,
+                      .scaled = points_.scaled,
+                      .handles = star,
+                      .ring = ring,
+                      .apex = query,
+                      .next = pair_of(points_.scaled[next]),
+                      .largest = points_.largest};
+  std::uint64_t in_conflict = 0;
+  std::uint32_t unproved = 0;
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const CircleBits bits = make_circles<kLanes>(view, i);
+    in_conflict |= std::uint64_t{bits.in_conflict} << (i & 63);
+    unproved |= bits.unproved;
+  }
+  if (unproved != 0) [[unlikely]] {
+    in_conflict |= beyond_hull(count, next);
+  }
+  known_conflicts_ = count <= kTestedStar ? in_conflict & ((std::uint64_t{1} << count) - 1) : 0;
+}
+
+/// Bits of those infinite triangles of the star that are certainly in conflict with the next point.
+template <bool kLattice>
+[[gnu::noinline]] std::uint64_t Insertion<kLattice>::beyond_hull(std::size_t count,
+                                                                 VertexId next) const {
+  const Pair query = pair_of(points_.scaled[next]);
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < std::min(count, kTestedStar); ++i) {
+    const Handle h = infinite_vertex(star_[i]);
+    if (h == kNone) continue;
+    const Corner a = corner_at(points_.scaled[triangles_.next_vertex(h)], query);
+    const Corner b = corner_at(points_.scaled[triangles_.vertex(Triangles::previous(h))], query);
+    if (cross(a, b) > cross_bound(std::max(a.square, b.square))) bits |= std::uint64_t{1} << i;
+  }
+  return bits;
+}
+
+template <bool kLattice>
+template <int kLanes>
+SPILLWAY_INLINE void Insertion<kLattice>::insert_by(VertexId point, VertexId next) {
+  query_vertex_ = point;
+  const Pair query = pair_of(points_.scaled[point]);
+  Start start;
+  if (known_conflicts_ != 0) {
+    start = start_from_star<kLanes>();
+  } else {
+    const Handle found = locate(query);
+    if (found == kNone) return;
+    start = start_from<kLanes>(found);
+  }
+  star_[0] = Triangles::handle(triangle_count_ + 1, 0);
+  star_[1] = Triangles::handle(triangle_count_, 0);
+  triangle_count_ += 2;
+  make_star<kLanes>(query, find_hole<kLanes>(query, start), next);
+}
+
+template <bool kLattice>
+void Insertion<kLattice>::insert_by_2(VertexId point, VertexId next) {
+  insert_by<2>(point, next);
+}
+
+template <bool kLattice>
+void Insertion<kLattice>::insert_by_4(VertexId point, VertexId next) {
+  insert_by<4>(point, next);
 }
 
 template <bool kLattice>
 void Insertion<kLattice>::insert(VertexId point, VertexId next) {
-  query_vertex_ = point;
-  const Sight sight{points_.scaled, pair_of(points_.scaled[point]), points_.certain_determinant};
-  const Found found = locate(sight);
-  if (!found.certain && repeats_vertex(found)) [[unlikely]] {
-    return;
+  if (lanes_ == 4) {
+    insert_by_4(point, next);
+  } else {
+    insert_by_2(point, next);
   }
-  dig(sight, found, next);
-}
-
-template <bool kLattice>
-[[gnu::noinline, gnu::cold]] void Insertion<kLattice>::grow_stacks() {
-  open_.resize(2 * open_.size());
-  free_.resize(2 * free_.size());
 }
 
 template class Insertion<false>;

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
+#include <limits>
 #include <vector>
 
 #include "src/delaunay/kernel_2d/insertion.h"
 #include "src/delaunay/kernel_2d/working_points.h"
+#include "src/delaunay/vectors.h"
 #include "src/delaunay/working_memory.h"
 #include "src/error.h"
 
@@ -16,30 +19,41 @@ namespace spillway {
 namespace kernel_2d {
 namespace {
 
-constexpr kernel::Rounds kRounds{.factor = 8, .first = 40};
+constexpr kernel::Rounds kRounds{.factor = 24, .first = 40};
 
-/// Turns the kernel's triangles into simplices, numbered alike.
+/// Whether a finite triangle's true circumcircle is certainly inside the box and touches no side:
+/// see docs/algorithm.md ("Circles inside a box").
+bool certainly_inside(const Triangle& triangle, const Box<2>& box) {
+  double gap = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 2; ++k) {
+    gap = std::min({gap, triangle.centre[k] - box.lo[k], box.hi[k] - triangle.centre[k]});
+  }
+  return gap > 0 && gap * gap > triangle.outer + (triangle.outer - triangle.inner);
+}
+
+/// Turns the kernel's triangles into simplices, numbered alike; number() turns vertices into final
+/// ones. Fills BaseCase::inside if it has been given room.
 template <typename Number>
 void list_simplices(const TriangleArray& triangles, std::uint32_t count, const Number& number,
-                    BaseCase<2>& result) {
+                    const Box<2>& region, BaseCase<2>& result) {
   result.simplices.reserve(count);
   ask_for_huge_pages(result.simplices.data(), count * sizeof(Simplex<2>));
-  // Some at a time, so that the inner loop need not ask whether the vector must grow.
-  std::array<Simplex<2>, 64> some;
-  for (std::uint32_t begin = 0; begin < count; begin += some.size()) {
-    const auto size = std::min<std::uint32_t>(some.size(), count - begin);
-    for (std::uint32_t i = 0; i < size; ++i) {
-      const Handle h = TriangleArray::handle(begin + i, 0);
-      bool infinite = false;
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const VertexId v = triangles.vertex(h + k);
-        infinite |= v == kInfinite;
-        some[i].vertices[k] = v == kInfinite ? kInfiniteVertex : number(v);
-        some[i].neighbours[k] = TriangleArray::triangle_of(triangles.mirror(h + k));
-      }
-      if (infinite) result.hull.push_back(begin + i);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Triangle& triangle = triangles.at_first(TriangleArray::handle(i, 0));
+    Words vertices, neighbours;
+    load(triangle.vertices, vertices);
+    load(triangle.neighbours, neighbours);
+    const Words infinite = (Words)(vertices == kInfinite);  // all bits, and so kInfiniteVertex
+    number(vertices);
+    vertices |= infinite;
+    neighbours >>= TriangleArray::kNumberShift;
+    result.simplices.push_back(
+        {{vertices[0], vertices[1], vertices[2]}, {neighbours[0], neighbours[1], neighbours[2]}});
+    const bool finite = mask_of(infinite) == 0;
+    if (!finite) result.hull.push_back(i);
+    if (i < result.inside.size()) {
+      result.inside[i] = static_cast<std::uint8_t>(finite && certainly_inside(triangle, region));
     }
-    result.simplices.insert(result.simplices.end(), some.begin(), some.begin() + size);
   }
 }
 
@@ -47,19 +61,25 @@ template <bool kLattice>
 BaseCase<2> triangulate(const BaseCaseInput<2>& input, std::span<const VertexId> basis,
                         const WorkingPoints& points, const TriangleArray& triangles) {
   Insertion<kLattice> insertion(
-      points, triangles, {basis[0] + kFirstPoint, basis[1] + kFirstPoint, basis[2] + kFirstPoint});
+      points, triangles, {basis[0] + kFirstPoint, basis[1] + kFirstPoint, basis[2] + kFirstPoint},
+      vector_width());
   kernel::insert_in_rounds(insertion, input.points.size(), basis, kRounds);
   BaseCase<2> result;
   result.dimension = 2;
   const VertexId shift = input.first_vertex - kFirstPoint;
   const std::uint32_t count = insertion.triangle_count();
+  if (input.region) result.inside.resize(count);
   if (insertion.repetitions().empty()) {
     list_simplices(
-        triangles, count, [shift](VertexId v) { return v + shift; }, result);
+        triangles, count, [shift](Words& v) { v += shift; }, points.region, result);
   } else {
     const std::vector<VertexId> kept = kernel::choose_kept<2>(input, insertion.repetitions());
     list_simplices(
-        triangles, count, [&](VertexId v) { return kept[v] + shift; }, result);
+        triangles, count,
+        [&](Words& v) {
+          for (int i = 0; i < 4; ++i) v[i] = kept[v[i]] + shift;
+        },
+        points.region, result);
     result.duplicates = kernel::list_duplicates(insertion.repetitions(), kept, input.first_vertex);
   }
   return result;
@@ -78,9 +98,8 @@ BaseCase<2> kernel_2d_base_case(const BaseCaseInput<2>& input, std::span<const V
                     input.points.size(), TriangleArray::kMaxTriangles / 2 - 1));
   }
   BorrowedMemory memory;
-  const WorkingPoints points = make_working_points(input.points, (*memory).points);
-  const TriangleArray triangles(
-      (*memory).simplices.reserve(triangle_count * TriangleArray::kTriangleBytes));
+  const WorkingPoints points = make_working_points(input.points, (*memory).points, input.region);
+  const TriangleArray triangles((*memory).simplices.reserve(triangle_count * sizeof(Triangle)));
   return points.lattice ? triangulate<true>(input, basis, points, triangles)
                         : triangulate<false>(input, basis, points, triangles);
 }

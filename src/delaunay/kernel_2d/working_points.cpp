@@ -1,24 +1,29 @@
 #include "src/delaunay/kernel_2d/working_points.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "src/delaunay/coordinate_scaling.h"
-#include "src/delaunay/kernel_2d/filters.h"
 
 namespace spillway::kernel_2d {
 
-WorkingPoints make_working_points(std::span<const Point<2>> points, Block& memory) {
+WorkingPoints make_working_points(std::span<const Point<2>> points, Block& memory,
+                                  const std::optional<Box<2>>& region) {
   auto* const scaled =
       static_cast<Point<2>*>(memory.reserve((points.size() + kFirstPoint) * sizeof(Point<2>)));
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   scaled[kInfinite] = {kNan, kNan};
   const CoordinateScaling<2> scaling(points);
-  for (std::size_t i = 0; i < points.size(); ++i) scaled[i + kFirstPoint] = scaling(points[i]);
-  const Point<2>& extent = scaling.extent();
-  return {.scaled = scaled,
-          .originals = points.data(),
-          .lattice = scaling.lattice(),
-          .certain_determinant = in_circle_bound(extent[0] * extent[0] + extent[1] * extent[1])};
+  WorkingPoints result{
+      .scaled = scaled, .originals = points.data(), .lattice = scaling.lattice(), .largest = 0};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point<2> p = scaling(points[i]);
+    scaled[i + kFirstPoint] = p;
+    result.largest = std::max({result.largest, std::abs(p[0]), std::abs(p[1])});
+  }
+  if (region) result.region = scaling.inner_box(*region);
+  return result;
 }
 
 }  // namespace spillway::kernel_2d

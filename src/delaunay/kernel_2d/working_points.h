@@ -2,10 +2,12 @@
 // The coordinates the 2D kernel computes with. A power of two scales them, so that nothing
 // overflows; points of a lattice become integers counted from the corner of their box.
 
+#include <optional>
 #include <span>
 
 #include "src/delaunay/insertion_rounds.h"
 #include "src/delaunay/working_memory.h"
+#include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
 namespace spillway::kernel_2d {
@@ -22,15 +24,16 @@ struct WorkingPoints {
   const Point<2>* scaled = nullptr;
   const Point<2>* originals = nullptr;  ///< those the caller gave, from kFirstPoint on
   bool lattice = false;
-  /// The static filter: a computed in-circle determinant of any of the points that is larger has
-  /// the right sign.
-  double certain_determinant = 0;
+  double largest = 0;  ///< magnitude of a scaled coordinate
+  Box<2> region{};     ///< scaled; empty if there is none
 
   [[nodiscard]] const Point<2>& original(VertexId v) const { return originals[v - kFirstPoint]; }
 };
 
 /// Scales points that are not all collinear. A lattice is any set of points that all are integers
-/// below 2^53 times one power of two: LiDAR's integers as well as quarters of a metre.
-WorkingPoints make_working_points(std::span<const Point<2>> points, Block& memory);
+/// below 2^53 times one power of two: LiDAR's integers as well as quarters of a metre. Scales
+/// BaseCaseInput::region with them.
+WorkingPoints make_working_points(std::span<const Point<2>> points, Block& memory,
+                                  const std::optional<Box<2>>& region = std::nullopt);
 
 }  // namespace spillway::kernel_2d

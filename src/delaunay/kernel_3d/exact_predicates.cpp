@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "src/delaunay/kernel_3d/wide_integer.h"
+#include "src/delaunay/lanes.h"
 #include "src/geometry/predicate_rungs.h"
 
 namespace spillway::kernel_3d {
@@ -16,6 +17,10 @@ constexpr double kUnderflow = 0x1p-1000;
 /// The determinants' errors over the sums of their monomials' absolute values.
 constexpr double kInSphereError = 20 * rungs::kRoundoff;
 constexpr double kOrientationError = 10 * rungs::kRoundoff;
+/// The same of the corrected determinant, for what is left after its lifts' rounding.
+constexpr double kCorrectedError = 20 * rungs::kRoundoff;
+/// The error of a residual, over the squares that it is the difference of.
+constexpr double kResidualError = 64 * rungs::kRoundoff * rungs::kRoundoff;
 /// On a lattice nothing is rounded while those sums are below.
 constexpr double kExactSum = 0x1p53;
 
@@ -57,22 +62,85 @@ SPILLWAY_INLINE auto orientation_determinant(const Vector<T>& a, const Vector<T>
   return minor_xy(b, c) * a.z - minor_xy(a, c) * b.z + minor_xy(a, b) * c.z;
 }
 
+/// What the in-sphere determinant of four vectors is made of: for each of them the determinant of
+/// the others.
 template <typename T>
-SPILLWAY_INLINE auto in_sphere_determinant(const Vector<T>& a, const Vector<T>& b,
-                                           const Vector<T>& c, const Vector<T>& d) {
+SPILLWAY_INLINE auto minors_of(const std::array<Vector<T>, 4>& v) {
+  const auto& [a, b, c, d] = v;
   const auto ab = minor_xy(a, b);
   const auto ac = minor_xy(a, c);
   const auto ad = minor_xy(a, d);
   const auto bc = minor_xy(b, c);
   const auto bd = minor_xy(b, d);
   const auto cd = minor_xy(c, d);
-  const auto bcd = cd * b.z - bd * c.z + bc * d.z;
-  const auto acd = cd * a.z - ad * c.z + ac * d.z;
-  const auto abd = bd * a.z - ad * b.z + ab * d.z;
-  const auto abc = bc * a.z - ac * b.z + ab * c.z;
-  return bcd * squared_length(a) - acd * squared_length(b) + abd * squared_length(c) -
-         abc * squared_length(d);
+  return std::array{cd * b.z - bd * c.z + bc * d.z, cd * a.z - ad * c.z + ac * d.z,
+                    bd * a.z - ad * b.z + ab * d.z, bc * a.z - ac * b.z + ab * c.z};
 }
+
+/// The in-sphere determinant, if the vectors are lifted by these numbers: their squared lengths,
+/// or others that differ from those by an affine function of the point.
+template <typename M, typename L>
+SPILLWAY_INLINE auto lifted_determinant(const std::array<M, 4>& minors,
+                                        const std::array<L, 4>& lifts) {
+  return minors[0] * lifts[0] - minors[1] * lifts[1] + minors[2] * lifts[2] - minors[3] * lifts[3];
+}
+
+template <typename T>
+SPILLWAY_INLINE auto squared_lengths(const std::array<Vector<T>, 4>& v) {
+  return std::array{squared_length(v[0]), squared_length(v[1]), squared_length(v[2]),
+                    squared_length(v[3])};
+}
+
+/// For each lane, how far a point is outside of a sphere, nearly: the difference of squares, as if
+/// computed with twice the precision.
+template <typename R>
+struct Residual {
+  R value;
+  R squares;  ///< the sum of what it is the difference of
+
+  /// The sphere is three coordinates and a squared radius.
+  SPILLWAY_INLINE Residual(const R& x, const R& y, const R& z, const double* sphere) {
+    const std::array<const R*, 3> point{&x, &y, &z};
+    R sum{};
+    R rest{};
+    for (int k = 0; k < 3; ++k) {
+      R difference, lost, square, lost_of_square;
+      add(*point[k], R{} - sphere[k], difference, lost);
+      multiply(difference, difference, square, lost_of_square);
+      R next, lost_of_sum;
+      add(sum, square, next, lost_of_sum);
+      sum = next;
+      rest += lost_of_square + 2 * difference * lost + lost_of_sum;
+    }
+    R difference, lost;
+    add(sum, R{} - sphere[3], difference, lost);
+    value = difference + (rest + lost);
+    squares = sum + sphere[3];
+  }
+
+ private:
+  /// A sum and what its rounding lost (D. Knuth).
+  SPILLWAY_INLINE static void add(const R& a, const R& b, R& sum, R& lost) {
+    sum = a + b;
+    const R b_in_sum = sum - a;
+    lost = (a - (sum - b_in_sum)) + (b - b_in_sum);
+  }
+
+  /// A product and what its rounding lost (T. Dekker, with G. Veltkamp's halves).
+  SPILLWAY_INLINE static void multiply(const R& a, const R& b, R& product, R& lost) {
+    constexpr double kSplitter = 0x1p27 + 1;
+    const auto high_half = [](const R& x) {
+      const R scaled = x * kSplitter;
+      return scaled - (scaled - x);
+    };
+    const R a_high = high_half(a);
+    const R b_high = high_half(b);
+    const R a_low = a - a_high;
+    const R b_low = b - b_high;
+    product = a * b;
+    lost = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+  }
+};
 
 Vector<Rounded> rounded_difference(const double* a, const double* b) {
   const auto component = [&](int k) {
@@ -87,6 +155,47 @@ std::optional<int> certain_sign(const WorkingPoints& points, const Rounded& dete
                                 double error) {
   if (points.lattice && determinant.sum < kExactSum) return rungs::sign(determinant.value);
   const double bound = error * determinant.sum + kUnderflow;
+  if (determinant.value > bound) return 1;
+  if (determinant.value < -bound) return -1;
+  return std::nullopt;
+}
+
+/// A cell's vertices, seen from the query.
+SPILLWAY_INLINE std::array<Vector<Rounded>, 4> rounded_differences(const WorkingPoints& points,
+                                                                   const Five& five) {
+  const auto at = [&](int i) {
+    return rounded_difference(points.at(five.cell[i]), points.at(five.query));
+  };
+  return {at(0), at(1), at(2), at(3)};
+}
+
+/// in_sphere_filtered()
+SPILLWAY_INLINE std::optional<int> filtered(const WorkingPoints& points,
+                                            const std::array<Vector<Rounded>, 4>& differences,
+                                            const std::array<Rounded, 4>& minors) {
+  return certain_sign(points, lifted_determinant(minors, squared_lengths(differences)),
+                      kInSphereError);
+}
+
+/// in_sphere_corrected()
+SPILLWAY_INLINE std::optional<int> corrected(const WorkingPoints& points, const Five& five,
+                                             const std::array<Rounded, 4>& minors,
+                                             const double* sphere) {
+  const double* const query = points.at(five.query);
+  const Residual<double> of_query(query[0], query[1], query[2], sphere);
+  std::array<Rounded, 4> lifts;
+  for (int i = 0; i < 4; i += 2) {
+    const Records<2> two = gather<2>([&](int k) { return points.at(five.cell[i + k]); });
+    const Residual<Reals<2>> of_two(two.x, two.y, two.z, sphere);
+    for (int k = 0; k < 2; ++k) {
+      const double magnitudes = std::abs(of_two.value[k]) + std::abs(of_query.value);
+      const double squares = of_two.squares[k] + of_query.squares;
+      lifts[i + k] = {of_two.value[k] - of_query.value,
+                      magnitudes * kCorrectedError + squares * kResidualError};
+    }
+  }
+  const Rounded determinant = lifted_determinant(minors, lifts);
+  const double bound = determinant.sum + kUnderflow;
   if (determinant.value > bound) return 1;
   if (determinant.value < -bound) return -1;
   return std::nullopt;
@@ -179,9 +288,13 @@ std::array<Point<3>, 4> exact_points(const WorkingPoints& points,
 }  // namespace
 
 std::optional<int> in_sphere_filtered(const WorkingPoints& points, const Five& five) {
-  const double* query = points.at(five.query);
-  const auto at = [&](int i) { return rounded_difference(points.at(five.cell[i]), query); };
-  return certain_sign(points, in_sphere_determinant(at(0), at(1), at(2), at(3)), kInSphereError);
+  const auto differences = rounded_differences(points, five);
+  return filtered(points, differences, minors_of(differences));
+}
+
+std::optional<int> in_sphere_corrected(const WorkingPoints& points, const Five& five,
+                                       const double* sphere) {
+  return corrected(points, five, minors_of(rounded_differences(points, five)), sphere);
 }
 
 std::optional<int> orientation_filtered(const WorkingPoints& points,
@@ -202,7 +315,8 @@ std::optional<int> in_sphere_integer(const WorkingPoints& points, const Five& fi
   const auto c = integers(p[2]) - query;
   const auto d = integers(p[3]) - query;
   if (!integers.exact()) return std::nullopt;
-  return sign(in_sphere_determinant(a, b, c, d));
+  const std::array vectors{a, b, c, d};
+  return sign(lifted_determinant(minors_of(vectors), squared_lengths(vectors)));
 }
 
 template <int kLimbs>
@@ -226,8 +340,11 @@ template std::optional<int> orientation_integer<1>(const WorkingPoints&,
 template std::optional<int> orientation_integer<2>(const WorkingPoints&,
                                                    const std::array<VertexRef, 4>&);
 
-int side_of_sphere(const WorkingPoints& points, const Five& five) {
-  if (const auto side = in_sphere_filtered(points, five)) return *side;
+int side_of_sphere(const WorkingPoints& points, const Five& five, const double* sphere) {
+  const auto differences = rounded_differences(points, five);
+  const auto minors = minors_of(differences);
+  if (const auto side = filtered(points, differences, minors)) return *side;
+  if (const auto side = corrected(points, five, minors, sphere)) return *side;
   if (const auto side = in_sphere_integer<1>(points, five)) return *side;
   if (const auto side = in_sphere_integer<2>(points, five)) return *side;
   return rungs::exact<rungs::InSphere<3>>(exact_points(points, five));

@@ -20,7 +20,13 @@ struct Five {
 /// tighter than that of the cached spheres for flat cells. Never 0.
 std::optional<int> in_sphere_filtered(const WorkingPoints& points, const Five& five);
 
-/// The same for the determinant of p1-p0, p2-p0, p3-p0.
+/// The same, corrected by a sphere that all five are near to, for instance the cached one: centre
+/// and squared radius. Its bound is tighter the nearer they are; what the sphere is, does not
+/// matter otherwise.
+std::optional<int> in_sphere_corrected(const WorkingPoints& points, const Five& five,
+                                       const double* sphere);
+
+/// The determinant of p1-p0, p2-p0, p3-p0.
 std::optional<int> orientation_filtered(const WorkingPoints& points,
                                         const std::array<VertexRef, 4>& p);
 
@@ -37,7 +43,7 @@ std::optional<int> orientation_integer(const WorkingPoints& points,
 
 /// The sign of the in-sphere determinant by all these and, last, by big integers: +1 if the query
 /// is inside.
-int side_of_sphere(const WorkingPoints& points, const Five& five);
+int side_of_sphere(const WorkingPoints& points, const Five& five, const double* sphere);
 
 /// The sign of the determinant of p1-p0, p2-p0, p3-p0, exactly.
 int orientation(const WorkingPoints& points, const std::array<VertexRef, 4>& p);

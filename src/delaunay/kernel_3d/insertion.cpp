@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "src/delaunay/kernel_3d/exact_predicates.h"
+#include "src/delaunay/kernel_3d/insertion_by_lanes.h"
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/error.h"
 
@@ -15,7 +16,7 @@ namespace spillway::kernel_3d {
 namespace {
 
 constexpr std::size_t kFirstListSize = 512;
-constexpr Handle kNone = ~Handle{0};
+
 /// How far the query is outside of the cell's sphere: the difference of squares.
 SPILLWAY_INLINE double power(const Cell& cell, const double* query) {
   const double x = query[0] - cell.centre[0];
@@ -35,15 +36,6 @@ SPILLWAY_INLINE double exact_orientation_of_tiny(const double* q, const double* 
   const double cz = c[2] - q[2];
   return (a[0] - q[0]) * (by * cz - bz * cy) + (a[1] - q[1]) * (bz * cx - bx * cz) +
          (a[2] - q[2]) * (bx * cy - by * cx);
-}
-
-/// Copies a short list, four at a time: both have room for that at their ends.
-SPILLWAY_INLINE void copy_words(const std::uint32_t* from, std::size_t count, std::uint32_t* to) {
-  for (std::size_t i = 0; i < count; i += 4) {
-    Words words;
-    load(from + i, words);
-    store(words, to + i);
-  }
 }
 
 }  // namespace
@@ -90,10 +82,13 @@ Insertion<kRanked>::Insertion(const WorkingPoints& points, Block& memory,
 template <bool kRanked>
 void Insertion<kRanked>::resize_lists(std::size_t size) {
   conflicts_.resize(size);
-  answers_.resize(size);
   boundary_.resize(size);
   star_.resize(size);
-  next_in_conflict_.resize(size);
+}
+
+template <bool kRanked>
+[[gnu::noinline]] void Insertion<kRanked>::grow_free_list(std::size_t added) {
+  free_.resize(2 * (free_count_ + added + kAhead));
 }
 
 /// Finds a cell in conflict with the query, or kNone if it equals a vertex; that is remembered.
@@ -167,11 +162,13 @@ bool Insertion<kRanked>::noted_tie_conflicts(const Cell& cell, VertexRef query) 
                                        points_.at(vertices[2]), points_.at(vertices[3])};
   std::size_t largest =
       std::bit_cast<std::uint64_t>(cell.squared_radius) >> kLargestShift & std::size_t{3};
-  while (v[largest][3] > q[3]) {
+  for (;;) {
     const auto& places = kPlaces[largest];
     const double coefficient =
         exact_orientation_of_tiny(q, v[places[1]], v[places[2]], v[places[3]]);
-    if (coefficient != 0) return coefficient > 0;
+    // Whether the vertex is larger than the query is hard to foresee, so it is no condition.
+    const bool larger = v[largest][3] > q[3];
+    if (!larger | (coefficient != 0)) return larger & (coefficient > 0);
     const double below = v[largest][3];
     const double* next = q;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -180,9 +177,8 @@ bool Insertion<kRanked>::noted_tie_conflicts(const Cell& cell, VertexRef query) 
         largest = i;
       }
     }
-    if (next == q) break;
+    if (next == q) return false;
   }
-  return false;
 }
 
 /// Whether the query is in conflict with the cell, by the upper rungs.
@@ -208,7 +204,7 @@ bool Insertion<kRanked>::conflicts(Handle first, VertexRef query) const {
     if (tie_noted(*cell)) return noted_tie_conflicts(*cell, query);
   }
   const Five five{vertices, query};
-  const int side = side_of_sphere(points_, five);
+  const int side = side_of_sphere(points_, five, cell->centre);
   return side != 0 ? side > 0 : tie_conflicts(points_, five);
 }
 
@@ -222,57 +218,6 @@ template <bool kRanked>
     if (conflicts(CellArray::first_handle(cell.neighbours[k]), query)) result |= 1U << k;
   }
   return result;
-}
-
-/// Finds all cells in conflict with the query; the first ones are known, and listed. Marks them.
-template <bool kRanked>
-template <int kLanes>
-SPILLWAY_INLINE auto Insertion<kRanked>::find_hole(VertexRef query, std::size_t known) -> Hole {
-  const double* q = points_.at(query);
-  const CellArray cells = cells_;
-  Handle* conflicts = conflicts_.data();
-  Handle* boundary = boundary_.data();
-  Hole hole{known, 0};
-  for (std::size_t i = 0; i < known; ++i) cells.at_first(conflicts[i]).vertices[3] |= kMark;
-  for (std::size_t begin = 0; begin < hole.cells;) {
-    const std::size_t end = hole.cells;
-    const std::size_t most = std::max(hole.cells, hole.facets) + 4 * (end - begin) + kAhead;
-    if (most > conflicts_.size()) [[unlikely]] {
-      resize_lists(2 * most);
-      conflicts = conflicts_.data();
-      boundary = boundary_.data();
-    }
-    std::uint8_t* const answers = answers_.data();
-    for (std::size_t i = begin; i < end; ++i) {
-      answers[i] = static_cast<std::uint8_t>(
-          test_neighbours<kLanes>(cells, cells.at_first(conflicts[i]), q));
-    }
-    for (std::size_t i = begin; i < end; ++i) {
-      const Handle first = conflicts[i];
-      const Cell& cell = cells.at_first(first);
-      Words there;
-      load(cell.neighbours, there);
-      there &= ~7U;
-      VertexRef* last[4];
-      std::uint32_t marked = 0;
-      for (int k = 0; k < 4; ++k) {
-        last[k] = &cells.at(cell.neighbours[k]).vertices[3];
-        marked |= *last[k] >> 31 << k;
-      }
-      const std::uint32_t answer = answers[i];
-      std::uint32_t inside = (answer & 15) | marked;
-      const std::uint32_t doubtful = answer >> 4 & ~marked;
-      if (doubtful != 0) [[unlikely]] {
-        inside = (inside & ~doubtful) | decide(cell, doubtful, query);
-      }
-      for (int k = 0; k < 4; ++k) *last[k] |= inside >> k << 31;
-      hole.cells = append<kLanes>(there, inside & ~marked, conflicts, hole.cells);
-      const Words facets = first + Words{0, 1, 2, 3};
-      hole.facets = append<kLanes>(facets, inside ^ 15, boundary, hole.facets);
-    }
-    begin = end;
-  }
-  return hole;
 }
 
 /// Chooses cells for a star: free ones, then new ones.
@@ -300,49 +245,20 @@ template <bool kRanked>
   capacity_ = std::min(memory_.capacity() / sizeof(Cell), CellArray::kMaxCells);
 }
 
-/// Makes the spheres of the star and finds those of its cells that are certainly in conflict with
-/// the next point.
+/// The half-spaces of the star's infinite cells. Those in conflict with the next point join the
+/// `known` ones; returns how many there are then.
 template <bool kRanked>
-template <int kLanes>
-SPILLWAY_INLINE void Insertion<kRanked>::make_star_spheres(VertexRef query, VertexRef next,
-                                                           std::size_t count, bool on_hull) {
-  for (std::size_t i = count; i < count + kLanes - 1; ++i) star_[i] = star_[count - 1];
-  const StarView star{.coordinates = points_.coordinates,
-                      .largest = points_.largest,
-                      .cells = cells_,
-                      .handles = star_.data(),
-                      .query = points_.at(query),
-                      .next = points_.at(next)};
-  std::int64_t* const in_conflict = next_in_conflict_.data();
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    make_spheres<kLanes, kRanked>(star, i, in_conflict);
-  }
-  if (on_hull) [[unlikely]]
-    make_half_spaces(next, count);
-  std::size_t known = 0;
-  Handle* const conflicts = conflicts_.data();
-  for (std::size_t i = 0; i < count; ++i) {
-    conflicts[known] = star.handles[i];
-    known -= static_cast<std::size_t>(in_conflict[i]);
-  }
-  for (std::size_t i = 0; i < known; ++i) {
-    const Cell& outer = cells_.at(cells_.at_first(conflicts[i]).neighbours[0]);
-    for (const Handle neighbour : outer.neighbours) __builtin_prefetch(&cells_.at(neighbour));
-  }
-  known_conflicts_ = known;
-  if (known == 0) choose_hint(star.next, count);
-}
-
-/// The half-spaces of the star's infinite cells.
-template <bool kRanked>
-[[gnu::noinline]] void Insertion<kRanked>::make_half_spaces(VertexRef next, std::size_t count) {
+[[gnu::noinline]] std::size_t Insertion<kRanked>::make_half_spaces(VertexRef next,
+                                                                   std::size_t count,
+                                                                   std::size_t known) {
   for (std::size_t i = 0; i < count; ++i) {
     Cell& cell = cells_.at_first(star_[i]);
     if (infinite_slot(vertices_of(cell)) == 4) continue;
     make_half_space(cell);
     const double s = power(cell, points_.at(next));
-    next_in_conflict_[i] = s < -tolerance_of(cell.squared_radius) ? -1 : 0;
+    if (s < -tolerance_of(cell.squared_radius)) conflicts_[known++] = star_[i];
   }
+  return known;
 }
 
 template <bool kRanked>
@@ -393,38 +309,8 @@ template <bool kRanked>
 }
 
 template <bool kRanked>
-template <int kLanes>
-SPILLWAY_INLINE void Insertion<kRanked>::insert_by(VertexRef query, VertexRef next) {
-  std::size_t known = known_conflicts_;
-  if (known == 0) {
-    const Handle found = locate(query);
-    if (found == kNone) return;
-    conflicts_[0] = found;
-    known = 1;
-  }
-  const Hole hole = find_hole<kLanes>(query, known);
-  take_cells(hole.facets);
-  const bool on_hull = star_maker_.make<kLanes>({.cells = cells_,
-                                                 .apex = query,
-                                                 .facets = boundary_.data(),
-                                                 .handles = star_.data(),
-                                                 .count = hole.facets});
-  if (free_count_ + hole.cells + kAhead > free_.size()) [[unlikely]] {
-    free_.resize(2 * (free_count_ + hole.cells + kAhead));
-  }
-  copy_words(conflicts_.data(), hole.cells, free_.data() + free_count_);
-  free_count_ += hole.cells;
-  make_star_spheres<kLanes>(query, next, hole.facets, on_hull);
-}
-
-template <bool kRanked>
 void Insertion<kRanked>::insert_by_2(VertexRef query, VertexRef next) {
   insert_by<2>(query, next);
-}
-
-template <bool kRanked>
-void Insertion<kRanked>::insert_by_4(VertexRef query, VertexRef next) {
-  insert_by<4>(query, next);
 }
 
 template <bool kRanked>

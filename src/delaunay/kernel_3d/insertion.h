@@ -11,9 +11,9 @@
 
 #include "src/delaunay/insertion_rounds.h"
 #include "src/delaunay/kernel_3d/cells.h"
-#include "src/delaunay/kernel_3d/lanes.h"
 #include "src/delaunay/kernel_3d/star_maker.h"
 #include "src/delaunay/kernel_3d/working_points.h"
+#include "src/delaunay/lanes.h"
 #include "src/delaunay/working_memory.h"
 
 namespace spillway::kernel_3d {
@@ -47,9 +47,9 @@ class Insertion {
     std::size_t facets;
   };
 
-  /// The same, for each width of vectors.
+  /// The same, for each width of vectors: one instruction set, one source.
   void insert_by_2(VertexRef query, VertexRef next);
-  SPILLWAY_TARGET("avx2,bmi,bmi2") void insert_by_4(VertexRef query, VertexRef next);
+  void insert_by_4(VertexRef query, VertexRef next);
   template <int kLanes>
   void insert_by(VertexRef query, VertexRef next);
 
@@ -64,11 +64,12 @@ class Insertion {
   void take_cells(std::size_t count);
   template <int kLanes>
   void make_star_spheres(VertexRef query, VertexRef next, std::size_t count, bool on_hull);
-  void make_half_spaces(VertexRef next, std::size_t count);
+  std::size_t make_half_spaces(VertexRef next, std::size_t count, std::size_t known);
   void make_half_space(Cell& cell) const;
   void choose_hint(const double* next, std::size_t count);
 
   void resize_lists(std::size_t size);
+  void grow_free_list(std::size_t added);
   void grow_cells(std::size_t count);
 
   const WorkingPoints points_;
@@ -81,12 +82,10 @@ class Insertion {
   std::size_t known_conflicts_ = 0;  ///< at the beginning of conflicts_, of the next point
   Handle hint_ = 0;                  ///< a cell near the next point
 
-  std::vector<Handle> conflicts_;      ///< the cells of the hole
-  std::vector<std::uint8_t> answers_;  ///< of test_neighbours, for each of them
-  std::vector<Handle> boundary_;       ///< the facets of the hole, by handles of its cells
+  std::vector<Handle> conflicts_;  ///< the cells of the hole
+  std::vector<Handle> boundary_;   ///< the facets of the hole, by handles of its cells
   std::vector<Handle> free_;
-  std::vector<Handle> star_;                    ///< the new cells, one for each facet
-  std::vector<std::int64_t> next_in_conflict_;  ///< not 0 for those that the next point destroys
+  std::vector<Handle> star_;  ///< the new cells, one for each facet
   StarMaker star_maker_;
   std::vector<kernel::Repetition> repetitions_;
 };

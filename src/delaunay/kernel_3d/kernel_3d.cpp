@@ -3,14 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "src/delaunay/insertion_rounds.h"
 #include "src/delaunay/kernel_3d/insertion.h"
-#include "src/delaunay/kernel_3d/lanes.h"
+#include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_3d/working_points.h"
+#include "src/delaunay/lanes.h"
+#include "src/delaunay/vectors.h"
 #include "src/delaunay/working_memory.h"
 #include "src/error.h"
 
@@ -22,23 +24,38 @@ constexpr kernel::Rounds kRounds{.factor = 16, .first = 40};
 constexpr std::size_t kMostPoints = (std::size_t{1} << 28) - 2;
 /// Room for so many cells a point is made at first; scattered points have 6.8.
 constexpr std::size_t kUsualCells = 7;
-/// Of larger arrays of cells this part is given back while they become simplices, so that both
-/// together take less than 500 bytes a point. More would cost the next base case more time.
-constexpr std::size_t kLargeArray = std::size_t{1} << 25;
-constexpr double kPartGivenBack = 0.5;
+/// Of larger arrays of cells as much is given back while they become simplices as keeps both
+/// together, and the points, within so many bytes a point; some are for huge pages that are used in
+/// part. More would cost the next base case more time. Where many follow nothing is given back: to
+/// clear new pages for them takes a tenth of their time.
+constexpr std::size_t kLargeArray = std::size_t{1} << 23;
+constexpr std::size_t kMostBytes = 490;
+constexpr std::size_t kBytesOfPages = std::size_t{3} << 20;
+constexpr std::size_t kBytesOfPoint = 34;
 
-std::atomic<int> most_lanes = 4;
+/// Whether a finite cell's true circumsphere is certainly inside the box and touches no side: see
+/// docs/algorithm.md ("Spheres inside a box").
+bool certainly_inside(const Cell& cell, const Box<3>& box) {
+  double gap = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    gap = std::min({gap, cell.centre[k] - box.lo[k], box.hi[k] - cell.centre[k]});
+  }
+  return gap > 0 && gap * gap > cell.squared_radius + 2 * tolerance_of(cell.squared_radius);
+}
 
 /// Turns the kernel's cells into simplices, numbered alike; number() turns four vertices into final
-/// ones.
+/// ones. Fills BaseCase::inside if it has been given room.
 template <typename Number>
 void list_simplices(const CellArray& cells, std::uint32_t count, const Number& number,
-                    Block& memory, BaseCase<3>& result) {
+                    const BaseCaseInput<3>& input, const Box<3>& region, Block& memory,
+                    BaseCase<3>& result) {
   constexpr std::uint32_t kGrain = 1 << 15;  // cells of a huge page
   const std::size_t bytes = count * sizeof(Cell);
-  const std::size_t given_back =
-      bytes < kLargeArray ? 0
-                          : static_cast<std::size_t>(static_cast<double>(bytes) * kPartGivenBack);
+  const std::size_t needed =
+      bytes + count * sizeof(Simplex<3>) + kBytesOfPoint * input.points.size();
+  const std::size_t allowed = std::max(kMostBytes * input.points.size(), kBytesOfPages);
+  const std::size_t most =
+      bytes < kLargeArray || input.more_follow ? needed : allowed - kBytesOfPages;
   result.simplices.reserve(count);
   ask_for_huge_pages(result.simplices.data(), count * sizeof(Simplex<3>));
   for (std::uint32_t begin = 0; begin < count; begin += kGrain) {
@@ -53,9 +70,14 @@ void list_simplices(const CellArray& cells, std::uint32_t count, const Number& n
       Simplex<3>& simplex = result.simplices.emplace_back();
       store(vertices | infinite, simplex.vertices.data());
       store(neighbours >> CellArray::kNumberShift, simplex.neighbours.data());
-      if (mask_of(infinite) != 0) result.hull.push_back(c);
+      const bool finite = mask_of(infinite) == 0;
+      if (!finite) result.hull.push_back(c);
+      if (c < result.inside.size()) {
+        result.inside[c] = static_cast<std::uint8_t>(finite && certainly_inside(cell, region));
+      }
     }
-    if (end * sizeof(Cell) <= given_back) memory.forget(begin * sizeof(Cell), end * sizeof(Cell));
+    const std::size_t forgotten = begin * sizeof(Cell);
+    if (needed > most + forgotten) memory.forget(forgotten, end * sizeof(Cell));
   }
 }
 
@@ -65,16 +87,19 @@ BaseCase<3> triangulate(const BaseCaseInput<3>& input, std::span<const VertexId>
   Insertion<kRanked> insertion(points, memory,
                                {basis[0] + kFirstPoint, basis[1] + kFirstPoint,
                                 basis[2] + kFirstPoint, basis[3] + kFirstPoint},
-                               std::min(most_lanes.load(), widest_vectors()));
+                               vector_width());
   kernel::insert_in_rounds(insertion, input.points.size(), basis, kRounds);
   insertion.close_gaps();
   BaseCase<3> result;
   result.dimension = 3;
   const VertexId shift = input.first_vertex - kFirstPoint;
   const std::uint32_t count = insertion.cell_count();
+  if (input.region) result.inside.resize(count);
+  if (input.more_follow) result.simplices = recycled_simplices<3>();
   if (insertion.repetitions().empty()) {
     list_simplices(
-        insertion.cells(), count, [shift](Words& v) { v = v / 4 + shift; }, memory, result);
+        insertion.cells(), count, [shift](Words& v) { v = v / 4 + shift; }, input, points.region,
+        memory, result);
   } else {
     const std::vector<VertexId> kept = kernel::choose_kept<3>(input, insertion.repetitions());
     list_simplices(
@@ -82,7 +107,7 @@ BaseCase<3> triangulate(const BaseCaseInput<3>& input, std::span<const VertexId>
         [&](Words& v) {
           for (int i = 0; i < 4; ++i) v[i] = kept[v[i] / 4] + shift;
         },
-        memory, result);
+        input, points.region, memory, result);
     result.duplicates = kernel::list_duplicates(insertion.repetitions(), kept, input.first_vertex);
   }
   return result;
@@ -90,18 +115,6 @@ BaseCase<3> triangulate(const BaseCaseInput<3>& input, std::span<const VertexId>
 
 }  // namespace
 }  // namespace kernel_3d
-
-int widest_vectors() {
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
-      __builtin_cpu_supports("bmi2")) {
-    return 4;
-  }
-#endif
-  return 2;
-}
-
-void limit_vectors(int doubles) { kernel_3d::most_lanes = doubles; }
 
 BaseCase<3> kernel_3d_base_case(const BaseCaseInput<3>& input, std::span<const VertexId> basis) {
   using namespace kernel_3d;
@@ -112,7 +125,7 @@ BaseCase<3> kernel_3d_base_case(const BaseCaseInput<3>& input, std::span<const V
         input.points.size(), kMostPoints));
   }
   BorrowedMemory memory;
-  const WorkingPoints points = make_working_points(input.points, (*memory).points);
+  const WorkingPoints points = make_working_points(input.points, (*memory).points, input.region);
   Block& cells = (*memory).simplices;
   cells.reserve(kUsualCells * input.points.size() * sizeof(Cell));
   return points.ranked ? triangulate<true>(input, basis, points, cells)

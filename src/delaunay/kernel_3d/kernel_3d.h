@@ -13,10 +13,4 @@ namespace spillway {
 /// 2^29 cells, which is more than it can number: those of some 79 million scattered points.
 BaseCase<3> kernel_3d_base_case(const BaseCaseInput<3>& input, std::span<const VertexId> basis);
 
-/// How many doubles the kernel computes with at a time: 4 or 2, the most that the processor can.
-int widest_vectors();
-
-/// Limits that, for measurements; the result is the same. To be called before work starts.
-void limit_vectors(int doubles);
-
 }  // namespace spillway

@@ -8,20 +8,20 @@
 #include <limits>
 
 #include "src/delaunay/kernel_3d/cells.h"
-#include "src/delaunay/kernel_3d/lanes.h"
+#include "src/delaunay/lanes.h"
 #include "src/geometry/predicate_rungs.h"
 
 namespace spillway::kernel_3d {
 
-/// A cell whose edges' product is so many times its determinant is too flat for its sphere.
+/// A cell the product of whose edges is so many times its determinant is too flat for its sphere.
 inline constexpr double kFlattest = 0x1p40;
 /// Below, products of edges may have lost too much by underflow.
 inline constexpr double kSmallestEdges = 0x1p-400;
 /// The tolerance, in units of the squared radius: for each unit of flatness, ...
-inline constexpr double kToleranceOfFlatness = 700 * rungs::kRoundoff;
+inline constexpr double kToleranceOfFlatness = 896 * rungs::kRoundoff;
 /// ... and for the bits that carry the tolerance.
 inline constexpr double kToleranceOfBits = 0x1p-37;
-/// And in units of radius and largest coordinate.
+/// And in units of the radius times the largest coordinate.
 inline constexpr double kToleranceOfPlace = 16 * rungs::kRoundoff;
 /// On a lattice, where tolerance times determinant is below, s within the tolerance means a tie.
 inline constexpr double kCertainTie = 0.4;
@@ -51,20 +51,18 @@ struct StarView {
   const double* next;     ///< that of the next one
 };
 
-/// |x| + |y| + |z|
+/// At least the square root of a positive number, and at most 1.07 times it: half its exponent, and
+/// between powers of four a straight line.
 template <int kLanes>
-SPILLWAY_INLINE void add_magnitudes(const Records<kLanes>& v, Reals<kLanes>& sum) {
-  using I = Integers<kLanes>;
-  constexpr std::int64_t kNoSign = std::numeric_limits<std::int64_t>::max();
-  sum = (Reals<kLanes>)((I)v.x & kNoSign) + (Reals<kLanes>)((I)v.y & kNoSign) +
-        (Reals<kLanes>)((I)v.z & kNoSign);
+SPILLWAY_INLINE void root_bound(const Reals<kLanes>& number, Reals<kLanes>& root) {
+  constexpr std::uint64_t kHalfOfOne = std::bit_cast<std::uint64_t>(1.0) / 2;
+  root = (Reals<kLanes>)(((Bits<kLanes>)number >> 1) + (kHalfOfOne + 1));
 }
 
 /// Makes the spheres of the cells begin, begin + 1, ... of a star, as many as there are lanes, and
 /// tells which are certainly in conflict with the next point.
 template <int kLanes, bool kRanked>
-SPILLWAY_INLINE void make_spheres(const StarView& star, std::size_t begin,
-                                  std::int64_t* in_conflict) {
+SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t begin) {
   using R = Reals<kLanes>;
   using I = Integers<kLanes>;
   const auto corner = [&](int slot) {
@@ -97,13 +95,10 @@ SPILLWAY_INLINE void make_spheres(const StarView& star, std::size_t begin,
   sphere.x = (aa * bc_x + bb * ca_x + cc * ab_x) * half;
   sphere.y = (aa * bc_y + bb * ca_y + cc * ab_y) * half;
   sphere.z = (aa * bc_z + bb * ca_z + cc * ab_z) * half;
-  R edges, length_b, length_c, radius;
-  add_magnitudes<kLanes>(a, edges);
-  add_magnitudes<kLanes>(b, length_b);
-  add_magnitudes<kLanes>(c, length_c);
-  edges = edges * length_b * length_c;
-  add_magnitudes<kLanes>(sphere, radius);
   const R squared = sphere.x * sphere.x + sphere.y * sphere.y + sphere.z * sphere.z;
+  R edges, radius;
+  root_bound<kLanes>(aa * bb * cc, edges);
+  root_bound<kLanes>(squared, radius);
   const R tolerance = squared * (edges * half * (2 * kToleranceOfFlatness) + kToleranceOfBits) +
                       radius * (star.largest * kToleranceOfPlace);
   // The next power of two: its exponent.
@@ -131,10 +126,10 @@ SPILLWAY_INLINE void make_spheres(const StarView& star, std::size_t begin,
   const R y = star.next[1] - sphere.y;
   const R z = star.next[2] - sphere.z;
   const R s = x * x + y * y + z * z - sphere.w;
-  const I conflict = s < -(R)((I)sphere.w << kMantissaBits);
-  store(conflict, in_conflict + begin);
   scatter<kLanes>(sphere,
                   [&](int i) { return star.cells.at_first(star.handles[begin + i]).centre; });
+  const I conflict = s < -(R)((I)sphere.w << kMantissaBits);
+  return mask_of((R)conflict);
 }
 
 /// Tests the query with the four neighbours of a cell: bits 0 to 3 say which are in conflict, bits
@@ -149,8 +144,9 @@ SPILLWAY_INLINE std::uint32_t test_neighbours(const CellArray& cells, const Cell
   const auto answer = [](const R& x, const R& y, const R& z, const R& squared_radius) {
     const R s = x + y + z - squared_radius;
     const R tolerance = (R)((I)squared_radius << kMantissaBits);
-    const I certain = (s > tolerance) | (s < -tolerance);
-    return mask_of(s) | (mask_of((R)certain) ^ ((1 << kLanes) - 1)) << 4;
+    constexpr std::int64_t kNoSign = std::numeric_limits<std::int64_t>::max();
+    const I certain = (R)((I)s & kNoSign) > tolerance;
+    return mask_of(s) | mask_of((R)~certain) << 4;
   };
   if constexpr (kLanes == 2) {
     R q_low, q_high;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "src/delaunay/kernel_3d/cells.h"
-#include "src/delaunay/kernel_3d/lanes.h"
+#include "src/delaunay/lanes.h"
 
 namespace spillway::kernel_3d {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "src/delaunay/kernel_3d/lanes.h"
+#include "src/delaunay/lanes.h"
 #include "src/geometry/predicate_rungs.h"
 
 namespace spillway::kernel_3d {

@@ -8,7 +8,8 @@
 
 namespace spillway::kernel_3d {
 
-WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memory) {
+WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memory,
+                                  const std::optional<Box<3>>& region) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kMostRanks = 0x1p53;
   constexpr double kLongestRanked = 0x1p40;
@@ -30,6 +31,7 @@ WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memor
   result.tiny = result.lattice && longest <= kTiny;
   result.extent = std::exp2(std::ilogb(extent[0] + extent[1] + extent[2]) + 1);
   result.count = points.size() + kFirstPoint;
+  if (region) result.region = scaling.inner_box(*region);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point<3> p = scaling(points[i]);
     double* const record = records + 4 * (i + kFirstPoint);

@@ -1,11 +1,13 @@
 #pragma once
 // The points as the 3D kernel computes with them.
 
+#include <optional>
 #include <span>
 
 #include "src/delaunay/insertion_rounds.h"
 #include "src/delaunay/kernel_3d/cells.h"
 #include "src/delaunay/working_memory.h"
+#include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
 namespace spillway::kernel_3d {
@@ -29,6 +31,7 @@ struct WorkingPoints {
   double extent = 0;
   double largest = 0;     ///< magnitude of a scaled coordinate
   std::size_t count = 0;  ///< of vertices, the infinite one included
+  Box<3> region;          ///< scaled; empty if there is none
 
   [[nodiscard]] const double* at(VertexRef v) const { return coordinates + v; }
   [[nodiscard]] const Point<3>& original(VertexRef v) const {
@@ -38,7 +41,8 @@ struct WorkingPoints {
 
 inline constexpr VertexRef ref(VertexId number) { return 4 * number; }
 
-/// Scales points that are not all coplanar.
-WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memory);
+/// Scales points that are not all coplanar, and BaseCaseInput::region with them.
+WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memory,
+                                  const std::optional<Box<3>>& region = std::nullopt);
 
 }  // namespace spillway::kernel_3d

@@ -1,0 +1,49 @@
+// Insertion with vectors of four doubles, for processors that have AVX2.
+
+// What is not compiled for such processors only comes first.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <vector>
+
+#ifdef __x86_64__
+#include <immintrin.h>
+
+#define SPILLWAY_AVX2
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2,bmi,bmi2"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2,bmi,bmi2")
+#endif
+#endif
+
+#include "src/delaunay/kernel_3d/insertion_by_lanes.h"
+
+namespace spillway::kernel_3d {
+
+template <bool kRanked>
+void Insertion<kRanked>::insert_by_4(VertexRef query, VertexRef next) {
+  insert_by<4>(query, next);
+}
+
+template void Insertion<false>::insert_by_4(VertexRef, VertexRef);
+template void Insertion<true>::insert_by_4(VertexRef, VertexRef);
+
+}  // namespace spillway::kernel_3d
+
+#ifdef SPILLWAY_AVX2
+#ifdef __clang__
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#endif

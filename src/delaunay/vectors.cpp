@@ -1,0 +1,27 @@
+#include "src/delaunay/vectors.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace spillway {
+namespace {
+
+std::atomic<int> most_doubles = 4;
+
+}  // namespace
+
+int widest_vectors() {
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
+      __builtin_cpu_supports("bmi2")) {
+    return 4;
+  }
+#endif
+  return 2;
+}
+
+int vector_width() { return std::min(most_doubles.load(), widest_vectors()); }
+
+void limit_vectors(int doubles) { most_doubles = doubles; }
+
+}  // namespace spillway
