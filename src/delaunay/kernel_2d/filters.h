@@ -57,8 +57,6 @@ inline double cross_bound(double largest) { return 5 * rungs::kRoundoff * larges
 
 /// Computed from integers, the determinant is exact up to this `largest`: 3 largest^2 <= 2^53.
 inline constexpr double kExactInCircle = 54'794'157;
-/// ... and cross() up to this one.
-inline constexpr double kExactCross = 0x1p52;
 
 inline double largest_square(const Corner& a, const Corner& b, const Corner& c) {
   return std::max(c.square, std::max(a.square, b.square));
