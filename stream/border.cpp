@@ -6,8 +6,8 @@
 
 #include "src/delaunay/delaunay.h"
 #include "src/delaunay/divide.h"
-#include "src/delaunay/hash.h"
 #include "src/delaunay/schedule.h"
+#include "src/delaunay/simplex_index.h"
 #include "src/parallel/parallel.h"
 #include "stream/memory_budget.h"
 #include "stream/tile_tree.h"
@@ -24,6 +24,7 @@ constexpr std::uint64_t kMergeBytes = D == 2 ? 300 : 900;
 template <int D, typename Tree>
 class Merge {
   using Corners = std::array<VertexId, D + 1>;
+  using ExposedIndex = SimplexIndex<D + 1>;
 
  public:
   Merge(std::span<Border<D>> children, std::span<const Tree* const> trees, MemoryBudget& budget)
@@ -110,34 +111,51 @@ class Merge {
     task.kind = "accept";
     task.points = border_vertices_.size();
     const Stopwatch watch(task.seconds);
-    ConcurrentIndex index(exposed_.size());
-    parallel_for(exposed_.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t e = begin; e < end; ++e) {
-        index.insert(simplex_hash(exposed_[e]), static_cast<std::uint32_t>(e));
-      }
-    });
+    const ExposedIndex index(exposed_);
     std::vector<VertexId> number(mesh_.input_index.size());
     for (std::size_t v = 0; v < number.size(); ++v) {
       number[v] = border_vertices_[mesh_.input_index[v]];
     }
     for (const SimplexBlock<D>& block : mesh_.blocks) {
-      std::vector<std::vector<Corners>> accepted(grain_count(block.simplices.size(), kGrain));
-      parallel_for(block.simplices.size(), kGrain,
+      const std::span simplices(block.simplices.data(), block.simplices.size());
+      std::vector<std::vector<Corners>> accepted(grain_count(simplices.size(), kGrain));
+      parallel_for(simplices.size(), kGrain,
                    [&](std::size_t g, std::size_t begin, std::size_t end) {
-                     for (std::size_t s = begin; s < end; ++s) {
-                       if (block.simplices[s].removed()) continue;
-                       Corners corners = block.simplices[s].vertices;
-                       for (VertexId& v : corners) v = v == kInfiniteVertex ? v : number[v];
-                       if (is_accepted(corners, index)) accepted[g].push_back(corners);
+                     for (std::size_t first = begin; first < end; first += ExposedIndex::kBatch) {
+                       const std::size_t count = std::min(ExposedIndex::kBatch, end - first);
+                       append_accepted(simplices.subspan(first, count), number, index, accepted[g]);
                      }
                    });
-      auto& simplices = result_.border.simplices;
-      for (const auto& some : accepted) simplices.insert(simplices.end(), some.begin(), some.end());
+      auto& result = result_.border.simplices;
+      for (const auto& some : accepted) result.insert(result.end(), some.begin(), some.end());
     }
     task.pieces = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
   }
 
-  [[nodiscard]] bool is_accepted(const Corners& corners, const ConcurrentIndex& index) const {
+  /// Of a batch of the mesh's simplices, appends those to be accepted. `number` has the mesh's
+  /// vertices in the numbering of the merge.
+  void append_accepted(std::span<const Simplex<D>> batch, const std::vector<VertexId>& number,
+                       const ExposedIndex& index, std::vector<Corners>& accepted) const {
+    std::array<Corners, ExposedIndex::kBatch> candidates;
+    std::size_t count = 0;
+    for (const Simplex<D>& simplex : batch) {
+      if (simplex.removed()) continue;
+      Corners corners = simplex.vertices;
+      for (VertexId& v : corners) v = v == kInfiniteVertex ? v : number[v];
+      if (is_new(corners)) {
+        accepted.push_back(corners);
+      } else {
+        candidates[count++] = corners;
+      }
+    }
+    const auto found = index.find(std::span(candidates).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (found[i] != ExposedIndex::kNotFound) accepted.push_back(candidates[i]);
+    }
+  }
+
+  /// Whether a simplex spans children or lies in an open one.
+  [[nodiscard]] bool is_new(const Corners& corners) const {
     VertexId lowest = kInfiniteVertex;
     VertexId highest = 0;
     for (const VertexId v : corners) {
@@ -146,11 +164,7 @@ class Merge {
     }
     std::size_t child = 0;
     while (lowest >= first_vertex_[child + 1]) ++child;
-    if (highest >= first_vertex_[child + 1]) return true;  // spans children
-    if (open_[child]) return true;
-    return index.find(simplex_hash(corners), [&](std::uint32_t e) {
-      return same_simplex(corners, exposed_[e]);
-    }) != ConcurrentIndex::kNotFound;
+    return highest >= first_vertex_[child + 1] || open_[child];
   }
 
   std::span<Border<D>> children_;

@@ -204,7 +204,7 @@ class TileRun {
       return pass_up(open_border(part, leaf), BlockPlace{slot_, part.block}, sequencer_, counts_);
     }
     Settled<D> settled = settle_leaf(node, leaf);
-    recycle(std::move(leaf));
+    recycle(std::move(leaf.simplices));
     counts_.final_in_leaves += settled.final_simplices;
     return pass_on(std::move(settled), BlockPlace{slot_, part.block}, sequencer_, counts_);
   }
@@ -212,7 +212,7 @@ class TileRun {
   Settled<D> settle_leaf(const Node& node, const BaseCase<D>& base_case) {
     const StageTimer timer(counts_.times, Stage::kFinality);
     LeafToSettle<D> leaf = leaf_of(*node.part);
-    leaf.simplices = base_case.simplices;
+    leaf.simplices = {base_case.simplices.data(), base_case.simplices.size()};
     const std::vector<Fate> fates = fates_in_leaf(node, leaf, base_case.inside);
     leaf.fates = fates;
     return settle<D>(leaf, options_.output);
@@ -226,7 +226,7 @@ class TileRun {
          .input_index = std::span(input_index_).subspan(part.begin, part.size()),
          .first_vertex = part.begin,
          .region = cell_of(node),
-         .more_follow = true});
+         .in_place = true});
   }
 
   /// The box around a leaf that has nothing in common with the box of any other part.

@@ -99,6 +99,7 @@ StreamOptions stream_options(const TriangulationOptions& options, Progress& prog
 void reuse_freed_memory(std::size_t kept) {
   mallopt(M_MMAP_THRESHOLD, static_cast<int>(kept / 4));
   mallopt(M_TRIM_THRESHOLD, static_cast<int>(kept));
+  mallopt(M_ARENA_MAX, 1);  // others give back memory in spite of this
 }
 
 }  // namespace spillway

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <mutex>
 #include <numeric>
-#include <utility>
 
 #include "src/delaunay/affine_basis.h"
 #include "src/delaunay/kernel_2d/kernel_2d.h"
@@ -16,24 +14,6 @@ namespace spillway {
 namespace {
 
 std::atomic<BaseCaseKernel> chosen_kernel = BaseCaseKernel::kOwn;
-
-/// Lists of simplices whose memory waits for base cases to come.
-template <int D>
-struct Recycled {
-  std::mutex mutex;
-  std::vector<std::vector<Simplex<D>>> lists;  ///< guarded by `mutex`, like the next; all empty
-  std::size_t lent = 0;                        ///< to base cases that have not been recycled yet
-
-  static Recycled& instance() {
-    static Recycled recycled;
-    return recycled;
-  }
-
-  void release() {
-    const std::lock_guard lock(mutex);
-    lists.clear();
-  }
-};
 
 template <int D>
 std::vector<Duplicate> find_duplicates(const BaseCaseInput<D>& input) {
@@ -80,40 +60,12 @@ BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input) {
   return result;
 }
 
-template <int D>
-void recycle(BaseCase<D>&& used) {
-  std::vector<Simplex<D>> list = std::move(used.simplices);
-  list.clear();
-  auto& recycled = Recycled<D>::instance();
-  const std::lock_guard lock(recycled.mutex);
-  if (recycled.lent == 0) return;  // a kernel that uses none would only fill memory with them
-  --recycled.lent;
-  recycled.lists.push_back(std::move(list));
-}
-
-template <int D>
-std::vector<Simplex<D>> recycled_simplices() {
-  auto& recycled = Recycled<D>::instance();
-  const std::lock_guard lock(recycled.mutex);
-  ++recycled.lent;
-  if (recycled.lists.empty()) return {};
-  std::vector<Simplex<D>> list = std::move(recycled.lists.back());
-  recycled.lists.pop_back();
-  return list;
-}
-
 void release_base_case_memory() {
-  Recycled<2>::instance().release();
-  Recycled<3>::instance().release();
   KernelArena::release_kept_memory();
-  BorrowedMemory::release_kept_memory();
+  release_kept_blocks();
 }
 
 template BaseCase<2> triangulate_base_case<2>(const BaseCaseInput<2>&);
 template BaseCase<3> triangulate_base_case<3>(const BaseCaseInput<3>&);
-template void recycle<2>(BaseCase<2>&&);
-template void recycle<3>(BaseCase<3>&&);
-template std::vector<Simplex<2>> recycled_simplices<2>();
-template std::vector<Simplex<3>> recycled_simplices<3>();
 
 }  // namespace spillway

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "src/delaunay/triangulation.h"
@@ -19,15 +20,16 @@ struct BaseCaseInput {
   std::span<const VertexId> input_index;
   VertexId first_vertex = 0;
   std::optional<Box<D>> region{};  ///< asks for BaseCase::inside; its sides may be infinite
-  /// Others of this size follow: all working memory is kept for them, even where it is much, and
-  /// what recycle() got is used.
-  bool more_follow = false;
+  /// Leaves the simplices in the kernel's working memory, of which they use less than a half:
+  /// nothing is copied, and at the peak less memory is used. For results that are soon recycled,
+  /// or few.
+  bool in_place = false;
 };
 
 /// The triangulation of one base case: a single block, its neighbours all inside it.
 template <int D>
 struct BaseCase {
-  std::vector<Simplex<D>> simplices;  ///< finite and infinite; none if dimension < D
+  BlockArray<Simplex<D>> simplices;   ///< finite and infinite; none if dimension < D
   std::vector<std::uint32_t> hull;    ///< indices of the infinite simplices
   std::vector<Duplicate> duplicates;  ///< sorted
   int dimension = -1;                 ///< of the points' affine hull
@@ -55,13 +57,21 @@ BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input);
 template <int D>
 BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const VertexId> basis);
 
-/// Keeps the memory of a base case that has been used for those that follow.
+/// For kernels: a list of simplices to be filled, at the beginning of a block that the kernel is
+/// done with if they are to be made in place, or else in memory of its own.
 template <int D>
-void recycle(BaseCase<D>&& used);
+BlockArray<Simplex<D>> make_list(const BaseCaseInput<D>& input, Block& memory, std::size_t count) {
+  if (!input.in_place) return BlockArray<Simplex<D>>(count);
+  memory.reserve(count * sizeof(Simplex<D>));
+  return {std::move(memory), count};
+}
 
-/// For kernels: an empty list, with the memory of one that was recycled if there is any.
+/// Keeps the memory of a list of simplices made in place, which has been used, for base cases to
+/// come.
 template <int D>
-std::vector<Simplex<D>> recycled_simplices();
+void recycle(BlockArray<Simplex<D>> used) {
+  keep_block(BlockUse::kSimplices, used.take_block());
+}
 
 /// Gives the system the memory that base cases keep for those that follow.
 void release_base_case_memory();

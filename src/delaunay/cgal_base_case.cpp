@@ -162,9 +162,11 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
     throw Error("a base case of " + std::to_string(input.points.size()) + " points has " +
                 std::to_string(count) + " simplices, more than fit; choose smaller base cases");
   }
-  result.simplices.reserve(count);
+  BorrowedBlock memory(BlockUse::kSimplices);
+  result.simplices = make_list<D>(input, *memory, count);
+  Simplex<D>* next = result.simplices.data();
   for (const auto cell : Traits::all_cells(delaunay)) {
-    Simplex<D>& simplex = result.simplices.emplace_back();
+    Simplex<D>& simplex = *next++;
     for (int i = 0; i <= D; ++i) {
       simplex.vertices[i] = cell->vertex(i)->info().id;
       simplex.neighbours[i] = cell->neighbor(i)->info();

@@ -69,7 +69,9 @@ std::vector<T> in_huge_pages(std::size_t count) {
 template <int D>
 class Run {
  public:
-  Run(std::vector<Point<D>> points, const DelaunayOptions& options) : options_(options) {
+  /// `in_place` says where base cases leave their simplices: see BaseCaseInput.
+  Run(std::vector<Point<D>> points, const DelaunayOptions& options, bool in_place)
+      : options_(options), in_place_(in_place) {
     result_.points = std::move(points);
     result_.input_index = in_huge_pages<VertexId>(result_.points.size());
     result_.input_index.resize(result_.points.size());
@@ -109,7 +111,8 @@ class Run {
         {.points = std::span(result_.points).subspan(part.begin, part.size()),
          .input_index = std::span(result_.input_index).subspan(part.begin, part.size()),
          .first_vertex = part.begin,
-         .region = cell});
+         .region = cell,
+         .in_place = in_place_});
     PartSurface surface;
     surface.dimension = leaf.dimension;
     surface.open = leaf.dimension < D;
@@ -189,10 +192,11 @@ class Run {
     }
     DelaunayOptions options = options_;
     options.progress = nullptr;
-    return Run(std::move(points), options).triangulate(base_case_size, task);
+    return Run(std::move(points), options, false).triangulate(base_case_size, task);
   }
 
   const DelaunayOptions& options_;
+  const bool in_place_;
   std::size_t base_case_size_ = 0;
   std::uint32_t root_block_ = 0;
   std::atomic<std::size_t> points_done_ = 0;
@@ -212,14 +216,18 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
   const std::size_t base_case_size = options.base_case_size == 0
                                          ? default_base_case_size<D>(points.size())
                                          : options.base_case_size;
+  const unsigned threads = options.threads == 0 ? available_threads() : options.threads;
+  // With more base cases the memory of the first is worth more for those that follow.
+  const bool in_place = points.size() <= 2 * threads * base_case_size;
   Triangulation<D> result;
   Task unused;
-  with_threads(options.threads == 0 ? available_threads() : options.threads, [&] {
+  with_threads(threads, [&] {
     auto copy = in_huge_pages<Point<D>>(points.size());
     copy.assign(points.begin(), points.end());
-    result = Run<D>(std::move(copy), options)
+    result = Run<D>(std::move(copy), options, in_place)
                  .triangulate(base_case_size, options.tasks == nullptr ? unused : *options.tasks);
   });
+  for (SimplexBlock<D>& block : result.blocks) block.simplices.shrink();
   release_base_case_memory();
   return result;
 }
@@ -229,7 +237,7 @@ Triangulation<D> border_delaunay(std::vector<Point<D>> points, Task& task) {
   const std::size_t base_case_size =
       std::max<std::size_t>(points.size() / 4, kGoodBorderBaseCase<D>);
   const DelaunayOptions options;
-  return Run<D>(std::move(points), options).triangulate(base_case_size, task);
+  return Run<D>(std::move(points), options, false).triangulate(base_case_size, task);
 }
 
 template Triangulation<2> border_delaunay<2>(std::vector<Point<2>>, Task&);

@@ -127,9 +127,9 @@ class Divider {
     const auto points = points_.subspan(part.begin, part.size());
     const auto input_index = input_index_.subspan(part.begin, part.size());
     const std::vector<VertexId> order = hilbert_order<D>(points, part.box);
-    BorrowedMemory memory;  // of base cases, of which one is likely to follow
+    BorrowedBlock memory(BlockUse::kPoints);  // a base case is likely to follow
     auto* const old_points = static_cast<Point<D>*>(
-        (*memory).points.reserve(part.size() * (sizeof(Point<D>) + sizeof(VertexId))));
+        memory->reserve(part.size() * (sizeof(Point<D>) + sizeof(VertexId))));
     auto* const old_index = reinterpret_cast<VertexId*>(old_points + part.size());
     std::copy(points.begin(), points.end(), old_points);
     std::copy(input_index.begin(), input_index.end(), old_index);

@@ -62,7 +62,9 @@ struct SortedVertices {
 /// border's triangulation may have the vertices of a child's, but face the other way.
 template <std::size_t N>
 bool same_simplex(const std::array<VertexId, N>& a, const std::array<VertexId, N>& b) {
-  return SortedVertices<N>(a) == SortedVertices<N>(b);
+  VertexId difference = 0;  // mostly enough to tell two that met in a hash index by chance
+  for (std::size_t i = 0; i < N; ++i) difference ^= a[i] ^ b[i];
+  return difference == 0 && SortedVertices<N>(a) == SortedVertices<N>(b);
 }
 
 /// A hash index of items kept elsewhere, filled and searched by many threads at once, but not

@@ -2,340 +2,263 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <numeric>
+#include <cstring>
+#include <limits>
 #include <utility>
 #include <vector>
 
+#include "src/delaunay/lanes.h"
 #include "src/delaunay/working_memory.h"
 
 namespace spillway {
 namespace {
 
-/// Bits of each coordinate at most, so that a key has at most 32.
+/// One coordinate of the cells of eight points, or a bit of each level for them.
+using Lanes [[gnu::vector_size(16)]] = std::uint16_t;
+using SignedLanes [[gnu::vector_size(16)]] = std::int16_t;
+/// Their places along the curve.
+using Keys [[gnu::vector_size(32)]] = std::uint32_t;
+constexpr std::size_t kLanes = sizeof(Lanes) / sizeof(std::uint16_t);
+
+/// Adds bits, in space of 8 levels at most, to keys: D places apart, the lowest one at `shift`.
 template <int D>
-constexpr int kMostBits = D == 2 ? 16 : 10;
-
-/// The curve in the plane, four levels at a time. A square's curve is the whole one with the axes
-/// exchanged (bit 0 of the state), turned by half a turn (bit 1), or both.
-struct CurveTable {
-  static constexpr int kLevels = 4;
-  static constexpr std::size_t kCells = std::size_t{1} << kLevels;
-  struct Entry {
-    std::uint8_t digits;  ///< the cell's number along the curve
-    std::uint8_t state;   ///< of the curve inside the cell
-  };
-  std::array<std::array<Entry, kCells * kCells>, 4> entries{};
-
-  constexpr CurveTable() {
-    for (unsigned state = 0; state < 4; ++state) {
-      for (unsigned cell = 0; cell < kCells * kCells; ++cell)
-        entries[state][cell] = walk(state, cell);
-    }
+SPILLWAY_INLINE void add_spread(const Lanes& bits, int shift, Keys& keys) {
+  Keys x = __builtin_convertvector(bits, Keys);
+  if constexpr (D == 2) {
+    x = (x | x << 8) & 0x00FF00FF;
+    x = (x | x << 4) & 0x0F0F0F0F;
+    x = (x | x << 2) & 0x33333333;
+    x = (x | x << 1) & 0x55555555;
+  } else {
+    x = (x | x << 8) & 0x0000F00F;
+    x = (x | x << 4) & 0x000C30C3;
+    x = (x | x << 2) & 0x00249249;
   }
-
- private:
-  static constexpr Entry walk(unsigned state, unsigned cell) {
-    unsigned digits = 0;
-    for (int level = kLevels - 1; level >= 0; --level) {
-      unsigned x = (cell >> (level + kLevels) & 1) ^ (state >> 1);
-      unsigned y = (cell >> level & 1) ^ (state >> 1);
-      if ((state & 1) != 0) std::swap(x, y);
-      const unsigned quarter = (3 * x) ^ y;
-      digits = 4 * digits + quarter;
-      if (quarter == 0) state ^= 1;
-      if (quarter == 3) state ^= 3;
-    }
-    return {static_cast<std::uint8_t>(digits), static_cast<std::uint8_t>(state)};
-  }
-};
-
-/// The cell's number along the curve in the plane.
-std::uint32_t hilbert_key(const std::array<std::uint32_t, 2>& cell) {
-  static constexpr CurveTable kTable;
-  constexpr unsigned kMask = CurveTable::kCells - 1;
-  std::uint32_t key = 0;
-  unsigned state = 0;
-  for (int level = kMostBits<2> - CurveTable::kLevels; level >= 0; level -= CurveTable::kLevels) {
-    const unsigned x = cell[0] >> level & kMask;
-    const unsigned y = cell[1] >> level & kMask;
-    const CurveTable::Entry& entry = kTable.entries[state][x * CurveTable::kCells + y];
-    key = key << (2 * CurveTable::kLevels) | entry.digits;
-    state = entry.state;
-  }
-  return key;
+  keys |= x << shift;
 }
 
-/// Moves the bits of a coordinate three places apart.
-std::uint32_t spread(std::uint32_t x) {
-  x = (x | x << 16) & 0x030000FF;
-  x = (x | x << 8) & 0x0300F00F;
-  x = (x | x << 4) & 0x030C30C3;
-  return (x | x << 2) & 0x09249249;
+/// The cells' numbers along the curve in the plane. Inside a square the curve is the whole one,
+/// with the axes exchanged, or turned by half a turn (v), or both; t is 1 if just one is true. In
+/// the quarter x, y, by the next bits of a cell's coordinates, the curve has the digits
+/// x ^ (x == y ? v : t) and x ^ y, and there t ^= ~(x ^ v) if x == y, otherwise v ^= x ^ t. Such
+/// maps are affine: those of 2, 4, ... levels, which are composed here for all levels at once, have
+/// matrices (p q; q p^q).
+SPILLWAY_INLINE void hilbert_keys(const std::array<Lanes, 2>& cells, int /*levels*/, Keys& keys) {
+  const Lanes x = cells[0];
+  const Lanes unlike = cells[0] ^ cells[1];
+  const Lanes t1 = ~(cells[0] | cells[1]);
+  const Lanes v1 = x & unlike;
+  Lanes t = t1 ^ t1 >> 1 ^ (v1 >> 1 & ~unlike);
+  Lanes v = v1 ^ v1 >> 1 ^ (t1 >> 1 & unlike);
+  Lanes p = unlike | ~unlike >> 1;
+  Lanes q = unlike ^ unlike >> 1;
+  for (int levels = 2; levels < 16; levels *= 2) {
+    const Lanes t_above = t >> levels;
+    const Lanes v_above = v >> levels;
+    t ^= (p & t_above) ^ (q & v_above);
+    v ^= (q & t_above) ^ ((p ^ q) & v_above);
+    const Lanes p_above = p >> levels;
+    const Lanes q_above = q >> levels;
+    const Lanes both = q & q_above;
+    q = (p & q_above) ^ (q & p_above) ^ both;
+    p = (p & p_above) ^ both;
+  }
+  const Lanes state = (unlike & t >> 1) | (v >> 1 & ~unlike);
+  keys = Keys{};
+  add_spread<2>(x ^ state, 1, keys);
+  add_spread<2>(unlike, 0, keys);
 }
 
-/// The cell's number along the curve in space, by the rule (J. Skilling's algorithm).
-std::uint32_t hilbert_key_by_rule(std::array<std::uint32_t, 3> cell) {
-  for (std::uint32_t bit = 1U << (kMostBits<3> - 1); bit > 1; bit >>= 1) {
-    const std::uint32_t below = bit - 1;
+/// The cells' numbers along the curve in space, of 8 levels at most (J. Skilling's algorithm).
+SPILLWAY_INLINE void hilbert_keys(std::array<Lanes, 3> cells, int levels, Keys& keys) {
+  for (int level = levels - 1; level > 0; --level) {
+    const auto below = static_cast<std::uint16_t>((1U << level) - 1);
     for (int k = 0; k < 3; ++k) {
       // Either the low bits of axis 0 are inverted, or exchanged with those of axis k.
-      const std::uint32_t invert = (cell[k] & bit) != 0 ? below : 0;
-      const std::uint32_t exchange = (cell[0] ^ cell[k]) & below & ~invert;
-      cell[0] ^= invert | exchange;
-      cell[k] ^= exchange;
+      const Lanes set = (Lanes)((SignedLanes)(cells[k] << (15 - level)) >> 15);
+      const Lanes exchange = (cells[0] ^ cells[k]) & (below & ~set);
+      cells[0] ^= (set & below) | exchange;
+      cells[k] ^= exchange;
     }
   }
-  for (int k = 1; k < 3; ++k) cell[k] ^= cell[k - 1];
-  std::uint32_t turned = 0;
-  for (std::uint32_t bit = 1U << (kMostBits<3> - 1); bit > 1; bit >>= 1) {
-    turned ^= (cell[2] & bit) != 0 ? bit - 1 : 0;
-  }
-  std::uint32_t key = 0;
-  for (int k = 0; k < 3; ++k) key |= spread(cell[k] ^ turned) << (2 - k);
-  return key;
+  for (int k = 1; k < 3; ++k) cells[k] ^= cells[k - 1];
+  Lanes turned = cells[2] >> 1;
+  for (int shift = 1; shift < 8; shift *= 2) turned ^= turned >> shift;
+  keys = Keys{};
+  for (int k = 0; k < 3; ++k) add_spread<3>(cells[k] ^ turned, 2 - k, keys);
 }
 
-/// The curve in space, two levels at a time. Inside each octant of a cube it is the whole curve,
-/// mirrored and with the axes exchanged.
-class SpaceCurveTable {
- public:
-  SpaceCurveTable() {
-    for (std::uint32_t octant = 0; octant < kOctants; ++octant) {
-      place_[octant] = key_of_octants({octant}) >> (kKeyBits - 3);
-      turn_[octant] = find_turn(octant);
-    }
-    for (std::uint32_t state = 0; state < kTurns; ++state) {
-      for (std::uint32_t cell = 0; cell < kOctants * kOctants; ++cell) {
-        const std::uint32_t first = turned(state, cell >> 3);
-        const std::uint32_t inside = composed(turn_[first], state);
-        const std::uint32_t second = turned(inside, cell & 7);
-        entries_[state][cell] = {static_cast<std::uint8_t>(place_[first] << 3 | place_[second]),
-                                 static_cast<std::uint8_t>(composed(turn_[second], inside))};
-      }
-    }
-  }
-
-  [[nodiscard]] std::uint32_t key(const std::array<std::uint32_t, 3>& cell) const {
-    // The cell's octants, the largest first.
-    const std::uint32_t octants = spread(cell[0]) << 2 | spread(cell[1]) << 1 | spread(cell[2]);
-    std::uint32_t key = 0;
-    std::uint32_t state = 0;
-    for (int shift = kKeyBits - 6; shift >= 0; shift -= 6) {
-      const Entry& entry = entries_[state][octants >> shift & 63];
-      key = key << 6 | entry.digits;
-      state = entry.state;
-    }
-    return key;
-  }
-
- private:
-  struct Entry {
-    std::uint8_t digits;  ///< the cell's number along the curve
-    std::uint8_t state;   ///< of the curve inside the cell: a turn
-  };
-  static constexpr int kKeyBits = 3 * kMostBits<3>;
-  static constexpr std::uint32_t kOctants = 8;
-  /// Turns: one of six orders of the axes, and bits that are inverted, 8 * order + bits.
-  static constexpr std::uint32_t kTurns = 48;
-  static constexpr std::array<std::array<std::uint8_t, 3>, 6> kOrders{
-      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
-
-  static std::uint32_t turned(std::uint32_t turn, std::uint32_t octant) {
-    const auto& order = kOrders[turn >> 3];
-    std::uint32_t result = turn & 7;
-    for (std::uint32_t k = 0; k < 3; ++k) result ^= (octant >> order[k] & 1) << k;
-    return result;
-  }
-
-  /// The turn that does what `second` does to the result of `first`.
-  static std::uint32_t composed(std::uint32_t second, std::uint32_t first) {
-    for (std::uint32_t turn = 0; turn < kTurns; ++turn) {
-      bool same = true;
-      for (std::uint32_t octant = 0; octant < kOctants; ++octant) {
-        same &= turned(turn, octant) == turned(second, turned(first, octant));
-      }
-      if (same) return turn;
-    }
-    return 0;
-  }
-
-  /// The key of a cell given by its octants, the largest first; those that are missing are 0.
-  static std::uint32_t key_of_octants(std::array<std::uint32_t, 3> octants) {
-    std::array<std::uint32_t, 3> cell{};
-    for (std::size_t level = 0; level < octants.size(); ++level) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        cell[k] |= (octants[level] >> (2 - k) & 1) << (kMostBits<3> - 1 - level);
-      }
-    }
-    return hilbert_key_by_rule(cell);
-  }
-
-  /// How the curve inside an octant lies, found by comparing two levels of it with the whole.
-  static std::uint32_t find_turn(std::uint32_t octant) {
-    for (std::uint32_t turn = 0; turn < kTurns; ++turn) {
-      bool same = true;
-      for (std::uint32_t cell = 0; cell < kOctants * kOctants; ++cell) {
-        const std::uint32_t first = cell >> 3;
-        const std::uint32_t second = cell & 7;
-        same &= (key_of_octants({octant, first, second}) >> (kKeyBits - 9) & 63) ==
-                key_of_octants({turned(turn, first), turned(turn, second)}) >> (kKeyBits - 6);
-      }
-      if (same) return turn;
-    }
-    return 0;
-  }
-
-  std::array<std::uint32_t, kOctants> place_{};
-  std::array<std::uint32_t, kOctants> turn_{};
-  std::array<std::array<Entry, kOctants * kOctants>, kTurns> entries_{};
-};
-
-/// The cell's number along the curve in space.
-std::uint32_t hilbert_key(const std::array<std::uint32_t, 3>& cell) {
-  static const SpaceCurveTable table;
-  return table.key(cell);
-}
-
-/// Sorts places by key. An item has the key in its upper half, the place in its lower one.
+/// Sorts places of points by their keys, stably.
 template <int D>
 class Sorter {
  public:
   explicit Sorter(std::span<const Point<D>> points)
       : points_(points),
         count_(points.size()),
-        items_(static_cast<Item*>((*memory_).simplices.reserve(2 * count_ * sizeof(Item)))),
-        other_(items_ + count_) {
-    for (std::size_t i = 0; i < count_; ++i) items_[i] = i;
-  }
+        place_bits_(std::bit_width(count_)),
+        keys_(static_cast<std::uint32_t*>(memory_->reserve(2 * count_ * sizeof(std::uint32_t)))),
+        items_(keys_ + count_),
+        order_(count_) {}
 
-  /// Sorts all items, then again those that share a cell with many.
   std::vector<VertexId> sort(const Box<D>& box) && {
-    sort_range(0, count_, box);
-    std::vector<VertexId> order(count_);
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<VertexId>(items_[i]);
-    return order;
+    sort_range({0, count_}, box, [](std::size_t i) { return static_cast<VertexId>(i); });
+    return std::move(order_);
   }
 
  private:
-  using Item = std::uint64_t;
-  /// So few are not divided further.
-  static constexpr std::size_t kFewPoints = 24;
-  static constexpr std::size_t kSmallestRadixSort = 512;
+  /// So few points in one cell are not divided further; twice as many are.
+  static constexpr std::size_t kFewPoints = 12;
+  /// A base case takes longer if a point has fewer cells than this; more do not help it.
+  static constexpr std::size_t kCellsOfPoint = 4;
+  /// Keys have two digits, of so many bits at most.
+  static constexpr int kWidestDigit = 13;
+  /// Smaller boxes have no cells: how many there are in a unit of length could overflow.
+  static constexpr double kSmallestExtent = 1e-300;
+  /// Where there are more points, what is written lies outside of the fastest cache.
+  static constexpr std::size_t kManyPoints = std::size_t{1} << 16;
+  static constexpr std::size_t kAhead = 32;
 
-  /// Items [begin, end).
+  /// Of `order_`: [begin, end).
   struct Range {
     std::size_t begin, end;
     [[nodiscard]] std::size_t size() const { return end - begin; }
   };
 
-  void sort_range(std::size_t begin, std::size_t end, const Box<D>& box) {
-    const std::size_t count = end - begin;
-    set_keys(begin, end, box);
-    int bits = kMostBits<D>;  // of a coordinate
-    if (count < kSmallestRadixSort) {
-      std::sort(&items_[begin], &items_[begin] + count);
-    } else {
-      // Two cells a point are enough, unless many points share one.
-      while (bits > 1 && (std::size_t{1} << (D * (bits - 1))) >= 2 * count) --bits;
-      radix_sort(begin, end, D * bits);
+  /// Of each digit, how many there are below, and then where the next one goes.
+  using Places = std::array<std::uint32_t, std::size_t{1} << kWidestDigit>;
+
+  /// Sorts a range, which has the points at place_at(begin), ..., and then what is crowded in it.
+  template <typename PlaceAt>
+  void sort_range(const Range& range, const Box<D>& box, const PlaceAt& place_at) {
+    const int digit = std::min<int>(kWidestDigit, std::bit_width(range.size()) + 2);
+    const int most_levels = (digit + std::min(digit, 32 - place_bits_)) / D;
+    int levels = 1;
+    while (levels < most_levels && std::size_t{1} << (D * levels) < kCellsOfPoint * range.size()) {
+      ++levels;
     }
-    std::vector<Range> crowded = crowded_cells(begin, end, D * bits);
-    const std::size_t points_there =
-        std::accumulate(crowded.begin(), crowded.end(), std::size_t{0},
-                        [](std::size_t sum, const Range& cell) { return sum + cell.size(); });
-    if (bits < kMostBits<D> && points_there > count / 8) {
-      radix_sort(begin, end, D * kMostBits<D>);
-      crowded = crowded_cells(begin, end, D * kMostBits<D>);
+    const double extent = box.extent(box.longest_axis());
+    if (!(extent > kSmallestExtent && extent <= std::numeric_limits<double>::max())) {
+      for (std::size_t i = range.begin; i < range.end; ++i) order_[i] = place_at(i);
+      return;
     }
-    for (const Range& cell : crowded) {
-      if (cell.size() < count) sort_cell(cell);
+    int low_bits = set_keys(range, box.lo, extent, levels, place_at);
+    if (levels < most_levels && concentrated(D * levels - low_bits)) {
+      levels = most_levels;
+      low_bits = set_keys(range, box.lo, extent, levels, place_at);
+    }
+    make_places(range, low_, low_bits);
+    make_places(range, high_, D * levels - low_bits);
+    sort_by_key(range, low_bits, place_at);
+    sort_crowded_cells(range);
+  }
+
+  /// Whether less than a third of the box has points, by the high digits: they need smaller cells.
+  [[nodiscard]] bool concentrated(int high_bits) const {
+    const auto end = high_.begin() + (std::ptrdiff_t{1} << high_bits);
+    return 3 * (end - high_.begin() - std::count(high_.begin(), end, 0U)) < end - high_.begin();
+  }
+
+  /// Sets keys, and counts their digits. Returns how many bits the low one has.
+  template <typename PlaceAt>
+  int set_keys(const Range& range, const Point<D>& lo, double extent, int levels,
+               const PlaceAt& place_at) {
+    const int high_bits = std::min((D * levels + 1) / 2, 32 - place_bits_);
+    const int low_bits = D * levels - high_bits;
+    std::fill_n(low_.begin(), std::size_t{1} << low_bits, 0);
+    std::fill_n(high_.begin(), std::size_t{1} << high_bits, 0);
+    // The largest coordinate is still in the last cell.
+    const double scale = std::ldexp(1 - 0x1p-50, levels) / extent;
+    constexpr std::size_t kBlock = 8 * kLanes;
+    std::array<std::array<std::uint16_t, kBlock>, D> cells{};
+    std::array<std::uint32_t, kBlock> keys;
+    const std::uint32_t mask = (1U << low_bits) - 1;
+    for (std::size_t begin = range.begin; begin < range.end; begin += kBlock) {
+      const std::size_t size = std::min(kBlock, range.end - begin);
+      for (std::size_t j = 0; j < size; ++j) {
+        const Point<D>& p = points_[place_at(begin + j)];
+        for (int k = 0; k < D; ++k) {
+          cells[k][j] =
+              static_cast<std::uint16_t>(static_cast<std::int32_t>((p[k] - lo[k]) * scale));
+        }
+      }
+      for (std::size_t j = 0; j < size; j += kLanes) {
+        std::array<Lanes, D> lanes;
+        for (int k = 0; k < D; ++k) std::memcpy(&lanes[k], &cells[k][j], sizeof(Lanes));
+        Keys keys_of_lanes;
+        hilbert_keys(lanes, levels, keys_of_lanes);
+        std::memcpy(&keys[j], &keys_of_lanes, sizeof(Keys));
+      }
+      for (std::size_t j = 0; j < size; ++j) {
+        keys_[place_at(begin + j)] = keys[j];
+        ++low_[keys[j] & mask];
+        ++high_[keys[j] >> low_bits];
+      }
+    }
+    return low_bits;
+  }
+
+  /// Turns counts into places in the range.
+  static void make_places(const Range& range, Places& places, int bits) {
+    auto next = static_cast<std::uint32_t>(range.begin);
+    for (std::size_t digit = 0; digit >> bits == 0; ++digit) {
+      next += std::exchange(places[digit], next);
     }
   }
 
-  /// The items of each cell that has many.
-  [[nodiscard]] std::vector<Range> crowded_cells(std::size_t begin, std::size_t end,
-                                                 int key_bits) const {
-    const int shift = 64 - key_bits;
-    std::vector<Range> cells;
-    for (std::size_t i = begin; i + kFewPoints < end;) {
-      const Item cell = items_[i] >> shift;
-      if (items_[i + kFewPoints] >> shift != cell) {
-        do {
-          ++i;
-        } while (items_[i] >> shift == cell);
+  /// Sorts by the low digits into items, which have the high digit above the place, and these by
+  /// the high ones.
+  template <typename PlaceAt>
+  void sort_by_key(const Range& range, int low_bits, const PlaceAt& place_at) {
+    const std::size_t prefetched = range.size() > kManyPoints ? range.end - kAhead : range.begin;
+    const std::uint32_t mask = (1U << low_bits) - 1;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      if (i < prefetched) {
+        __builtin_prefetch(&items_[low_[keys_[place_at(i + kAhead)] & mask]], 1);
+      }
+      const VertexId place = place_at(i);
+      const std::uint64_t high = keys_[place] >> low_bits;
+      items_[low_[keys_[place] & mask]++] = static_cast<std::uint32_t>(high << place_bits_ | place);
+    }
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      if (i < prefetched) {
+        __builtin_prefetch(&order_[high_[std::uint64_t{items_[i + kAhead]} >> place_bits_]], 1);
+      }
+      const std::uint64_t item = items_[i];
+      const std::uint64_t high = item >> place_bits_;
+      order_[high_[high]++] = static_cast<VertexId>(item ^ high << place_bits_);
+    }
+  }
+
+  /// Gives each cell with many points in the sorted range a curve of its own.
+  void sort_crowded_cells(const Range& range) {
+    const auto key_at = [this](std::size_t i) { return keys_[order_[i]]; };
+    std::size_t done = range.begin;
+    for (std::size_t i = range.begin; i + kFewPoints < range.end;) {
+      const std::uint32_t key = key_at(i);
+      if (key_at(i + kFewPoints) != key) {
+        i += kFewPoints;
         continue;
       }
-      std::size_t j = i + kFewPoints + 1;
-      while (j < end && items_[j] >> shift == cell) ++j;
-      cells.push_back({i, j});
-      i = j;
-    }
-    return cells;
-  }
-
-  /// A crowded cell gets a curve of its own.
-  void sort_cell(const Range& cell) {
-    Box<D> box;
-    for (std::size_t i = cell.begin; i < cell.end; ++i) box.expand(point(items_[i]));
-    if (box.lo != box.hi) sort_range(cell.begin, cell.end, box);
-  }
-
-  [[nodiscard]] const Point<D>& point(Item item) const {
-    return points_[static_cast<VertexId>(item)];
-  }
-
-  void set_keys(std::size_t begin, std::size_t end, const Box<D>& box) {
-    constexpr double kLargest = (1 << kMostBits<D>)-1;
-    const double extent = box.extent(box.longest_axis());
-    const double scale = extent > 0 ? kLargest / extent : 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Point<D>& p = point(items_[i]);
-      std::array<std::uint32_t, D> cell;
-      for (int k = 0; k < D; ++k) {
-        // Written so that NaN, from extents that overflow, becomes 0.
-        const double place = (p[k] - box.lo[k]) * scale;
-        cell[k] = place > 0 ? static_cast<std::uint32_t>(std::min(place, kLargest)) : 0;
-      }
-      items_[i] =
-          Item{hilbert_key(cell)} << (64 - D * kMostBits<D>) | static_cast<VertexId>(items_[i]);
-    }
-  }
-
-  /// Sorts by the highest bits, stably, in passes over digits of equal width.
-  void radix_sort(std::size_t begin, std::size_t end, int key_bits) {
-    constexpr int kWidestDigit = 11;
-    const int passes = (key_bits + kWidestDigit - 1) / kWidestDigit;
-    const int digit = (key_bits + passes - 1) / passes;
-    const int lowest = 64 - key_bits;
-    const Item mask = (Item{1} << digit) - 1;
-    std::array<std::array<std::uint32_t, 1 << kWidestDigit>, 3> places{};
-    for (std::size_t i = begin; i < end; ++i) {
-      const Item key = items_[i] >> lowest;
-      for (int pass = 0; pass < passes; ++pass) ++places[pass][key >> (pass * digit) & mask];
-    }
-    for (int pass = 0; pass < passes; ++pass) {
-      auto& place = places[pass];
-      auto next = static_cast<std::uint32_t>(begin);
-      for (std::size_t d = 0; d <= mask; ++d) next += std::exchange(place[d], next);
-      const int shift = lowest + pass * digit;
-      for (std::size_t i = begin; i < end; ++i) {
-        const Item item = items_[i];
-        other_[place[item >> shift & mask]++] = item;
-      }
-      if (end - begin == count_) {
-        std::swap(items_, other_);
-      } else {
-        std::copy(&other_[begin], &other_[begin] + (end - begin), &items_[begin]);
-      }
+      Range cell{i, i + kFewPoints + 1};
+      while (cell.begin > done && key_at(cell.begin - 1) == key) --cell.begin;
+      while (cell.end < range.end && key_at(cell.end) == key) ++cell.end;
+      Box<D> box;
+      for (std::size_t j = cell.begin; j < cell.end; ++j) box.expand(points_[order_[j]]);
+      if (box.lo != box.hi) sort_range(cell, box, [this](std::size_t j) { return order_[j]; });
+      i = done = cell.end;
     }
   }
 
   std::span<const Point<D>> points_;
   std::size_t count_;
-  BorrowedMemory memory_;  ///< of base cases, of which one is likely to follow
-  Item* items_;
-  Item* other_;
+  int place_bits_;
+  BorrowedBlock memory_{BlockUse::kSimplices};  ///< a base case is likely to follow
+  std::uint32_t* keys_;                         ///< by place
+  std::uint32_t* items_;
+  std::vector<VertexId> order_;
+  Places low_, high_;
 };
 
 }  // namespace

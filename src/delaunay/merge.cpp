@@ -9,6 +9,7 @@
 
 #include "src/delaunay/hash.h"
 #include "src/delaunay/schedule.h"
+#include "src/delaunay/simplex_index.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
@@ -16,8 +17,6 @@ namespace spillway {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
-/// What is far apart in memory is fetched for so many simplices before the first is looked at.
-constexpr std::size_t kBatch = 32;
 
 /// The vertices of a simplex without the i-th.
 template <std::size_t N>
@@ -72,6 +71,7 @@ class Merge {
 
  private:
   using Vertices = std::array<VertexId, D + 1>;
+  using BorderIndex = SimplexIndex<D + 1>;
 
   /// A facet between a simplex of the border that is removed and one outside of the border.
   struct OpenFacet {
@@ -108,10 +108,9 @@ class Merge {
   [[nodiscard]] std::vector<Vertices> corners_of(const std::vector<SimplexId>& simplices) const;
   [[nodiscard]] static std::vector<VertexId> vertices_of(const std::vector<Vertices>& simplices,
                                                          const Part<D>& child);
-  [[nodiscard]] ConcurrentIndex index_border() const;
   template <typename Body>
   void for_mesh_simplices(std::size_t begin, std::size_t end, const Body& body) const;
-  std::uint32_t accept_grain(std::size_t begin, std::size_t end, const ConcurrentIndex& index);
+  std::uint32_t accept_grain(std::size_t begin, std::size_t end, const BorderIndex& index);
   [[nodiscard]] std::vector<OpenFacet> open_facets();
   void link_simplex(SimplexId in_border_mesh, SimplexId created, const ConcurrentIndex& facet_index,
                     const std::vector<OpenFacet>& facets, std::vector<Link>& links);
@@ -221,50 +220,20 @@ void Merge<D>::for_mesh_simplices(std::size_t begin, std::size_t end, const Body
   }
 }
 
-template <int D>
-ConcurrentIndex Merge<D>::index_border() const {
-  ConcurrentIndex index(border_.size());
-  parallel_for(border_.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::array<std::uint64_t, kBatch> hashes;
-    for (std::size_t first = begin; first < end; first += kBatch) {
-      const std::size_t last = std::min(end, first + kBatch);
-      for (std::size_t b = first; b < last; ++b) {
-        hashes[b - first] = simplex_hash(border_corners_[b]);
-        index.prefetch(hashes[b - first]);
-      }
-      for (std::size_t b = first; b < last; ++b) {
-        index.insert(hashes[b - first], static_cast<std::uint32_t>(b));
-      }
-    }
-  });
-  return index;
-}
-
 /// Sets the targets of mesh simplices. New ones are numbered from 0 on; returns their number.
 template <int D>
-std::uint32_t Merge<D>::accept_grain(std::size_t begin, std::size_t end,
-                                     const ConcurrentIndex& index) {
-  struct Search {
-    const Vertices* candidate;
-    SimplexId* target;
-    std::uint64_t hash;
-  };
-  std::vector<Search> searches;
-  searches.reserve(kBatch);
-  const auto search_all = [&] {
-    for (const Search& search : searches) {
-      const std::uint32_t b = index.first(search.hash);
-      if (b != ConcurrentIndex::kNotFound) __builtin_prefetch(&border_corners_[b]);
+std::uint32_t Merge<D>::accept_grain(std::size_t begin, std::size_t end, const BorderIndex& index) {
+  std::array<Vertices, BorderIndex::kBatch> candidates;
+  std::array<SimplexId*, BorderIndex::kBatch> targets;
+  std::size_t count = 0;
+  const auto search = [&] {
+    const auto found = index.find(std::span(candidates).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (found[i] == BorderIndex::kNotFound) continue;
+      *targets[i] = border_[found[i]];
+      survived_[found[i]] = 1;
     }
-    for (const Search& search : searches) {
-      const std::uint32_t b = index.find(search.hash, [&](std::uint32_t item) {
-        return same_simplex(*search.candidate, border_corners_[item]);
-      });
-      if (b == ConcurrentIndex::kNotFound) continue;
-      *search.target = border_[b];
-      survived_[b] = 1;
-    }
-    searches.clear();
+    count = 0;
   };
   std::uint32_t created = 0;
   for_mesh_simplices(begin, end, [&](std::size_t number, SimplexId id) {
@@ -277,12 +246,11 @@ std::uint32_t Merge<D>::accept_grain(std::size_t begin, std::size_t end,
       targets_[number] = {part_.block, created++};
       return;
     }
-    const std::uint64_t hash = simplex_hash(candidate);
-    index.prefetch(hash);
-    searches.push_back({&candidate, &targets_[number], hash});
-    if (searches.size() == kBatch) search_all();
+    candidates[count] = candidate;
+    targets[count++] = &targets_[number];
+    if (count == BorderIndex::kBatch) search();
   });
-  search_all();
+  search();
   return created;
 }
 
@@ -302,7 +270,7 @@ void Merge<D>::accept(Task& task) {
   targets_.assign(total, kNoSimplex);
   survived_.assign(border_.size(), 0);
 
-  const ConcurrentIndex index = index_border();
+  const BorderIndex index(border_corners_);
   std::vector<std::size_t> first_created(grain_count(total, kGrain) + 1);
   parallel_for(total, kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
     first_created[g + 1] = accept_grain(begin, end, index);
@@ -314,7 +282,7 @@ void Merge<D>::accept(Task& task) {
                 " points has more simplices than fit into one block");
   }
 
-  new_block().simplices.resize(created_count);
+  new_block().simplices = BlockArray<Simplex<D>>(created_count);
   marks_[part_.block].assign(created_count, Mark::kInterior);
   std::vector<std::vector<SimplexId>> hulls(grain_count(total, kGrain));
   parallel_for(total, kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "src/delaunay/block_array.h"
 #include "src/geometry/point.h"
 
 namespace spillway {
@@ -51,8 +52,8 @@ struct Simplex {
 /// already there.
 template <int D>
 struct SimplexBlock {
-  std::vector<Simplex<D>> simplices;  ///< some of them removed
-  std::vector<SimplexId> links;       ///< neighbours in other blocks
+  BlockArray<Simplex<D>> simplices;  ///< some of them removed
+  std::vector<SimplexId> links;      ///< neighbours in other blocks
 
   [[nodiscard]] SimplexId neighbour(SimplexId simplex, int i) const {
     const std::uint32_t n = simplices[simplex.index].neighbours[i];

@@ -2,6 +2,7 @@
 
 #include <sys/mman.h>
 
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -25,6 +26,18 @@ void for_huge_pages(std::byte* begin, std::byte* end, const Give& give) {
   give(first, static_cast<std::size_t>(end - first) / kHugePage * kHugePage);
 }
 
+struct KeptBlocks {
+  std::mutex mutex;
+  std::array<std::vector<Block>, 2> of_use;  ///< guarded by `mutex`
+
+  std::vector<Block>& operator[](BlockUse use) { return of_use[static_cast<std::size_t>(use)]; }
+
+  static KeptBlocks& instance() {
+    static KeptBlocks kept;
+    return kept;
+  }
+};
+
 }  // namespace
 
 void ask_for_huge_pages(void* memory, std::size_t bytes) {
@@ -35,67 +48,69 @@ void ask_for_huge_pages(void* memory, std::size_t bytes) {
 
 void Block::Free::operator()(std::byte* memory) const { std::free(memory); }
 
+Block::Block(Block&& other) noexcept
+    : memory_(std::move(other.memory_)), capacity_(std::exchange(other.capacity_, 0)) {}
+
+Block& Block::operator=(Block&& other) noexcept {
+  memory_ = std::move(other.memory_);
+  capacity_ = std::exchange(other.capacity_, 0);
+  return *this;
+}
+
+Block Block::of(std::size_t bytes) {
+  const std::size_t alignment = bytes >= kHugePage ? kHugePage : kCacheLine;
+  const std::size_t size = (bytes + alignment - 1) / alignment * alignment;
+  Block block;
+  block.memory_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, size)));
+  if (size > 0 && block.memory_ == nullptr) throw std::bad_alloc();
+  block.capacity_ = size;
+  ask_for_huge_pages(block.memory_.get(), size);
+  return block;
+}
+
 void* Block::reserve(std::size_t bytes) {
   if (bytes > capacity_) {
-    memory_.reset();
-    capacity_ = 0;
-    const std::size_t wanted = bytes + bytes / 8;  // base cases differ a little in size
-    const bool huge = wanted >= kHugePage;
-    const std::size_t alignment = huge ? kHugePage : kCacheLine;
-    const std::size_t size = (wanted + alignment - 1) / alignment * alignment;
-    memory_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, size)));
-    if (memory_ == nullptr) throw std::bad_alloc();
-    capacity_ = size;
-    ask_for_huge_pages(memory_.get(), size);
+    *this = {};
+    *this = of(bytes + bytes / 8);  // base cases differ a little in size
   }
   return memory_.get();
 }
 
 void* Block::grow(std::size_t bytes, std::size_t used) {
   if (bytes > capacity_) {
-    Block larger;
-    larger.reserve(bytes + bytes / 2);
+    Block larger = of(bytes + bytes / 2);
     std::memcpy(larger.memory_.get(), memory_.get(), used);
     *this = std::move(larger);
   }
   return memory_.get();
 }
 
-void Block::forget(std::size_t begin, std::size_t end) {
-  for_huge_pages(memory_.get() + begin, memory_.get() + end,
+void Block::give_back_behind(std::size_t used) {
+  for_huge_pages(memory_.get() + used, memory_.get() + capacity_,
                  [](std::byte* first, std::size_t size) { madvise(first, size, MADV_DONTNEED); });
 }
 
-struct BorrowedMemory::Kept {
-  std::mutex mutex;
-  std::vector<std::unique_ptr<WorkingMemory>> free;  ///< guarded by `mutex`
-};
-
-auto BorrowedMemory::kept() -> Kept& {
-  static Kept kept;
-  return kept;
+BorrowedBlock::BorrowedBlock(BlockUse use) : use_(use) {
+  KeptBlocks& kept = KeptBlocks::instance();
+  const std::lock_guard lock(kept.mutex);
+  if (kept[use].empty()) return;
+  block_ = std::move(kept[use].back());
+  kept[use].pop_back();
 }
 
-BorrowedMemory::BorrowedMemory() {
-  {
-    const std::lock_guard lock(kept().mutex);
-    auto& free = kept().free;
-    if (!free.empty()) {
-      memory_ = std::move(free.back());
-      free.pop_back();
-    }
-  }
-  if (memory_ == nullptr) memory_ = std::make_unique<WorkingMemory>();
+BorrowedBlock::~BorrowedBlock() { keep_block(use_, std::move(block_)); }
+
+void keep_block(BlockUse use, Block block) {
+  if (block.capacity() == 0) return;
+  KeptBlocks& kept = KeptBlocks::instance();
+  const std::lock_guard lock(kept.mutex);
+  kept[use].push_back(std::move(block));
 }
 
-BorrowedMemory::~BorrowedMemory() {
-  const std::lock_guard lock(kept().mutex);
-  kept().free.push_back(std::move(memory_));
-}
-
-void BorrowedMemory::release_kept_memory() {
-  const std::lock_guard lock(kept().mutex);
-  kept().free.clear();
+void release_kept_blocks() {
+  KeptBlocks& kept = KeptBlocks::instance();
+  const std::lock_guard lock(kept.mutex);
+  for (std::vector<Block>& blocks : kept.of_use) blocks.clear();
 }
 
 }  // namespace spillway

@@ -1,8 +1,9 @@
 #pragma once
-// Memory for one base case of the own kernels, kept for those that follow: fresh memory costs about
-// as much as a tenth of the triangulation in it.
+// Memory for base cases of the own kernels, kept for those that follow: fresh memory costs about as
+// much as a tenth of the triangulation in it.
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 
 namespace spillway {
@@ -13,17 +14,25 @@ void ask_for_huge_pages(void* memory, std::size_t bytes);
 /// A block of memory that only grows. Blocks that span huge pages ask for them.
 class Block {
  public:
-  /// Memory for at least so many bytes, aligned for cache lines; what it held before may be lost.
-  /// Throws std::bad_alloc.
+  Block() = default;
+  Block(Block&& other) noexcept;
+  Block& operator=(Block&& other) noexcept;
+
+  /// A block of this size, aligned for cache lines. Throws std::bad_alloc.
+  static Block of(std::size_t bytes);
+
+  /// Memory for at least so many bytes; what it held before may be lost. Some room is added if it
+  /// has to be larger than it was. Throws std::bad_alloc.
   void* reserve(std::size_t bytes);
 
-  /// The same, but the first `used` bytes stay what they are. Some room is added for the next time.
+  /// The same, but the first `used` bytes stay what they are.
   void* grow(std::size_t bytes, std::size_t used);
 
-  /// Gives the system the huge pages that lie between these two bytes; what they held is lost, and
-  /// they come back empty when they are used again.
-  void forget(std::size_t begin, std::size_t end);
+  /// Gives the system the huge pages behind the first `used` bytes. They come back empty when they
+  /// are used again.
+  void give_back_behind(std::size_t used);
 
+  [[nodiscard]] void* data() const { return memory_.get(); }
   [[nodiscard]] std::size_t capacity() const { return capacity_; }
 
  private:
@@ -34,31 +43,30 @@ class Block {
   std::size_t capacity_ = 0;
 };
 
-/// What one base case works in.
-struct WorkingMemory {
-  Block points;
-  Block simplices;
-};
+/// What base cases keep a block for, so that the next one gets a block of fitting size.
+enum class BlockUse : std::uint8_t { kPoints, kSimplices };
 
-/// Working memory on loan: that of an earlier base case if there is any. Gives it back at the end
-/// of its life, for a later one of any thread.
-class BorrowedMemory {
+/// A block on loan: that of an earlier base case if there is any. Gives it back at the end of its
+/// life, for a later one of any thread.
+class BorrowedBlock {
  public:
-  BorrowedMemory();
-  ~BorrowedMemory();
-  BorrowedMemory(const BorrowedMemory&) = delete;
-  BorrowedMemory& operator=(const BorrowedMemory&) = delete;
+  explicit BorrowedBlock(BlockUse use);
+  ~BorrowedBlock();
+  BorrowedBlock(const BorrowedBlock&) = delete;
+  BorrowedBlock& operator=(const BorrowedBlock&) = delete;
 
-  WorkingMemory& operator*() { return *memory_; }
-
-  /// Gives the system all that is kept for coming base cases.
-  static void release_kept_memory();
+  Block& operator*() { return block_; }
+  Block* operator->() { return &block_; }
 
  private:
-  struct Kept;
-  static Kept& kept();
-
-  std::unique_ptr<WorkingMemory> memory_;
+  BlockUse use_;
+  Block block_;
 };
+
+/// Keeps a block for coming base cases.
+void keep_block(BlockUse use, Block block);
+
+/// Gives the system all blocks that are kept for coming base cases.
+void release_kept_blocks();
 
 }  // namespace spillway

@@ -120,7 +120,7 @@ struct OwnRun {
   std::size_t bytes = 0;  ///< at the peak, the result and the kernel's working memory
 };
 
-/// Sorts and triangulates as `divide` and its callers do with a leaf.
+/// Sorts and triangulates as `divide` and its callers do with a leaf of a tile.
 template <int D>
 OwnRun run_own(const Points<D>& points, bool measure_memory) {
   OwnRun run;
@@ -142,10 +142,12 @@ OwnRun run_own(const Points<D>& points, bool measure_memory) {
   const std::size_t bytes_before = resident_bytes("VmRSS");
   {
     const ProcessorStopwatch watch(run.timing.processor_seconds);
-    base_case = triangulate_base_case<D>({.points = sorted, .input_index = input_index});
+    base_case =
+        triangulate_base_case<D>({.points = sorted, .input_index = input_index, .in_place = true});
   }
   run.timing.simplices = base_case.simplices.size() - base_case.hull.size();
   run.bytes = resident_bytes("VmHWM") - bytes_before;
+  recycle(std::move(base_case.simplices));
   return run;
 }
 

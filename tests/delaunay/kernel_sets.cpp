@@ -215,21 +215,23 @@ std::string compare_kernel_with_cgal(std::span<const Point<D>> points, std::uint
   Triangulation<D> t;
   for (const VertexId i : place) t.points.push_back(points[i]);
   t.input_index = place;
-  const BaseCaseInput<D> input{.points = t.points, .input_index = t.input_index};
+  const BaseCaseInput<D> input{
+      .points = t.points, .input_index = t.input_index, .in_place = seed % 4 >= 2};
   const std::vector<VertexId> basis = affine_basis<D>(input.points);
   const auto expected = cgal_simplices<D>(points);
   if (basis.size() <= D) return expected.empty() ? "" : "flat points have simplices";
-  const BaseCase<D> result = run_kernel(input, basis);
+  BaseCase<D> result = run_kernel(input, basis);
   if (finite_simplices<D>(result, place) != expected) {
     return fmt::format("{} finite simplices, CGAL has {}, or others",
                        result.simplices.size() - result.hull.size(), expected.size());
   }
   t.blocks.resize(1);
-  t.blocks[0].simplices = result.simplices;
+  t.blocks[0].simplices = std::move(result.simplices);
   for (const std::uint32_t i : result.hull) t.hull.push_back({0, i});
   t.duplicates = result.duplicates;
   t.dimension = D;
   const std::vector<std::string> faults = verify(t);
+  recycle(std::move(t.blocks[0].simplices));
   return faults.empty() ? "" : faults.front();
 }
 

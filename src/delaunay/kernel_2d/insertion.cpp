@@ -65,30 +65,28 @@ Handle Insertion<kLattice>::infinite_vertex(Handle first) const {
 /// From triangle to triangle the power of the query falls, so it comes to the one that contains it.
 template <bool kLattice>
 [[gnu::noinline]] Handle Insertion<kLattice>::locate(const Pair& query) {
-  const auto power = [&query](const Triangle& t) { return squared_distance(t, query) - t.inner; };
+  // Of the triangles it is given, keeps the one of least power; tells if that is in conflict.
   double best = std::numeric_limits<double>::infinity();
   Handle here = star_[0];
+  const auto approach = [&](Handle there) {
+    const Triangle& triangle = triangles_.at_first(there);
+    const double s = squared_distance(triangle, query);
+    const double power = (s - triangle.inner) + (s - triangle.outer);
+    if (!(power < best)) return false;
+    best = power;
+    here = there;
+    return s < triangle.inner;
+  };
   for (std::size_t i = 0; i < star_count_; ++i) {
-    const double s = power(triangles_.at_first(star_[i]));
-    if (s < best) {
-      best = s;
-      here = star_[i];
-    }
+    if (approach(star_[i])) return here;
   }
-  while (!(best < 0)) {
-    Handle nearest = kNone;
-    for (Handle h = here; h < here + 3; ++h) {
-      const Handle there = Triangles::first_handle(triangles_.mirror(h));
-      const double s = power(triangles_.at_first(there));
-      if (s < best) {
-        best = s;
-        nearest = there;
-      }
+  for (;;) {
+    const Handle before = here;
+    for (Handle h = before; h < before + 3; ++h) {
+      if (approach(Triangles::first_handle(triangles_.mirror(h)))) return here;
     }
-    if (nearest == kNone) return locate_exactly(here);
-    here = nearest;
+    if (here == before) return locate_exactly(here);
   }
-  return here;
 }
 
 /// The same with exact predicates: through edges that have the query on their outer side.

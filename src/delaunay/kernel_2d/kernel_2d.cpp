@@ -32,14 +32,15 @@ bool certainly_inside(const Triangle& triangle, const Box<2>& box) {
 }
 
 /// Turns the kernel's triangles into simplices, numbered alike; number() turns vertices into final
-/// ones. Fills BaseCase::inside if it has been given room.
+/// ones. The simplices may lie where the triangles are: those are larger, so the list never comes
+/// to lie over one that is still to be read. Fills BaseCase::inside if it has been given room.
 template <typename Number>
-void list_simplices(const TriangleArray& triangles, std::uint32_t count, const Number& number,
-                    const Box<2>& region, BaseCase<2>& result) {
-  result.simplices.reserve(count);
-  ask_for_huge_pages(result.simplices.data(), count * sizeof(Simplex<2>));
+void list_simplices(const TriangleArray& triangles, const Number& number, const Box<2>& region,
+                    BaseCase<2>& result) {
+  const auto count = static_cast<std::uint32_t>(result.simplices.size());
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Triangle& triangle = triangles.at_first(TriangleArray::handle(i, 0));
+    Triangle triangle;
+    std::memcpy(&triangle, &triangles.at_first(TriangleArray::handle(i, 0)), sizeof triangle);
     Words vertices, neighbours;
     load(triangle.vertices, vertices);
     load(triangle.neighbours, neighbours);
@@ -47,8 +48,8 @@ void list_simplices(const TriangleArray& triangles, std::uint32_t count, const N
     number(vertices);
     vertices |= infinite;
     neighbours >>= TriangleArray::kNumberShift;
-    result.simplices.push_back(
-        {{vertices[0], vertices[1], vertices[2]}, {neighbours[0], neighbours[1], neighbours[2]}});
+    result.simplices[i] = {{vertices[0], vertices[1], vertices[2]},
+                           {neighbours[0], neighbours[1], neighbours[2]}};
     const bool finite = mask_of(infinite) == 0;
     if (!finite) result.hull.push_back(i);
     if (i < result.inside.size()) {
@@ -59,7 +60,8 @@ void list_simplices(const TriangleArray& triangles, std::uint32_t count, const N
 
 template <bool kLattice>
 BaseCase<2> triangulate(const BaseCaseInput<2>& input, std::span<const VertexId> basis,
-                        const WorkingPoints& points, const TriangleArray& triangles) {
+                        const WorkingPoints& points, Block& memory) {
+  const TriangleArray triangles(memory.data());
   Insertion<kLattice> insertion(
       points, triangles, {basis[0] + kFirstPoint, basis[1] + kFirstPoint, basis[2] + kFirstPoint},
       vector_width());
@@ -68,14 +70,15 @@ BaseCase<2> triangulate(const BaseCaseInput<2>& input, std::span<const VertexId>
   result.dimension = 2;
   const VertexId shift = input.first_vertex - kFirstPoint;
   const std::uint32_t count = insertion.triangle_count();
+  result.simplices = make_list<2>(input, memory, count);
   if (input.region) result.inside.resize(count);
   if (insertion.repetitions().empty()) {
     list_simplices(
-        triangles, count, [shift](Words& v) { v += shift; }, points.region, result);
+        triangles, [shift](Words& v) { v += shift; }, points.region, result);
   } else {
     const std::vector<VertexId> kept = kernel::choose_kept<2>(input, insertion.repetitions());
     list_simplices(
-        triangles, count,
+        triangles,
         [&](Words& v) {
           for (int i = 0; i < 4; ++i) v[i] = kept[v[i]] + shift;
         },
@@ -97,11 +100,12 @@ BaseCase<2> kernel_2d_base_case(const BaseCaseInput<2>& input, std::span<const V
                     "choose base cases of at most {} points",
                     input.points.size(), TriangleArray::kMaxTriangles / 2 - 1));
   }
-  BorrowedMemory memory;
-  const WorkingPoints points = make_working_points(input.points, (*memory).points, input.region);
-  const TriangleArray triangles((*memory).simplices.reserve(triangle_count * sizeof(Triangle)));
-  return points.lattice ? triangulate<true>(input, basis, points, triangles)
-                        : triangulate<false>(input, basis, points, triangles);
+  BorrowedBlock point_memory(BlockUse::kPoints);
+  const WorkingPoints points = make_working_points(input.points, *point_memory, input.region);
+  BorrowedBlock triangles(BlockUse::kSimplices);
+  triangles->reserve(triangle_count * sizeof(Triangle));
+  return points.lattice ? triangulate<true>(input, basis, points, *triangles)
+                        : triangulate<false>(input, basis, points, *triangles);
 }
 
 }  // namespace spillway

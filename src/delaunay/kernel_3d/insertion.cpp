@@ -220,19 +220,6 @@ template <bool kRanked>
   return result;
 }
 
-/// Chooses cells for a star: free ones, then new ones.
-template <bool kRanked>
-void Insertion<kRanked>::take_cells(std::size_t count) {
-  const std::size_t used = std::min(count, free_count_);
-  free_count_ -= used;
-  copy_words(free_.data() + free_count_, used, star_.data());
-  const std::size_t fresh = count - used;
-  if (fresh == 0) return;
-  if (cell_count_ + fresh > capacity_) [[unlikely]]
-    grow_cells(cell_count_ + fresh);
-  for (std::size_t i = used; i < count; ++i) star_[i] = CellArray::handle(cell_count_++, 0);
-}
-
 template <bool kRanked>
 [[gnu::noinline, gnu::cold]] void Insertion<kRanked>::grow_cells(std::size_t count) {
   if (count > CellArray::kMaxCells) {

@@ -78,6 +78,23 @@ SPILLWAY_INLINE auto Insertion<kRanked>::find_hole(VertexRef query, std::size_t 
   return hole;
 }
 
+/// Chooses cells for a star: free ones, then new ones.
+template <bool kRanked>
+template <int kLanes>
+SPILLWAY_INLINE void Insertion<kRanked>::take_cells(std::size_t count) {
+  const std::size_t used = std::min(count, free_count_);
+  const std::size_t added = count - used;
+  if (cell_count_ + added > capacity_) [[unlikely]]
+    grow_cells(cell_count_ + added);
+  Handle* const star = star_.data();
+  free_count_ -= used;
+  copy_words(free_.data() + free_count_, used, star);
+  constexpr Handle kCell = CellArray::handle(1, 0);
+  Words next = CellArray::handle(cell_count_, 0) + Words{0, kCell, 2 * kCell, 3 * kCell};
+  for (std::size_t i = used; i < count; i += 4, next += 4 * kCell) store(next, star + i);
+  cell_count_ += static_cast<std::uint32_t>(added);
+}
+
 /// Makes the spheres of the star and finds those of its cells that are certainly in conflict with
 /// the next point.
 template <bool kRanked>
@@ -128,7 +145,7 @@ SPILLWAY_INLINE void Insertion<kRanked>::insert_by(VertexRef query, VertexRef ne
     known = 1;
   }
   const Hole hole = find_hole<kLanes>(query, known);
-  take_cells(hole.facets);
+  take_cells<kLanes>(hole.facets);
   const bool on_hull = star_maker_.make<kLanes>({.cells = cells_,
                                                  .apex = query,
                                                  .facets = boundary_.data(),
