@@ -65,28 +65,31 @@ Handle Insertion<kLattice>::infinite_vertex(Handle first) const {
 /// From triangle to triangle the power of the query falls, so it comes to the one that contains it.
 template <bool kLattice>
 [[gnu::noinline]] Handle Insertion<kLattice>::locate(const Pair& query) {
-  // Of the triangles it is given, keeps the one of least power; tells if that is in conflict.
+  // Of the triangles it is given, keeps the one of least power; tells if powers lead no further:
+  // it is in conflict, or its tolerance hides whether it is.
   double best = std::numeric_limits<double>::infinity();
   Handle here = star_[0];
-  const auto approach = [&](Handle there) {
+  bool found = false;
+  const auto arrive = [&](Handle there) {
     const Triangle& triangle = triangles_.at_first(there);
     const double s = squared_distance(triangle, query);
     const double power = (s - triangle.inner) + (s - triangle.outer);
     if (!(power < best)) return false;
     best = power;
     here = there;
-    return s < triangle.inner;
+    found = s < triangle.inner;
+    return !(s > triangle.outer);
   };
-  for (std::size_t i = 0; i < star_count_; ++i) {
-    if (approach(star_[i])) return here;
-  }
-  for (;;) {
+  bool arrived = false;
+  for (std::size_t i = 0; i < star_count_ && !arrived; ++i) arrived = arrive(star_[i]);
+  while (!arrived) {
     const Handle before = here;
-    for (Handle h = before; h < before + 3; ++h) {
-      if (approach(Triangles::first_handle(triangles_.mirror(h)))) return here;
+    for (Handle h = before; h < before + 3 && !arrived; ++h) {
+      arrived = arrive(Triangles::first_handle(triangles_.mirror(h)));
     }
-    if (here == before) return locate_exactly(here);
+    arrived = arrived || here == before;
   }
+  return found ? here : locate_exactly(here);
 }
 
 /// The same with exact predicates: through edges that have the query on their outer side.
