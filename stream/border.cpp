@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include "src/delaunay/delaunay.h"
@@ -17,9 +18,19 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
-/// Memory for each point of a border while it is triangulated, measured.
+/// Memory for each point of a border while it is triangulated, measured; and where the border is
+/// all there is, as for points of a sphere: then the parts of that triangulation have borders as
+/// large.
 template <int D>
-constexpr std::uint64_t kMergeBytes = D == 2 ? 300 : 900;
+constexpr std::uint64_t kMergeBytes = D == 2 ? 320 : 900;
+template <int D>
+constexpr std::uint64_t kAllBorderMergeBytes = D == 2 ? 320 : 1400;
+
+/// Memory for each point of a border, where there are so many simplices for each of them: all there
+/// can be in the plane, and more than there usually are in space.
+template <int D>
+constexpr std::uint64_t kBorderBytes = sizeof(BorderVertex<D>) +
+                                       (D == 2 ? 2 : 8) * sizeof(std::array<VertexId, D + 1>);
 
 template <int D, typename Tree>
 class Merge {
@@ -32,15 +43,32 @@ class Merge {
 
   MergedBorder<D> run(Task& task) {
     task.after.resize(3);
+    std::uint64_t bytes = 0;
+    for (const Border<D>& child : children_) bytes += child.bytes();
+    const MemoryLease copy(budget_, bytes, "the merge of borders");
     find_exposed(task.after[0]);
-    const MemoryLease lease(budget_, border_vertices_.size() * kMergeBytes<D>,
-                            "the triangulation of a border");
+    const bool most = 2 * border_vertices_.size() > points_below();
+    const MemoryLease lease(
+        budget_, border_vertices_.size() * (most ? kAllBorderMergeBytes<D> : kMergeBytes<D>),
+        "the triangulation of a border");
     triangulate(task.after[1]);
     accept(task.after[2]);
     return std::move(result_);
   }
 
  private:
+  [[nodiscard]] std::uint64_t points_below() const {
+    std::uint64_t points = 0;
+    for (const Tree* tree : trees_) {
+      if constexpr (std::is_same_v<Tree, Part<D>>) {
+        points += tree->size();
+      } else {
+        points += tree->points;
+      }
+    }
+    return points;
+  }
+
   /// Numbers all vertices, sorts the children's simplices into those that a sibling may change and
   /// those that stay, and collects the vertices to be triangulated.
   void find_exposed(Task& task) {
@@ -180,12 +208,19 @@ class Merge {
 
 }  // namespace
 
+template <int D>
+std::uint64_t enough_memory(std::uint64_t points) {
+  return points * (kLoadedPointBytes + 2 * kBorderBytes<D> + kAllBorderMergeBytes<D>);
+}
+
 template <int D, typename Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
                               MemoryBudget& budget, Task& task) {
   return Merge<D, Tree>(children, trees, budget).run(task);
 }
 
+template std::uint64_t enough_memory<2>(std::uint64_t);
+template std::uint64_t enough_memory<3>(std::uint64_t);
 template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const Part<2>* const>,
                                        MemoryBudget&, Task&);
 template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const Part<3>* const>,

@@ -71,12 +71,17 @@ struct MergedBorder {
   std::uint64_t retriangulated = 0;  ///< points of the triangulation of the borders
 };
 
+/// Bytes of memory that are enough to triangulate so many points, even if all of them stay in the
+/// border to the end. In space that holds for borders of up to 8 simplices a point.
+template <int D>
+std::uint64_t enough_memory(std::uint64_t points);
+
 /// Makes one of the borders of parts that are children of one node. `trees[c]` is child c's tree of
 /// boxes (Part or TileNode). The vertices of simplices that a sibling may change, and all vertices
 /// of open children, are triangulated; of that, simplices are accepted that span children, or that
 /// their own child has in its border, facing the same way (Funke, Sanders 2017, Algorithm 1). All
 /// others of the children are kept as they are.
-/// Leases the memory of that triangulation from `budget`; throws Error if there is not enough.
+/// Leases the memory of that from `budget`; throws Error if there is not enough.
 template <int D, typename Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
                               MemoryBudget& budget, Task& task);

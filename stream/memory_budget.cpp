@@ -65,8 +65,16 @@ void MemoryBudget::take(std::uint64_t bytes, const char* purpose) {
   const std::uint64_t used = used_ += bytes;
   if (used <= limit_) return;
   used_ -= bytes;
-  throw Error(fmt::format("{} of memory are too little for {}; give at least --memory {}M",
-                          memory_size_text(limit_), purpose, (used + used / 4) / kMiB + 1));
+  const auto size = [](std::uint64_t least) { return fmt::format("{}M", least / kMiB + 1); };
+  const std::uint64_t perhaps = used + used / 4;
+  std::string advice = size(perhaps) + " may be enough";
+  if (enough_ > perhaps) {
+    advice += fmt::format(", {} is", size(enough_));
+  } else if (enough_ >= used) {
+    advice = size(enough_) + " is enough";
+  }
+  throw Error(fmt::format("{} of memory are too little for {}; --memory {}",
+                          memory_size_text(limit_), purpose, advice));
 }
 
 }  // namespace spillway

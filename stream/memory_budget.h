@@ -27,13 +27,16 @@ class MemoryBudget {
   [[nodiscard]] std::uint64_t limit() const { return limit_; }
   [[nodiscard]] std::uint64_t used() const { return used_; }
 
- private:
-  friend class MemoryLease;
+  /// Tells how much is enough for the run whatever it meets, for errors to name it.
+  void set_enough(std::uint64_t bytes) { enough_ = bytes; }
 
+  /// Where a MemoryLease does not fit. take() throws Error as that does.
   void take(std::uint64_t bytes, const char* purpose);
   void give_back(std::uint64_t bytes) { used_ -= bytes; }
 
+ private:
   const std::uint64_t limit_;
+  std::atomic<std::uint64_t> enough_ = 0;
   std::atomic<std::uint64_t> used_ = 0;
 };
 
@@ -41,8 +44,8 @@ class MemoryBudget {
 class MemoryLease {
  public:
   MemoryLease() = default;
-  /// Throws Error, with the purpose and the --memory that would do, if the budget has not so much
-  /// left.
+  /// Throws Error if the budget has not so much left, with the purpose, a --memory that may be
+  /// enough and, where it is known, one that is.
   MemoryLease(MemoryBudget& budget, std::uint64_t bytes, const char* purpose)
       : budget_(&budget), bytes_(bytes) {
     budget.take(bytes, purpose);

@@ -1,7 +1,6 @@
 #include "stream/pipeline.h"
 
 #include "src/delaunay/base_case.h"
-#include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "stream/tile_engine.h"
 
@@ -24,14 +23,16 @@ PointFeed feed_of(PointSource& source, const StreamOptions& options, StageTimes&
 }
 
 template <int D>
-void run(TileEngine<D>& engine, PointSource& source, const StreamOptions& options) {
+void run(TileEngine<D>& engine, PointSource& source, MemoryBudget& budget,
+         const StreamOptions& options) {
   options.begin_phase("read");
   engine.spill(feed_of(source, options, engine.times()));
   options.end_phase();
   options.begin_phase("triangulate");
   const std::optional<TileNode<D>> root = engine.nodes();
-  if (!root) throw Error("the input has no points: " + describe(source.counts()));
+  if (!root) refuse_empty_input(source.counts());
   options.extent_known(plane_of(root->box));
+  budget.set_enough(enough_memory<D>(root->points));
   const Border<D> left = engine.triangulate(*root, {});
   if (left.open()) refuse_open(left, engine.points());
   options.end_phase();
@@ -45,7 +46,7 @@ StreamFigures triangulate_stream(PointSource& source, MeshStreamWriter& writer,
                                  const StreamOptions& options) {
   TileEngine<D> engine({source.lattice(), source.expected(), source.extent()}, writer, scratch,
                        budget, options);
-  with_threads(engine.threads(), [&] { run(engine, source, options); });
+  with_threads(engine.threads(), [&] { run(engine, source, budget, options); });
   release_base_case_memory();
   return engine.figures();
 }

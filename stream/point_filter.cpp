@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "src/error.h"
+
 namespace spillway {
 
 bool ReturnFilter::keeps(const PointAttributes& point) const {
@@ -39,6 +41,11 @@ std::string describe(const PointCounts& counts) {
     if (count > 0) text += fmt::format(", {} {}", count, why);
   }
   return text + fmt::format(", {} kept", counts.kept());
+}
+
+void refuse_empty_input(const PointCounts& counts) {
+  if (counts.read == 0) throw Error("the input has no points");
+  throw Error("the filters leave no points: " + describe(counts));
 }
 
 void apply_filter(const PointFilter& filter, const std::optional<Lattice>& lattice,

@@ -58,6 +58,9 @@ struct PointCounts {
 /// One line: "500 points read, 12 withheld, 300 outside --bounds, 188 kept".
 std::string describe(const PointCounts& counts);
 
+/// Throws Error: there are no points, or none are left of those that were read.
+[[noreturn]] void refuse_empty_input(const PointCounts& counts);
+
 /// Takes out of `block` what the filter drops, and counts it. The points are integers of `lattice`,
 /// if there is one, and the index is still that of their own input.
 void apply_filter(const PointFilter& filter, const std::optional<Lattice>& lattice,

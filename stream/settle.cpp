@@ -37,19 +37,19 @@ class Settlement {
   }
 
  private:
-  /// Too long simplices count as uses: their vertices belong to the mesh.
+  /// Too long simplices count as uses: their vertices belong to the mesh. Infinite ones that are
+  /// final do not: nothing of them is in the mesh, and each of their vertices has finite ones.
   void mark_uses() {
     for (std::size_t s = 0; s < part_.simplex_count(); ++s) {
       if (part_.fates[s] == Fate::kFinal) {
         const Corners corners = part_.finite_simplex(s);
         const std::uint8_t use = is_left_out(corners) ? kByFinal : kByFinal | kByEmitted;
         for (const VertexId v : corners) use_[v] |= use;
-        continue;
-      }
-      const bool kept = part_.fates[s] == Fate::kKept;
-      kept_ += kept ? 1 : 0;
-      for (const VertexId v : part_.simplex(s)) {
-        if (v != kInfiniteVertex) use_[v] |= kept ? kByBorder : kByFinal | kByEmitted;
+      } else if (part_.fates[s] == Fate::kKept) {
+        ++kept_;
+        for (const VertexId v : part_.simplex(s)) {
+          if (v != kInfiniteVertex) use_[v] |= kByBorder;
+        }
       }
     }
   }

@@ -46,6 +46,10 @@ struct TilePoints {
   }
 };
 
+/// What a point takes in it, with an index, and with its number while it is triangulated.
+constexpr std::uint64_t kLoadedPointBytes =
+    sizeof(Point<3>) + sizeof(std::uint64_t) + sizeof(std::uint32_t);
+
 /// Where a block lies in a tile's file, and how many points it holds.
 struct TileBlock {
   std::uint64_t offset = 0;

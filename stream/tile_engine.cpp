@@ -26,6 +26,7 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, MeshStreamWriter& writ
       budget_(budget),
       plan_(plan_memory(budget.limit(), D, options.threads)),
       tile_options_(tile_options(expected.lattice)),
+      counts_(budget),
       tree_(tree_options(expected), scratch, counts_.times),
       sequencer_(writer, tile_options_.output, counts_.times) {}
 
@@ -107,6 +108,7 @@ typename TileEngine<D>::Node* TileEngine<D>::add_node(const TileNode<D>& tiles, 
 }
 
 /// Takes tiles in order as long as there are any; after the last child of a merge, does that too.
+/// Of a tile of equal points, which is not made smaller, only what others may have is leased.
 template <int D>
 void TileEngine<D>::work_off_tiles() {
   try {
@@ -114,10 +116,14 @@ void TileEngine<D>::work_off_tiles() {
       TilePoints<D> points;
       Node* node = take_tile(points);
       if (node == nullptr) return;
-      node->border = triangulate_tile<D>(
-          std::move(points), node->outside, tile_options_, sequencer_, counts_, node->slot,
-          [&] { report_progress(); }, *node->task);
-      lease_borders();
+      {
+        const MemoryLease lease(
+            budget_, std::min(points.points.size(), plan_.tile_capacity) * kLoadedPointBytes,
+            "a tile");
+        node->border = triangulate_tile<D>(
+            std::move(points), node->outside, tile_options_, sequencer_, counts_, node->slot,
+            [&] { report_progress(); }, *node->task);
+      }
       for (node = node->parent; node != nullptr && --node->children_missing == 0;
            node = node->parent) {
         merge_node(*node);
@@ -161,7 +167,6 @@ void TileEngine<D>::merge_node(Node& node) {
   std::uint64_t final_simplices = 0;
   node.border = merge_tiles<D>(borders, *node.tiles, node.outside, tile_options_, sequencer_,
                                counts_, node.slot, final_simplices, *node.task);
-  lease_borders();
   const std::lock_guard lock(figures_mutex_);
   figures_.final_by_level[node.level - 1] += final_simplices;
 }
@@ -172,35 +177,23 @@ Settled<D> TileEngine<D>::merge(std::span<Border<D>> children, const TileNode<D>
                                 const Outside<D>& outside, BlockPlace place, Task& task) {
   TileOptions options = tile_options_;
   options.output.imported_vertices = true;
-  Settled<D> settled = merge_borders_of<D>(children, node, outside, options, counts_, place, task);
-  lease_borders();
-  return settled;
+  return merge_borders_of<D>(children, node, outside, options, counts_, place, task);
 }
 
 template <int D>
 void TileEngine<D>::take_in(const Border<D>& border) {
   counts_.borders.add(border.simplices.size(), border.bytes());
-  lease_borders();
 }
 
 template <int D>
 void TileEngine<D>::hand_over(const Border<D>& border) {
   counts_.borders.remove(border.simplices.size(), border.bytes());
-  lease_borders();
 }
 
 template <int D>
 void TileEngine<D>::report_progress() const {
   const std::uint64_t done = counts_.points;
   options_.progress(done, static_cast<double>(done) / static_cast<double>(tree_.points()));
-}
-
-/// Borders are what grows with the input: they must not outgrow the budget.
-template <int D>
-void TileEngine<D>::lease_borders() {
-  const std::lock_guard lock(figures_mutex_);
-  border_lease_ = {};
-  border_lease_ = MemoryLease(budget_, counts_.borders.bytes(), "the border between tiles");
 }
 
 template <int D>

@@ -100,7 +100,6 @@ class TileEngine {
   Node* take_tile(TilePoints<D>& points);
   void merge_node(Node& node);
   void report_progress() const;
-  void lease_borders();
 
   const StreamOptions& options_;
   MemoryBudget& budget_;
@@ -116,8 +115,7 @@ class TileEngine {
   std::size_t taken_ = 0;
   std::future<StoredTile> reading_ahead_;
   std::atomic<bool> failed_ = false;
-  std::mutex figures_mutex_;  ///< guards the next two
-  MemoryLease border_lease_;
+  std::mutex figures_mutex_;  ///< guards the next one
   StreamFigures figures_;
 };
 

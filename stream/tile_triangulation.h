@@ -28,18 +28,25 @@ struct TileOptions {
   MemoryBudget* budget = nullptr;  ///< for the triangulations of borders
 };
 
-/// How much of borders is in memory, and the most there was.
+/// How much of borders is in memory, and the most there was. It grows with the input: the budget
+/// refuses what outgrows it.
 class ResidentBorders {
  public:
+  explicit ResidentBorders(MemoryBudget& budget) : budget_(budget) {}
+  ~ResidentBorders() { budget_.give_back(bytes_); }
+  ResidentBorders(const ResidentBorders&) = delete;
+  ResidentBorders& operator=(const ResidentBorders&) = delete;
+
   void add(std::uint64_t simplices, std::uint64_t bytes) {
+    budget_.take(bytes, "the border between tiles");
     raise(most_simplices_, simplices_ += simplices);
     raise(most_bytes_, bytes_ += bytes);
   }
   void remove(std::uint64_t simplices, std::uint64_t bytes) {
     simplices_ -= simplices;
     bytes_ -= bytes;
+    budget_.give_back(bytes);
   }
-  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] std::uint64_t most_simplices() const { return most_simplices_; }
   [[nodiscard]] std::uint64_t most_bytes() const { return most_bytes_; }
 
@@ -50,6 +57,7 @@ class ResidentBorders {
     }
   }
 
+  MemoryBudget& budget_;
   std::atomic<std::uint64_t> simplices_ = 0;
   std::atomic<std::uint64_t> bytes_ = 0;
   std::atomic<std::uint64_t> most_simplices_ = 0;
@@ -58,6 +66,8 @@ class ResidentBorders {
 
 /// What is counted on the way, by many threads.
 struct StreamCounts {
+  explicit StreamCounts(MemoryBudget& budget) : borders(budget) {}
+
   StageTimes times;
   ResidentBorders borders;
   std::atomic<std::uint64_t> points = 0;  ///< that have been through a leaf

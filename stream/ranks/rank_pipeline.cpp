@@ -8,7 +8,6 @@
 
 #include "formats/bytes.h"
 #include "src/delaunay/base_case.h"
-#include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "stream/ranks/messages.h"
 #include "stream/ranks/piece_table.h"
@@ -32,6 +31,9 @@ constexpr double kOwnShare = 0.1;
 constexpr double kArrivingShare = 0.1;
 /// Pieces that a rank reads in a round, unless it has more threads.
 constexpr std::uint64_t kUsualPieces = 4;
+
+/// Enough for what merges between ranks make final of a point, if all points are in borders.
+constexpr std::uint64_t kMergedBytes = 300;
 
 /// From a rank's border to the stream of all ranks, where a vertex is named by a part of the stream
 /// (as the slot) and its 64-bit number there.
@@ -63,7 +65,9 @@ class RankRun {
       const std::optional<TileNode<D>> own = engine_.nodes();
       const RankTree<D> tree(division, own, ranks_);
       if (tree.nodes().empty()) refuse_empty();
-      options_.extent_known(plane_of(tree.nodes().back().tiles->box));
+      const TileNode<D>& all = *tree.nodes().back().tiles;
+      options_.extent_known(plane_of(all.box));
+      budget_.set_enough(enough_memory<D>(all.points) + all.points * kMergedBytes);
       if (tree.own_node()) triangulate(tree);
       collect(tree);
       options_.end_phase();
@@ -125,7 +129,7 @@ class RankRun {
 
   void refuse_empty() const {
     const PointCounts counts = shared_counts(source_.counts(), ranks_);
-    do_together(ranks_, [&] { throw Error("the input has no points: " + describe(counts)); });
+    do_together(ranks_, [&] { refuse_empty_input(counts); });
   }
 
   /// This rank's tiles, and those merges that it leads.

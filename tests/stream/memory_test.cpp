@@ -37,6 +37,27 @@ TEST(MemoryBudget, GivesBackWhatALeaseHeld) {
   EXPECT_EQ(budget.used(), 0U);
 }
 
+TEST(MemoryBudget, NamesWhatMayBeEnoughAndWhatIs) {
+  MemoryBudget budget(32 * kMiB);
+  budget.set_enough(100 * kMiB - 1);
+  const MemoryLease lease(budget, 20 * kMiB, "one thing");
+  const auto message = [&](std::uint64_t bytes) {
+    try {
+      const MemoryLease more(budget, bytes, "another");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message(12 * kMiB), "");
+  EXPECT_EQ(message(20 * kMiB),
+            "32 MiB of memory are too little for another; --memory 51M may be enough, 100M is");
+  EXPECT_EQ(message(70 * kMiB),
+            "32 MiB of memory are too little for another; --memory 100M is enough");
+  EXPECT_EQ(message(100 * kMiB),
+            "32 MiB of memory are too little for another; --memory 151M may be enough");
+}
+
 TEST(MemoryBudget, TheDefaultIsAtMostTwoGibibytes) {
   EXPECT_GT(default_memory_limit(), 0U);
   EXPECT_LE(default_memory_limit(), 2048 * kMiB);

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "formats/mesh_stream_writer.h"
 #include "src/delaunay/delaunay.h"
 #include "src/error.h"
 #include "src/generators/generators.h"
@@ -106,6 +109,61 @@ TEST_P(StreamOfFamily, GivesTheSameBlocksForAnyThreadCount) {
       ASSERT_EQ(once[b].finalized, again[b].finalized);
     }
   }
+}
+
+/// Points of a circle or a sphere: all of them stay in the border, and on the hull, to the end.
+template <int D>
+std::string write_round_points(std::uint64_t count) {
+  return write_points<D>(generate_points<D>({Family::kCircle, count, D, 5}));
+}
+
+template <int D>
+void expect_written_in(const std::vector<MeshFormat>& formats) {
+  const std::string path = write_round_points<D>(3000);
+  MeshStreamHeader header;
+  header.dimension = D;
+  for (const MeshFormat format : formats) {
+    SCOPED_TRACE(testing::Message() << D << "D, format " << static_cast<int>(format));
+    PointSource source(disk(), {path}, {.dimension = D});
+    const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+    const std::string mesh = path + ".mesh";
+    const auto writer = open_mesh_stream_writer(disk(), mesh, format, header, *scratch);
+    MemoryBudget budget(std::uint64_t{1} << 30);
+    const StreamOptions options{.threads = 2, .tile_capacity = 700, .leaf_size = 100};
+    const StreamFigures figures = triangulate_stream<D>(source, *writer, *scratch, budget, options);
+    EXPECT_NO_THROW(writer->finish(figures.totals));
+    std::filesystem::remove(mesh);
+  }
+  std::filesystem::remove(path);
+}
+
+TEST(StreamOfBorderOnly, IsWrittenInEveryKindOfFormat) {
+  expect_written_in<2>({MeshFormat::kSpm, MeshFormat::kSma, MeshFormat::kPly, MeshFormat::kObj});
+  expect_written_in<3>({MeshFormat::kSpm, MeshFormat::kVtu});
+}
+
+template <int D>
+void expect_named_memory_is_enough(std::uint64_t points, std::uint64_t memory) {
+  const std::string path = write_round_points<D>(points);
+  // It ends with "--memory 52M may be enough, 70M is" or with "--memory 60M is enough".
+  std::string message;
+  try {
+    run_stream<D>(path, {.threads = 2}, memory);
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  const std::string size = message.substr(message.find_last_of(' ', message.rfind("M is")) + 1);
+  ASSERT_FALSE(message.empty() || message.rfind("M is") == std::string::npos) << message;
+  const std::uint64_t enough = std::stoull(size) << 20;
+  EXPECT_LE(enough, 2'000 * points) << "bytes";
+  EXPECT_NO_THROW(run_stream<D>(path, {.threads = 2}, enough));
+  EXPECT_NO_THROW(run_stream<D>(path, {.threads = 2, .tile_capacity = points / 5}, enough));
+  std::filesystem::remove(path);
+}
+
+TEST(StreamOfBorderOnly, IsRefusedWithTheMemoryThatIsEnough) {
+  expect_named_memory_is_enough<2>(90'000, std::uint64_t{32} << 20);
+  expect_named_memory_is_enough<3>(70'000, std::uint64_t{96} << 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, StreamOfFamily, testing::ValuesIn(all_family_cases()),

@@ -17,7 +17,7 @@
 namespace spillway {
 
 /// Keeps all blocks, and checks on the way that vertices are announced before and finalized after
-/// their last use, once each.
+/// their last use, once each, and that a block imports what it uses or finalizes, and nothing else.
 class KeepingWriter : public MeshStreamWriter {
  public:
   explicit KeepingWriter(int dimension) : corners_(dimension + 1) {}
@@ -33,9 +33,15 @@ class KeepingWriter : public MeshStreamWriter {
       EXPECT_TRUE(live_.contains(v)) << "vertex " << v << " is imported, but not alive";
       numbers.push_back(v);
     }
+    std::set<std::uint32_t> used(block.finalized.begin(), block.finalized.end());
     for (const std::uint32_t c : block.corners) {
       ASSERT_LT(c, numbers.size());
+      used.insert(c);
       corner_list.push_back(numbers[c]);
+    }
+    for (std::size_t v = block.vertices.size(); v < numbers.size(); ++v) {
+      ASSERT_TRUE(used.contains(static_cast<std::uint32_t>(v)))
+          << "vertex " << numbers[v] << " is imported for nothing";
     }
     for (const std::uint32_t v : block.finalized) {
       ASSERT_LT(v, numbers.size());
