@@ -14,6 +14,7 @@ namespace spillway {
 BlockStream::BlockStream(std::unique_ptr<InputSource> source, const BlockStreamFormat& format,
                          std::function<std::string()> so_far)
     : source_(std::move(source)), format_(format), so_far_(std::move(so_far)) {
+  source_->check_not_empty();
   std::vector<std::byte> magic(format.magic.size());
   source_->read(magic);
   if (as_text(magic) != format.magic) {

@@ -1,7 +1,11 @@
 #include "formats/input_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+
+#include "src/error.h"
 
 namespace spillway {
 
@@ -14,6 +18,12 @@ std::span<const std::byte> InputSource::peek(std::size_t count) {
     peeked_.resize(had + file_->read(std::span(peeked_).subspan(had)));
   }
   return std::span(peeked_).first(std::min(count, peeked_.size()));
+}
+
+void InputSource::check_not_empty() {
+  if (peek(1).empty()) {
+    throw Error(fmt::format("{}: the input is empty; see why nothing was written to it", name()));
+  }
 }
 
 std::size_t InputSource::read(std::span<std::byte> buffer) {

@@ -21,6 +21,9 @@ class InputSource : public InputFile {
   /// The next `count` bytes, fewer if the file ends before; they stay unread.
   std::span<const std::byte> peek(std::size_t count);
 
+  /// Throws Error if there is nothing to read.
+  void check_not_empty();
+
   std::size_t read(std::span<std::byte> buffer) override;
 
   bool seek(std::uint64_t position) override;

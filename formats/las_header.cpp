@@ -44,6 +44,7 @@ std::string clean_text(std::string_view text) {
 }
 
 std::vector<std::byte> read_public_header(InputSource& source) {
+  source.check_not_empty();
   std::vector<std::byte> bytes(kLasHeaderSize);
   const std::size_t got = source.read(bytes);
   if (!as_text(std::span(bytes).first(got)).starts_with("LASF")) {

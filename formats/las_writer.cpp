@@ -58,7 +58,7 @@ class LasWriter : public PointWriter {
     if (!options.lattice) {
       throw Error(
           fmt::format("cannot write {}: LAS holds integers with a scale, and these points "
-                      "have none; write text or npy",
+                      "have none; write spp, npy or text, or round them with convert",
                       file_->name()));
     }
     if (options.coordinates != 3) {

@@ -89,6 +89,16 @@ bool is_ply_mesh(InputSource& source) {
   }
 }
 
+/// Throws Error if this is the index of VTU parts.
+void refuse_index_of_parts(InputSource& source) {
+  if (as_text(source.peek(kProbe)).find("\"PUnstructuredGrid\"") != std::string_view::npos) {
+    throw Error(fmt::format(
+        "{}: this is the index of a mesh's parts, which is for viewers; name one of the parts, "
+        "or, to check the whole, write it to one file (without --parts)",
+        source.name()));
+  }
+}
+
 [[noreturn]] void fail_for_unknown(InputSource& source, const std::string& path) {
   if (as_text(source.peek(kProbe)).starts_with(kNpyMagic)) {
     const NpyMeshNames names = npy_mesh_names(path);
@@ -158,6 +168,7 @@ Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& fo
     return read_npy(files, path);
   }
   auto source = std::make_unique<InputSource>(files.open(path));
+  refuse_index_of_parts(*source);
   if (!format) format = format_of_content(*source);
   if (!format) format = format_of_name(path);
   if (!format) fail_for_unknown(*source, path);

@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kProbe = 4096;
 
 MeshFormat stream_format(InputSource& source, const std::string& path) {
+  if (path == "-") source.check_not_empty();
   const std::string_view text = as_text(source.peek(kProbe));
   if (text.starts_with(kSpmMagic)) return MeshFormat::kSpm;
   if (extension_of(path) == "sma" || looks_like_sma(text)) return MeshFormat::kSma;

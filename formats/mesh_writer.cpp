@@ -58,15 +58,15 @@ std::string_view triangle_format(MeshFormat format) {
   }
 }
 
-/// Throws Error if the format, of triangles only, cannot hold the mesh.
+/// Throws UsageError if the format, of triangles only, cannot hold the mesh.
 void check_triangles_only(const std::string& path, std::string_view format, int dimension,
                           bool has_input_index) {
   if (dimension != 2) {
-    throw Error(fmt::format("cannot write {}: {} holds no tetrahedra; choose spm, ply, vtu or npy",
-                            path, format));
+    throw UsageError(fmt::format(
+        "cannot write {}: {} holds no tetrahedra; choose spm, ply, vtu or npy", path, format));
   }
   if (has_input_index) {
-    throw Error(
+    throw UsageError(
         fmt::format("cannot write {}: {} holds no input index; choose spm, ply, vtu or npy, or "
                     "leave the index out",
                     path, format));
@@ -101,6 +101,13 @@ MeshFormat mesh_format(const std::string& path, const std::string& format_name) 
   throw UsageError(fmt::format("{}; choose one of {}", what, fmt::join(mesh_format_names(), ", ")));
 }
 
+std::string rounding_note(MeshFormat format) {
+  if (format != MeshFormat::kGlb && format != MeshFormat::kStl) return "";
+  return fmt::format(
+      "{} has 32-bit floats: coordinates are rounded, so info and check find another hash there",
+      triangle_format(format));
+}
+
 MeshFiles create_mesh_files(FileSystem& files, const std::string& path, MeshFormat format,
                             int dimension, bool has_input_index) {
   MeshFiles created;
@@ -109,7 +116,7 @@ MeshFiles create_mesh_files(FileSystem& files, const std::string& path, MeshForm
     check_triangles_only(path, name, dimension, has_input_index);
   }
   if (path == "-" && needs_regular_file(format)) {
-    throw Error(
+    throw UsageError(
         fmt::format("standard output cannot take {}, whose begin is written last; name a "
                     "file",
                     triangle_format(format)));

@@ -55,6 +55,9 @@ std::vector<std::string> mesh_format_names();
 /// for standard output. Throws UsageError that lists what there is if neither names a format.
 MeshFormat mesh_format(const std::string& path, const std::string& format_name);
 
+/// What is to be said of a mesh in a format that rounds its coordinates; empty for others.
+std::string rounding_note(MeshFormat format);
+
 /// The files of a mesh, created but still empty.
 struct MeshFiles {
   MeshFormat format = MeshFormat::kPly;

@@ -99,6 +99,7 @@ class DictionaryParser {
 }  // namespace
 
 NpyHeader read_npy_header(InputSource& source) {
+  source.check_not_empty();
   std::array<std::byte, 12> start;
   const std::span<std::byte> prefix = std::span(start).first(kNpyMagic.size() + 2);
   const std::size_t got = source.read(prefix);

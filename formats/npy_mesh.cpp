@@ -234,6 +234,12 @@ std::optional<NpyMeshNames> find_npy_mesh(const FileSystem& files, const std::st
   return names;
 }
 
+bool is_part_of_npy_mesh(const FileSystem& files, const std::string& path) {
+  const auto names = find_npy_mesh(files, without(without(path, kExtension), kInputIndex));
+  return names &&
+         (path == names->vertices || path == names->simplices || path == names->input_index);
+}
+
 Mesh read_npy_mesh(FileSystem& files, const NpyMeshNames& names) {
   Mesh mesh;
   const int coordinates = read_vertices(files, names.vertices, mesh);

@@ -5,12 +5,16 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "formats/file_system.h"
 #include "formats/mesh.h"
 #include "formats/mesh_writer.h"
 
 namespace spillway {
+
+/// How the name of the file with a mesh's simplices ends.
+inline constexpr std::string_view kNpySimplices = "_simplices.npy";
 
 /// The files of an npy mesh.
 struct NpyMeshNames {
@@ -25,6 +29,9 @@ NpyMeshNames npy_mesh_names(const std::string& path);
 /// The files of the mesh that `path` stands for when it is read: X_vertices.npy, X_simplices.npy,
 /// X.npy or X. Nothing unless the files of vertices and simplices are both there.
 std::optional<NpyMeshNames> find_npy_mesh(const FileSystem& files, const std::string& path);
+
+/// Whether `path` is one of the files of a mesh whose vertices and simplices are both there.
+bool is_part_of_npy_mesh(const FileSystem& files, const std::string& path);
 
 /// The names of the files that the mesh `path` is written to. Throws Error for standard output, and
 /// if an input index of an earlier mesh would lie beside a mesh that has none.

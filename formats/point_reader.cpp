@@ -3,16 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <utility>
 
 #include "formats/bytes.h"
 #include "formats/decompress.h"
+#include "formats/glb_format.h"
 #include "formats/input_source.h"
 #include "formats/las_reader.h"
 #include "formats/npy_header.h"
+#include "formats/npy_mesh.h"
 #include "formats/npy_reader.h"
 #include "formats/point_format.h"
+#include "formats/sma_reader.h"
+#include "formats/spm_format.h"
 #include "formats/spp_format.h"
 #include "formats/spp_reader.h"
 #include "formats/text_reader.h"
@@ -28,6 +33,27 @@ bool looks_like_text(std::string_view bytes) {
   return std::none_of(bytes.begin(), bytes.end(), [](unsigned char c) {
     return c == 0x7f || (c < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\f');
   });
+}
+
+/// Throws Error if these bytes begin a mesh of a format that is known by them.
+void refuse_mesh(const InputSource& source, std::string_view text) {
+  struct Known {
+    std::string_view begin;
+    std::string_view name;
+  };
+  constexpr std::array kKnown = {Known{"ply\n", "PLY"},    Known{"ply\r", "PLY"},
+                                 Known{"OFF\n", "OFF"},    Known{kSpmMagic, "spm"},
+                                 Known{kSmaNote, "sma"},   Known{glb::kMagic, "glTF"},
+                                 Known{"<VTKFile", "VTU"}, Known{"<?xml", "XML"},
+                                 Known{"solid ", "STL"},   Known{"# spillway dimension", "OBJ"}};
+  for (const Known& known : kKnown) {
+    if (!text.starts_with(known.begin)) continue;
+    throw Error(fmt::format(
+        "{}: this is a mesh ({}), not points; give the points it was made of, as LAS, text, npy or "
+        "spp{}",
+        source.name(), known.name,
+        source.size() ? "" : "; of meshes only spm and sma are read from a pipe"));
+  }
 }
 
 PointFormat format_of_content(const InputSource& source, std::span<const std::byte> first_bytes) {
@@ -64,28 +90,6 @@ Compression compression_of(const InputSource& source, const std::string& path,
   return found;
 }
 
-std::unique_ptr<PointReader> open_by_format(FileSystem& files, const std::string& path,
-                                            const PointReaderOptions& options) {
-  std::optional<PointFormat> format;
-  if (!options.format.empty()) format = point_format_by_name(options.format);
-  if (!format) format = point_format_of_path(path);
-  auto source = std::make_unique<InputSource>(files.open(path));
-  const std::span<const std::byte> first_bytes = source->peek(kProbe);
-  if (!format) format = format_of_content(*source, first_bytes);
-  switch (*format) {
-    case PointFormat::kLas:
-      return open_las_reader(std::move(source), path, options);
-    case PointFormat::kNpy:
-      return open_npy_reader(std::move(source), path);
-    case PointFormat::kSpp:
-      return open_spp_reader(std::move(source), path);
-    case PointFormat::kText:
-      break;
-  }
-  const Compression compression = compression_of(*source, path, first_bytes);
-  return open_text_reader(std::move(source), path, compression);
-}
-
 }  // namespace
 
 void PointReader::decode(RawPoints& raw, PointBlock& block) const { std::swap(raw.decoded, block); }
@@ -114,14 +118,32 @@ bool PointReader::read(PointBlock& block) {
 
 std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::string& path,
                                                const PointReaderOptions& options) {
-  std::unique_ptr<PointReader> reader = open_by_format(files, path, options);
-  if (options.resolution > 0 && reader->header().format != "copc") {
-    throw UsageError(
-        fmt::format("{}: only COPC files have levels of resolution; thin its points with --thin "
-                    "instead of --resolution",
-                    reader->header().name));
+  std::optional<PointFormat> format;
+  if (!options.format.empty()) format = point_format_by_name(options.format);
+  if (!format) format = point_format_of_path(path);
+  auto source = std::make_unique<InputSource>(files.open(path));
+  if (path == "-") source->check_not_empty();
+  const std::span<const std::byte> first_bytes = source->peek(kProbe);
+  if (!format || format == PointFormat::kText) refuse_mesh(*source, as_text(first_bytes));
+  if (!format) format = format_of_content(*source, first_bytes);
+  switch (*format) {
+    case PointFormat::kLas:
+      return open_las_reader(std::move(source), path, options);
+    case PointFormat::kNpy:
+      if (path.ends_with(kNpySimplices)) {
+        throw Error(fmt::format(
+            "{}: these are the simplices of an npy mesh, not points; its vertices are in a file "
+            "beside it",
+            path));
+      }
+      return open_npy_reader(std::move(source), path);
+    case PointFormat::kSpp:
+      return open_spp_reader(std::move(source), path);
+    case PointFormat::kText:
+      break;
   }
-  return reader;
+  const Compression compression = compression_of(*source, path, first_bytes);
+  return open_text_reader(std::move(source), path, compression);
 }
 
 }  // namespace spillway

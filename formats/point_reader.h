@@ -87,7 +87,7 @@ struct PointReaderOptions {
   /// Only points in this box (output coordinates, closed) are wanted: a reader that knows where its
   /// points lie leaves out parts that have none there, but may give others too.
   std::optional<Box<3>> bounds{};
-  /// COPC: levels of the octree finer than this spacing are left out; 0: all are read.
+  /// Of COPC, levels of the octree finer than this spacing are left out; 0: all are read.
   double resolution = 0;
 };
 

@@ -3,7 +3,6 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <deque>
 #include <exception>
 #include <filesystem>
@@ -163,13 +162,14 @@ class Batch {
         std::min<std::uint64_t>(limit_, std::max<std::uint64_t>(1, free_memory_ / kLeastMemory));
   }
 
-  [[nodiscard]] std::vector<Job> jobs() const {
+  [[nodiscard]] std::vector<Job> jobs() {
     const auto passed_on = options_.passed_on();
     if (options_.sources.size() == 1 && is_job_list(options_.sources.front())) {
       return read_job_list(options_.sources.front(), options_.to, passed_on);
     }
     if (options_.to.empty()) throw UsageError("--to is missing: it names the outputs, like ply");
-    return jobs_of_files(expand_inputs(options_.sources), options_.to, passed_on);
+    const auto notice = [this](std::string_view text) { progress_.say(text); };
+    return jobs_of_files(expand_inputs(options_.sources, notice), options_.to, passed_on);
   }
 
   [[nodiscard]] std::size_t at_a_time() const {
@@ -271,22 +271,15 @@ class Batch {
         runs_.begin(), runs_.end(), [&](const JobRun& run) { return run.status == status; }));
   }
 
-  /// Failures are said with -q, too.
-  void say_failure(const std::string& text) {
-    if (options_.report.quiet) {
-      fmt::print(stderr, "spillway: {}\n", text);
-    } else {
-      progress_.say(text);
-    }
-  }
-
   int summarize(double seconds) {
     const std::size_t failed = count("failed");
-    progress_.say(fmt::format("{} jobs: {} done, {} failed, {} unchanged, {:.1f} s", runs_.size(),
-                              count("done"), failed, count("unchanged"), seconds));
+    progress_.say(fmt::format("{} job{}: {} done, {} failed, {} unchanged, {:.1f} s", runs_.size(),
+                              runs_.size() == 1 ? "" : "s", count("done"), failed,
+                              count("unchanged"), seconds));
     for (const JobRun& run : runs_) {
-      if (run.status == "failed")
-        say_failure(fmt::format("failed: {} ({})", run.job.name, run.log));
+      if (run.status == "failed") {
+        progress_.insist(fmt::format("failed: {} ({})", run.job.name, run.log));
+      }
     }
     return failed == 0 ? kExitDone : kExitFailed;
   }
@@ -316,8 +309,8 @@ Subcommand add_batch(CLI::App& root) {
   app->add_option("--output-dir", options->folder, "Where outputs, logs and records go")
       ->required()
       ->type_name("DIR");
-  app->add_option("--to", options->to, "Outputs of each job, like ply,dem.tif,hillshade.tif")
-      ->delimiter(',')
+  take_one_list(
+      app->add_option("--to", options->to, "Outputs of each job, like ply,dem.tif,hillshade.tif"))
       ->type_name("KIND,...");
   app->add_option("-j,--jobs", options->at_a_time, "Most jobs at a time; 0: one a thread")
       ->type_name("N")

@@ -160,6 +160,11 @@ std::string text_report(const Outcome& outcome, const CheckCommandOptions& optio
   if (report.fault_count > report.faults.size()) {
     text += fmt::format("fault: {} more\n", report.fault_count - report.faults.size());
   }
+  if (report.off_lattice > 0) {
+    text +=
+        "hint: vertices off the lattice are what rounding leaves (text, glb, stl); check without "
+        "--points, or make the mesh of LAS or spp\n";
+  }
   text += fmt::format("{} vertices, {} {}, {} hull facets, hash {}\n", report.vertices,
                       report.simplices, outcome.dimension == 2 ? "triangles" : "tetrahedra",
                       report.hull_facets, hash_to_hex(report.canonical_hash));

@@ -39,6 +39,7 @@ struct CheckReport {
   /// few of them.
   std::vector<std::string> faults;
   std::uint64_t fault_count = 0;  ///< all of them, described or not
+  std::uint64_t off_lattice = 0;  ///< faults about coordinates that are off the lattice
   std::uint64_t vertices = 0;     ///< vertices of the mesh
   std::uint64_t simplices = 0;
   std::uint64_t hull_facets = 0;  ///< facets with one simplex only

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -70,7 +72,8 @@ class CommandTree {
   CommandTree() {
     root_.formatter(std::make_shared<HelpFormatter>());
     root_.set_help_flag("-h,--help", "Print this help and exit");
-    root_.set_version_flag("--version", "spillway " SPILLWAY_VERSION, "Print the version and exit");
+    root_.set_version_flag("-V,--version", "spillway " SPILLWAY_VERSION,
+                           "Print the version and exit");
     root_.require_subcommand(1);
     root_.footer(kExamples);
     for (const auto add :
@@ -118,12 +121,20 @@ void check_command_line(const std::vector<std::string>& arguments) {
 int run_command(int argc, const char* const* argv) {
   CommandTree tree;
   CLI::App& root = tree.root();
+  // CLI11 wants the last one first.
+  std::vector<std::string> words(std::make_reverse_iterator(argv + argc),
+                                 std::make_reverse_iterator(argv + std::min(argc, 1)));
+  if (argc > 1 && words.back() == "version") words.back() = "--version";
+  if (argc > 1 && words.back() == "help") {
+    words.pop_back();
+    words.insert(words.begin(), "--help");
+  }
   if (argc < 2) {
     fmt::print(stderr, "{}", root.help());
     return kExitUsage;
   }
   try {
-    root.parse(argc, argv);
+    root.parse(words);
   } catch (const CLI::CallForHelp&) {
     if (is_first_rank()) write_text("-", root.help());
     return kExitDone;

@@ -33,7 +33,7 @@ std::uint64_t parse_size(std::string_view option, const std::string& text) {
 HelpFormatter::HelpFormatter() { column_width(34); }
 
 std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
-  const bool many = option->get_expected_max() == CLI::detail::expected_max_vector_size;
+  const bool many = takes_many(*option);
   if (option->get_positional()) return many ? "..." : "";
   if (option->get_type_size() == 0) return "";
   return " " + option->get_type_name() + (many ? "..." : "");
@@ -81,6 +81,15 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& val
   option->type_name(fmt::format("{}", fmt::join(words, "|")));
   if (!value.empty()) option->default_str(value);
   return option;
+}
+
+CLI::Option* take_one_list(CLI::Option* option) {
+  return option->delimiter(',')->allow_extra_args(false);
+}
+
+bool takes_many(const CLI::Option& option) {
+  return option.get_expected_max() == CLI::detail::expected_max_vector_size &&
+         option.get_allow_extra_args();
 }
 
 void add_report_options(CLI::App& app, ReportOptions& options) {

@@ -55,6 +55,13 @@ std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options)
 CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,
                         const std::vector<std::string>& words, const std::string& description);
 
+/// Makes an option of several values take one argument, in which commas separate them: what follows
+/// it is not its own.
+CLI::Option* take_one_list(CLI::Option* option);
+
+/// Whether an option, or a positional, takes any number of arguments.
+bool takes_many(const CLI::Option& option);
+
 /// Checks for CLI::Validator: what is wrong with a text that is no whole number above 0, or no
 /// finite number above 0; empty if nothing is.
 std::string check_whole_number(const std::string& text);

@@ -38,7 +38,7 @@ constexpr std::uint64_t kLineShare = 4;
 
 struct ContourCommandOptions : TerrainOptions {
   std::string output;
-  double interval = 0;
+  std::optional<double> interval;
   double base = 0;
   std::vector<double> levels;
 };
@@ -50,26 +50,26 @@ std::string driver_of(const std::string& path) {
     const char* driver;
   };
   constexpr std::array kKnown = {Known{"gpkg", "GPKG"}, Known{"shp", "ESRI Shapefile"},
-                                 Known{"geojson", "GeoJSON"}};
+                                 Known{"geojson", "GeoJSON"}, Known{"json", "GeoJSON"}};
   const std::string extension = extension_of(path);
   for (const Known& known : kKnown) {
     if (known.extension == extension) return known.driver;
   }
-  throw UsageError(
-      fmt::format("-o {}: contours go to a file that ends in .gpkg, .shp or .geojson", path));
+  throw UsageError(fmt::format(
+      "-o {}: contours go to a file that ends in .gpkg, .shp, .geojson or .json", path));
 }
 
 Levels levels_of(const ContourCommandOptions& options) {
   if (!options.levels.empty()) {
-    if (options.interval != 0 || options.base != 0) {
+    if (options.interval || options.base != 0) {
       throw UsageError("--levels names all heights: leave --interval and --base away");
     }
     return Levels::of_list(options.levels);
   }
-  if (options.interval == 0) {
+  if (!options.interval) {
     throw UsageError("--interval, the height between two contours, is missing (or --levels)");
   }
-  return Levels::every(options.interval, options.base);
+  return Levels::every(*options.interval, options.base);
 }
 
 /// Draws contours into a vector file.
@@ -158,8 +158,9 @@ int run(const ContourCommandOptions& options) {
                              statistics.stream.left_out, *statistics.max_edge));
   }
   if (use.writer().lines() == 0) {
-    progress.say(fmt::format("no level lies within the heights, which are {} to {}",
-                             use.writer().lowest(), use.writer().highest()));
+    progress.insist(
+        fmt::format("warning: no lines: no level lies within the heights, which are {} to {}",
+                    use.writer().lowest(), use.writer().highest()));
   }
   progress.say(fmt::format("{} vertices, {} triangles; {} lines of {} points, {:.2f} s",
                            statistics.stream.totals.vertices, statistics.stream.totals.simplices,
@@ -186,8 +187,8 @@ Subcommand add_contour(CLI::App& root) {
   app->add_option("--base", options->base, "A height that intervals are counted from")
       ->type_name("H")
       ->capture_default_str();
-  app->add_option("--levels", options->levels, "Heights of lines, instead of an interval")
-      ->delimiter(',')
+  take_one_list(
+      app->add_option("--levels", options->levels, "Heights of lines, instead of an interval"))
       ->type_name("H,...");
   add_terrain_options(*app, *options);
   add_report_options(*app, options->report);

@@ -92,6 +92,8 @@ void check_points_output(const ConvertOptions& options) {
         fmt::format("{}: these are points, and {} would be a mesh: use spillway triangulate",
                     options.inputs.front(), output.name()));
   }
+  const PointFormat format = point_format_to_write(output.path, format_name_of(output));
+  check_las_version(output, format == PointFormat::kLas);
 }
 
 void run_points(const ConvertOptions& options, FileSystem& files, ScratchFolder& scratch,
@@ -105,6 +107,20 @@ void run_points(const ConvertOptions& options, FileSystem& files, ScratchFolder&
   convert_points(*source, options.output, options.lattice, scratch, progress);
 }
 
+/// Throws if the output is of a point format, and of no mesh format.
+void check_mesh_output(const ConvertOptions& options) {
+  const PointOutput& output = options.output;
+  if (is_mesh_output(output)) return;
+  try {
+    point_format_to_write(output.path, format_name_of(output));
+  } catch (const UsageError&) {
+    return;  // of neither: that is said when the mesh is written
+  }
+  throw UsageError(
+      fmt::format("{}: this is a mesh, and {} would be points: convert the points it was made of",
+                  options.inputs.front(), output.name()));
+}
+
 void run_mesh(const ConvertOptions& options, ProbedInput& input, InputKind kind,
               ScratchFolder& scratch, Progress& progress) {
   if (options.inputs.size() > 1) {
@@ -115,13 +131,14 @@ void run_mesh(const ConvertOptions& options, ProbedInput& input, InputKind kind,
         "{}: this is a mesh, and filters, --scale, --offset and --las-version are for points",
         input.path()));
   }
+  check_mesh_output(options);
   convert_mesh(input, kind, {options.mesh_format, options.output.path, options.output.format},
                scratch, progress);
 }
 
 /// One number for all axes, or one each.
 void check_axes(std::string_view option, const std::vector<double>& values) {
-  if (values.size() == 2) {
+  if (values.size() == 2 || values.size() > 3) {
     throw UsageError(fmt::format("{}: give one number, or three for x, y and z", option));
   }
 }
@@ -150,10 +167,7 @@ void add_axes_option(CLI::App& app, const std::string& name, std::vector<double>
     if (number && (value > 0 || !positive)) return std::string();
     return fmt::format("\"{}\" is no {} number", text, positive ? "positive" : "finite");
   };
-  app.add_option(name, values, description)
-      ->delimiter(',')
-      ->expected(1, 3)
-      ->allow_extra_args(false)
+  take_one_list(app.add_option(name, values, description))
       ->type_name("N[,N,N]")
       ->check(CLI::Validator(check, ""));
 }

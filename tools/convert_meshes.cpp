@@ -13,6 +13,8 @@
 #include "formats/mesh_reader.h"
 #include "formats/mesh_stream.h"
 #include "formats/mesh_stream_writer.h"
+#include "formats/mesh_writer.h"
+#include "formats/npy_mesh.h"
 #include "formats/spm_format.h"
 #include "src/error.h"
 #include "tools/checker.h"
@@ -98,6 +100,14 @@ MeshTotals convert_whole(const Mesh& mesh, MeshFormat format, const std::string&
   return totals;
 }
 
+/// What a mesh was written to, in words.
+std::string files_of(const std::string& output, MeshFormat format) {
+  if (output == "-") return "standard output";
+  if (format != MeshFormat::kNpy) return output;
+  const NpyMeshNames names = npy_mesh_names(output);
+  return names.vertices + " and " + names.simplices;
+}
+
 /// Whether the mesh is to be read block by block: an spm stream. An sma stream has no hash at its
 /// end, so that is computed of the whole.
 bool is_stream(ProbedInput& input, InputKind kind) {
@@ -126,7 +136,8 @@ void convert_mesh(ProbedInput& input, InputKind kind, const MeshConversion& conv
   progress.update(totals.simplices, 1);
   progress.end();
   progress.say(fmt::format("{} vertices, {} simplices in {}", totals.vertices, totals.simplices,
-                           output == "-" ? "standard output" : output));
+                           files_of(output, format)));
+  if (const std::string note = rounding_note(format); !note.empty()) progress.say(note);
 }
 
 }  // namespace spillway

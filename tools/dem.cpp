@@ -61,6 +61,10 @@ class Run : public TerrainUse {
     statistics_.output = options.output;
     statistics_.output_format = "tif";
     statistics_.memory_limit = limit_;
+    const bool lit = options.azimuth_option->count() + options.altitude_option->count() > 0;
+    if (lit && std::ranges::count(dem_options_.products, DemProduct::kHillshade) == 0) {
+      progress_.say("--azimuth and --altitude are for hillshade, which is not among the products");
+    }
   }
 
   int run() {
@@ -150,7 +154,7 @@ class Run : public TerrainUse {
           fmt::format("{} of pixels on the disk", memory_size_text(dem.spilled_bytes())));
     }
     if (dem.pixels_with_data() == 0) {
-      progress_.say("no pixel has a value: the raster lies beside the points");
+      progress_.insist("warning: no pixel has a value: the raster lies beside the points");
     }
     progress_.say(
         fmt::format("{} vertices, {} triangles; {} x {} pixels of {}, {} with data, "

@@ -84,16 +84,18 @@ void add_dem_options(CLI::App& app, DemCommandOptions& options) {
       ->type_name("LIST")
       ->capture_default_str()
       ->group(group);
-  app.add_option("--azimuth", options.light.azimuth, "Where a hillshade's light comes from")
-      ->type_name("DEGREES")
-      ->check(CLI::Range(0.0, 360.0).description(""))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--altitude", options.light.altitude, "Its height above the horizon")
-      ->type_name("DEGREES")
-      ->check(CLI::Range(0.0, 90.0).description(""))
-      ->capture_default_str()
-      ->group(group);
+  options.azimuth_option =
+      app.add_option("--azimuth", options.light.azimuth, "Where a hillshade's light comes from")
+          ->type_name("DEGREES")
+          ->check(CLI::Range(0.0, 360.0).description(""))
+          ->capture_default_str()
+          ->group(group);
+  options.altitude_option =
+      app.add_option("--altitude", options.light.altitude, "Its height above the horizon")
+          ->type_name("DEGREES")
+          ->check(CLI::Range(0.0, 90.0).description(""))
+          ->capture_default_str()
+          ->group(group);
   app.add_option("--nodata", options.nodata, "Value of pixels without data")
       ->type_name("V")
       ->capture_default_str()

@@ -6,6 +6,11 @@
 #   tools/demo.sh [FILE]
 set -euo pipefail
 
+if [[ ${1:-} == -h || ${1:-} == --help ]]; then
+  sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+  exit 0
+fi
+
 points=
 if (($# > 0)); then
   if [[ ! -f $1 ]]; then

@@ -50,6 +50,7 @@ int run(const GenerateOptions& options) {
   how.format = format_name_of(options.output);
   how.version = options.output.las_version;
   const bool las = point_format_to_write(options.output.path, how.format) == PointFormat::kLas;
+  check_las_version(options.output, las);
   how.coordinates = what.dimension == 3 || what.family == Family::kTerrain || las ? 3 : 2;
   how.count = what.count;
   if (generator->lattice() != nullptr) how.lattice = *generator->lattice();

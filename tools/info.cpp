@@ -20,6 +20,7 @@
 #include "tools/input_list.h"
 #include "tools/input_options.h"
 #include "tools/json_text.h"
+#include "tools/rank_job.h"
 #include "tools/statistics.h"
 #include "tools/text_output.h"
 
@@ -199,6 +200,7 @@ Json describe_input(const std::string& path, const InfoOptions& options, Progres
 std::string value_text(const Json& value) {
   if (value.is_null()) return "-";
   if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{:.15g}", value.get<double>());
   if (!value.is_array()) return json_text(value);
   std::string text;
   for (const Json& item : value) {
@@ -208,7 +210,7 @@ std::string value_text(const Json& value) {
   return text;
 }
 
-/// The same keys and values as the JSON, laid out for people.
+/// The same keys and values as the JSON, laid out for people: no more digits than mean something.
 std::string describe(const Json& json) {
   std::string text = json["name"].get<std::string>() + "\n";
   for (const auto& [key, value] : json.items()) {
@@ -219,7 +221,10 @@ std::string describe(const Json& json) {
         text += fmt::format("  {:16} {}\n", path, value_text(inner_value));
       }
     } else {
-      text += fmt::format("  {:16} {}\n", key, value_text(value));
+      const bool estimate = key == "density" && value.is_number();
+      text +=
+          fmt::format("  {:16} {}\n", key,
+                      estimate ? fmt::format("{:.6g}", value.get<double>()) : value_text(value));
     }
   }
   return text;
@@ -236,19 +241,37 @@ void add_common_keys(double seconds, Json& json) {
   json["seconds"] = seconds;
 }
 
+void tell(const std::string& path, const InfoOptions& options, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  Json json = describe_input(path, options, progress);
+  if (options.json) {
+    add_common_keys(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                    json);
+  }
+  write_text("-", options.json ? json_text(json) + "\n" : describe(json));
+}
+
 int run(const InfoOptions& options) {
   Progress progress = make_progress(
       options.report, std::count(options.files.begin(), options.files.end(), "-") > 0);
-  for (const std::string& path : expand_inputs(options.files)) {
-    const auto start = std::chrono::steady_clock::now();
-    Json json = describe_input(path, options, progress);
-    if (options.json) {
-      add_common_keys(
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), json);
+  const auto paths =
+      expand_inputs(options.files, [&](std::string_view text) { progress.say(text); });
+  int exit_code = kExitDone;
+  for (const std::string& path : paths) {
+    try {
+      tell(path, options, progress);
+    } catch (const UsageError&) {
+      throw;
+    } catch (const ClosedPipe&) {
+      throw;
+    } catch (const Error& error) {
+      // What else there is to tell is not held up by one file.
+      progress.give_up();
+      if (paths.size() == 1) throw;
+      exit_code = report_error(error.what(), kExitFailed);
     }
-    write_text("-", options.json ? json_text(json) + "\n" : describe(json));
   }
-  return kExitDone;
+  return exit_code;
 }
 
 }  // namespace

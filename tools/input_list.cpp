@@ -12,6 +12,7 @@
 
 #include "formats/file_system.h"
 #include "formats/line_reader.h"
+#include "formats/npy_mesh.h"
 #include "formats/point_format.h"
 #include "src/error.h"
 
@@ -20,37 +21,47 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void append_folder(const std::string& folder, std::vector<std::string>& files) {
-  std::vector<std::string> found;
+/// What arguments stand for.
+struct Found {
+  std::vector<std::string> files;
+  std::size_t of_meshes = 0;  ///< files of npy meshes that were left out
+};
+
+void append_folder(const std::string& folder, Found& found) {
+  std::vector<std::string> names;
   std::error_code fault;
   for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end;
        entry.increment(fault)) {
     std::error_code unknown;
-    if (point_format_of_path(entry->path().string()) && !entry->is_directory(unknown)) {
-      found.push_back(entry->path().string());
+    const std::string name = entry->path().string();
+    if (!point_format_of_path(name) || entry->is_directory(unknown)) continue;
+    if (is_part_of_npy_mesh(disk(), name)) {
+      ++found.of_meshes;
+    } else {
+      names.push_back(name);
     }
   }
   if (fault) throw Error(fmt::format("cannot read the folder {}: {}", folder, fault.message()));
-  if (found.empty()) {
+  if (names.empty()) {
     throw Error(
         fmt::format("{}: the folder has no point files (.las, .laz, .txt, .xyz, .csv, "
-                    ".asc, .npy, .spp); name files or a pattern",
-                    folder));
+                    ".asc, .npy, .spp){}; name files or a pattern",
+                    folder, found.of_meshes > 0 ? " but those of npy meshes" : ""));
   }
-  std::sort(found.begin(), found.end());
-  files.insert(files.end(), found.begin(), found.end());
+  std::sort(names.begin(), names.end());
+  found.files.insert(found.files.end(), names.begin(), names.end());
 }
 
-void append_name(const std::string& name, std::vector<std::string>& files) {
+void append_name(const std::string& name, Found& found) {
   std::error_code unknown;
   if (fs::is_directory(name, unknown)) {
-    append_folder(name, files);
+    append_folder(name, found);
   } else {
-    files.push_back(name);
+    found.files.push_back(name);
   }
 }
 
-void append_matches(const std::string& pattern, std::vector<std::string>& files) {
+void append_matches(const std::string& pattern, Found& found) {
   glob_t matches{};
   const std::unique_ptr<glob_t, void (*)(glob_t*)> owner(&matches, globfree);
   const int result = glob(pattern.c_str(), GLOB_NOSORT, nullptr, &matches);
@@ -58,16 +69,16 @@ void append_matches(const std::string& pattern, std::vector<std::string>& files)
   if (result != 0) throw Error(fmt::format("{}: no file has such a name", pattern));
   std::vector<std::string> names(matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
   std::sort(names.begin(), names.end());
-  for (const std::string& name : names) append_name(name, files);
+  for (const std::string& name : names) append_name(name, found);
 }
 
-void append(const std::string& argument, std::vector<std::string>& files) {
+void append(const std::string& argument, Found& found) {
   std::error_code unknown;
   const bool pattern = argument.find_first_of("*?[") != std::string::npos;
   if (pattern && !fs::exists(argument, unknown)) {
-    append_matches(argument, files);
+    append_matches(argument, found);
   } else {
-    append_name(argument, files);
+    append_name(argument, found);
   }
 }
 
@@ -78,11 +89,16 @@ std::string_view trimmed(std::string_view line) {
   return line.substr(begin, line.find_last_not_of(kBlanks) - begin + 1);
 }
 
-void append_list(const std::string& list, std::vector<std::string>& files) {
+void append_list(const std::string& list, Found& found) {
+  std::error_code unknown;
+  if (list != "-" && !fs::exists(list, unknown)) {
+    throw Error(fmt::format(
+        "@{0} names a list of inputs, {0}, which is not there; a file called so is ./@{0}", list));
+  }
   const auto file = disk().open(list);
   LineReader lines(*file);
   const fs::path folder = list == "-" ? fs::path() : fs::path(list).parent_path();
-  const std::size_t before = files.size();
+  const std::size_t before = found.files.size();
   for (std::string_view line; lines.next(line);) {
     const std::string_view name = trimmed(line);
     if (name.empty() || name.front() == '#') continue;
@@ -92,25 +108,30 @@ void append_list(const std::string& list, std::vector<std::string>& files) {
                       "this is {}",
                       file->name(), lines.number(), quoted(name)));
     }
-    append((folder / name).string(), files);
+    append((folder / name).string(), found);
   }
-  if (files.size() == before) throw Error(fmt::format("{}: the list is empty", file->name()));
+  if (found.files.size() == before) throw Error(fmt::format("{}: the list is empty", file->name()));
 }
 
 }  // namespace
 
-std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments) {
-  std::vector<std::string> files;
+std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments,
+                                       const std::function<void(std::string_view)>& notice) {
+  Found found;
   for (const std::string& argument : arguments) {
     if (argument.size() > 1 && argument.front() == '@') {
-      append_list(argument.substr(1), files);
+      append_list(argument.substr(1), found);
     } else if (argument == "-") {
-      files.push_back(argument);
+      found.files.push_back(argument);
     } else {
-      append(argument, files);
+      append(argument, found);
     }
   }
-  return files;
+  if (found.of_meshes > 0 && notice) {
+    notice(fmt::format("{} files of npy meshes in folders left out: they are not points",
+                       found.of_meshes));
+  }
+  return found.files;
 }
 
 }  // namespace spillway

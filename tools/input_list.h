@@ -1,19 +1,24 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace spillway {
 
 /// The files that arguments stand for, in the order of the arguments:
 /// - "-" and names of files: themselves, as is what names nothing that there is;
-/// - a folder: the point files in it, by extension, sorted; not those of folders below it;
+/// - a folder: the point files in it, by extension, sorted; not those of folders below it, and not
+///   the files of npy meshes, whose number `notice` is told;
 /// - a pattern (* ? [...]) that is no file's name: what it matches, sorted;
 /// - "@LIST": the lines of that file ("@-": of standard input), each a name, folder or pattern as
 ///   above, relative to the folder of the list; blank lines and those that begin with # are left
 ///   out.
 /// Throws Error for a folder without point files, a pattern that matches nothing, and an empty
 /// list.
-std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments);
+std::vector<std::string> expand_inputs(
+    const std::vector<std::string>& arguments,
+    const std::function<void(std::string_view)>& notice = nullptr);
 
 }  // namespace spillway

@@ -60,6 +60,23 @@ PointFilter point_filter(const InputOptions& options) {
   return filter;
 }
 
+/// Tells how many inputs have no levels that --resolution could choose from. Throws UsageError if
+/// none has.
+void check_levels(const std::vector<PointHeader>& headers, Progress& progress) {
+  const auto whole = std::ranges::count_if(
+      headers, [](const PointHeader& header) { return header.format != "copc"; });
+  if (whole == 0) return;
+  if (static_cast<std::size_t>(whole) == headers.size()) {
+    throw UsageError(
+        fmt::format("--resolution: {}; thin the points with --thin instead",
+                    whole == 1 ? headers.front().name + " is no COPC file, only these have levels"
+                               : "no input is a COPC file, and only these have levels"));
+  }
+  progress.say(fmt::format(
+      "{} of {} inputs are no COPC files, which --resolution is for: these are read whole", whole,
+      headers.size()));
+}
+
 }  // namespace
 
 bool InputOptions::filters() const {
@@ -92,7 +109,7 @@ void add_input_options(CLI::App& app, InputOptions& options) {
   add("--thin", options.thin, "CELL[:CHOICE]",
       "Use one point a cell of a grid: the first, lowest, highest one or that at its center");
   app.add_option("--resolution", options.resolution,
-                 "Of COPC files, read the levels needed for points so far apart")
+                 "Of COPC files, read the levels needed for points so far apart; others whole")
       ->type_name("R")
       ->check(CLI::Validator(check_positive_number, ""))
       ->group(group);
@@ -144,17 +161,22 @@ Box<3> parse_bounds(std::string_view text) {
   }
   Box<3> box;
   const std::size_t axes = numbers.size() / 2;
-  bool valid = numbers.size() == 4 || numbers.size() == 6;
-  for (std::size_t k = 0; valid && k < 3; ++k) {
-    box.lo[k] = k < axes ? numbers[k] : -std::numeric_limits<double>::infinity();
-    box.hi[k] = k < axes ? numbers[axes + k] : std::numeric_limits<double>::infinity();
-    valid = box.lo[k] <= box.hi[k];
-  }
+  const bool valid =
+      (numbers.size() == 4 || numbers.size() == 6) &&
+      std::ranges::none_of(numbers, [](double number) { return std::isnan(number); });
   if (!valid) {
     throw UsageError(
         fmt::format("--bounds: \"{}\" is no box; give xmin,ymin,xmax,ymax or "
                     "xmin,ymin,zmin,xmax,ymax,zmax, without blanks",
                     text));
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.lo[k] = k < axes ? numbers[k] : -std::numeric_limits<double>::infinity();
+    box.hi[k] = k < axes ? numbers[axes + k] : std::numeric_limits<double>::infinity();
+    if (box.lo[k] > box.hi[k]) {
+      throw UsageError(fmt::format("--bounds: \"{}\" has a least {} above the most: {} > {}", text,
+                                   "xyz"[k], box.lo[k], box.hi[k]));
+    }
   }
   return box;
 }
@@ -202,12 +224,14 @@ std::unique_ptr<PointSource> make_point_source(FileSystem& files,
   };
   const bool looks = use.ranks == nullptr || use.ranks->rank() == 0;
   const std::vector<std::string> paths =
-      looks ? expand_inputs(arguments) : std::vector<std::string>();
+      looks ? expand_inputs(arguments, how.warn) : std::vector<std::string>();
   if (std::count(paths.begin(), paths.end(), "-") > 1) {
     throw UsageError("standard input can be read only once: give - once");
   }
-  if (use.ranks != nullptr) return open_shared_source(files, paths, how, *use.ranks);
-  return std::make_unique<PointSource>(files, paths, std::move(how));
+  auto source = use.ranks != nullptr ? open_shared_source(files, paths, how, *use.ranks)
+                                     : std::make_unique<PointSource>(files, paths, std::move(how));
+  if (options.resolution > 0) check_levels(source->headers(), progress);
+  return source;
 }
 
 }  // namespace spillway

@@ -5,13 +5,15 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <utility>
 
+#include "formats/bytes.h"
+#include "formats/file_system.h"
+#include "formats/input_source.h"
 #include "formats/point_format.h"
+#include "formats/whole_file.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -20,10 +22,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw Error(path + ": the list of jobs cannot be read");
-  return text.str();
+  InputSource source(disk().open(path));
+  return std::string(as_text(read_whole(source)));
 }
 
 Json json_of(const toml::node& node) {
@@ -150,7 +150,7 @@ void check_jobs(const std::vector<Job>& jobs) {
   std::set<std::string> names;
   for (const Job& job : jobs) {
     if (std::find(job.inputs.begin(), job.inputs.end(), "-") != job.inputs.end()) {
-      throw Error(
+      throw UsageError(
           fmt::format("{}: a job of a batch cannot read standard input: name a file", job.name));
     }
     if (job.name.empty() || job.name.starts_with('.') || job.name.find('/') != std::string::npos) {
@@ -158,7 +158,7 @@ void check_jobs(const std::vector<Job>& jobs) {
           fmt::format("\"{}\" cannot be the name of a job: its files are called so", job.name));
     }
     if (!names.insert(job.name).second) {
-      throw Error(
+      throw UsageError(
           fmt::format("two jobs are called {}: give them names of their own in a list of "
                       "jobs",
                       job.name));

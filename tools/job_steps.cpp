@@ -31,6 +31,18 @@ constexpr std::array kProducts = {Product{"dem", "dem", "", ""},
                                   Product{"contour", "contour", "", ""},
                                   Product{"render", "render", "", ""}};
 
+/// An option that a subcommand cannot do without, unless it has the other one.
+struct Needed {
+  std::string_view subcommand;
+  std::string_view option;
+  std::string_view other;
+  std::string_view meaning;
+};
+
+constexpr std::array kNeeded = {
+    Needed{"dem", "resolution", "like", "the side of a pixel"},
+    Needed{"contour", "interval", "levels", "the height between two contours"}};
+
 /// Options that a batch shares out among its jobs, or decides for them.
 constexpr std::array<std::string_view, 9> kShared = {
     "threads", "memory", "tmpdir", "max-tmp", "progress", "quiet", "verbose", "output", "stats"};
@@ -153,6 +165,17 @@ bool JobPlanner::takes_option(const Job& job, const std::string& subcommand, boo
 }
 
 void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps) const {
+  for (const JobStep& step : steps) {
+    for (const Needed& needed : kNeeded) {
+      if (needed.subcommand != step.arguments.front() ||
+          job.options.contains(std::string(needed.option)) ||
+          job.options.contains(std::string(needed.other))) {
+        continue;
+      }
+      throw UsageError(fmt::format("{}: --{}, {}, is missing (or --{})", step.output, needed.option,
+                                   needed.meaning, needed.other));
+    }
+  }
   for (const auto& [name, values] : job.options) {
     if (std::find(kShared.begin(), kShared.end(), name) != kShared.end()) {
       throw UsageError(fmt::format("{}: --{} is for all jobs together: give it to batch itself",

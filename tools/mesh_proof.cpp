@@ -104,6 +104,7 @@ class MeshProof {
           if (integer) {
             points[v][k] = *integer;
           } else {
+            ++report_.off_lattice;
             faults_.add("{} is off the lattice: its {} is no integer * {} + {}",
                         view_.vertex_text(v), "xyz"[k], lattice -> scale[k], lattice -> offset[k]);
           }

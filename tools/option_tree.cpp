@@ -1,5 +1,7 @@
 #include "tools/option_tree.h"
 
+#include "tools/command_options.h"
+
 namespace spillway {
 namespace {
 
@@ -30,7 +32,7 @@ OptionInfo describe(const CLI::Option& option) {
   info.description = option.get_description();
   info.default_value = option.get_default_str();
   info.required = option.get_required();
-  info.many = option.get_expected_max() == CLI::detail::expected_max_vector_size;
+  info.many = takes_many(option);
   return info;
 }
 

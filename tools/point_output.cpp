@@ -1,5 +1,6 @@
 #include "tools/point_output.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "formats/gdal/gdal.h"
@@ -11,6 +12,12 @@ namespace spillway {
 void add_las_version(CLI::App& app, PointOutput& output) {
   add_choice(app, "--las-version", output.las_version, {"1.2", "1.4"},
              "Version of LAS to write, with point format 0 or 6");
+}
+
+void check_las_version(const PointOutput& output, bool is_las) {
+  if (is_las || output.las_version.empty()) return;
+  throw UsageError(
+      fmt::format("--las-version is for LAS, and {} is none: leave it away", output.name()));
 }
 
 std::string format_name_of(const PointOutput& output) {

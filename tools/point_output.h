@@ -19,6 +19,9 @@ struct PointOutput {
 /// Adds --las-version.
 void add_las_version(CLI::App& app, PointOutput& output);
 
+/// Throws UsageError if a version of LAS was asked for, but the output is none.
+void check_las_version(const PointOutput& output, bool is_las);
+
 /// The format by name for open_point_writer(); empty if the extension is to tell. Throws UsageError
 /// if bytes would go to a terminal.
 std::string format_name_of(const PointOutput& output);

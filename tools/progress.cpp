@@ -29,11 +29,7 @@ std::chrono::milliseconds period(ProgressStyle style) {
 Progress::Progress(ProgressStyle style, bool quiet, bool verbose)
     : style_(style), quiet_(quiet), verbose_(verbose) {}
 
-Progress::~Progress() {
-  ticker_ = {};
-  const std::lock_guard lock(mutex_);
-  wipe(lock);
-}
+Progress::~Progress() { give_up(); }
 
 void Progress::begin(const std::string& phase, const std::string& unit) {
   start_ = Clock::now();
@@ -65,8 +61,17 @@ double Progress::end() {
   return state_.seconds;
 }
 
+void Progress::give_up() {
+  ticker_ = {};
+  const std::lock_guard lock(mutex_);
+  wipe(lock);
+}
+
 void Progress::say(std::string_view message) {
-  if (quiet_) return;
+  if (!quiet_) insist(message);
+}
+
+void Progress::insist(std::string_view message) {
   const std::lock_guard lock(mutex_);
   wipe(lock);
   if (style_ == ProgressStyle::kJson) {

@@ -37,9 +37,13 @@ class Progress {
   void update(std::uint64_t done, std::optional<double> fraction);
   /// Ends the phase and returns how many seconds it took.
   double end();
+  /// Ends a phase that failed, or none, without a line about it.
+  void give_up();
 
   /// A message, unless quiet.
   void say(std::string_view message);
+  /// A message that is said with -q, too.
+  void insist(std::string_view message);
   /// A message that only -v shows.
   void detail(std::string_view message);
 

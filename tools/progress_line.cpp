@@ -7,6 +7,11 @@
 #include "tools/json_text.h"
 
 namespace spillway {
+namespace {
+
+constexpr double kLeastSeconds = 0.05;
+
+}  // namespace
 
 double PhaseState::rate() const { return seconds > 0 ? static_cast<double>(done) / seconds : 0; }
 
@@ -34,8 +39,9 @@ std::string clock_time(double seconds) {
 std::string progress_line(const PhaseState& state) {
   std::string line = state.phase + ":";
   if (state.done > 0) {
-    line += fmt::format(" {} {}, {}/s,", short_number(static_cast<double>(state.done)), state.unit,
-                        short_number(state.rate()));
+    line += fmt::format(" {} {},", short_number(static_cast<double>(state.done)), state.unit);
+    // A rate of next to no time says nothing.
+    if (state.seconds >= kLeastSeconds) line += fmt::format(" {}/s,", short_number(state.rate()));
   }
   if (state.finished) return line + fmt::format(" {:.2f} s", state.seconds);
   if (state.fraction) line += fmt::format(" {:.0f}%,", std::floor(*state.fraction * 100));

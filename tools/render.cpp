@@ -224,8 +224,8 @@ Subcommand add_render(CLI::App& root) {
       ->check(CLI::Range(kLeastSize, kMostSize).description(""))
       ->capture_default_str()
       ->group(group);
-  app->add_option("--zoom", options->zoom, "Show xmin,ymin,xmax,ymax only [everything]")
-      ->delimiter(',')
+  take_one_list(
+      app->add_option("--zoom", options->zoom, "Show xmin,ymin,xmax,ymax only [everything]"))
       ->type_name("BOX")
       ->group(group);
   app->add_flag("--wireframe", options->wireframe, "Draw the edges of triangles")->group(group);
@@ -234,9 +234,8 @@ Subcommand add_render(CLI::App& root) {
       ->type_name("Z")
       ->check(CLI::Validator(check_positive_number, ""))
       ->group(group);
-  app->add_option("--view", options->view,
-                  "Look at tetrahedra from AZIMUTH,ELEVATION in degrees [30,25]")
-      ->delimiter(',')
+  take_one_list(app->add_option("--view", options->view,
+                                "Look at tetrahedra from AZIMUTH,ELEVATION in degrees [30,25]"))
       ->type_name("A,E")
       ->group(group);
   app->add_option("--slice", options->slice, "Cut tetrahedra by a plane: x=VALUE, y=... or z=...")

@@ -121,7 +121,7 @@ class StreamProof {
 
   void report_off_lattice(std::uint64_t number, const Point<3>& vertex, int axis) {
     if (task_ == StreamTask::kCount) return;
-    ++off_lattice_;
+    ++report_.off_lattice;
     const Lattice& lattice = *coordinates_.lattice();
     NamedVertex<D> named{number, {}};
     std::copy_n(coordinates_.block_to_output(vertex).begin(), D, named.point.begin());
@@ -220,7 +220,7 @@ class StreamProof {
   void conclude() {
     vertices_.for_each_not_finalized([this](const auto& vertex) { require_used(vertex); });
     if (simplices_joined_ == 0) faults_.add("the mesh has no {}", Words<D>::kSimplices);
-    if (coordinates_.lattice() && off_lattice_ == 0) {
+    if (coordinates_.lattice() && report_.off_lattice == 0) {
       prove("all {} vertices are on the lattice", report_.vertices);
       report_.on_lattice = coordinates_.on_lattice();
     }
@@ -228,7 +228,7 @@ class StreamProof {
     if (not_positive_ == 0) {
       prove("all {} {} are positively oriented", report_.simplices, Words<D>::kSimplices);
     }
-    const bool matched = faults_.count() == off_lattice_ + unused_ + not_delaunay_;
+    const bool matched = faults_.count() == report_.off_lattice + unused_ + not_delaunay_;
     if (!matched) return;
     prove("every {} is in two {} or on the boundary", Words<D>::kFacet, Words<D>::kSimplices);
     if (not_delaunay_ == 0) {
@@ -319,7 +319,6 @@ class StreamProof {
   std::uint64_t inner_ = 0;                      // facets with two positive simplices
   std::uint64_t not_delaunay_ = 0;               // of these
   std::uint64_t not_positive_ = 0;               // simplices
-  std::uint64_t off_lattice_ = 0;                // vertices
   std::uint64_t unused_ = 0;                     // vertices
   std::uint64_t last_twin_ = ~std::uint64_t{0};  // the last simplex reported as one
 };

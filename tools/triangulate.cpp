@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "formats/mesh_stream_writer.h"
+#include "formats/mesh_writer.h"
+#include "formats/point_format.h"
 #include "formats/scratch_folder.h"
 #include "src/distributed/ranks.h"
 #include "src/error.h"
@@ -101,6 +103,8 @@ void report(const TriangulateOptions& options, const RunStatistics& statistics,
                            stream.totals.simplices,
                            statistics.dimension == 2 ? "triangles" : "tetrahedra",
                            hash_to_hex(stream.totals.canonical_hash), statistics.seconds));
+  const MeshFormat format = mesh_format(options.output, statistics.output_format);
+  if (const std::string note = rounding_note(format); !note.empty()) progress.say(note);
   if (options.simulates()) {
     // The table is what was asked for; it gives way only to a mesh on standard output.
     const std::string table =
@@ -199,6 +203,19 @@ int run(const TriangulateOptions& options, const MeshTarget& target, RunStatisti
   return kExitDone;
 }
 
+/// Throws for a file that another subcommand makes.
+void refuse_other_output(const std::string& path) {
+  const std::string extension = extension_of(path);
+  const char* subcommand = nullptr;
+  if (extension == "tif" || extension == "tiff") subcommand = "dem";
+  if (extension == "png") subcommand = "render";
+  if (extension == "geojson") subcommand = "contour";
+  if (extension != "npy" && point_format_of_path(path)) subcommand = "convert";
+  if (subcommand == nullptr) return;
+  throw UsageError(
+      fmt::format("-o {}: this is no mesh; it is what spillway {} makes", path, subcommand));
+}
+
 int run(const TriangulateOptions& options) {
   if (options.simulates()) {
     parse_core_list(options.core_list);
@@ -216,6 +233,7 @@ int run(const TriangulateOptions& options) {
   if (options.output == options.stats_path) {
     throw UsageError("the mesh and --stats cannot go to the same place: " + options.output);
   }
+  if (options.output_format.empty()) refuse_other_output(options.output);
   const MeshTarget target = mesh_target(options.output, options.output_format, options.parts);
   if (target.parts && !distributed::launch().as_ranks) {
     throw UsageError("parts are a file for each rank: start it with mpirun");

@@ -34,7 +34,7 @@ LasFile version_4() {
 }
 
 TEST(LasCorruption, Empty) {
-  EXPECT_THAT(error_of_content("a.las", ""), HasSubstr("does not begin with LASF"));
+  EXPECT_THAT(error_of_content("a.las", ""), HasSubstr("a.las: the input is empty"));
 }
 
 TEST(LasCorruption, WrongSignature) {

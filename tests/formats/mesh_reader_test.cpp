@@ -167,6 +167,12 @@ std::string obj_text() {
          "f -2/1 2/1/1 4//1\nl 1 2\ncstype bezier\n";
 }
 
+TEST(VtuReader, AnIndexOfPartsIsNoMesh) {
+  EXPECT_THAT(
+      error_of_bytes("tin.pvtu", "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\">\n"),
+      HasSubstr("the index of a mesh's parts"));
+}
+
 TEST(ObjReader, AllKindsOfCorners) { expect_square(read_both("a.obj", obj_text())); }
 
 TEST(ObjReader, FacesMayStandBeforeTheirVertices) {

@@ -156,7 +156,7 @@ TEST(LasWriter, RefusesWhatIsNoInt32) {
 }
 
 TEST(LasWriter, NeedsALatticeAndThreeCoordinates) {
-  EXPECT_THAT(error_of([] { written("a.las", {}, {}); }), HasSubstr("write text or npy"));
+  EXPECT_THAT(error_of([] { written("a.las", {}, {}); }), HasSubstr("write spp, npy or text"));
   PointWriterOptions flat = with_lattice({});
   flat.coordinates = 2;
   EXPECT_THAT(error_of([&] { written("a.las", {}, flat); }), HasSubstr("three coordinates"));

@@ -139,7 +139,8 @@ TEST(Spp, CutShortAtEveryByte) {
                 AllOf(HasSubstr("a.spp: the stream is cut short at byte"), HasSubstr("points")))
         << size;
   }
-  for (std::size_t size = 0; size < kSppMagic.size(); ++size) {
+  EXPECT_THAT(error_of_content("a.spp", ""), HasSubstr("a.spp: the input is empty"));
+  for (std::size_t size = 1; size < kSppMagic.size(); ++size) {
     EXPECT_THAT(error_of_content("a.spp", whole.substr(0, size)), HasSubstr("no spp file"));
   }
 }

@@ -89,6 +89,13 @@ TEST_F(Contour, DropsNothingSilently) {
   EXPECT_EQ(stats["contours"]["lines"], features(space, "c.geojson").size());
 }
 
+TEST_F(Contour, NoLinesAreAWarningWithQuietToo) {
+  const Result result = space.run("spillway contour -q cone.txt -o c.json --levels 1e6");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("warning: no lines: no level lies within the heights"));
+  EXPECT_EQ(features(space, "c.json").size(), 0U);
+}
+
 TEST_F(Contour, SaysWhatIsWrongWithTheCommandLine) {
   const auto error_of = [&](const std::string& options) {
     const Result result = space.run("spillway contour cone.txt " + options);
@@ -99,7 +106,7 @@ TEST_F(Contour, SaysWhatIsWrongWithTheCommandLine) {
   EXPECT_THAT(error_of("-o c.gpkg --interval -1"), HasSubstr("an interval is a number above 0"));
   EXPECT_THAT(error_of("-o c.gpkg --interval 1 --levels 3"),
               HasSubstr("--levels names all heights"));
-  EXPECT_THAT(error_of("-o c.dwg --interval 1"), HasSubstr(".gpkg, .shp or .geojson"));
+  EXPECT_THAT(error_of("-o c.dwg --interval 1"), HasSubstr(".gpkg, .shp, .geojson or .json"));
   EXPECT_EQ(space.names(), std::vector<std::string>{"cone.txt"});
 }
 

@@ -41,6 +41,20 @@ TEST(Convert, KeepsInputIndicesAndTetrahedra) {
       "cmp direct.vtu converted.vtu");
 }
 
+TEST(Convert, TellsTheFilesOfAnNpyMeshAndWhatIsRounded) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 500 -o in.las\n"
+      "spillway triangulate -q in.las -o mesh.spm");
+  EXPECT_THAT(work.run("spillway convert mesh.spm -o t.npy").err,
+              HasSubstr("in t_vertices.npy and t_simplices.npy\n"));
+  EXPECT_THAT(work.run("spillway convert mesh.spm -o t.glb").err, HasSubstr("32-bit floats"));
+  EXPECT_THAT(work.run("spillway triangulate in.las -o t.stl").err, HasSubstr("32-bit floats"));
+  EXPECT_THAT(work.run("spillway check t.stl --points in.las").out, HasSubstr("hint: "));
+  EXPECT_EQ(work.run("spillway check mesh.spm --points in.las").out.find("hint: "),
+            std::string::npos);
+}
+
 TEST(Convert, PassesAStreamThroughAPipe) {
   const Workspace work;
   work.succeed(

@@ -241,6 +241,17 @@ TEST(Dem, FiguresTellTheRastersSizeAndItsData) {
   EXPECT_EQ(json["simplices"], 1);
 }
 
+TEST(Dem, NoDataAndUnusedLightAreTold) {
+  const Workspace work;
+  work.write("points.txt", surface(10, 1));
+  const std::string dem = "spillway dem points.txt -o a.tif --resolution 1 ";
+  EXPECT_THAT(work.run(dem + "-q --bounds 90,90,95,95").err,
+              HasSubstr("warning: no pixel has a value"));
+  EXPECT_THAT(work.run(dem + "--azimuth 9").err, HasSubstr("are for hillshade"));
+  EXPECT_THAT(work.run(dem + "--azimuth 9 --product hillshade").err,
+              ::testing::Not(HasSubstr("are for hillshade")));
+}
+
 struct Refused {
   const char* name;
   const char* arguments;

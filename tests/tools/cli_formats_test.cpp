@@ -58,7 +58,7 @@ TEST_P(EveryMeshFormat, HoldsTheInputIndexOrRefusesItBeforeAnyWork) {
     EXPECT_EQ(work.info(GetParam().file)["input_index"], true);
   } else {
     const Result result = work.run("spillway triangulate -v --id in.las -o " + to_format);
-    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.exit_code, 2);
     EXPECT_EQ(result.err.find("spillway: error: "), 0U) << result.err;
   }
 }
@@ -70,7 +70,7 @@ TEST_P(EveryMeshFormat, HoldsTetrahedraOrRefusesThem) {
     expect_same_mesh_as_ply(work, GetParam(), "3");
   } else {
     const Result result = work.run("spillway triangulate -q in.las --dim 3 -o " + GetParam().file);
-    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.exit_code, 2);
     EXPECT_NE(result.err.find("spillway: error: "), std::string::npos);
     EXPECT_EQ(work.names(), std::vector<std::string>{"in.las"});
   }

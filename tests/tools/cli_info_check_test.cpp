@@ -40,6 +40,15 @@ TEST(Info, ExtentAndDensityOfTextAreExact) {
   EXPECT_TRUE(info["scale"].is_null());
 }
 
+TEST(Info, PeopleGetNoMoreDigitsThanMeanSomething) {
+  const Workspace work;
+  work.write("in.txt", "0 0.1 0\n3 848935.2000000001 0\n0 7 0\n");
+  const std::string text = work.succeed("spillway info -q in.txt");
+  EXPECT_THAT(text, HasSubstr("3  848935.2  0\n"));
+  EXPECT_THAT(text, HasSubstr("1.17795e-06\n"));
+  EXPECT_EQ(work.info("in.txt")["extent"]["max"][1], 848935.2000000001);
+}
+
 TEST(Info, TellsAMeshAndSeveralFilesOnALineEach) {
   const Workspace work;
   work.write("in.txt", "0 0 0\n1 0 0\n0 1 0\n1.5 1.5 0\n");

@@ -79,6 +79,43 @@ TEST_F(Inputs, AFolderIsNotSearchedFurtherDown) {
   EXPECT_EQ(hash("tiles"), hash("all.las"));
 }
 
+TEST_F(Inputs, NpyMeshesOfAFolderAreNoPoints) {
+  work_.succeed("spillway triangulate -q --id all.las -o tiles/mesh.npy");
+  EXPECT_EQ(hash("tiles"), hash("all.las"));
+  EXPECT_THAT(work_.run("spillway triangulate tiles -o mesh.ply").err,
+              HasSubstr("3 files of npy meshes in folders left out"));
+  EXPECT_THAT(error("tiles/mesh_simplices.npy"), HasSubstr("the simplices of an npy mesh"));
+  EXPECT_EQ(hash("tiles/mesh_vertices.npy"), work_.info("tiles/mesh.npy")["canonical_hash"]);
+}
+
+TEST_F(Inputs, MeshesAreToldFromPoints) {
+  work_.succeed("spillway triangulate -q all.las -o tin.ply");
+  EXPECT_THAT(error("tin.ply"), HasSubstr("tin.ply: this is a mesh (PLY), not points"));
+  EXPECT_THAT(work_.run("cat tin.ply | spillway info -").err,
+              HasSubstr("only spm and sma are read from a pipe"));
+  EXPECT_THAT(work_.run("spillway convert tin.ply -o x.las").err,
+              HasSubstr("tin.ply: this is a mesh, and x.las would be points"));
+}
+
+TEST_F(Inputs, AnEmptyPipeIsAnErrorAndAnEmptyTextIsNone) {
+  work_.write("empty.txt", "");
+  work_.write("empty.las", "");
+  EXPECT_EQ(work_.info("empty.txt")["points"], 0);
+  for (const std::string command : {"info -", "check -", "convert - -o x.las", "info empty.las"}) {
+    const Result result = work_.run("spillway " + command);
+    EXPECT_EQ(result.exit_code, 1) << command;
+    EXPECT_THAT(result.err, HasSubstr(": the input is empty; ")) << command;
+  }
+  EXPECT_FALSE(work_.has("x.las"));
+}
+
+TEST_F(Inputs, InfoGoesOnAfterAFileThatCannotBeRead) {
+  const Result result = work_.run("spillway info -q tiles/0.las gone.las tiles/1.las");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, AllOf(HasSubstr("tiles/0.las\n"), HasSubstr("tiles/1.las\n")));
+  EXPECT_THAT(result.err, HasSubstr("gone.las"));
+}
+
 TEST_F(Inputs, CheckAndInfoTakeThemToo) {
   hash("tiles");
   work_.succeed("spillway check -q mesh.ply --points 'tiles/*.las'");
@@ -119,7 +156,7 @@ TEST_F(Inputs, WhatNamesNothingIsAnError) {
   EXPECT_THAT(error("'*.copc'"), HasSubstr("*.copc: no file has such a name"));
   EXPECT_THAT(error("@empty.lst"), HasSubstr("empty.lst: the list is empty"));
   EXPECT_THAT(error("@nested.lst"), HasSubstr("nested.lst, line 1: "));
-  EXPECT_THAT(error("@gone.lst"), HasSubstr("gone.lst"));
+  EXPECT_THAT(error("@gone.lst"), HasSubstr("a file called so is ./@gone.lst"));
 }
 
 TEST_F(Inputs, DifferentCoordinateSystemsNeedForce) {

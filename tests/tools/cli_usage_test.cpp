@@ -23,6 +23,28 @@ TEST(Usage, HelpIsOnStandardOutputAtEveryLevel) {
   EXPECT_THAT(work.succeed("spillway --version"), StartsWith("spillway "));
 }
 
+TEST(Usage, HelpAndVersionAreWordsToo) {
+  const Workspace work;
+  EXPECT_EQ(work.succeed("spillway help"), work.succeed("spillway --help"));
+  EXPECT_EQ(work.succeed("spillway help dem"), work.succeed("spillway dem --help"));
+  EXPECT_EQ(work.succeed("spillway version"), work.succeed("spillway --version"));
+}
+
+TEST(Usage, AnOptionWithAListLeavesTheInputAlone) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 500 -o in.las");
+  for (const std::string arguments :
+       {"render --zoom 500100,4100100,500300,4100300 in.las -o a.png",
+        "render --dim 3 --view 30,20 in.las -o b.png", "contour --levels 380,390 in.las -o c.gpkg",
+        "convert --scale 0.1 in.las -o d.las", "convert --offset 0,0,0 in.las -o e.las",
+        "batch --to ply in.las --output-dir f", "triangulate --keep-class 0-9 in.las -o g.ply",
+        "triangulate --simulate-cores 1,2 in.las -o h.ply"}) {
+    EXPECT_EQ(work.run("spillway " + arguments).exit_code, 0) << arguments;
+  }
+  EXPECT_THAT(work.succeed("spillway render --help"), HasSubstr("--zoom BOX  "));
+  EXPECT_THAT(work.succeed("spillway batch --help"), HasSubstr("--to KIND,...  "));
+}
+
 class WrongCommandLine : public testing::TestWithParam<std::string> {};
 
 TEST_P(WrongCommandLine, IsOneLineAndExitCodeTwo) {
@@ -50,7 +72,12 @@ INSTANTIATE_TEST_SUITE_P(
         "triangulate in.txt -o x.ply --simulate-cores 1,2 --threads 2", "generate",
         "generate nothing -n 5 -o x.txt", "generate uniform -o x.txt",
         "generate uniform -n many -o x.txt", "generate uniform -n -1 -o x.txt",
-        "generate uniform -n 1.5 -o x.txt", "info", "check", "completion tcsh"));
+        "generate uniform -n 1.5 -o x.txt", "generate uniform -n 9 -o x.txt --las-version 1.2",
+        "triangulate in.txt -o x.obj --dim 3", "triangulate in.txt -o x.obj --id",
+        "triangulate in.txt -o x.tif", "triangulate in.txt -o x.ply --resolution 2",
+        "contour in.txt -o x.gpkg --interval 0", "batch in.txt --to dem.tif --output-dir o",
+        "batch in.txt --to ply,contour.gpkg --output-dir o",
+        "batch in.txt ./in.txt --to ply --output-dir o", "info", "check", "completion tcsh"));
 
 TEST(Completion, BashCompletesSubcommandsOptionsAndValues) {
   const Workspace work;

@@ -60,6 +60,8 @@ TEST(ProgressLine, ShowsWhatIsKnown) {
   EXPECT_EQ(progress_line(state), "read: 1.20M points, 400k/s, 25%, 0:09 left");
   state.finished = true;
   EXPECT_EQ(progress_line(state), "read: 1.20M points, 400k/s, 3.00 s");
+  state.seconds = 0.001;
+  EXPECT_EQ(progress_line(state), "read: 1.20M points, 0.00 s");
   const PhaseState unknown{.phase = "triangulate", .unit = "points", .fraction = {}, .seconds = 75};
   EXPECT_EQ(progress_line(unknown), "triangulate: 1:15");
 }
