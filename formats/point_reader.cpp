@@ -130,7 +130,7 @@ std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::str
     case PointFormat::kLas:
       return open_las_reader(std::move(source), path, options);
     case PointFormat::kNpy:
-      if (path.ends_with(kNpySimplices)) {
+      if (path.ends_with(kNpySimplices) && is_part_of_npy_mesh(files, path)) {
         throw Error(fmt::format(
             "{}: these are the simplices of an npy mesh, not points; its vertices are in a file "
             "beside it",

@@ -65,7 +65,10 @@ void MemoryBudget::take(std::uint64_t bytes, const char* purpose) {
   const std::uint64_t used = used_ += bytes;
   if (used <= limit_) return;
   used_ -= bytes;
-  const auto size = [](std::uint64_t least) { return fmt::format("{}M", least / kMiB + 1); };
+  const double parts = static_cast<double>(whole_) / static_cast<double>(limit_);
+  const auto size = [parts](std::uint64_t least) {
+    return fmt::format("{:.0f}M", std::floor(static_cast<double>(least) * parts / kMiB) + 1);
+  };
   const std::uint64_t perhaps = used + used / 4;
   std::string advice = size(perhaps) + " may be enough";
   if (enough_ > perhaps) {
@@ -74,7 +77,7 @@ void MemoryBudget::take(std::uint64_t bytes, const char* purpose) {
     advice = size(enough_) + " is enough";
   }
   throw Error(fmt::format("{} of memory are too little for {}; --memory {}",
-                          memory_size_text(limit_), purpose, advice));
+                          memory_size_text(whole_), purpose, advice));
 }
 
 }  // namespace spillway

@@ -22,7 +22,10 @@ std::string memory_size_text(std::uint64_t bytes);
 /// Bytes promised to the stages of a run.
 class MemoryBudget {
  public:
-  explicit MemoryBudget(std::uint64_t limit) : limit_(limit) {}
+  explicit MemoryBudget(std::uint64_t limit) : MemoryBudget(limit, limit) {}
+  /// A budget of `limit` bytes that is a part of the `whole` that the user gave: errors speak of
+  /// the whole.
+  MemoryBudget(std::uint64_t limit, std::uint64_t whole) : limit_(limit), whole_(whole) {}
 
   [[nodiscard]] std::uint64_t limit() const { return limit_; }
   [[nodiscard]] std::uint64_t used() const { return used_; }
@@ -30,12 +33,14 @@ class MemoryBudget {
   /// Tells how much is enough for the run whatever it meets, for errors to name it.
   void set_enough(std::uint64_t bytes) { enough_ = bytes; }
 
-  /// Where a MemoryLease does not fit. take() throws Error as that does.
+  /// For holders whose size changes; where it will do a MemoryLease is better. take() throws Error
+  /// as that does.
   void take(std::uint64_t bytes, const char* purpose);
   void give_back(std::uint64_t bytes) { used_ -= bytes; }
 
  private:
   const std::uint64_t limit_;
+  const std::uint64_t whole_;
   std::atomic<std::uint64_t> enough_ = 0;
   std::atomic<std::uint64_t> used_ = 0;
 };

@@ -25,6 +25,7 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, MeshStreamWriter& writ
     : options_(options),
       budget_(budget),
       plan_(plan_memory(budget.limit(), D, options.threads)),
+      planned_tile_(plan_.tile_capacity),
       tile_options_(tile_options(expected.lattice)),
       counts_(budget),
       tree_(tree_options(expected), scratch, counts_.times),
@@ -108,7 +109,8 @@ typename TileEngine<D>::Node* TileEngine<D>::add_node(const TileNode<D>& tiles, 
 }
 
 /// Takes tiles in order as long as there are any; after the last child of a merge, does that too.
-/// Of a tile of equal points, which is not made smaller, only what others may have is leased.
+/// Of a tile that is larger than planned, of equal points or by --tile, only what others may have
+/// is leased.
 template <int D>
 void TileEngine<D>::work_off_tiles() {
   try {
@@ -118,8 +120,7 @@ void TileEngine<D>::work_off_tiles() {
       if (node == nullptr) return;
       {
         const MemoryLease lease(
-            budget_, std::min(points.points.size(), plan_.tile_capacity) * kLoadedPointBytes,
-            "a tile");
+            budget_, std::min(points.points.size(), planned_tile_) * kLoadedPointBytes, "a tile");
         node->border = triangulate_tile<D>(
             std::move(points), node->outside, tile_options_, sequencer_, counts_, node->slot,
             [&] { report_progress(); }, *node->task);

@@ -104,6 +104,7 @@ class TileEngine {
   const StreamOptions& options_;
   MemoryBudget& budget_;
   MemoryPlan plan_;
+  const std::size_t planned_tile_;  ///< points of a tile, unless --tile is given
   TileOptions tile_options_;
   StreamCounts counts_;
   TileTree tree_;

@@ -134,7 +134,7 @@ int run(const ContourCommandOptions& options) {
   Progress progress =
       make_progress(options.report, std::count(inputs.begin(), inputs.end(), "-") > 0);
   const std::uint64_t limit = memory_limit(options.memory);
-  MemoryBudget budget(limit - limit / kLineShare);
+  MemoryBudget budget(limit - limit / kLineShare, limit);
   const auto scratch = make_scratch_folder(options.memory);
   ContourUse use(options, limit / kLineShare, *scratch);
   RunStatistics statistics;

@@ -49,7 +49,7 @@ class Run : public TerrainUse {
       : options_(options),
         dem_options_(dem_options(options, like_)),
         limit_(memory_limit(options.memory)),
-        budget_(limit_ - limit_ / kPixelShare),
+        budget_(limit_ - limit_ / kPixelShare, limit_),
         scratch_(make_scratch_folder(options.memory)),
         progress_(make_progress(
             options.report, std::count(options.inputs.begin(), options.inputs.end(), "-") > 0)) {

@@ -167,7 +167,7 @@ int run(const RenderCommandOptions& options) {
   const auto& inputs = options.inputs;
   Progress progress =
       make_progress(options.report, std::count(inputs.begin(), inputs.end(), "-") > 0);
-  MemoryBudget budget(limit - limit / kPixelShare);
+  MemoryBudget budget(limit - limit / kPixelShare, limit);
   const auto scratch = make_scratch_folder(options.memory);
   const unsigned threads = plan_memory(budget.limit(), 2, thread_count(options)).threads;
   RenderUse use(request, limit / kPixelShare, threads, *scratch);

@@ -99,7 +99,8 @@ StreamOptions stream_options(const TriangulationOptions& options, Progress& prog
 void reuse_freed_memory(std::size_t kept) {
   mallopt(M_MMAP_THRESHOLD, static_cast<int>(kept / 4));
   mallopt(M_TRIM_THRESHOLD, static_cast<int>(kept));
-  mallopt(M_ARENA_MAX, 1);  // others give back memory in spite of this
+  // Other arenas give back memory in spite of that, and have their own store of it.
+  mallopt(M_ARENA_MAX, 1);
 }
 
 }  // namespace spillway

@@ -20,7 +20,7 @@ struct BaseCaseInput {
   std::span<const VertexId> input_index;
   VertexId first_vertex = 0;
   std::optional<Box<D>> region{};  ///< asks for BaseCase::inside; its sides may be infinite
-  /// Leaves the simplices in the kernel's working memory, of which they use less than a half:
+  /// Leaves the simplices in the kernel's working memory, of which they use at most half:
   /// nothing is copied, and at the peak less memory is used. For results that are soon recycled,
   /// or few.
   bool in_place = false;

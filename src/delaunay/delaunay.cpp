@@ -121,6 +121,7 @@ class Run {
     std::transform(
         leaf.inside.begin(), leaf.inside.end(), marks_[part.block].begin(),
         [](std::uint8_t inside) { return inside != 0 ? Mark::kFinal : Mark::kInterior; });
+    if (in_place_) leaf.simplices.shrink();
     result_.blocks[part.block].simplices = std::move(leaf.simplices);
     duplicates_[part.block] = std::move(leaf.duplicates);
     if (surface.open) surface.vertices = distinct_vertices(part);
@@ -227,7 +228,6 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
     result = Run<D>(std::move(copy), options, in_place)
                  .triangulate(base_case_size, options.tasks == nullptr ? unused : *options.tasks);
   });
-  for (SimplexBlock<D>& block : result.blocks) block.simplices.shrink();
   release_base_case_memory();
   return result;
 }

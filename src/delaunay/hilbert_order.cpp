@@ -110,7 +110,8 @@ class Sorter {
  private:
   /// So few points in one cell are not divided further; twice as many are.
   static constexpr std::size_t kFewPoints = 12;
-  /// A base case takes longer if a point has fewer cells than this; more do not help it.
+  /// A base case takes longer if a point has fewer cells than this; more do not help it. Of more
+  /// than two million points, whose numbers leave less room for keys, crowded cells make up for it.
   static constexpr std::size_t kCellsOfPoint = 4;
   /// Keys have two digits, of so many bits at most.
   static constexpr int kWidestDigit = 13;

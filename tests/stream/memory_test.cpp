@@ -58,6 +58,19 @@ TEST(MemoryBudget, NamesWhatMayBeEnoughAndWhatIs) {
             "32 MiB of memory are too little for another; --memory 151M may be enough");
 }
 
+TEST(MemoryBudget, SpeaksOfTheWholeThatItIsAPartOf) {
+  MemoryBudget budget(24 * kMiB, 32 * kMiB);
+  budget.set_enough(60 * kMiB);
+  try {
+    const MemoryLease lease(budget, 40 * kMiB, "one thing");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "32 MiB of memory are too little for one thing; --memory 67M may be enough, 81M is");
+  }
+}
+
 TEST(MemoryBudget, TheDefaultIsAtMostTwoGibibytes) {
   EXPECT_GT(default_memory_limit(), 0U);
   EXPECT_LE(default_memory_limit(), 2048 * kMiB);
