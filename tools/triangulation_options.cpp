@@ -99,7 +99,7 @@ StreamOptions stream_options(const TriangulationOptions& options, Progress& prog
 void reuse_freed_memory(std::size_t kept) {
   mallopt(M_MMAP_THRESHOLD, static_cast<int>(kept / 4));
   mallopt(M_TRIM_THRESHOLD, static_cast<int>(kept));
-  // Other arenas give back memory in spite of that, and have their own store of it.
+  // The allocator's other stores give memory back in spite of that.
   mallopt(M_ARENA_MAX, 1);
 }
 

@@ -46,7 +46,7 @@ StreamOptions stream_options(const TriangulationOptions& options, Progress& prog
 
 /// Buffers of some megabytes come and go with every leaf: taken from the system anew each time,
 /// they would cost a fifth of the run in page faults. So much memory stays with the process, in
-/// pieces of up to a quarter of it.
+/// pieces of up to a quarter of it, in one store for all threads.
 void reuse_freed_memory(std::size_t kept = std::size_t{16} << 20);
 
 }  // namespace spillway
