@@ -64,12 +64,13 @@ inline constexpr bool kShufflesWords = kLanes > 2;
 
 /// The words at these places, on such processors.
 SPILLWAY_INLINE void shuffle(Words& words, const std::uint32_t* places) {
-#ifdef __clang__
-  words = Words{words[places[0]], words[places[1]], words[places[2]], words[places[3]]};
-#else
-  Words mask;
+#ifdef SPILLWAY_AVX2
+  using Places [[gnu::vector_size(16)]] = int;
+  Places mask;
   load(places, mask);
-  words = (Words)__builtin_shuffle((Floats)words, mask);
+  words = (Words)__builtin_ia32_vpermilvarps((Floats)words, mask);
+#else
+  words = Words{words[places[0]], words[places[1]], words[places[2]], words[places[3]]};
 #endif
 }
 

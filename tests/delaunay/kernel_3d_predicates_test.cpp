@@ -54,13 +54,14 @@ struct Scene {
     std::array<Cell, 8> cells{};
     std::array<Handle, 8> handles{};
     for (std::uint32_t k = 0; k < 4; ++k) cells[0].vertices[k] = ref(1 + k);
+    Integers<kLanes> certain = ~Integers<kLanes>{};
     make_spheres<kLanes, kRanked>({.coordinates = points.coordinates,
                                    .largest = points.largest,
                                    .cells = CellArray(cells.data()),
                                    .handles = handles.data(),
                                    .query = points.at(ref(1)),
                                    .next = points.at(ref(5))},
-                                  0);
+                                  0, certain);
     return cells[0];
   }
 

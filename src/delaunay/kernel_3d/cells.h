@@ -6,11 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "src/delaunay/lanes.h"
 #include "src/geometry/point.h"
 
 namespace spillway::kernel_3d {
 
-/// A vertex's place in a cell, and the facet opposite to it: 8 * cell + slot (0 to 3).
+/// A cell, or one of its facets, by a word of the array of cells: a cell's first one, 16 * cell,
+/// and for the facet opposite to the vertex in a slot (0 to 3) that of its neighbour there, 16 *
+/// cell + 4 + slot.
 using Handle = std::uint32_t;
 
 /// A vertex as cells name it: four times its number, the place of its coordinates in the array of
@@ -23,7 +26,7 @@ using VertexRef = std::uint32_t;
 /// half-space, a huge ball.
 struct alignas(64) Cell {
   VertexRef vertices[4];  ///< the last one with kMark while the cell is in conflict, or free
-  Handle neighbours[4];   ///< the same facets in the neighbours
+  Handle neighbours[4];   ///< the facets opposite to them, by their handles in the neighbours
   double centre[3];
   /// Its last bits carry the tolerance, a power of two, and on lattices notes (spheres.h). NaN
   /// where s proves nothing.
@@ -50,26 +53,33 @@ alignas(16) inline constexpr std::array<std::array<std::uint32_t, 4>, 4> kPlaces
 /// Cells by handle.
 class CellArray {
  public:
-  /// Handles have 32 bits, of which the third is not used.
-  static constexpr std::size_t kMaxCells = std::size_t{1} << 29;
+  /// Handles have 32 bits.
+  static constexpr std::size_t kMaxCells = std::size_t{1} << 28;
+  static constexpr int kNumberShift = 4;  ///< of a handle, to the cell's number
 
   CellArray() = default;
   explicit CellArray(void* memory) : bytes_(static_cast<std::byte*>(memory)) {}
 
-  static constexpr Handle handle(std::uint32_t cell, std::uint32_t slot) { return 8 * cell + slot; }
-  static constexpr int kNumberShift = 3;  ///< of a handle, to the cell's number
-  static constexpr Handle first_handle(Handle h) { return h & ~Handle{7}; }
-  static constexpr std::uint32_t slot(Handle h) { return h & 3; }
+  static constexpr Handle cell(std::uint32_t number) { return number << kNumberShift; }
+  static constexpr Handle facet(Handle cell, std::uint32_t slot) { return cell + 4 + slot; }
+  static constexpr Handle cell_of(Handle facet) { return facet & ~Handle{15}; }
+  static constexpr std::uint32_t slot(Handle facet) { return facet & 3; }
+  static Words cells_of(const Words& facets) { return facets & ~Handle{15}; }
+  /// The facets of a cell.
+  static Words facets(Handle cell) { return cell + Words{4, 5, 6, 7}; }
 
-  /// The cell of a handle that is its first.
-  [[nodiscard]] Cell& at_first(Handle h) const {
-    return *reinterpret_cast<Cell*>(bytes_ + std::size_t{h} * 8);
+  [[nodiscard]] Cell& at_cell(Handle cell) const {
+    return *reinterpret_cast<Cell*>(bytes_ + std::size_t{cell} * 4);
   }
-  [[nodiscard]] Cell& at(Handle h) const { return at_first(first_handle(h)); }
-  [[nodiscard]] Handle mirror(Handle h) const { return at(h).neighbours[slot(h)]; }
+  /// The cell of a facet.
+  [[nodiscard]] Cell& at(Handle facet) const { return at_cell(cell_of(facet)); }
+  /// The neighbour at a facet.
+  [[nodiscard]] Handle& neighbour(Handle facet) const {
+    return *reinterpret_cast<Handle*>(bytes_ + std::size_t{facet} * 4);
+  }
   void join(Handle g, Handle h) const {
-    at(g).neighbours[slot(g)] = h;
-    at(h).neighbours[slot(h)] = g;
+    neighbour(g) = h;
+    neighbour(h) = g;
   }
 
  private:

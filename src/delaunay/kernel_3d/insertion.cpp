@@ -15,8 +15,6 @@
 namespace spillway::kernel_3d {
 namespace {
 
-constexpr std::size_t kFirstListSize = 512;
-
 /// How far the query is outside of the cell's sphere: the difference of squares.
 SPILLWAY_INLINE double power(const Cell& cell, const double* query) {
   const double x = query[0] - cell.centre[0];
@@ -49,29 +47,28 @@ Insertion<kRanked>::Insertion(const WorkingPoints& points, Block& memory,
       capacity_(memory.capacity() / sizeof(Cell)),
       lanes_(lanes),
       star_maker_(points.count) {
-  free_.resize(kAhead);
   resize_lists(kFirstListSize);
   std::array<VertexRef, 4> v{ref(first[0]), ref(first[1]), ref(first[2]), ref(first[3])};
   if (orientation(points_, v) < 0) std::swap(v[2], v[3]);
-  std::copy(v.begin(), v.end(), cells_.at_first(0).vertices);
+  std::copy(v.begin(), v.end(), cells_.at_cell(0).vertices);
   star_[0] = 0;
   make_star_spheres<2>(v[0], v[0], 1, false);
   for (std::uint32_t k = 0; k < 4; ++k) {
     // The infinite cell beyond the facet opposite v[k].
     const auto& places = kPlaces[k];
-    Cell& cell = cells_.at_first(CellArray::handle(1 + k, 0));
+    Cell& cell = cells_.at_cell(CellArray::cell(1 + k));
     cell.vertices[0] = v[places[1]];
     cell.vertices[1] = kInfinite;
     cell.vertices[2] = v[places[2]];
     cell.vertices[3] = v[places[3]];
     make_half_space(cell);
-    cells_.join(CellArray::handle(0, k), CellArray::handle(1 + k, 1));
+    cells_.join(CellArray::facet(0, k), CellArray::facet(CellArray::cell(1 + k), 1));
   }
   const auto facet = [&](std::uint32_t k, std::uint32_t j) {
-    const Handle cell = CellArray::handle(1 + k, 0);
-    const auto vertices = vertices_of(cells_.at_first(cell));
-    return cell + static_cast<Handle>(std::find(vertices.begin(), vertices.end(), v[j]) -
-                                      vertices.begin());
+    const Handle cell = CellArray::cell(1 + k);
+    const auto vertices = vertices_of(cells_.at_cell(cell));
+    const auto slot = std::find(vertices.begin(), vertices.end(), v[j]) - vertices.begin();
+    return CellArray::facet(cell, static_cast<std::uint32_t>(slot));
   };
   for (std::uint32_t k = 0; k < 4; ++k) {
     for (std::uint32_t j = 0; j < k; ++j) cells_.join(facet(k, j), facet(j, k));
@@ -83,12 +80,8 @@ template <bool kRanked>
 void Insertion<kRanked>::resize_lists(std::size_t size) {
   conflicts_.resize(size);
   boundary_.resize(size);
+  outer_.resize(size);
   star_.resize(size);
-}
-
-template <bool kRanked>
-[[gnu::noinline]] void Insertion<kRanked>::grow_free_list(std::size_t added) {
-  free_.resize(2 * (free_count_ + added + kAhead));
 }
 
 /// Finds a cell in conflict with the query, or kNone if it equals a vertex; that is remembered.
@@ -97,14 +90,14 @@ template <bool kRanked>
 Handle Insertion<kRanked>::locate(VertexRef query) {
   const double* q = points_.at(query);
   Handle here = hint_;
-  const Cell* cell = &cells_.at_first(here);
+  const Cell* cell = &cells_.at_cell(here);
   double best = power(*cell, q);
   if (best < -tolerance_of(cell->squared_radius)) return here;
   for (;;) {
     Handle nearest = kNone;
     for (const Handle neighbour : cell->neighbours) {
-      const Handle there = CellArray::first_handle(neighbour);
-      const Cell& other = cells_.at_first(there);
+      const Handle there = CellArray::cell_of(neighbour);
+      const Cell& other = cells_.at_cell(there);
       const double s = power(other, q);
       if (s < -tolerance_of(other.squared_radius)) return there;
       if (s < best) {
@@ -114,7 +107,7 @@ Handle Insertion<kRanked>::locate(VertexRef query) {
     }
     if (nearest == kNone) return locate_exactly(query, here);
     here = nearest;
-    cell = &cells_.at_first(here);
+    cell = &cells_.at_cell(here);
   }
 }
 
@@ -122,14 +115,14 @@ Handle Insertion<kRanked>::locate(VertexRef query) {
 template <bool kRanked>
 [[gnu::noinline, gnu::cold]] Handle Insertion<kRanked>::locate_exactly(VertexRef query,
                                                                        Handle first) {
-  std::array<VertexRef, 4> start = vertices_of(cells_.at_first(first));
+  std::array<VertexRef, 4> start = vertices_of(cells_.at_cell(first));
   if (const std::size_t k = infinite_slot(start); k < 4) {
     start[k] = query;
     if (orientation(points_, start) > 0) return first;
-    first = CellArray::first_handle(cells_.at_first(first).neighbours[k]);
+    first = CellArray::cell_of(cells_.at_cell(first).neighbours[k]);
   }
   for (;;) {
-    const Cell& cell = cells_.at_first(first);
+    const Cell& cell = cells_.at_cell(first);
     const std::array<VertexRef, 4> vertices = vertices_of(cell);
     std::size_t k = 0;
     for (; k < 4; ++k) {
@@ -146,8 +139,8 @@ template <bool kRanked>
       }
       return first;
     }
-    first = CellArray::first_handle(cell.neighbours[k]);
-    if (infinite_slot(vertices_of(cells_.at_first(first))) < 4) return first;
+    first = CellArray::cell_of(cell.neighbours[k]);
+    if (infinite_slot(vertices_of(cells_.at_cell(first))) < 4) return first;
   }
 }
 
@@ -184,7 +177,7 @@ bool Insertion<kRanked>::noted_tie_conflicts(const Cell& cell, VertexRef query) 
 /// Whether the query is in conflict with the cell, by the upper rungs.
 template <bool kRanked>
 bool Insertion<kRanked>::conflicts(Handle first, VertexRef query) const {
-  const Cell* cell = &cells_.at_first(first);
+  const Cell* cell = &cells_.at_cell(first);
   const auto tie_noted = [](const Cell& c) {
     return kRanked && (std::bit_cast<std::int64_t>(c.squared_radius) & kTieNote) != 0;
   };
@@ -215,7 +208,7 @@ template <bool kRanked>
   std::uint32_t result = 0;
   for (; doubtful != 0; doubtful &= doubtful - 1) {
     const int k = std::countr_zero(doubtful);
-    if (conflicts(CellArray::first_handle(cell.neighbours[k]), query)) result |= 1U << k;
+    if (conflicts(CellArray::cell_of(cell.neighbours[k]), query)) result |= 1U << k;
   }
   return result;
 }
@@ -239,7 +232,7 @@ template <bool kRanked>
                                                                    std::size_t count,
                                                                    std::size_t known) {
   for (std::size_t i = 0; i < count; ++i) {
-    Cell& cell = cells_.at_first(star_[i]);
+    Cell& cell = cells_.at_cell(star_[i]);
     if (infinite_slot(vertices_of(cell)) == 4) continue;
     make_half_space(cell);
     const double s = power(cell, points_.at(next));
@@ -287,7 +280,7 @@ template <bool kRanked>
   double best = std::numeric_limits<double>::infinity();
   hint_ = star_[0];
   for (std::size_t i = 0; i < count; ++i) {
-    const double s = power(cells_.at_first(star_[i]), next);
+    const double s = power(cells_.at_cell(star_[i]), next);
     if (s < best) {
       best = s;
       hint_ = star_[i];
@@ -316,13 +309,12 @@ void Insertion<kRanked>::close_gaps() {
   std::size_t next_free = 0;
   const std::size_t count = cell_count_ - free_count_;
   for (std::uint32_t from = cell_count_; from > count; --from) {
-    const Handle old_first = CellArray::handle(from - 1, 0);
-    Cell& cell = cells_.at_first(old_first);
+    const Cell& cell = cells_.at_cell(CellArray::cell(from - 1));
     if ((cell.vertices[3] & kMark) != 0) continue;
-    const Handle new_first = free_[next_free++];
-    Cell& moved = cells_.at_first(new_first);
+    const Handle to = free_[next_free++];
+    Cell& moved = cells_.at_cell(to);
     moved = cell;
-    for (std::uint32_t k = 0; k < 4; ++k) cells_.join(new_first + k, moved.neighbours[k]);
+    for (std::uint32_t k = 0; k < 4; ++k) cells_.join(CellArray::facet(to, k), moved.neighbours[k]);
   }
   cell_count_ = static_cast<std::uint32_t>(count);
   free_count_ = 0;

@@ -18,6 +18,15 @@
 
 namespace spillway::kernel_3d {
 
+/// The cells of a hole, and the facets that are its boundary.
+struct HoleLists {
+  Handle* cells;
+  std::size_t cell_count;
+  Handle* facets;  ///< of cells of the hole
+  Handle* outer;   ///< the same facets in the cells around
+  std::size_t facet_count;
+};
+
 /// Builds the triangulation point by point. kRanked says what WorkingPoints::ranked does.
 template <bool kRanked>
 class Insertion {
@@ -39,13 +48,12 @@ class Insertion {
   [[nodiscard]] const std::vector<kernel::Repetition>& repetitions() const { return repetitions_; }
 
  private:
+  static constexpr std::size_t kFirstListSize = 512;
   /// Room behind the ends of lists, for what is written ahead.
-  static constexpr std::size_t kAhead = 8;
-
-  struct Hole {
-    std::size_t cells;
-    std::size_t facets;
-  };
+  static constexpr std::size_t kAhead = 16;
+  /// Known conflicts for which there are bits, and room in the shortest lists for what is around.
+  static constexpr std::size_t kMostKnown = 64;
+  static_assert(4 * kMostKnown + kAhead <= kFirstListSize);
 
   /// The same, for each width of vectors: one instruction set, one source.
   void insert_by_2(VertexRef query, VertexRef next);
@@ -56,21 +64,26 @@ class Insertion {
   Handle locate(VertexRef query);
   Handle locate_exactly(VertexRef query, Handle first);
   template <int kLanes>
-  Hole find_hole(VertexRef query, std::size_t known);
+  HoleLists find_hole(VertexRef query, std::size_t known);
+  template <int kLanes>
+  void leave_star(std::size_t known, HoleLists& hole);
   std::uint32_t decide(const Cell& cell, std::uint32_t doubtful, VertexRef query) const;
   bool conflicts(Handle first, VertexRef query) const;
   bool noted_tie_conflicts(const Cell& cell, VertexRef query) const;
 
-  template <int kLanes>
-  void take_cells(std::size_t count);
+  void take_cells(const HoleLists& hole);
   template <int kLanes>
   void make_star_spheres(VertexRef query, VertexRef next, std::size_t count, bool on_hull);
+  template <int kLanes>
+  void look_beyond_star(const double* next, std::size_t known);
   std::size_t make_half_spaces(VertexRef next, std::size_t count, std::size_t known);
   void make_half_space(Cell& cell) const;
   void choose_hint(const double* next, std::size_t count);
 
   void resize_lists(std::size_t size);
-  void grow_free_list(std::size_t added);
+  HoleLists hole_lists(std::size_t cell_count, std::size_t facet_count) {
+    return {conflicts_.data(), cell_count, boundary_.data(), outer_.data(), facet_count};
+  }
   void grow_cells(std::size_t count);
 
   const WorkingPoints points_;
@@ -81,10 +94,14 @@ class Insertion {
   std::uint32_t cell_count_ = 5;
   std::size_t free_count_ = 0;
   std::size_t known_conflicts_ = 0;  ///< at the beginning of conflicts_, of the next point
-  Handle hint_ = 0;                  ///< a cell near the next point
+  /// Whether they are all there are in the newest star, and all cells beside them are tested.
+  bool star_is_certain_ = false;
+  std::uint64_t outer_in_conflict_ = 0;  ///< for each known one, whether that beyond the star is
+  Handle hint_ = 0;                      ///< a cell near the next point, if none is known
 
   std::vector<Handle> conflicts_;  ///< the cells of the hole
-  std::vector<Handle> boundary_;   ///< the facets of the hole, by handles of its cells
+  std::vector<Handle> boundary_;   ///< the facets of the hole
+  std::vector<Handle> outer_;      ///< the same facets in the cells around
   std::vector<Handle> free_;
   std::vector<Handle> star_;  ///< the new cells, one for each facet
   StarMaker star_maker_;

@@ -45,7 +45,7 @@ void list_simplices(const CellArray& cells, const Number& number, const Box<3>& 
   const auto count = static_cast<std::uint32_t>(result.simplices.size());
   for (std::uint32_t c = 0; c < count; ++c) {
     Cell cell;
-    std::memcpy(&cell, &cells.at_first(CellArray::handle(c, 0)), sizeof cell);
+    std::memcpy(&cell, &cells.at_cell(CellArray::cell(c)), sizeof cell);
     Words vertices, neighbours;
     load(cell.vertices, vertices);
     load(cell.neighbours, neighbours);

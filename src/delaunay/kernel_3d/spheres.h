@@ -37,6 +37,8 @@ inline constexpr int kLargestShift = 13;          ///< the slot of the largest v
 inline constexpr std::int64_t kCarriedMask = 0x7FFF;
 inline constexpr int kMantissaBits = 52;
 
+inline constexpr std::int64_t kNoSign = std::numeric_limits<std::int64_t>::max();
+
 inline double tolerance_of(double squared_radius) {
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(squared_radius) << kMantissaBits);
 }
@@ -60,14 +62,16 @@ SPILLWAY_INLINE void root_bound(const Reals<kLanes>& number, Reals<kLanes>& root
 }
 
 /// Makes the spheres of the cells begin, begin + 1, ... of a star, as many as there are lanes, and
-/// tells which are certainly in conflict with the next point.
+/// tests them with the next point: returns a bit for each that is certainly in conflict with it,
+/// and leaves in `certain` only lanes where that, or the opposite, is certain.
 template <int kLanes, bool kRanked>
-SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t begin) {
+SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t begin,
+                                           Integers<kLanes>& certain) {
   using R = Reals<kLanes>;
   using I = Integers<kLanes>;
   const auto corner = [&](int slot) {
     Records<kLanes> r = gather<kLanes>([&](int i) {
-      return star.coordinates + star.cells.at_first(star.handles[begin + i]).vertices[slot];
+      return star.coordinates + star.cells.at_cell(star.handles[begin + i]).vertices[slot];
     });
     r.x -= star.query[0];
     r.y -= star.query[1];
@@ -104,8 +108,7 @@ SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t beg
   // The next power of two: its exponent.
   I carried = (I)((Bits<kLanes>)tolerance >> kMantissaBits) + 1;
   if constexpr (kRanked) {
-    const R bound = (R)(carried << kMantissaBits);
-    carried |= (bound * determinant < kCertainTie) & kTieNote;
+    carried |= ((R)(carried << kMantissaBits) * determinant < kCertainTie) & kTieNote;
     R largest = R{} + star.query[3];
     const auto compare = [&](const R& rank, std::int64_t slot) {
       const I larger = rank > largest;
@@ -127,26 +130,30 @@ SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t beg
   const R z = star.next[2] - sphere.z;
   const R s = x * x + y * y + z * z - sphere.w;
   scatter<kLanes>(sphere,
-                  [&](int i) { return star.cells.at_first(star.handles[begin + i]).centre; });
-  const I conflict = s < -(R)((I)sphere.w << kMantissaBits);
-  return mask_of((R)conflict);
+                  [&](int i) { return star.cells.at_cell(star.handles[begin + i]).centre; });
+  const I proves = (R)((I)s & kNoSign) > (R)((I)sphere.w << kMantissaBits);
+  certain &= proves;
+  return mask_of((R)(proves & (I)s));
 }
 
-/// Tests the query with the four neighbours of a cell: bits 0 to 3 say which are in conflict, bits
-/// 4 to 7 for which of them that is not certain.
-template <int kLanes>
-SPILLWAY_INLINE std::uint32_t test_neighbours(const CellArray& cells, const Cell& cell,
-                                              const double* query) {
-  const auto at = [&](int k) -> const Cell& { return cells.at(cell.neighbours[k]); };
+/// Of four cells a bit each: which are in conflict, and for which that is not certain.
+struct FourAnswers {
+  std::uint32_t inside;
+  std::uint32_t doubtful;
+};
+
+/// Tests the query with four cells, at(0) to at(3).
+template <int kLanes, typename At>
+SPILLWAY_INLINE FourAnswers test_four(const At& at, const double* query) {
   using R = Reals<kLanes>;
   using I = Integers<kLanes>;
   // Bits for as many neighbours as there are lanes, from their squared distances' summands.
-  const auto answer = [](const R& x, const R& y, const R& z, const R& squared_radius) {
+  const auto answer = [](const R& x, const R& y, const R& z,
+                         const R& squared_radius) -> FourAnswers {
     const R s = x + y + z - squared_radius;
     const R tolerance = (R)((I)squared_radius << kMantissaBits);
-    constexpr std::int64_t kNoSign = std::numeric_limits<std::int64_t>::max();
     const I certain = (R)((I)s & kNoSign) > tolerance;
-    return mask_of(s) | mask_of((R)~certain) << 4;
+    return {mask_of(s), mask_of((R)~certain)};
   };
   if constexpr (kLanes == 2) {
     R q_low, q_high;
@@ -168,7 +175,9 @@ SPILLWAY_INLINE std::uint32_t test_neighbours(const CellArray& cells, const Cell
                     __builtin_shufflevector(high[0], high[1], 0, 2),
                     __builtin_shufflevector(place[0], place[1], 1, 3));
     };
-    return two(0) | two(2) << 2;
+    const FourAnswers low = two(0);
+    const FourAnswers high = two(2);
+    return {low.inside | high.inside << 2, low.doubtful | high.doubtful << 2};
   } else {
     R q;
     load(query, q);

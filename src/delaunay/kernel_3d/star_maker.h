@@ -15,6 +15,7 @@ struct HoleView {
   CellArray cells;
   VertexRef apex;
   const Handle* facets;   ///< of the removed cells
+  const Handle* outer;    ///< the same facets in the cells around
   const Handle* handles;  ///< the new cell of each facet
   std::size_t count;
 };
@@ -24,52 +25,78 @@ struct HoleView {
 class StarMaker {
  public:
   explicit StarMaker(std::size_t vertex_count)
-      : number_of_(vertex_count), corner_across_(kTableSize) {}
+      : number_of_(vertex_count),
+        corner_across_(kTableSide * kTableSide),
+        vertices_(kSmallStar),
+        around_(kSmallStar) {}
 
   /// Sets vertices and neighbours of the new cells, the apex first in each, and joins them to what
   /// is around. Tells whether the infinite vertex is among their vertices.
   template <int kLanes>
   SPILLWAY_INLINE bool make(const HoleView& hole) {
-    if (hole.count <= kUsualStar) return make_small<kLanes, kTableSide / 2>(hole);
-    if (hole.count <= kSmallStar) return make_small<kLanes, kTableSide>(hole);
+    if (hole.count <= kSmallStar) return make_small<kLanes>(hole);
     return make_large(hole);
   }
 
  private:
-  /// Facets up to which corners have numbers that fit half a table, or a table.
-  static constexpr std::size_t kUsualStar = 42;
-  static constexpr std::size_t kSmallStar = 63;
-  static constexpr std::uint32_t kTableSide = 256;
-  static constexpr std::size_t kTableSize = std::size_t{kTableSide} * kTableSide;
-  /// The number of a vertex that no small star has.
+  /// Facets up to which the numbers of corners fit a byte, three for each facet.
+  static constexpr std::size_t kSmallStar = 85;
+  static constexpr std::size_t kTableSide = 256;
+  /// A number that no corner of small stars has.
   static constexpr std::uint8_t kNoCorner = 255;
 
-  template <int kLanes, std::uint32_t kSide>
+  template <int kLanes>
   bool make_small(const HoleView& hole);
   bool make_large(const HoleView& hole);
   void join_by_table(const HoleView& hole);
-  static void join_by_sorting(const HoleView& hole);
+  void join_by_hashing(const HoleView& hole);
 
-  /// For each vertex a number within the star.
-  std::vector<std::uint8_t> number_of_;
-  /// The table of small stars: 4 * facet + slot of the corner across an edge, by the numbers of the
-  /// edge's ends.
+  /// The edges opposite to a facet's vertices, as places in a table with a row and a column for
+  /// each number of a vertex.
+  struct Edges {
+    std::uint32_t first, second, third;
+  };
+  /// The numbers of a facet's vertices, the first one again at the end: two bytes that follow each
+  /// other are an edge's place.
+  static std::uint32_t around(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return a | b << 8 | c << 16 | a << 24;
+  }
+  static Edges back_along(std::uint32_t around) {
+    return {around >> 8 & 0xFFFF, around >> 16, around & 0xFFFF};
+  }
+  static Edges along(std::uint32_t around) {
+    const std::uint32_t reversed = __builtin_bswap32(around);
+    return {reversed >> 8 & 0xFFFF, reversed & 0xFFFF, reversed >> 16};
+  }
+
+  /// An edge of a large star's hole, and the first corner that was found opposite to it.
+  struct Edge {
+    std::uint64_t ends;  ///< the smaller one last; 0 where there is no edge
+    Handle corner;
+  };
+
+  std::vector<std::uint8_t> number_of_;  ///< for each vertex of a star
+  /// In small stars for each edge the number of the corner that is opposite to it, and that
+  /// corner's handle.
   std::vector<std::uint8_t> corner_across_;
-  std::vector<Handle> handle_across_;  ///< the same of large ones: the corner's handle
-  std::array<Handle, 4 * kSmallStar> corner_handles_;
-  std::array<std::uint32_t, kSmallStar> corners_;
+  std::array<Handle, 3 * kSmallStar + 1> corner_handles_;
+  std::vector<Handle> corner_handle_across_;  ///< the same in large ones, at once
+  std::vector<Edge> hashed_edges_;            ///< in those that are larger yet
+  std::vector<Words> vertices_;               ///< of the new cells
+  std::vector<std::uint32_t> around_;         ///< the facets
 };
 
 /// Here a vertex's number is that of a corner where it occurs, 3 * facet + 0, 1 or 2: no matter
 /// which, so whoever writes last is right.
-template <int kLanes, std::uint32_t kSide>
+template <int kLanes>
 SPILLWAY_INLINE bool StarMaker::make_small(const HoleView& hole) {
   // Bytes may be part of anything for the compiler: what it is to keep in registers is copied.
-  const auto [cells, apex, facets, handles, count] = hole;
+  const auto [cells, apex, facets, outer, handles, count] = hole;
   std::uint8_t* const number_of = number_of_.data();
   std::uint8_t* const corner_across = corner_across_.data();
   Handle* const corner_handles = corner_handles_.data();
-  std::uint32_t* const corners = corners_.data();
+  std::uint32_t* const all_around = around_.data();
+  Words* const numbers = vertices_.data();
   number_of[kInfinite / 4] = kNoCorner;
   for (std::size_t i = 0; i < count; ++i) {
     const Cell& removed = cells.at(facets[i]);
@@ -83,36 +110,34 @@ SPILLWAY_INLINE bool StarMaker::make_small(const HoleView& hole) {
       vertices = Words{apex, removed.vertices[places[1]] & ~kMark,
                        removed.vertices[places[2]] & ~kMark, removed.vertices[places[3]] & ~kMark};
     }
-    const Handle h = handles[i];
-    store(vertices, cells.at_first(h).vertices);
-    store(h + Words{0, 1, 2, 3}, corner_handles + 4 * i);
+    vertices >>= 2;
+    numbers[i] = vertices;
+    // The facets at the three; what is stored last is not used.
+    store(handles[i] + Words{5, 6, 7, 0}, corner_handles + 3 * i);
     for (std::uint32_t k = 0; k < 3; ++k) {
-      number_of[vertices[k + 1] / 4] = static_cast<std::uint8_t>(3 * i + k);
+      number_of[vertices[k + 1]] = static_cast<std::uint8_t>(3 * i + k);
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const VertexRef* const vertices = cells.at_first(handles[i]).vertices;
-    const std::uint32_t a = number_of[vertices[1] / 4];
-    const std::uint32_t b = number_of[vertices[2] / 4];
-    const std::uint32_t c = number_of[vertices[3] / 4];
-    const auto corner = static_cast<std::uint8_t>(4 * i);
-    corner_across[b * kSide + c] = corner + 1;
-    corner_across[c * kSide + a] = corner + 2;
-    corner_across[a * kSide + b] = corner + 3;
-    corners[i] = a | b << 8 | c << 16;
+    const std::uint32_t round =
+        around(number_of[numbers[i][1]], number_of[numbers[i][2]], number_of[numbers[i][3]]);
+    all_around[i] = round;
+    const Edges edges = along(round);
+    const auto corner = static_cast<std::uint8_t>(3 * i);
+    corner_across[edges.first] = corner;
+    corner_across[edges.second] = corner + 1;
+    corner_across[edges.third] = corner + 2;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const Handle outer = cells.mirror(facets[i]);
-    const std::uint32_t a = corners[i] & 255;
-    const std::uint32_t b = corners[i] >> 8 & 255;
-    const std::uint32_t c = corners[i] >> 16;
-    const Handle h = handles[i];
+    const Edges edges = back_along(all_around[i]);
+    Cell& cell = cells.at_cell(handles[i]);
+    store(numbers[i] << 2, cell.vertices);
     // At once: here it is stores that the processor is short of.
-    const Words neighbours{outer, corner_handles[corner_across[c * kSide + b]],
-                           corner_handles[corner_across[a * kSide + c]],
-                           corner_handles[corner_across[b * kSide + a]]};
-    store(neighbours, cells.at_first(h).neighbours);
-    cells.at(outer).neighbours[CellArray::slot(outer)] = h;
+    const Words neighbours{outer[i], corner_handles[corner_across[edges.first]],
+                           corner_handles[corner_across[edges.second]],
+                           corner_handles[corner_across[edges.third]]};
+    store(neighbours, cell.neighbours);
+    cells.neighbour(outer[i]) = CellArray::facet(handles[i], 0);
   }
   return number_of[kInfinite / 4] != kNoCorner;
 }
