@@ -71,6 +71,7 @@ class Insertion {
   bool conflicts(Handle first, VertexRef query) const;
   bool noted_tie_conflicts(const Cell& cell, VertexRef query) const;
 
+  template <int kLanes>
   void take_cells(const HoleLists& hole);
   template <int kLanes>
   void make_star_spheres(VertexRef query, VertexRef next, std::size_t count, bool on_hull);

@@ -120,6 +120,7 @@ SPILLWAY_INLINE void Insertion<kRanked>::leave_star(std::size_t known, HoleLists
 
 /// Chooses cells for the star: those of the hole, then free ones, then new ones.
 template <bool kRanked>
+template <int kLanes>
 SPILLWAY_INLINE void Insertion<kRanked>::take_cells(const HoleLists& hole) {
   std::swap(conflicts_, star_);
   Handle* const star = star_.data();
@@ -228,7 +229,7 @@ SPILLWAY_INLINE void Insertion<kRanked>::insert_by(VertexRef query, VertexRef ne
     known = 1;
   }
   const HoleLists hole = find_hole<kLanes>(query, known);
-  take_cells(hole);
+  take_cells<kLanes>(hole);
   const bool on_hull = star_maker_.make<kLanes>({.cells = cells_,
                                                  .apex = query,
                                                  .facets = hole.facets,
