@@ -50,6 +50,19 @@ inline std::size_t infinite_slot(const std::array<VertexRef, 4>& vertices) {
 alignas(16) inline constexpr std::array<std::array<std::uint32_t, 4>, 4> kPlaces{
     {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 1, 0, 2}}};
 
+/// The cell's vertices in that order, with kMark where it is.
+template <int kLanes>
+SPILLWAY_INLINE void load_from_slot(const Cell& cell, std::uint32_t slot, Words& vertices) {
+  const std::array<std::uint32_t, 4>& places = kPlaces[slot];
+  if constexpr (kShufflesWords<kLanes>) {
+    load(cell.vertices, vertices);
+    shuffle(vertices, places.data());
+  } else {
+    vertices = Words{cell.vertices[places[0]], cell.vertices[places[1]], cell.vertices[places[2]],
+                     cell.vertices[places[3]]};
+  }
+}
+
 /// Cells by handle.
 class CellArray {
  public:

@@ -23,19 +23,6 @@ SPILLWAY_INLINE double power(const Cell& cell, const double* query) {
   return x * x + y * y + z * z - cell.squared_radius;
 }
 
-/// The determinant of a - q, b - q, c - q, in WorkingPoints::tiny.
-SPILLWAY_INLINE double exact_orientation_of_tiny(const double* q, const double* a, const double* b,
-                                                 const double* c) {
-  const double bx = b[0] - q[0];
-  const double by = b[1] - q[1];
-  const double bz = b[2] - q[2];
-  const double cx = c[0] - q[0];
-  const double cy = c[1] - q[1];
-  const double cz = c[2] - q[2];
-  return (a[0] - q[0]) * (by * cz - bz * cy) + (a[1] - q[1]) * (bz * cx - bx * cz) +
-         (a[2] - q[2]) * (bx * cy - by * cx);
-}
-
 }  // namespace
 
 template <bool kRanked>
@@ -144,44 +131,11 @@ template <bool kRanked>
   }
 }
 
-/// On a lattice, for a query that is on a cell's sphere: the tie rule. The largest vertex, which
-/// mostly decides, has been noted.
-template <bool kRanked>
-bool Insertion<kRanked>::noted_tie_conflicts(const Cell& cell, VertexRef query) const {
-  const std::array<VertexRef, 4> vertices = vertices_of(cell);
-  const double* q = points_.at(query);
-  if (!points_.tiny) return tie_conflicts(points_, {vertices, query});
-  const std::array<const double*, 4> v{points_.at(vertices[0]), points_.at(vertices[1]),
-                                       points_.at(vertices[2]), points_.at(vertices[3])};
-  std::size_t largest =
-      std::bit_cast<std::uint64_t>(cell.squared_radius) >> kLargestShift & std::size_t{3};
-  for (;;) {
-    const auto& places = kPlaces[largest];
-    const double coefficient =
-        exact_orientation_of_tiny(q, v[places[1]], v[places[2]], v[places[3]]);
-    // Whether the vertex is larger than the query is hard to foresee, so it is no condition.
-    const bool larger = v[largest][3] > q[3];
-    if (!larger | (coefficient != 0)) return larger & (coefficient > 0);
-    const double below = v[largest][3];
-    const double* next = q;
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (v[i][3] < below && v[i][3] > next[3]) {
-        next = v[i];
-        largest = i;
-      }
-    }
-    if (next == q) return false;
-  }
-}
-
 /// Whether the query is in conflict with the cell, by the upper rungs.
 template <bool kRanked>
 bool Insertion<kRanked>::conflicts(Handle first, VertexRef query) const {
   const Cell* cell = &cells_.at_cell(first);
-  const auto tie_noted = [](const Cell& c) {
-    return kRanked && (std::bit_cast<std::int64_t>(c.squared_radius) & kTieNote) != 0;
-  };
-  if (tie_noted(*cell)) return noted_tie_conflicts(*cell, query);
+  if (tie_is_noted(*cell)) return noted_tie_conflicts<2>(*cell, query);
   std::array<VertexRef, 4> vertices = vertices_of(*cell);
   if (const std::size_t k = infinite_slot(vertices); k < 4) {
     vertices[k] = query;
@@ -194,23 +148,11 @@ bool Insertion<kRanked>::conflicts(Handle first, VertexRef query) const {
     const double tolerance = tolerance_of(cell->squared_radius);
     if (s > tolerance) return false;
     if (s < -tolerance) return true;
-    if (tie_noted(*cell)) return noted_tie_conflicts(*cell, query);
+    if (tie_is_noted(*cell)) return noted_tie_conflicts<2>(*cell, query);
   }
   const Five five{vertices, query};
   const int side = side_of_sphere(points_, five, cell->centre);
   return side != 0 ? side > 0 : tie_conflicts(points_, five);
-}
-
-/// Of the doubtful neighbours of a cell, those in conflict.
-template <bool kRanked>
-[[gnu::noinline]] std::uint32_t Insertion<kRanked>::decide(const Cell& cell, std::uint32_t doubtful,
-                                                           VertexRef query) const {
-  std::uint32_t result = 0;
-  for (; doubtful != 0; doubtful &= doubtful - 1) {
-    const int k = std::countr_zero(doubtful);
-    if (conflicts(CellArray::cell_of(cell.neighbours[k]), query)) result |= 1U << k;
-  }
-  return result;
 }
 
 template <bool kRanked>

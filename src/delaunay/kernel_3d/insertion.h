@@ -11,6 +11,7 @@
 
 #include "src/delaunay/insertion_rounds.h"
 #include "src/delaunay/kernel_3d/cells.h"
+#include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_3d/star_maker.h"
 #include "src/delaunay/kernel_3d/working_points.h"
 #include "src/delaunay/lanes.h"
@@ -67,8 +68,12 @@ class Insertion {
   HoleLists find_hole(VertexRef query, std::size_t known);
   template <int kLanes>
   void leave_star(std::size_t known, HoleLists& hole);
+  template <int kLanes>
   std::uint32_t decide(const Cell& cell, std::uint32_t doubtful, VertexRef query) const;
   bool conflicts(Handle first, VertexRef query) const;
+  /// Whether it is certain that a query within the tolerance is on the cell's sphere.
+  static bool tie_is_noted(const Cell& cell) { return kRanked && notes_tie(cell.squared_radius); }
+  template <int kLanes>
   bool noted_tie_conflicts(const Cell& cell, VertexRef query) const;
 
   template <int kLanes>

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 
+#include "src/delaunay/kernel_3d/exact_predicates.h"
 #include "src/delaunay/kernel_3d/insertion.h"
 #include "src/delaunay/kernel_3d/spheres.h"
 
@@ -32,6 +34,54 @@ struct alignas(32) PointCopy {
   double coordinates[4];
   explicit PointCopy(const double* point) { std::copy_n(point, 4, coordinates); }
 };
+
+/// On a lattice, for a query that is on a cell's sphere: the tie rule. The largest vertex, which
+/// mostly decides, has been noted.
+template <bool kRanked>
+template <int kLanes>
+SPILLWAY_INLINE bool Insertion<kRanked>::noted_tie_conflicts(const Cell& cell,
+                                                             VertexRef query) const {
+  if (!points_.tiny) return tie_conflicts(points_, {vertices_of(cell), query});
+  const double* q = points_.at(query);
+  std::uint32_t largest = largest_slot(cell.squared_radius);
+  for (;;) {
+    Words v;
+    load_from_slot<kLanes>(cell, largest, v);
+    v &= ~kMark;
+    const double coefficient = volume(q, points_.at(v[1]), points_.at(v[2]), points_.at(v[3]));
+    const double rank = points_.at(v[0])[3];
+    // What the coefficient says holds only if the vertex is larger than the query. That is hard to
+    // foresee, so it is no condition.
+    const double decisive = std::min(rank - q[3], coefficient);
+    if (decisive != 0) return decisive > 0;
+    double next = q[3];
+    for (std::uint32_t slot = 0; slot < 4; ++slot) {
+      const double other = points_.at(cell.vertices[slot] & ~kMark)[3];
+      if (other < rank && other > next) {
+        next = other;
+        largest = slot;
+      }
+    }
+    if (next == q[3]) return false;
+  }
+}
+
+/// Of the doubtful neighbours of a cell, those in conflict.
+template <bool kRanked>
+template <int kLanes>
+[[gnu::noinline]] std::uint32_t Insertion<kRanked>::decide(const Cell& cell, std::uint32_t doubtful,
+                                                           VertexRef query) const {
+  std::uint32_t result = 0;
+  for (; doubtful != 0; doubtful &= doubtful - 1) {
+    const int k = std::countr_zero(doubtful);
+    const Handle there = CellArray::cell_of(cell.neighbours[k]);
+    const Cell& other = cells_.at_cell(there);
+    const bool inside =
+        tie_is_noted(other) ? noted_tie_conflicts<kLanes>(other, query) : conflicts(there, query);
+    result |= static_cast<std::uint32_t>(inside) << k;
+  }
+  return result;
+}
 
 /// Lists the facets of a cell of the hole that are its boundary, those whose neighbours are not
 /// `inside`.
@@ -78,7 +128,7 @@ SPILLWAY_INLINE auto Insertion<kRanked>::find_hole(VertexRef query, std::size_t 
     std::uint32_t inside = answer.inside | marked;
     const std::uint32_t doubtful = answer.doubtful & ~marked;
     if (doubtful != 0) [[unlikely]] {
-      inside = (inside & ~doubtful) | decide(cell, doubtful, query);
+      inside = (inside & ~doubtful) | decide<kLanes>(cell, doubtful, query);
     }
     Words new_marks;
     load(kHighBits.words[inside].data(), new_marks);

@@ -100,17 +100,9 @@ SPILLWAY_INLINE bool StarMaker::make_small(const HoleView& hole) {
   number_of[kInfinite / 4] = kNoCorner;
   for (std::size_t i = 0; i < count; ++i) {
     const Cell& removed = cells.at(facets[i]);
-    const auto& places = kPlaces[CellArray::slot(facets[i])];
     Words vertices;
-    if constexpr (kShufflesWords<kLanes>) {
-      load(removed.vertices, vertices);
-      shuffle(vertices, places.data());
-      vertices = (vertices & Words{0, ~kMark, ~kMark, ~kMark}) | Words{apex, 0, 0, 0};
-    } else {
-      vertices = Words{apex, removed.vertices[places[1]] & ~kMark,
-                       removed.vertices[places[2]] & ~kMark, removed.vertices[places[3]] & ~kMark};
-    }
-    vertices >>= 2;
+    load_from_slot<kLanes>(removed, CellArray::slot(facets[i]), vertices);
+    vertices = ((vertices & Words{0, ~kMark, ~kMark, ~kMark}) | Words{apex, 0, 0, 0}) >> 2;
     numbers[i] = vertices;
     // The facets at the three; what is stored last is not used.
     store(handles[i] + Words{5, 6, 7, 0}, corner_handles + 3 * i);
