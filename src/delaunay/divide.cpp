@@ -1,6 +1,7 @@
 #include "src/delaunay/divide.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "src/delaunay/hash.h"
@@ -13,10 +14,10 @@ namespace spillway {
 namespace {
 
 /// The median of the smallest sample lies within 2% of the true one, by rank, nearly always; that
-/// of the largest within 0.5%, so that threads with one large part each finish together.
+/// of the largest within 0.2%, so that threads with one large part each finish together.
 constexpr std::size_t kSmallestSample = 1'023;
-constexpr std::size_t kLargestSample = 16'383;
-constexpr std::size_t kPointsOfSample = 64;
+constexpr std::size_t kLargestSample = 65'535;
+constexpr std::size_t kPointsOfSample = 16;
 /// Parts below this size are divided in the task that made them.
 constexpr std::size_t kSmallestParallelPart = 1 << 14;
 constexpr std::size_t kBoxGrain = 1 << 16;
@@ -108,28 +109,86 @@ class Divider {
                : partition(part, [=](const Point<D>& p) { return p[axis] <= value; });
   }
 
+  /// Large parts are partitioned in two halves beside each other; then what is above in the first
+  /// one changes places with what is below in the second one.
   template <typename Below>
   VertexId partition(const Part<D>& part, const Below& below) const {
-    VertexId low = part.begin;
-    VertexId high = part.end;
+    if (part.size() < kSmallestParallelPart) return partition_range(part.begin, part.end, below);
+    const VertexId half = part.begin + part.size() / 2;
+    std::array<VertexId, 2> middle;
+    parallel_for(2, 1, [&](std::size_t side, std::size_t, std::size_t) {
+      middle[side] = side == 0 ? partition_range(part.begin, half, below)
+                               : partition_range(half, part.end, below);
+    });
+    const VertexId above = half - middle[0];
+    const VertexId below_count = middle[1] - half;
+    const VertexId exchanged = std::min(above, below_count);
+    parallel_for(exchanged, kBoxGrain, [&](std::size_t, std::size_t first, std::size_t last) {
+      const auto exchange = [&](const auto& items) {
+        std::swap_ranges(items.begin() + middle[0] + first, items.begin() + middle[0] + last,
+                         items.begin() + (middle[1] - exchanged) + first);
+      };
+      exchange(points_);
+      exchange(input_index_);
+    });
+    return middle[0] + below_count;
+  }
+
+  /// Finds the next ones that are on the wrong side a stretch at a time, without branches.
+  template <typename Below>
+  VertexId partition_range(VertexId low, VertexId high, const Below& below) const {
+    constexpr VertexId kStretch = 128;
+    std::array<std::uint8_t, kStretch> low_wrong, high_wrong;
+    VertexId low_count = 0, high_count = 0;  // in these lists, still to be exchanged
+    VertexId low_next = 0, high_next = 0;    // the first ones of them
+    while (high - low >= 2 * kStretch) {
+      if (low_count == 0) {
+        low_next = 0;
+        for (VertexId i = 0; i < kStretch; ++i) {
+          low_wrong[low_count] = static_cast<std::uint8_t>(i);
+          low_count += below(points_[low + i]) ? 0 : 1;
+        }
+      }
+      if (high_count == 0) {
+        high_next = 0;
+        for (VertexId i = 0; i < kStretch; ++i) {
+          high_wrong[high_count] = static_cast<std::uint8_t>(i);
+          high_count += below(points_[high - 1 - i]) ? 1 : 0;
+        }
+      }
+      const VertexId count = std::min(low_count, high_count);
+      for (VertexId i = 0; i < count; ++i) {
+        exchange(low + low_wrong[low_next + i], high - 1 - high_wrong[high_next + i]);
+      }
+      low_next += count;
+      high_next += count;
+      low_count -= count;
+      high_count -= count;
+      if (low_count == 0) low += kStretch;
+      if (high_count == 0) high -= kStretch;
+    }
     for (;;) {
       while (low < high && below(points_[low])) ++low;
       while (low < high && !below(points_[high - 1])) --high;
       if (low >= high) return low;
-      --high;
-      std::swap(points_[low], points_[high]);
-      std::swap(input_index_[low], input_index_[high]);
-      ++low;
+      exchange(low++, --high);
     }
+  }
+
+  void exchange(VertexId a, VertexId b) const {
+    std::swap(points_[a], points_[b]);
+    std::swap(input_index_[a], input_index_[b]);
   }
 
   void sort_leaf(const Part<D>& part) const {
     const auto points = points_.subspan(part.begin, part.size());
     const auto input_index = input_index_.subspan(part.begin, part.size());
     const std::vector<VertexId> order = hilbert_order<D>(points, part.box);
-    BorrowedBlock memory(BlockUse::kPoints);  // a base case is likely to follow
-    auto* const old_points = static_cast<Point<D>*>(
-        memory->reserve(part.size() * (sizeof(Point<D>) + sizeof(VertexId))));
+    BorrowedBlock memory(BlockUse::kPoints);
+    // A base case is likely to follow, which in space needs memory for four numbers a point.
+    constexpr std::size_t kBytes =
+        D == 3 ? 4 * sizeof(double) : sizeof(Point<D>) + sizeof(VertexId);
+    auto* const old_points = static_cast<Point<D>*>(memory->reserve((part.size() + 1) * kBytes));
     auto* const old_index = reinterpret_cast<VertexId*>(old_points + part.size());
     std::copy(points.begin(), points.end(), old_points);
     std::copy(input_index.begin(), input_index.end(), old_index);
