@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <utility>
 
 #include "src/delaunay/hash.h"
@@ -14,7 +15,7 @@ namespace spillway {
 namespace {
 
 /// The median of the smallest sample lies within 2% of the true one, by rank, nearly always; that
-/// of the largest within 0.2%, so that threads with one large part each finish together.
+/// of the largest within 0.5%, so that threads with one large part each finish together.
 constexpr std::size_t kSmallestSample = 1'023;
 constexpr std::size_t kLargestSample = 65'535;
 constexpr std::size_t kPointsOfSample = 16;
@@ -124,12 +125,12 @@ class Divider {
     const VertexId below_count = middle[1] - half;
     const VertexId exchanged = std::min(above, below_count);
     parallel_for(exchanged, kBoxGrain, [&](std::size_t, std::size_t first, std::size_t last) {
-      const auto exchange = [&](const auto& items) {
+      const auto exchange_range = [&](const auto& items) {
         std::swap_ranges(items.begin() + middle[0] + first, items.begin() + middle[0] + last,
                          items.begin() + (middle[1] - exchanged) + first);
       };
-      exchange(points_);
-      exchange(input_index_);
+      exchange_range(points_);
+      exchange_range(input_index_);
     });
     return middle[0] + below_count;
   }

@@ -77,9 +77,9 @@ class CellArray {
   static constexpr Handle facet(Handle cell, std::uint32_t slot) { return cell + 4 + slot; }
   static constexpr Handle cell_of(Handle facet) { return facet & ~Handle{15}; }
   static constexpr std::uint32_t slot(Handle facet) { return facet & 3; }
-  static Words cells_of(const Words& facets) { return facets & ~Handle{15}; }
+  SPILLWAY_INLINE static Words cells_of(const Words& facets) { return facets & ~Handle{15}; }
   /// The facets of a cell.
-  static Words facets(Handle cell) { return cell + Words{4, 5, 6, 7}; }
+  SPILLWAY_INLINE static Words facets(Handle cell) { return cell + Words{4, 5, 6, 7}; }
 
   [[nodiscard]] Cell& at_cell(Handle cell) const {
     return *reinterpret_cast<Cell*>(bytes_ + std::size_t{cell} * 4);

@@ -31,7 +31,7 @@ Insertion<kRanked>::Insertion(const WorkingPoints& points, Block& memory,
     : points_(points),
       memory_(memory),
       cells_(memory.reserve(kFirstListSize * sizeof(Cell))),
-      capacity_(memory.capacity() / sizeof(Cell)),
+      capacity_(std::min(memory.capacity() / sizeof(Cell), CellArray::kMaxCells)),
       lanes_(lanes),
       star_maker_(points.count) {
   resize_lists(kFirstListSize);
@@ -131,11 +131,10 @@ template <bool kRanked>
   }
 }
 
-/// Whether the query is in conflict with the cell, by the upper rungs.
+/// Whether the query is in conflict with a cell of which no tie is noted, by the upper rungs.
 template <bool kRanked>
 bool Insertion<kRanked>::conflicts(Handle first, VertexRef query) const {
   const Cell* cell = &cells_.at_cell(first);
-  if (tie_is_noted(*cell)) return noted_tie_conflicts<2>(*cell, query);
   std::array<VertexRef, 4> vertices = vertices_of(*cell);
   if (const std::size_t k = infinite_slot(vertices); k < 4) {
     vertices[k] = query;

@@ -1,8 +1,8 @@
 #pragma once
 // Incremental insertion (Bowyer, Watson) of points in space: the cells that a new point is in
-// conflict with are found level by level from those already known, and the hole is filled with the
-// star of the point, whose spheres are made several at a time and tested with the next point at
-// once.
+// conflict with are found from those already known, neighbour by neighbour, and the hole is filled
+// with the star of the point, whose spheres are made several at a time and tested with the next
+// point at once.
 
 #include <array>
 #include <cstdint>

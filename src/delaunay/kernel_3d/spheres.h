@@ -37,38 +37,20 @@ inline constexpr int kLargestShift = 13;          ///< the slot of the largest v
 inline constexpr std::int64_t kCarriedMask = 0x7FFF;
 inline constexpr int kMantissaBits = 52;
 
+/// All bits of a number but its sign.
 inline constexpr std::int64_t kNoSign = std::numeric_limits<std::int64_t>::max();
 
-inline double tolerance_of(double squared_radius) {
+SPILLWAY_INLINE double tolerance_of(double squared_radius) {
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(squared_radius) << kMantissaBits);
 }
 
 /// The notes on a lattice cell: whether s within the tolerance is a tie, and the slot of the
 /// largest vertex.
-inline bool notes_tie(double squared_radius) {
+SPILLWAY_INLINE bool notes_tie(double squared_radius) {
   return (std::bit_cast<std::int64_t>(squared_radius) & kTieNote) != 0;
 }
-inline std::uint32_t largest_slot(double squared_radius) {
+SPILLWAY_INLINE std::uint32_t largest_slot(double squared_radius) {
   return std::bit_cast<std::uint64_t>(squared_radius) >> kLargestShift & 3;
-}
-
-/// The determinant of the differences of three points to a query, by their records. On tiny
-/// lattices it is exact.
-SPILLWAY_INLINE double volume(const double* query, const double* a, const double* b,
-                              const double* c) {
-  Reals<4> q, u, v, w;
-  load(query, q);
-  load(a, u);
-  load(b, v);
-  load(c, w);
-  u -= q;
-  v -= q;
-  w -= q;
-  // x, y and z of the vector product stand where y, z and x of the first difference come to.
-  const Reals<4> product =
-      v * __builtin_shufflevector(w, w, 1, 2, 0, 3) - w * __builtin_shufflevector(v, v, 1, 2, 0, 3);
-  const Reals<4> terms = product * __builtin_shufflevector(u, u, 2, 0, 1, 3);
-  return terms[0] + terms[1] + terms[2];
 }
 
 /// What the spheres of a star are made of.

@@ -58,13 +58,13 @@ class StarMaker {
   };
   /// The numbers of a facet's vertices, the first one again at the end: two bytes that follow each
   /// other are an edge's place.
-  static std::uint32_t around(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  SPILLWAY_INLINE static std::uint32_t around(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     return a | b << 8 | c << 16 | a << 24;
   }
-  static Edges back_along(std::uint32_t around) {
+  SPILLWAY_INLINE static Edges back_along(std::uint32_t around) {
     return {around >> 8 & 0xFFFF, around >> 16, around & 0xFFFF};
   }
-  static Edges along(std::uint32_t around) {
+  SPILLWAY_INLINE static Edges along(std::uint32_t around) {
     const std::uint32_t reversed = __builtin_bswap32(around);
     return {reversed >> 8 & 0xFFFF, reversed & 0xFFFF, reversed >> 16};
   }
@@ -82,7 +82,7 @@ class StarMaker {
   std::array<Handle, 3 * kSmallStar + 1> corner_handles_;
   std::vector<Handle> corner_handle_across_;  ///< the same in large ones, at once
   std::vector<Edge> hashed_edges_;            ///< in those that are larger yet
-  std::vector<Words> vertices_;               ///< of the new cells
+  std::vector<Words> vertices_;               ///< of the new cells: in small stars their numbers
   std::vector<std::uint32_t> around_;         ///< the facets
 };
 
