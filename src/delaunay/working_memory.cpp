@@ -46,30 +46,25 @@ void ask_for_huge_pages(void* memory, std::size_t bytes) {
                  [](std::byte* first, std::size_t size) { madvise(first, size, MADV_HUGEPAGE); });
 }
 
-void Block::Free::operator()(std::byte* memory) const { std::free(memory); }
-
-Block::Block(Block&& other) noexcept
-    : memory_(std::move(other.memory_)), capacity_(std::exchange(other.capacity_, 0)) {}
-
-Block& Block::operator=(Block&& other) noexcept {
-  memory_ = std::move(other.memory_);
-  capacity_ = std::exchange(other.capacity_, 0);
-  return *this;
+/// Smaller pieces that are made of the memory later are not to take whole huge pages.
+void Block::Free::operator()(std::byte* memory) const {
+  for_huge_pages(memory, memory + bytes,
+                 [](std::byte* first, std::size_t size) { madvise(first, size, MADV_NOHUGEPAGE); });
+  std::free(memory);
 }
 
 Block Block::of(std::size_t bytes) {
   const std::size_t alignment = bytes >= kHugePage ? kHugePage : kCacheLine;
   const std::size_t size = (bytes + alignment - 1) / alignment * alignment;
   Block block;
-  block.memory_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, size)));
+  block.memory_ = {static_cast<std::byte*>(std::aligned_alloc(alignment, size)), Free{size}};
   if (size > 0 && block.memory_ == nullptr) throw std::bad_alloc();
-  block.capacity_ = size;
   ask_for_huge_pages(block.memory_.get(), size);
   return block;
 }
 
 void* Block::reserve(std::size_t bytes) {
-  if (bytes > capacity_) {
+  if (bytes > capacity()) {
     *this = {};
     *this = of(bytes + bytes / 8);  // base cases differ a little in size
   }
@@ -77,7 +72,7 @@ void* Block::reserve(std::size_t bytes) {
 }
 
 void* Block::grow(std::size_t bytes, std::size_t used) {
-  if (bytes > capacity_) {
+  if (bytes > capacity()) {
     Block larger = of(bytes + bytes / 2);
     std::memcpy(larger.memory_.get(), memory_.get(), used);
     *this = std::move(larger);
@@ -86,7 +81,7 @@ void* Block::grow(std::size_t bytes, std::size_t used) {
 }
 
 void Block::give_back_behind(std::size_t used) {
-  for_huge_pages(memory_.get() + used, memory_.get() + capacity_,
+  for_huge_pages(memory_.get() + used, memory_.get() + capacity(),
                  [](std::byte* first, std::size_t size) { madvise(first, size, MADV_DONTNEED); });
 }
 

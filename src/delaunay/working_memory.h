@@ -14,10 +14,6 @@ void ask_for_huge_pages(void* memory, std::size_t bytes);
 /// A block of memory that only grows. Blocks that span huge pages ask for them.
 class Block {
  public:
-  Block() = default;
-  Block(Block&& other) noexcept;
-  Block& operator=(Block&& other) noexcept;
-
   /// A block of this size, aligned for cache lines. Throws std::bad_alloc.
   static Block of(std::size_t bytes);
 
@@ -33,14 +29,16 @@ class Block {
   void give_back_behind(std::size_t used);
 
   [[nodiscard]] void* data() const { return memory_.get(); }
-  [[nodiscard]] std::size_t capacity() const { return capacity_; }
+  [[nodiscard]] std::size_t capacity() const { return memory_ ? memory_.get_deleter().bytes : 0; }
 
  private:
   struct Free {
+    Free() : Free(0) {}
+    explicit Free(std::size_t size) : bytes(size) {}
     void operator()(std::byte* memory) const;
+    std::size_t bytes;
   };
   std::unique_ptr<std::byte, Free> memory_;
-  std::size_t capacity_ = 0;
 };
 
 /// What base cases keep a block for, so that the next one gets a block of fitting size.
