@@ -6,7 +6,7 @@
 namespace spillway {
 namespace {
 
-std::atomic<int> most_doubles = 4;
+std::atomic<int> most_doubles = 8;
 
 }  // namespace
 
@@ -14,7 +14,10 @@ int widest_vectors() {
 #ifdef __x86_64__
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
       __builtin_cpu_supports("bmi2")) {
-    return 4;
+    const bool has_32_registers = __builtin_cpu_supports("avx512f") &&
+                                  __builtin_cpu_supports("avx512vl") &&
+                                  __builtin_cpu_supports("avx512dq");
+    return has_32_registers ? 8 : 4;
   }
 #endif
   return 2;

@@ -2,11 +2,12 @@
 
 namespace spillway {
 
-/// How many doubles the own kernels can compute with at a time here: 4 or 2, by what the processor
-/// has.
+/// How many doubles the processor can compute with at a time, as far as it matters to the own
+/// kernels: 2, 4 (AVX2) or 8 (AVX-512, of which they use only that there are twice as many
+/// registers for vectors of 4).
 int widest_vectors();
 
-/// How many they do compute with.
+/// That, or the limit that was set.
 int vector_width();
 
 /// Limits that, for measurements and tests; the result is the same. To be called before work

@@ -197,7 +197,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> sets;
   std::vector<std::size_t> counts;
   unsigned repetitions = 5;
-  int vectors = 4;
+  int vectors = 8;
   CLI::App app("Times CGAL's Delaunay triangulations and the own kernels in turns");
   app.add_option("--dim", dimension, "Dimension")->check(CLI::Range(2, 3));
   app.add_option("--sets", sets,
@@ -206,8 +206,8 @@ int main(int argc, char** argv) {
       ->delimiter(',');
   app.add_option("-n,--points", counts, "Points of each set")->delimiter(',');
   app.add_option("-r,--repetitions", repetitions, "Turns; medians are printed");
-  app.add_option("--vectors", vectors, "At most so many doubles at a time, in space: 2 or 4")
-      ->check(CLI::IsMember({2, 4}));
+  app.add_option("--vectors", vectors, "At most so many doubles at a time, in space: 2, 4 or 8")
+      ->check(CLI::IsMember({2, 4, 8}));
   CLI11_PARSE(app, argc, argv);
   if (sets.empty()) sets = spillway::usual_sets(dimension);
   if (counts.empty()) {

@@ -177,7 +177,7 @@ TEST(Kernel2d, EqualsCgalWithNarrowVectors) {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     ASSERT_EQ(compare_kernel_with_cgal<2>(hard_set<2>(seed), seed), "") << "seed " << seed;
   }
-  limit_vectors(4);
+  limit_vectors(8);
 }
 
 }  // namespace

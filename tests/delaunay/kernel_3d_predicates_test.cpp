@@ -59,14 +59,16 @@ struct Scene {
     std::array<Cell, 8> cells{};
     std::array<Handle, 8> handles{};
     for (std::uint32_t k = 0; k < 4; ++k) cells[0].vertices[k] = ref(1 + k);
+    const StarView star{.coordinates = points.coordinates,
+                        .largest = points.largest,
+                        .cells = CellArray(cells.data()),
+                        .handles = handles.data(),
+                        .query = points.at(ref(1)),
+                        .next = points.at(ref(5))};
+    Corners<kLanes> corners;
+    gather_corners<kLanes>(star, 0, corners);
     Integers<kLanes> certain = ~Integers<kLanes>{};
-    const std::uint32_t answer = make_spheres<kLanes, kRanked>({.coordinates = points.coordinates,
-                                                                .largest = points.largest,
-                                                                .cells = CellArray(cells.data()),
-                                                                .handles = handles.data(),
-                                                                .query = points.at(ref(1)),
-                                                                .next = points.at(ref(5))},
-                                                               0, certain);
+    const std::uint32_t answer = make_spheres<kLanes, kRanked>(star, 0, corners, certain);
     if (inside != nullptr && certain[0] != 0) *inside = (answer & 1) != 0;
     return cells[0];
   }

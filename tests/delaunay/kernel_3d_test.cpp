@@ -87,13 +87,15 @@ TEST(Kernel3d, EqualsCgalOnSmallHardSets) {
 }
 
 TEST(Kernel3d, EqualsCgalWithNarrowVectors) {
-  limit_vectors(2);
-  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
-    ASSERT_EQ(compare_kernel_with_cgal<3>(hard_set<3>(seed), seed), "") << "seed " << seed;
+  for (const int doubles : {4, 2}) {
+    limit_vectors(doubles);
+    for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+      ASSERT_EQ(compare_kernel_with_cgal<3>(hard_set<3>(seed), seed), "") << "seed " << seed;
+    }
+    expect_equal_to_cgal(uniform(3'000));
+    expect_equal_to_cgal(random_integers(3'000, 12, 12));
   }
-  expect_equal_to_cgal(uniform(3'000));
-  expect_equal_to_cgal(random_integers(3'000, 12, 12));
-  limit_vectors(4);
+  limit_vectors(8);
 }
 
 TEST(Kernel3d, GivesTheSameSimplicesWithVectorsOfAnyWidth) {
@@ -101,14 +103,16 @@ TEST(Kernel3d, GivesTheSameSimplicesWithVectorsOfAnyWidth) {
   const std::vector<VertexId> index = indices(points.size());
   const BaseCaseInput<3> input{.points = points, .input_index = index};
   const BaseCase<3> wide = triangulate_base_case<3>(input);
-  limit_vectors(2);
-  const BaseCase<3> narrow = triangulate_base_case<3>(input);
-  limit_vectors(4);
-  ASSERT_EQ(wide.simplices.size(), narrow.simplices.size());
-  for (std::size_t i = 0; i < wide.simplices.size(); ++i) {
-    ASSERT_EQ(wide.simplices[i].vertices, narrow.simplices[i].vertices);
-    ASSERT_EQ(wide.simplices[i].neighbours, narrow.simplices[i].neighbours);
+  for (const int doubles : {4, 2}) {
+    limit_vectors(doubles);
+    const BaseCase<3> narrow = triangulate_base_case<3>(input);
+    ASSERT_EQ(wide.simplices.size(), narrow.simplices.size());
+    for (std::size_t i = 0; i < wide.simplices.size(); ++i) {
+      ASSERT_EQ(wide.simplices[i].vertices, narrow.simplices[i].vertices);
+      ASSERT_EQ(wide.simplices[i].neighbours, narrow.simplices[i].neighbours);
+    }
   }
+  limit_vectors(8);
 }
 
 TEST(Kernel3d, EqualsCgalOnAPlaneAndOnePoint) {

@@ -312,7 +312,7 @@ void Insertion<kLattice>::insert_by_4(VertexId point, VertexId next) {
 
 template <bool kLattice>
 void Insertion<kLattice>::insert(VertexId point, VertexId next) {
-  if (lanes_ == 4) {
+  if (lanes_ >= 4) {
     insert_by_4(point, next);
   } else {
     insert_by_2(point, next);

@@ -1,4 +1,5 @@
-// Insertion with vectors of four doubles, for processors that have AVX2.
+// Insertion with vectors of four doubles, for processors that have AVX2, and for those that have
+// twice as many registers for them.
 
 // What is not compiled for such processors only comes first.
 #include <algorithm>
@@ -35,8 +36,17 @@ void Insertion<kRanked>::insert_by_4(VertexRef query, VertexRef next) {
   insert_by<4>(query, next);
 }
 
+/// The same text, inlined, takes the instruction set that this function is declared with.
+template <bool kRanked>
+SPILLWAY_TARGET_32_REGISTERS void Insertion<kRanked>::insert_by_4_of_32(VertexRef query,
+                                                                        VertexRef next) {
+  insert_by<4>(query, next);
+}
+
 template void Insertion<false>::insert_by_4(VertexRef, VertexRef);
 template void Insertion<true>::insert_by_4(VertexRef, VertexRef);
+template void Insertion<false>::insert_by_4_of_32(VertexRef, VertexRef);
+template void Insertion<true>::insert_by_4_of_32(VertexRef, VertexRef);
 
 }  // namespace spillway::kernel_3d
 

@@ -27,12 +27,12 @@ SPILLWAY_INLINE double power(const Cell& cell, const double* query) {
 
 template <bool kRanked>
 Insertion<kRanked>::Insertion(const WorkingPoints& points, Block& memory,
-                              const std::array<VertexId, 4>& first, int lanes)
+                              const std::array<VertexId, 4>& first, int width)
     : points_(points),
       memory_(memory),
       cells_(memory.reserve(kFirstListSize * sizeof(Cell))),
       capacity_(std::min(memory.capacity() / sizeof(Cell), CellArray::kMaxCells)),
-      lanes_(lanes),
+      width_(width),
       star_maker_(points.count) {
   resize_lists(kFirstListSize);
   std::array<VertexRef, 4> v{ref(first[0]), ref(first[1]), ref(first[2]), ref(first[3])};
@@ -236,7 +236,9 @@ void Insertion<kRanked>::insert_by_2(VertexRef query, VertexRef next) {
 
 template <bool kRanked>
 void Insertion<kRanked>::insert(VertexId point, VertexId next) {
-  if (lanes_ == 4) {
+  if (width_ == 8) {
+    insert_by_4_of_32(ref(point), ref(next));
+  } else if (width_ == 4) {
     insert_by_4(ref(point), ref(next));
   } else {
     insert_by_2(ref(point), ref(next));

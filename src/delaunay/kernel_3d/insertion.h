@@ -17,6 +17,9 @@
 #include "src/delaunay/lanes.h"
 #include "src/delaunay/working_memory.h"
 
+/// For functions that use the 32 vector registers of AVX-512.
+#define SPILLWAY_TARGET_32_REGISTERS SPILLWAY_TARGET("avx2,bmi,bmi2,avx512f,avx512vl,avx512dq")
+
 namespace spillway::kernel_3d {
 
 /// The cells of a hole, and the facets that are its boundary.
@@ -32,10 +35,10 @@ struct HoleLists {
 template <bool kRanked>
 class Insertion {
  public:
-  /// Starts with the cell of four points that are not coplanar. `lanes` is the width of the vectors
-  /// to be used: 4 or 2 doubles.
+  /// Starts with the cell of four points that are not coplanar. `width` is what
+  /// vector_width() says.
   Insertion(const WorkingPoints& points, Block& memory, const std::array<VertexId, 4>& first,
-            int lanes);
+            int width);
 
   /// Inserts a point. `next` is the one that will come next.
   void insert(VertexId point, VertexId next);
@@ -59,6 +62,8 @@ class Insertion {
   /// The same, for each width of vectors: one instruction set, one source.
   void insert_by_2(VertexRef query, VertexRef next);
   void insert_by_4(VertexRef query, VertexRef next);
+  SPILLWAY_TARGET_32_REGISTERS void insert_by_4_of_32(
+      VertexRef query, VertexRef next);  ///< with 32 registers for them
   template <int kLanes>
   void insert_by(VertexRef query, VertexRef next);
 
@@ -96,7 +101,7 @@ class Insertion {
   Block& memory_;
   CellArray cells_;
   std::size_t capacity_;
-  const int lanes_;
+  const int width_;
   std::uint32_t cell_count_ = 5;
   std::size_t free_count_ = 0;
   std::size_t known_conflicts_ = 0;  ///< at the beginning of conflicts_, of the next point

@@ -43,7 +43,7 @@ template <bool kRanked>
 template <int kLanes>
 SPILLWAY_INLINE void Insertion<kRanked>::make_star_spheres(VertexRef query, VertexRef next,
                                                            std::size_t count, bool on_hull) {
-  for (std::size_t i = count; i < count + kLanes - 1; ++i) star_[i] = star_[count - 1];
+  for (std::size_t i = count; i < count + 2 * kLanes - 1; ++i) star_[i] = star_[count - 1];
   const StarView star{.coordinates = points_.coordinates,
                       .largest = points_.largest,
                       .cells = cells_,
@@ -54,8 +54,10 @@ SPILLWAY_INLINE void Insertion<kRanked>::make_star_spheres(VertexRef query, Vert
   Integers<kLanes> certain = ~Integers<kLanes>{};
   std::uint32_t in_conflict = 0;
   Handle* const conflicts = conflicts_.data();
+  Corners<kLanes> corners;
+  gather_corners<kLanes>(star, 0, corners);
   for (std::size_t i = 0; i < count; i += kLanes) {
-    in_conflict = make_spheres<kLanes, kRanked>(star, i, certain);
+    in_conflict = make_spheres<kLanes, kRanked>(star, i, corners, certain);
     if constexpr (kLanes == 2) {
       conflicts[known] = star.handles[i];
       known += in_conflict & 1;

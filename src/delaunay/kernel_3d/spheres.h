@@ -58,9 +58,11 @@ struct StarView {
   const double* coordinates;  ///< four for each point: x, y, z, rank
   double largest;             ///< of their magnitudes
   CellArray cells;
-  const Handle* handles;  ///< the new cells, whose first vertex is the query
-  const double* query;    ///< the record of the point just inserted
-  const double* next;     ///< that of the next one
+  /// The new cells, whose first vertex is the query, and behind them any cells for the lanes that
+  /// are too many and those gathered last.
+  const Handle* handles;
+  const double* query;  ///< the record of the point just inserted
+  const double* next;   ///< that of the next one
 };
 
 /// At least the square root of a positive number, and at most 1.07 times it: half its exponent, and
@@ -71,14 +73,17 @@ SPILLWAY_INLINE void root_bound(const Reals<kLanes>& number, Reals<kLanes>& root
   root = (Reals<kLanes>)(((Bits<kLanes>)number >> 1) + (kHalfOfOne + 1));
 }
 
-/// Makes the spheres of the cells begin, begin + 1, ... of a star, as many as there are lanes, and
-/// tests them with the next point: returns a bit for each that is certainly in conflict with it,
-/// and leaves in `certain` only lanes where that, or the opposite, is certain.
-template <int kLanes, bool kRanked>
-SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t begin,
-                                           Integers<kLanes>& certain) {
-  using R = Reals<kLanes>;
-  using I = Integers<kLanes>;
+/// The second, third and fourth vertices of as many cells as there are lanes, relative to the
+/// query.
+template <int kLanes>
+struct Corners {
+  Records<kLanes> a, b, c;
+};
+
+/// Those of the cells begin, begin + 1, ... of a star.
+template <int kLanes>
+SPILLWAY_INLINE void gather_corners(const StarView& star, std::size_t begin,
+                                    Corners<kLanes>& corners) {
   const auto corner = [&](int slot) {
     Records<kLanes> r = gather<kLanes>([&](int i) {
       return star.coordinates + star.cells.at_cell(star.handles[begin + i]).vertices[slot];
@@ -88,9 +93,20 @@ SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t beg
     r.z -= star.query[2];
     return r;
   };
-  const Records<kLanes> a = corner(1);
-  const Records<kLanes> b = corner(2);
-  const Records<kLanes> c = corner(3);
+  corners = {corner(1), corner(2), corner(3)};
+}
+
+/// Makes the spheres of the cells begin, begin + 1, ... of a star, whose corners are given, and
+/// tests them with the next point: returns a bit for each that is certainly in conflict with it,
+/// and leaves in `certain` only lanes where that, or the opposite, is certain. Half-way, so that
+/// there is something to do while quotients take their time, it gathers the corners of the cells
+/// that come next.
+template <int kLanes, bool kRanked>
+SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t begin,
+                                           Corners<kLanes>& corners, Integers<kLanes>& certain) {
+  using R = Reals<kLanes>;
+  using I = Integers<kLanes>;
+  const auto [a, b, c] = corners;
   const R aa = a.x * a.x + a.y * a.y + a.z * a.z;
   const R bb = b.x * b.x + b.y * b.y + b.z * b.z;
   const R cc = c.x * c.x + c.y * c.y + c.z * c.z;
@@ -109,6 +125,7 @@ SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t beg
   sphere.x = (aa * bc_x + bb * ca_x + cc * ab_x) * half;
   sphere.y = (aa * bc_y + bb * ca_y + cc * ab_y) * half;
   sphere.z = (aa * bc_z + bb * ca_z + cc * ab_z) * half;
+  gather_corners<kLanes>(star, begin + kLanes, corners);
   const R squared = sphere.x * sphere.x + sphere.y * sphere.y + sphere.z * sphere.z;
   R edges, radius;
   root_bound<kLanes>(aa * bb * cc, edges);
