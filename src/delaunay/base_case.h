@@ -61,13 +61,13 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
 /// done with if they are to be made in place, or else in memory of its own.
 template <int D>
 BlockArray<Simplex<D>> make_list(const BaseCaseInput<D>& input, Block& memory, std::size_t count) {
-  if (!input.in_place) return BlockArray<Simplex<D>>(count);
-  memory.reserve(count * sizeof(Simplex<D>));
+  const std::size_t bytes = count * sizeof(Simplex<D>);
+  if (!input.in_place) return {kept_or_new_block(BlockUse::kSimplices, bytes), count};
+  memory.reserve(bytes);
   return {std::move(memory), count};
 }
 
-/// Keeps the memory of a list of simplices made in place, which has been used, for base cases to
-/// come.
+/// Keeps the memory of a list of simplices, which has been used, for base cases to come.
 template <int D>
 void recycle(BlockArray<Simplex<D>> used) {
   keep_block(BlockUse::kSimplices, used.take_block());

@@ -40,7 +40,7 @@ class BlockArray {
   [[nodiscard]] const T* begin() const { return data(); }
   [[nodiscard]] const T* end() const { return data() + size_; }
 
-  /// Gives the system the huge pages that no item uses.
+  /// Lets the system have the huge pages that no item uses when it is short of memory.
   void shrink() { block_.give_back_behind(size_ * sizeof(T)); }
 
   /// The block; the array is empty then.

@@ -162,7 +162,7 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
     throw Error("a base case of " + std::to_string(input.points.size()) + " points has " +
                 std::to_string(count) + " simplices, more than fit; choose smaller base cases");
   }
-  BorrowedBlock memory(BlockUse::kSimplices);
+  BorrowedBlock memory(BlockUse::kSimplices, count * sizeof(Simplex<D>));
   result.simplices = make_list<D>(input, *memory, count);
   Simplex<D>* next = result.simplices.data();
   for (const auto cell : Traits::all_cells(delaunay)) {

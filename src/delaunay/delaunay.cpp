@@ -210,6 +210,9 @@ class Run {
 
 template <int D>
 Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOptions& options) {
+  struct Release {
+    ~Release() { release_base_case_memory(); }
+  } const release_at_the_end;
   if (points.size() > kMaxVertices) {
     throw Error("more than " + std::to_string(kMaxVertices) +
                 " points: too many for one triangulation in memory");
@@ -228,7 +231,6 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
     result = Run<D>(std::move(copy), options, in_place)
                  .triangulate(base_case_size, options.tasks == nullptr ? unused : *options.tasks);
   });
-  release_base_case_memory();
   return result;
 }
 
@@ -240,9 +242,16 @@ Triangulation<D> border_delaunay(std::vector<Point<D>> points, Task& task) {
   return Run<D>(std::move(points), options, false).triangulate(base_case_size, task);
 }
 
+template <int D>
+void recycle(Triangulation<D> used) {
+  for (SimplexBlock<D>& block : used.blocks) recycle<D>(std::move(block.simplices));
+}
+
 template Triangulation<2> border_delaunay<2>(std::vector<Point<2>>, Task&);
 template Triangulation<3> border_delaunay<3>(std::vector<Point<3>>, Task&);
 template Triangulation<2> delaunay<2>(std::span<const Point<2>>, const DelaunayOptions&);
 template Triangulation<3> delaunay<3>(std::span<const Point<3>>, const DelaunayOptions&);
+template void recycle<2>(Triangulation<2>);
+template void recycle<3>(Triangulation<3>);
 
 }  // namespace spillway

@@ -185,11 +185,12 @@ class Divider {
     const auto points = points_.subspan(part.begin, part.size());
     const auto input_index = input_index_.subspan(part.begin, part.size());
     const std::vector<VertexId> order = hilbert_order<D>(points, part.box);
-    BorrowedBlock memory(BlockUse::kPoints);
     // A base case is likely to follow, which in space needs memory for four numbers a point.
-    constexpr std::size_t kBytes =
+    constexpr std::size_t kBytesOfPoint =
         D == 3 ? 4 * sizeof(double) : sizeof(Point<D>) + sizeof(VertexId);
-    auto* const old_points = static_cast<Point<D>*>(memory->reserve((part.size() + 1) * kBytes));
+    const std::size_t bytes = (part.size() + 1) * kBytesOfPoint;
+    BorrowedBlock memory(BlockUse::kPoints, bytes);
+    auto* const old_points = static_cast<Point<D>*>(memory->reserve(bytes));
     auto* const old_index = reinterpret_cast<VertexId*>(old_points + part.size());
     std::copy(points.begin(), points.end(), old_points);
     std::copy(input_index.begin(), input_index.end(), old_index);

@@ -98,6 +98,7 @@ class Sorter {
       : points_(points),
         count_(points.size()),
         place_bits_(std::bit_width(count_)),
+        memory_(BlockUse::kSimplices, 2 * count_ * sizeof(std::uint32_t)),
         keys_(static_cast<std::uint32_t*>(memory_->reserve(2 * count_ * sizeof(std::uint32_t)))),
         items_(keys_ + count_),
         order_(count_) {}
@@ -255,8 +256,8 @@ class Sorter {
   std::span<const Point<D>> points_;
   std::size_t count_;
   int place_bits_;
-  BorrowedBlock memory_{BlockUse::kSimplices};  ///< a base case is likely to follow
-  std::uint32_t* keys_;                         ///< by place
+  BorrowedBlock memory_;  ///< a base case is likely to follow
+  std::uint32_t* keys_;   ///< by place
   std::uint32_t* items_;
   std::vector<VertexId> order_;
   Places low_, high_;

@@ -2,6 +2,7 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -28,7 +29,8 @@ void for_huge_pages(std::byte* begin, std::byte* end, const Give& give) {
 
 struct KeptBlocks {
   std::mutex mutex;
-  std::array<std::vector<Block>, 2> of_use;  ///< guarded by `mutex`
+  /// Guarded by `mutex`. The smallest come first.
+  std::array<std::vector<Block>, 2> of_use;
 
   std::vector<Block>& operator[](BlockUse use) { return of_use[static_cast<std::size_t>(use)]; }
 
@@ -37,6 +39,20 @@ struct KeptBlocks {
     return kept;
   }
 };
+
+using BlockPlace = std::vector<Block>::iterator;
+
+BlockPlace smallest_with(std::size_t bytes, std::vector<Block>& blocks) {
+  return std::lower_bound(
+      blocks.begin(), blocks.end(), bytes,
+      [](const Block& block, std::size_t size) { return block.capacity() < size; });
+}
+
+Block take(BlockPlace place, std::vector<Block>& blocks) {
+  Block block = std::move(*place);
+  blocks.erase(place);
+  return block;
+}
 
 }  // namespace
 
@@ -82,15 +98,27 @@ void* Block::grow(std::size_t bytes, std::size_t used) {
 
 void Block::give_back_behind(std::size_t used) {
   for_huge_pages(memory_.get() + used, memory_.get() + capacity(),
-                 [](std::byte* first, std::size_t size) { madvise(first, size, MADV_DONTNEED); });
+                 [](std::byte* first, std::size_t size) { madvise(first, size, MADV_FREE); });
 }
 
-BorrowedBlock::BorrowedBlock(BlockUse use) : use_(use) {
+Block kept_or_new_block(BlockUse use, std::size_t bytes) {
+  {
+    KeptBlocks& kept = KeptBlocks::instance();
+    const std::lock_guard lock(kept.mutex);
+    const auto found = smallest_with(bytes, kept[use]);
+    if (found != kept[use].end() && found->capacity() <= bytes + bytes / 8) {
+      return take(found, kept[use]);
+    }
+  }
+  return Block::of(bytes);
+}
+
+BorrowedBlock::BorrowedBlock(BlockUse use, std::size_t bytes) : use_(use) {
   KeptBlocks& kept = KeptBlocks::instance();
   const std::lock_guard lock(kept.mutex);
   if (kept[use].empty()) return;
-  block_ = std::move(kept[use].back());
-  kept[use].pop_back();
+  const auto found = smallest_with(bytes, kept[use]);
+  block_ = take(found == kept[use].end() ? found - 1 : found, kept[use]);
 }
 
 BorrowedBlock::~BorrowedBlock() { keep_block(use_, std::move(block_)); }
@@ -99,7 +127,7 @@ void keep_block(BlockUse use, Block block) {
   if (block.capacity() == 0) return;
   KeptBlocks& kept = KeptBlocks::instance();
   const std::lock_guard lock(kept.mutex);
-  kept[use].push_back(std::move(block));
+  kept[use].insert(smallest_with(block.capacity(), kept[use]), std::move(block));
 }
 
 void release_kept_blocks() {

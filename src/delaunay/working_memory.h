@@ -24,8 +24,7 @@ class Block {
   /// The same, but the first `used` bytes stay what they are.
   void* grow(std::size_t bytes, std::size_t used);
 
-  /// Gives the system the huge pages behind the first `used` bytes. They come back empty when they
-  /// are used again.
+  /// Lets the system have the huge pages behind the first `used` bytes when it is short of memory.
   void give_back_behind(std::size_t used);
 
   [[nodiscard]] void* data() const { return memory_.get(); }
@@ -44,11 +43,12 @@ class Block {
 /// What base cases keep a block for, so that the next one gets a block of fitting size.
 enum class BlockUse : std::uint8_t { kPoints, kSimplices };
 
-/// A block on loan: that of an earlier base case if there is any. Gives it back at the end of its
-/// life, for a later one of any thread.
+/// A block on loan: the smallest that an earlier base case left and that has so many bytes, or else
+/// the largest, which is to be made larger, if there is any. Gives it back at the end of its life,
+/// for a later one of any thread.
 class BorrowedBlock {
  public:
-  explicit BorrowedBlock(BlockUse use);
+  BorrowedBlock(BlockUse use, std::size_t bytes);
   ~BorrowedBlock();
   BorrowedBlock(const BorrowedBlock&) = delete;
   BorrowedBlock& operator=(const BorrowedBlock&) = delete;
@@ -60,6 +60,10 @@ class BorrowedBlock {
   BlockUse use_;
   Block block_;
 };
+
+/// A block of at least this size: the smallest one kept for that use if it is not much larger, or
+/// else a new one. Throws std::bad_alloc.
+Block kept_or_new_block(BlockUse use, std::size_t bytes);
 
 /// Keeps a block for coming base cases.
 void keep_block(BlockUse use, Block block);

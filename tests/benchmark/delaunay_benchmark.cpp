@@ -3,14 +3,18 @@
 // Prints two Markdown tables.
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "src/delaunay/base_case.h"
 #include "src/delaunay/delaunay.h"
 #include "src/delaunay/schedule.h"
 #include "src/delaunay/working_memory.h"
@@ -51,9 +55,16 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+/// Leaves no memory of earlier runs with the process.
+void give_back_memory() {
+  release_base_case_memory();
+  malloc_trim(0);
+  touch_memory();
+}
+
+/// Leaves its memory to the next run.
 template <int D>
 Timing time_ours(std::span<const Point<D>> points, const DelaunayOptions& options) {
-  touch_memory();
   Timing timing{};
   Triangulation<D> triangulation;
   {
@@ -61,6 +72,7 @@ Timing time_ours(std::span<const Point<D>> points, const DelaunayOptions& option
     triangulation = delaunay<D>(points, options);
   }
   timing.simplices = triangulation.finite_count();
+  recycle(std::move(triangulation));
   return timing;
 }
 
@@ -72,6 +84,7 @@ std::string simulate(const std::string& family, std::span<const Point<D>> points
                      double cgal_seconds, const Plan& plan) {
   std::vector<Task> runs(plan.simulated_base_cases.size());
   for (std::size_t r = 0; r < runs.size(); ++r) {
+    give_back_memory();
     time_ours<D>(points, {.threads = 1,
                           .base_case_size = plan.simulated_base_cases[r],
                           .children = plan.children,
@@ -88,6 +101,41 @@ std::string simulate(const std::string& family, std::span<const Point<D>> points
   return row + "\n";
 }
 
+/// Of all turns, with memory from the system or left by a run of the same program just before.
+struct Times {
+  std::vector<double> cgal, cgal_parallel, ours_one, ours;
+};
+
+/// One turn. Returns the number of simplices.
+template <int D>
+std::size_t take_turn(std::span<const Point<D>> points, const Plan& plan, Times& fresh,
+                      Times& reused) {
+  std::size_t simplices = 0;
+  const auto run = [&](std::vector<double> Times::*times, const auto& time) {
+    give_back_memory();
+    for (Times* memory : {&fresh, &reused}) {
+      const Timing timing = time();
+      if (simplices != 0 && timing.simplices != simplices) {
+        fmt::print("DIFFERENT COUNTS: {} and {}\n", timing.simplices, simplices);
+      }
+      simplices = timing.simplices;
+      (memory->*times).push_back(timing.seconds);
+    }
+  };
+  const auto ours = [&](unsigned threads) {
+    return time_ours<D>(
+        points,
+        {.threads = threads, .base_case_size = plan.base_case_size, .children = plan.children});
+  };
+  run(&Times::cgal, [&] { return time_cgal_sequential<D>(points); });
+  if constexpr (D == 3) {
+    run(&Times::cgal_parallel, [&] { return time_cgal_parallel(points, plan.threads); });
+  }
+  run(&Times::ours_one, [&] { return ours(1); });
+  run(&Times::ours, [&] { return ours(plan.threads); });
+  return simplices;
+}
+
 template <int D>
 std::string compare(const std::string& family, const Plan& plan) {
   const bool quadratic = D == 3 && family == "lines";
@@ -95,39 +143,27 @@ std::string compare(const std::string& family, const Plan& plan) {
                                   .count = quadratic ? plan.points_on_lines_3d : plan.points,
                                   .dimension = D};
   const std::vector<Point<D>> points = generate_points<D>(generate);
-  std::vector<double> cgal;
-  std::vector<double> cgal_parallel;
-  std::vector<double> ours_one;
-  std::vector<double> ours;
-  Timing last{};
-  for (unsigned r = 0; r < plan.repetitions; ++r) {
-    touch_memory();
-    const Timing reference = time_cgal_sequential<D>(points);
-    cgal.push_back(reference.seconds);
-    if constexpr (D == 3) {
-      touch_memory();
-      cgal_parallel.push_back(time_cgal_parallel(points, plan.threads).seconds);
-    }
-    DelaunayOptions options{
-        .threads = 1, .base_case_size = plan.base_case_size, .children = plan.children};
-    ours_one.push_back(time_ours<D>(points, options).seconds);
-    options.threads = plan.threads;
-    last = time_ours<D>(points, options);
-    ours.push_back(last.seconds);
-    if (last.simplices != reference.simplices) {
-      fmt::print("DIFFERENT COUNTS: {} and {}\n", last.simplices, reference.simplices);
-    }
-  }
   const double n = static_cast<double>(points.size()) * 1e-6;
-  fmt::print(
-      "| {}D {} | {} | {} | {:.3f} | {} | {:.3f} | {:.3f} | {:.3f} | {:.2f} | **{:.2f}** | {} |\n",
-      D, family, points.size(), last.simplices, median(cgal),
-      D == 3 ? fmt::format("{:.3f}", median(cgal_parallel)) : "-", median(ours_one), median(ours),
-      median(ours) / n, median(ours_one) / median(ours), median(ours) / median(cgal),
-      D == 3 ? fmt::format("{:.2f}", median(ours) / median(cgal_parallel)) : "-");
-  std::fflush(stdout);
+  Times fresh, reused;
+  std::size_t simplices = 0;
+  for (unsigned r = 0; r < plan.repetitions; ++r) {
+    simplices = take_turn<D>(points, plan, fresh, reused);
+  }
+  const auto print_row = [&](const char* memory, const Times& times) {
+    const double ours = median(times.ours);
+    fmt::print(
+        "| {}D {} | {} | {} | {} | {:.3f} | {} | {:.3f} | {:.3f} | {:.3f} | {:.2f} | **{:.3f}** | "
+        "{} |\n",
+        D, family, memory, points.size(), simplices, median(times.cgal),
+        D == 3 ? fmt::format("{:.3f}", median(times.cgal_parallel)) : "-", median(times.ours_one),
+        ours, ours / n, median(times.ours_one) / ours, ours / median(times.cgal),
+        D == 3 ? fmt::format("{:.2f}", ours / median(times.cgal_parallel)) : "-");
+    std::fflush(stdout);
+  };
+  print_row("fresh", fresh);
+  print_row("reused", reused);
   if (plan.simulated_base_cases.empty()) return {};
-  return simulate<D>(family, points, median(cgal), plan);
+  return simulate<D>(family, points, median(fresh.cgal), plan);
 }
 
 }  // namespace
@@ -149,12 +185,17 @@ int main(int argc, char** argv) {
       ->delimiter(',');
   app.add_option("--simulated-cores", plan.simulated_cores, "Most cores to simulate");
   CLI11_PARSE(app, argc, argv);
+  // What is freed stays with the process until give_back_memory().
+  constexpr int kLargestThreshold = 32 << 20;
+  mallopt(M_MMAP_THRESHOLD, kLargestThreshold);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   if (plan.simulated_base_cases == std::vector<std::size_t>{0}) plan.simulated_base_cases.clear();
   const unsigned t = plan.threads;
   fmt::print(
-      "| points | n | simplices | CGAL s | CGAL parallel, {} threads s | ours, 1 thread s | "
+      "| points | memory | n | simplices | CGAL s | CGAL parallel, {} threads s | ours, 1 thread s "
+      "| "
       "ours, {} threads s | us a point | speed-up | ours / CGAL | ours / CGAL parallel |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       t, t);
   std::string simulated;
   for (const int dimension : plan.dimensions) {

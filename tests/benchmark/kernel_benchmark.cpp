@@ -206,7 +206,8 @@ int main(int argc, char** argv) {
       ->delimiter(',');
   app.add_option("-n,--points", counts, "Points of each set")->delimiter(',');
   app.add_option("-r,--repetitions", repetitions, "Turns; medians are printed");
-  app.add_option("--vectors", vectors, "At most so many doubles at a time, in space: 2, 4 or 8")
+  app.add_option("--vectors", vectors,
+                 "In space: 2 for SSE2, 4 for AVX2, 8 for AVX-512's registers, too")
       ->check(CLI::IsMember({2, 4, 8}));
   CLI11_PARSE(app, argc, argv);
   if (sets.empty()) sets = spillway::usual_sets(dimension);
@@ -216,7 +217,10 @@ int main(int argc, char** argv) {
   spillway::limit_vectors(vectors);
   try {
     if (dimension == 3) {
-      fmt::print("Vectors of {} doubles\n\n", std::min(vectors, spillway::widest_vectors()));
+      const int width = spillway::vector_width();
+      fmt::print("{}\n\n", width == 8   ? "AVX2 with the registers of AVX-512"
+                           : width == 4 ? "AVX2"
+                                        : "SSE2");
     }
     fmt::print(
         "| points | n | CGAL us a point | ours us a point | CGAL / ours | bytes a point |\n"

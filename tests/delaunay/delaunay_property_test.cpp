@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <numeric>
 #include <random>
+#include <set>
+#include <utility>
 
 #include "src/delaunay/delaunay.h"
+#include "src/delaunay/working_memory.h"
+#include "src/error.h"
 #include "src/generators/generators.h"
 #include "tests/delaunay/cgal_oracle.h"
 #include "tests/generators/family_cases.h"
@@ -204,6 +208,42 @@ TYPED_TEST(DelaunayOfDegenerateSet, ListsTheSameSimplicesInTheSameOrderForAnyThr
       }
     }
   }
+}
+
+/// Triangulates points twice, the second time with the memory of the first. Returns how many blocks
+/// the second one took over.
+template <int D>
+std::size_t blocks_taken_over(const DelaunayOptions& options) {
+  const auto points = generate_points<D>({.family = Family::kUniform, .count = 30'000});
+  Triangulation<D> first = delaunay<D>(points, options);
+  const auto expected = finite_simplices(first);
+  std::set<const void*> places;
+  for (const SimplexBlock<D>& block : first.blocks) places.insert(block.simplices.data());
+  recycle(std::move(first));
+  EXPECT_TRUE(places.contains(BorrowedBlock(BlockUse::kSimplices, 1)->data()));
+  const Triangulation<D> second = delaunay<D>(points, options);
+  EXPECT_TRUE(finite_simplices(second) == expected);
+  EXPECT_EQ(BorrowedBlock(BlockUse::kSimplices, 1)->capacity(), 0U);
+  return std::count_if(second.blocks.begin(), second.blocks.end(),
+                       [&](const auto& block) { return places.contains(block.simplices.data()); });
+}
+
+TEST(RecycledTriangulation, LeavesItsMemoryToTheNextOne) {
+  EXPECT_EQ(blocks_taken_over<2>({.threads = 1}), 1);
+  EXPECT_EQ(blocks_taken_over<3>({.threads = 1}), 1);
+}
+
+TEST(RecycledTriangulation, OfManyBaseCasesLeavesItsMemoryToTheNextOne) {
+  EXPECT_GE(blocks_taken_over<2>({.threads = 1, .base_case_size = 4'000}), 5);
+  EXPECT_GE(blocks_taken_over<3>({.threads = 1, .base_case_size = 4'000}), 5);
+}
+
+TEST(RecycledTriangulation, IsGivenBackByARefusedCall) {
+  const auto points = generate_points<2>({.family = Family::kUniform, .count = 1'000});
+  recycle(delaunay<2>(points));
+  const std::span<const Point<2>> too_many(points.data(), kMaxVertices + std::size_t{1});
+  EXPECT_THROW(delaunay<2>(too_many), Error);
+  EXPECT_EQ(BorrowedBlock(BlockUse::kSimplices, 1)->capacity(), 0U);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "src/delaunay/vectors.h"
 #include "src/error.h"
 #include "src/generators/random.h"
 #include "tests/delaunay/kernel_sets.h"
@@ -173,11 +172,10 @@ TEST(Kernel2d, RefusesMorePointsThanItCanNumber) {
 }
 
 TEST(Kernel2d, EqualsCgalWithNarrowVectors) {
-  limit_vectors(2);
+  const VectorLimit limit(2);
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     ASSERT_EQ(compare_kernel_with_cgal<2>(hard_set<2>(seed), seed), "") << "seed " << seed;
   }
-  limit_vectors(8);
 }
 
 }  // namespace

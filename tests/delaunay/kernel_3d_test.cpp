@@ -1,7 +1,6 @@
 // The 3D kernel as a whole: for every input CGAL's triangulation.
 
 #include "src/delaunay/kernel_3d/kernel_3d.h"
-#include "src/delaunay/vectors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -88,14 +87,13 @@ TEST(Kernel3d, EqualsCgalOnSmallHardSets) {
 
 TEST(Kernel3d, EqualsCgalWithNarrowVectors) {
   for (const int doubles : {4, 2}) {
-    limit_vectors(doubles);
+    const VectorLimit limit(doubles);
     for (std::uint64_t seed = 1; seed <= 500; ++seed) {
       ASSERT_EQ(compare_kernel_with_cgal<3>(hard_set<3>(seed), seed), "") << "seed " << seed;
     }
     expect_equal_to_cgal(uniform(3'000));
     expect_equal_to_cgal(random_integers(3'000, 12, 12));
   }
-  limit_vectors(8);
 }
 
 TEST(Kernel3d, GivesTheSameSimplicesWithVectorsOfAnyWidth) {
@@ -104,7 +102,7 @@ TEST(Kernel3d, GivesTheSameSimplicesWithVectorsOfAnyWidth) {
   const BaseCaseInput<3> input{.points = points, .input_index = index};
   const BaseCase<3> wide = triangulate_base_case<3>(input);
   for (const int doubles : {4, 2}) {
-    limit_vectors(doubles);
+    const VectorLimit limit(doubles);
     const BaseCase<3> narrow = triangulate_base_case<3>(input);
     ASSERT_EQ(wide.simplices.size(), narrow.simplices.size());
     for (std::size_t i = 0; i < wide.simplices.size(); ++i) {
@@ -112,7 +110,6 @@ TEST(Kernel3d, GivesTheSameSimplicesWithVectorsOfAnyWidth) {
       ASSERT_EQ(wide.simplices[i].neighbours, narrow.simplices[i].neighbours);
     }
   }
-  limit_vectors(8);
 }
 
 TEST(Kernel3d, EqualsCgalOnAPlaneAndOnePoint) {

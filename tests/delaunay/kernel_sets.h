@@ -7,9 +7,19 @@
 #include <string>
 #include <vector>
 
+#include "src/delaunay/vectors.h"
 #include "src/geometry/point.h"
 
 namespace spillway {
+
+/// Limits the vectors of the kernels for the length of its life.
+class VectorLimit {
+ public:
+  explicit VectorLimit(int doubles) { limit_vectors(doubles); }
+  ~VectorLimit() { limit_vectors(8); }
+  VectorLimit(const VectorLimit&) = delete;
+  VectorLimit& operator=(const VectorLimit&) = delete;
+};
 
 /// The set that belongs to a seed: a few points to some tens, on lattices, lines, planes, circles
 /// and spheres, repeated, nearly cocircular or cospherical, at huge offsets or of extreme size.

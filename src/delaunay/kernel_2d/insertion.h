@@ -21,7 +21,7 @@ template <bool kLattice>
 class Insertion {
  public:
   /// Starts with a triangle that is not flat. The array has room for 2 n + 2 triangles. `lanes` is
-  /// the width of the vectors to be used: 4 or 2 doubles.
+  /// what vector_width() says.
   Insertion(const WorkingPoints& points, TriangleArray triangles,
             const std::array<VertexId, 3>& first, int lanes);
 

@@ -100,10 +100,11 @@ BaseCase<2> kernel_2d_base_case(const BaseCaseInput<2>& input, std::span<const V
                     "choose base cases of at most {} points",
                     input.points.size(), TriangleArray::kMaxTriangles / 2 - 1));
   }
-  BorrowedBlock point_memory(BlockUse::kPoints);
+  BorrowedBlock point_memory(BlockUse::kPoints, input.points.size_bytes());
   const WorkingPoints points = make_working_points(input.points, *point_memory, input.region);
-  BorrowedBlock triangles(BlockUse::kSimplices);
-  triangles->reserve(triangle_count * sizeof(Triangle));
+  const std::size_t triangle_bytes = triangle_count * sizeof(Triangle);
+  BorrowedBlock triangles(BlockUse::kSimplices, triangle_bytes);
+  triangles->reserve(triangle_bytes);
   return points.lattice ? triangulate<true>(input, basis, points, *triangles)
                         : triangulate<false>(input, basis, points, *triangles);
 }

@@ -38,15 +38,15 @@ void Insertion<kRanked>::insert_by_4(VertexRef query, VertexRef next) {
 
 /// The same text, inlined, takes the instruction set that this function is declared with.
 template <bool kRanked>
-SPILLWAY_TARGET_32_REGISTERS void Insertion<kRanked>::insert_by_4_of_32(VertexRef query,
-                                                                        VertexRef next) {
+SPILLWAY_TARGET_32_REGISTERS void Insertion<kRanked>::insert_by_4_with_32_registers(
+    VertexRef query, VertexRef next) {
   insert_by<4>(query, next);
 }
 
 template void Insertion<false>::insert_by_4(VertexRef, VertexRef);
 template void Insertion<true>::insert_by_4(VertexRef, VertexRef);
-template void Insertion<false>::insert_by_4_of_32(VertexRef, VertexRef);
-template void Insertion<true>::insert_by_4_of_32(VertexRef, VertexRef);
+template void Insertion<false>::insert_by_4_with_32_registers(VertexRef, VertexRef);
+template void Insertion<true>::insert_by_4_with_32_registers(VertexRef, VertexRef);
 
 }  // namespace spillway::kernel_3d
 

@@ -237,7 +237,7 @@ void Insertion<kRanked>::insert_by_2(VertexRef query, VertexRef next) {
 template <bool kRanked>
 void Insertion<kRanked>::insert(VertexId point, VertexId next) {
   if (width_ == 8) {
-    insert_by_4_of_32(ref(point), ref(next));
+    insert_by_4_with_32_registers(ref(point), ref(next));
   } else if (width_ == 4) {
     insert_by_4(ref(point), ref(next));
   } else {

@@ -59,11 +59,10 @@ class Insertion {
   static constexpr std::size_t kMostKnown = 64;
   static_assert(4 * kMostKnown + kAhead <= kFirstListSize);
 
-  /// The same, for each width of vectors: one instruction set, one source.
+  /// The same, for each instruction set; the sources are named like them.
   void insert_by_2(VertexRef query, VertexRef next);
   void insert_by_4(VertexRef query, VertexRef next);
-  SPILLWAY_TARGET_32_REGISTERS void insert_by_4_of_32(
-      VertexRef query, VertexRef next);  ///< with 32 registers for them
+  SPILLWAY_TARGET_32_REGISTERS void insert_by_4_with_32_registers(VertexRef query, VertexRef next);
   template <int kLanes>
   void insert_by(VertexRef query, VertexRef next);
 

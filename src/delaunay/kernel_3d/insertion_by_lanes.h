@@ -1,6 +1,6 @@
 #pragma once
-// The inner loop of insertion, for vectors of any width. A source that includes this compiles it
-// for one instruction set.
+// The inner loop of insertion, for vectors of any width. All of it is inlined into the function
+// that uses it, and takes that function's instruction set.
 
 #include <cstddef>
 #include <cstdint>
@@ -43,6 +43,7 @@ template <bool kRanked>
 template <int kLanes>
 SPILLWAY_INLINE void Insertion<kRanked>::make_star_spheres(VertexRef query, VertexRef next,
                                                            std::size_t count, bool on_hull) {
+  static_assert(2 * kLanes - 1 <= kAhead);
   for (std::size_t i = count; i < count + 2 * kLanes - 1; ++i) star_[i] = star_[count - 1];
   const StarView star{.coordinates = points_.coordinates,
                       .largest = points_.largest,

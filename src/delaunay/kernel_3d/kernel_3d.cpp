@@ -103,10 +103,11 @@ BaseCase<3> kernel_3d_base_case(const BaseCaseInput<3>& input, std::span<const V
         "points",
         input.points.size(), kMostPoints));
   }
-  BorrowedBlock point_memory(BlockUse::kPoints);
+  BorrowedBlock point_memory(BlockUse::kPoints, input.points.size_bytes());
   const WorkingPoints points = make_working_points(input.points, *point_memory, input.region);
-  BorrowedBlock cells(BlockUse::kSimplices);
-  cells->reserve(kUsualCells * input.points.size() * sizeof(Cell));
+  const std::size_t cell_bytes = kUsualCells * input.points.size() * sizeof(Cell);
+  BorrowedBlock cells(BlockUse::kSimplices, cell_bytes);
+  cells->reserve(cell_bytes);
   return points.ranked ? triangulate<true>(input, basis, points, *cells)
                        : triangulate<false>(input, basis, points, *cells);
 }

@@ -58,8 +58,8 @@ struct StarView {
   const double* coordinates;  ///< four for each point: x, y, z, rank
   double largest;             ///< of their magnitudes
   CellArray cells;
-  /// The new cells, whose first vertex is the query, and behind them any cells for the lanes that
-  /// are too many and those gathered last.
+  /// The new cells, whose first vertex is the query. Behind them the last one again, 2 kLanes - 1
+  /// times: for lanes that are left over, and for what is gathered ahead.
   const Handle* handles;
   const double* query;  ///< the record of the point just inserted
   const double* next;   ///< that of the next one
@@ -100,7 +100,7 @@ SPILLWAY_INLINE void gather_corners(const StarView& star, std::size_t begin,
 /// tests them with the next point: returns a bit for each that is certainly in conflict with it,
 /// and leaves in `certain` only lanes where that, or the opposite, is certain. Half-way, so that
 /// there is something to do while quotients take their time, it gathers the corners of the cells
-/// that come next.
+/// from begin + kLanes on.
 template <int kLanes, bool kRanked>
 SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t begin,
                                            Corners<kLanes>& corners, Integers<kLanes>& certain) {
