@@ -59,7 +59,7 @@ class Insertion {
   static constexpr std::size_t kMostKnown = 64;
   static_assert(4 * kMostKnown + kAhead <= kFirstListSize);
 
-  /// The same, for each instruction set; the sources are named like them.
+  /// The same, for each instruction set.
   void insert_by_2(VertexRef query, VertexRef next);
   void insert_by_4(VertexRef query, VertexRef next);
   SPILLWAY_TARGET_32_REGISTERS void insert_by_4_with_32_registers(VertexRef query, VertexRef next);
