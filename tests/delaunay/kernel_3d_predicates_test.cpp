@@ -14,6 +14,7 @@
 
 #include "src/delaunay/kernel_3d/exact_predicates.h"
 #include "src/delaunay/kernel_3d/spheres.h"
+#include "src/delaunay/kernel_3d/star_spheres.h"
 #include "src/delaunay/kernel_3d/ties_by_lanes.h"
 #include "src/generators/random.h"
 #include "src/geometry/predicates.h"

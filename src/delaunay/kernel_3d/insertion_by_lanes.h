@@ -8,7 +8,7 @@
 
 #include "src/delaunay/kernel_3d/hole_by_lanes.h"
 #include "src/delaunay/kernel_3d/insertion.h"
-#include "src/delaunay/kernel_3d/spheres.h"
+#include "src/delaunay/kernel_3d/star_spheres.h"
 
 namespace spillway::kernel_3d {
 
@@ -43,8 +43,9 @@ template <bool kRanked>
 template <int kLanes>
 SPILLWAY_INLINE void Insertion<kRanked>::make_star_spheres(VertexRef query, VertexRef next,
                                                            std::size_t count, bool on_hull) {
-  static_assert(2 * kLanes - 1 <= kAhead);
-  for (std::size_t i = count; i < count + 2 * kLanes - 1; ++i) star_[i] = star_[count - 1];
+  constexpr std::size_t kRepeated = 2 * std::size_t{kLanes} - 1;
+  static_assert(kRepeated <= kAhead);
+  for (std::size_t i = count; i < count + kRepeated; ++i) star_[i] = star_[count - 1];
   const StarView star{.coordinates = points_.coordinates,
                       .largest = points_.largest,
                       .cells = cells_,
