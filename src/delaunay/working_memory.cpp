@@ -69,21 +69,28 @@ void Block::Free::operator()(std::byte* memory) const {
   std::free(memory);
 }
 
-Block Block::of(std::size_t bytes) {
+Block Block::without_huge_pages(std::size_t bytes) {
   const std::size_t alignment = bytes >= kHugePage ? kHugePage : kCacheLine;
   const std::size_t size = (bytes + alignment - 1) / alignment * alignment;
   Block block;
   block.memory_ = {static_cast<std::byte*>(std::aligned_alloc(alignment, size)), Free{size}};
   if (size > 0 && block.memory_ == nullptr) throw std::bad_alloc();
-  ask_for_huge_pages(block.memory_.get(), size);
   return block;
 }
 
+Block Block::of(std::size_t bytes) {
+  Block block = without_huge_pages(bytes);
+  ask_for_huge_pages(block.memory_.get(), block.capacity());
+  return block;
+}
+
+/// The last huge page is not asked for if it would be used in part.
 void* Block::reserve(std::size_t bytes) {
   if (bytes > capacity()) {
     *this = {};
-    *this = of(bytes + bytes / 8);  // base cases differ a little in size
+    *this = without_huge_pages(bytes + bytes / 8);  // base cases differ a little in size
   }
+  ask_for_huge_pages(memory_.get(), bytes);
   return memory_.get();
 }
 

@@ -37,6 +37,9 @@ class Block {
     void operator()(std::byte* memory) const;
     std::size_t bytes;
   };
+
+  static Block without_huge_pages(std::size_t bytes);
+
   std::unique_ptr<std::byte, Free> memory_;
 };
 
