@@ -213,7 +213,7 @@ class TileRun {
     const StageTimer timer(counts_.times, Stage::kFinality);
     LeafToSettle<D> leaf = leaf_of(*node.part);
     leaf.simplices = {base_case.simplices.data(), base_case.simplices.size()};
-    const std::vector<Fate> fates = fates_in_leaf(node, leaf, base_case.inside);
+    const std::vector<Fate> fates = fates_in_leaf(node, leaf, base_case.not_inside);
     leaf.fates = fates;
     return settle<D>(leaf, options_.output);
   }
@@ -265,17 +265,11 @@ class TileRun {
     return border;
   }
 
-  /// The simplices of a leaf whose circumspheres are not known to lie in its cell: infinite ones,
-  /// those near the cell's sides, and some that are flat.
-  [[nodiscard]] std::vector<std::uint32_t> open_questions(
-      const Node& node, const LeafToSettle<D>& leaf, std::span<const std::uint8_t> inside) const {
+  /// The simplices of a leaf whose circumspheres are not known to lie in its cell, if the kernel
+  /// has not told: infinite ones, those near the cell's sides, and some that are flat.
+  [[nodiscard]] std::vector<std::uint32_t> open_questions(const Node& node,
+                                                          const LeafToSettle<D>& leaf) const {
     std::vector<std::uint32_t> open;
-    if (!inside.empty()) {
-      for (std::uint32_t s = 0; s < inside.size(); ++s) {
-        if (inside[s] == 0) open.push_back(s);
-      }
-      return open;
-    }
     const Box<D> cell = cell_of(node);
     SimplexBatch<D> batch{};
     const auto count = static_cast<std::uint32_t>(leaf.simplex_count());
@@ -295,10 +289,12 @@ class TileRun {
     return open;
   }
 
-  [[nodiscard]] std::vector<Fate> fates_in_leaf(const Node& node, const LeafToSettle<D>& leaf,
-                                                std::span<const std::uint8_t> inside) const {
+  /// `not_inside` is that of the leaf's base case.
+  [[nodiscard]] std::vector<Fate> fates_in_leaf(
+      const Node& node, const LeafToSettle<D>& leaf,
+      const std::optional<std::vector<std::uint32_t>>& not_inside) const {
     const auto may_be_changed = change_test(siblings_up(node));
-    const std::vector<std::uint32_t> open = open_questions(node, leaf, inside);
+    const std::vector<std::uint32_t> open = not_inside ? *not_inside : open_questions(node, leaf);
     std::vector<Fate> fates(leaf.simplex_count(), Fate::kFinal);
     for_each_region<D>(
         open.size(), [&](std::size_t i) { return leaf.simplex(open[i]); }, leaf.points,

@@ -19,7 +19,7 @@ struct BaseCaseInput {
   std::span<const Point<D>> points;
   std::span<const VertexId> input_index;
   VertexId first_vertex = 0;
-  std::optional<Box<D>> region{};  ///< asks for BaseCase::inside; its sides may be infinite
+  std::optional<Box<D>> region{};  ///< asks for BaseCase::not_inside; its sides may be infinite
   /// Leaves the simplices in the kernel's working memory, of which they use at most half:
   /// nothing is copied, and at the peak less memory is used. For results that are soon recycled,
   /// or few.
@@ -33,9 +33,10 @@ struct BaseCase {
   std::vector<std::uint32_t> hull;    ///< indices of the infinite simplices
   std::vector<Duplicate> duplicates;  ///< sorted
   int dimension = -1;                 ///< of the points' affine hull
-  /// By simplex, if there was a region to ask about and the kernel can tell without much work: 1 if
-  /// it is finite and its closed circumsphere certainly lies inside the region and touches no side.
-  std::vector<std::uint8_t> inside;
+  /// If there was a region to ask about and the kernel can tell without much work: the indices,
+  /// ascending, of all simplices but those that are finite and whose closed circumsphere certainly
+  /// lies inside the region and touches no side.
+  std::optional<std::vector<std::uint32_t>> not_inside;
 };
 
 /// What triangulates base cases.
@@ -47,8 +48,9 @@ enum class BaseCaseKernel : std::uint8_t {
 /// Chooses the kernel for the whole process; kOwn if never called. To be called before work starts.
 void set_base_case_kernel(BaseCaseKernel kernel);
 
-/// Triangulates any finite points sequentially: none, one, all equal, collinear, coplanar or in
-/// general position.
+/// Triangulates any finite points: none, one, all equal, collinear, coplanar or in general
+/// position. The calling thread does so alone, but those of with_threads() that have nothing else
+/// to do help it to list many simplices.
 template <int D>
 BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input);
 

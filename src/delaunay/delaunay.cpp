@@ -117,10 +117,15 @@ class Run {
     surface.dimension = leaf.dimension;
     surface.open = leaf.dimension < D;
     for (const std::uint32_t i : leaf.hull) surface.hull.push_back({part.block, i});
-    marks_[part.block].assign(leaf.simplices.size(), Mark::kInterior);
-    std::transform(
-        leaf.inside.begin(), leaf.inside.end(), marks_[part.block].begin(),
-        [](std::uint8_t inside) { return inside != 0 ? Mark::kFinal : Mark::kInterior; });
+    marks_[part.block].assign(leaf.simplices.size(),
+                              leaf.not_inside ? Mark::kFinal : Mark::kInterior);
+    if (leaf.not_inside) {
+      surface.changeable.emplace();
+      for (const std::uint32_t i : *leaf.not_inside) {
+        marks_[part.block][i] = Mark::kInterior;
+        surface.changeable->push_back({part.block, i});
+      }
+    }
     if (in_place_) leaf.simplices.shrink();
     result_.blocks[part.block].simplices = std::move(leaf.simplices);
     duplicates_[part.block] = std::move(leaf.duplicates);

@@ -12,6 +12,23 @@ namespace {
 
 /// Simplices that a task of the border search looks at before it shares its work.
 constexpr std::size_t kBorderBatch = 512;
+constexpr std::size_t kCandidateGrain = 4096;
+
+/// Calls visit(id) for those of the simplices that a point of `others` may change, in their order.
+template <int D, typename Visit>
+void for_each_changeable(std::span<const SimplexId> simplices,
+                         const Triangulation<D>& triangulation,
+                         std::span<const Part<D>* const> others, const Visit& visit) {
+  for_each_region<D>(
+      simplices.size(), [&](std::size_t s) { return triangulation.simplex(simplices[s]).vertices; },
+      triangulation.points,
+      [&](std::size_t s, const ConflictRegion<D>& region) {
+        if (std::any_of(others.begin(), others.end(),
+                        [&](const Part<D>* other) { return region.may_meet_leaf(*other); })) {
+          visit(simplices[s]);
+        }
+      });
+}
 
 }  // namespace
 
@@ -58,25 +75,35 @@ std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
                        return mark(id).load(std::memory_order_relaxed) == Mark::kInterior;
                      });
         std::vector<SimplexId> mine;
-        for_each_region<D>(
-            fresh.size(), [&](std::size_t s) { return triangulation.simplex(fresh[s]).vertices; },
-            triangulation.points,
-            [&](std::size_t s, const ConflictRegion<D>& region) {
-              const SimplexId id = fresh[s];
-              if (std::none_of(others.begin(), others.end(), [&](const Part<D>* other) {
-                    return region.may_meet_leaf(*other);
-                  })) {
-                return;
-              }
-              if (mark(id).exchange(Mark::kBorder, std::memory_order_relaxed) != Mark::kInterior) {
-                return;
-              }
-              mine.push_back(id);
-              for (int i = 0; i <= D; ++i) found.push_back(triangulation.neighbour(id, i));
-            });
+        for_each_changeable<D>(fresh, triangulation, others, [&](SimplexId id) {
+          if (mark(id).exchange(Mark::kBorder, std::memory_order_relaxed) != Mark::kInterior) {
+            return;
+          }
+          mine.push_back(id);
+          for (int i = 0; i <= D; ++i) found.push_back(triangulation.neighbour(id, i));
+        });
         const std::lock_guard lock(mutex);
         border.insert(border.end(), mine.begin(), mine.end());
       });
+  return border;
+}
+
+template <int D>
+std::vector<SimplexId> border_among(const Triangulation<D>& triangulation,
+                                    std::span<const SimplexId> candidates,
+                                    std::span<const Part<D>* const> others,
+                                    std::span<BlockMarks> marks) {
+  std::vector<std::vector<SimplexId>> found(grain_count(candidates.size(), kCandidateGrain));
+  parallel_for(candidates.size(), kCandidateGrain,
+               [&](std::size_t g, std::size_t begin, std::size_t end) {
+                 for_each_changeable<D>(candidates.subspan(begin, end - begin), triangulation,
+                                        others, [&](SimplexId id) {
+                                          marks[id.block][id.index] = Mark::kBorder;
+                                          found[g].push_back(id);
+                                        });
+               });
+  std::vector<SimplexId> border;
+  for (const auto& some : found) border.insert(border.end(), some.begin(), some.end());
   return border;
 }
 
@@ -88,5 +115,11 @@ template std::vector<SimplexId> find_border<2>(const Triangulation<2>&, std::spa
 template std::vector<SimplexId> find_border<3>(const Triangulation<3>&, std::span<const SimplexId>,
                                                std::span<const Part<3>* const>,
                                                std::span<BlockMarks>);
+template std::vector<SimplexId> border_among<2>(const Triangulation<2>&, std::span<const SimplexId>,
+                                                std::span<const Part<2>* const>,
+                                                std::span<BlockMarks>);
+template std::vector<SimplexId> border_among<3>(const Triangulation<3>&, std::span<const SimplexId>,
+                                                std::span<const Part<3>* const>,
+                                                std::span<BlockMarks>);
 
 }  // namespace spillway

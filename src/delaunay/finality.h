@@ -92,4 +92,12 @@ std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
                                    std::span<const Part<D>* const> others,
                                    std::span<BlockMarks> marks);
 
+/// The same without a search, of a part whose border has no other simplices than `candidates`; in
+/// their order.
+template <int D>
+std::vector<SimplexId> border_among(const Triangulation<D>& triangulation,
+                                    std::span<const SimplexId> candidates,
+                                    std::span<const Part<D>* const> others,
+                                    std::span<BlockMarks> marks);
+
 }  // namespace spillway

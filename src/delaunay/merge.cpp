@@ -155,7 +155,9 @@ void Merge<D>::find_borders(Task& task) {
       for (std::size_t o = 0; o < count; ++o) {
         if (o != c) others.push_back(&part_.children[o]);
       }
-      borders[c] = find_border<D>(triangulation_, children_[c].hull, others, marks_);
+      borders[c] = children_[c].changeable
+                       ? border_among<D>(triangulation_, *children_[c].changeable, others, marks_)
+                       : find_border<D>(triangulation_, children_[c].hull, others, marks_);
       corners[c] = corners_of(borders[c]);
       vertices[c] = vertices_of(corners[c], part_.children[c]);
     });

@@ -20,6 +20,7 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "src/generators/random.h"
+#include "src/parallel/parallel.h"
 #include "tests/benchmark/cgal_timing.h"
 
 namespace spillway {
@@ -225,12 +226,14 @@ int main(int argc, char** argv) {
     fmt::print(
         "| points | n | CGAL us a point | ours us a point | CGAL / ours | bytes a point |\n"
         "|---|---|---|---|---|---|\n");
-    for (const std::string& set : sets) {
-      for (const std::size_t count : counts) {
-        dimension == 2 ? spillway::compare<2>(set, count, repetitions)
-                       : spillway::compare<3>(set, count, repetitions);
+    spillway::with_threads(1, [&] {  // whose processor time is measured
+      for (const std::string& set : sets) {
+        for (const std::size_t count : counts) {
+          dimension == 2 ? spillway::compare<2>(set, count, repetitions)
+                         : spillway::compare<3>(set, count, repetitions);
+        }
       }
-    }
+    });
   } catch (const spillway::Error& error) {
     fmt::print(stderr, "kernel_benchmark: {}\n", error.what());
     return 1;

@@ -98,5 +98,28 @@ TYPED_TEST(Finality, BorderSearchFindsAllThatASiblingDestroys) {
   EXPECT_LT(border.size(), all);
 }
 
+TYPED_TEST(Finality, BorderAmongAllSimplicesHasAllThatTheSearchFinds) {
+  constexpr int kD = TypeParam::value;
+  const Halves<kD> halves(8);
+  const std::vector<const Part<kD>*> others{&halves.right};
+  std::vector<BlockMarks> fresh;
+  for (const auto& block : halves.left.blocks) {
+    fresh.emplace_back(block.simplices.size(), Mark::kInterior);
+  }
+  std::vector<SimplexId> all;
+  halves.left.for_each_simplex([&](SimplexId id, const Simplex<kD>&) { all.push_back(id); });
+  std::vector<BlockMarks> marks = fresh;
+  const auto border = border_among<kD>(halves.left, all, others, marks);
+  EXPECT_TRUE(std::is_sorted(border.begin(), border.end()));
+  EXPECT_LT(border.size(), all.size());
+  for (const SimplexId id : all) {
+    EXPECT_EQ(marks[id.block][id.index] == Mark::kBorder,
+              std::binary_search(border.begin(), border.end(), id));
+  }
+  for (const SimplexId id : find_border<kD>(halves.left, halves.left.hull, others, fresh)) {
+    EXPECT_TRUE(std::binary_search(border.begin(), border.end(), id));
+  }
+}
+
 }  // namespace
 }  // namespace spillway

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "src/delaunay/base_case.h"
+#include "src/parallel/parallel.h"
 #include "tests/delaunay/kernel_sets.h"
 #include "tests/generators/family_cases.h"
 #include "tests/geometry/exact_sphere.h"
@@ -40,11 +41,14 @@ BaseCase<D> asked(const Points<D>& points, const Box<D>& region) {
 template <int D>
 Count expect_true_claims(const Points<D>& points, const Box<D>& region, std::size_t step = 1) {
   const BaseCase<D> base_case = asked<D>(points, region);
-  EXPECT_EQ(base_case.inside.size(), base_case.simplices.size());
   Count count;
-  for (std::size_t s = 0; s < base_case.inside.size(); s += step) {
+  if (base_case.dimension < D) return count;
+  std::vector<bool> not_inside(base_case.simplices.size());
+  EXPECT_TRUE(base_case.not_inside.has_value());
+  for (const std::uint32_t s : base_case.not_inside.value()) not_inside.at(s) = true;
+  for (std::size_t s = 0; s < not_inside.size(); s += step) {
     const Simplex<D>& simplex = base_case.simplices[s];
-    const bool claimed = base_case.inside[s] != 0;
+    const bool claimed = !not_inside[s];
     if (simplex.infinite()) {
       EXPECT_FALSE(claimed);
       continue;
@@ -161,13 +165,49 @@ TYPED_TEST(KernelRegion, ClaimsNearlyAllThatIsTrueOfScatteredPoints) {
   }
 }
 
+TYPED_TEST(KernelRegion, ListsTheSameInPlaceAndApartWithOneAndWithSeveralThreads) {
+  constexpr int D = TypeParam::value;
+  constexpr std::size_t kCount = D == 2 ? 50'000 : 15'000;  // simplices for several ranges
+  Points<D> points =
+      generate_points<D>({.family = Family::kUniform, .count = kCount, .dimension = D, .seed = 8});
+  for (const std::size_t repeated : {0, 100}) {
+    points.insert(points.end(), points.begin(), points.begin() + repeated);
+    std::vector<VertexId> index(points.size());
+    std::iota(index.begin(), index.end(), VertexId{0});
+    Box<D> region;
+    for (const Point<D>& p : points) region.expand(p);
+    region.hi[0] = (region.lo[0] + region.hi[0]) / 2;
+    const auto listed = [&](unsigned threads, bool in_place) {
+      BaseCase<D> base_case;
+      with_threads(threads, [&] {
+        base_case = triangulate_base_case<D>(
+            {.points = points, .input_index = index, .region = region, .in_place = in_place});
+      });
+      return base_case;
+    };
+    const BaseCase<D> expected = listed(1, false);
+    EXPECT_EQ(expected.duplicates.size(), repeated);
+    for (const bool in_place : {false, true}) {
+      const BaseCase<D> found = listed(4, in_place);
+      EXPECT_TRUE(std::equal(found.simplices.begin(), found.simplices.end(),
+                             expected.simplices.begin(), expected.simplices.end(),
+                             [](const Simplex<D>& a, const Simplex<D>& b) {
+                               return a.vertices == b.vertices && a.neighbours == b.neighbours;
+                             }));
+      EXPECT_EQ(found.hull, expected.hull);
+      EXPECT_EQ(found.not_inside, expected.not_inside);
+    }
+  }
+}
+
 TYPED_TEST(KernelRegion, SaysNothingUnasked) {
   constexpr int D = TypeParam::value;
   const Points<D> points =
       generate_points<D>({.family = Family::kUniform, .count = 50, .dimension = D, .seed = 7});
   std::vector<VertexId> index(points.size());
   std::iota(index.begin(), index.end(), VertexId{0});
-  EXPECT_TRUE(triangulate_base_case<D>({.points = points, .input_index = index}).inside.empty());
+  EXPECT_FALSE(
+      triangulate_base_case<D>({.points = points, .input_index = index}).not_inside.has_value());
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "src/delaunay/kernel_2d/insertion.h"
 #include "src/delaunay/kernel_2d/working_points.h"
+#include "src/delaunay/simplex_listing.h"
 #include "src/delaunay/vectors.h"
 #include "src/delaunay/working_memory.h"
 #include "src/error.h"
@@ -31,14 +32,13 @@ bool certainly_inside(const Triangle& triangle, const Box<2>& box) {
   return gap > 0 && gap * gap > triangle.outer + (triangle.outer - triangle.inner);
 }
 
-/// Turns the kernel's triangles into simplices, numbered alike; number() turns vertices into final
-/// ones. The simplices may lie where the triangles are: those are larger, so the list never comes
-/// to lie over one that is still to be read. Fills BaseCase::inside if it has been given room.
+/// Turns a range of the kernel's triangles into simplices; number() turns vertices into final ones.
+/// The simplices may lie where the first half of the triangles before the range are.
 template <typename Number>
-void list_simplices(const TriangleArray& triangles, const Number& number, const Box<2>& region,
-                    BaseCase<2>& result) {
-  const auto count = static_cast<std::uint32_t>(result.simplices.size());
-  for (std::uint32_t i = 0; i < count; ++i) {
+void list_range(const TriangleArray& triangles, std::uint32_t begin, std::uint32_t end,
+                const Number& number, const std::optional<Box<2>>& region, Simplex<2>* simplices,
+                ListingNotes& notes) {
+  for (std::uint32_t i = begin; i < end; ++i) {
     Triangle triangle;
     std::memcpy(&triangle, &triangles.at_first(TriangleArray::handle(i, 0)), sizeof triangle);
     Words vertices, neighbours;
@@ -48,13 +48,11 @@ void list_simplices(const TriangleArray& triangles, const Number& number, const 
     number(vertices);
     vertices |= infinite;
     neighbours >>= TriangleArray::kNumberShift;
-    result.simplices[i] = {{vertices[0], vertices[1], vertices[2]},
-                           {neighbours[0], neighbours[1], neighbours[2]}};
+    simplices[i] = {{vertices[0], vertices[1], vertices[2]},
+                    {neighbours[0], neighbours[1], neighbours[2]}};
     const bool finite = mask_of(infinite) == 0;
-    if (!finite) result.hull.push_back(i);
-    if (i < result.inside.size()) {
-      result.inside[i] = static_cast<std::uint8_t>(finite && certainly_inside(triangle, region));
-    }
+    if (!finite) notes.hull.push_back(i);
+    if (region && !(finite && certainly_inside(triangle, *region))) notes.not_inside.push_back(i);
   }
 }
 
@@ -71,18 +69,20 @@ BaseCase<2> triangulate(const BaseCaseInput<2>& input, std::span<const VertexId>
   const VertexId shift = input.first_vertex - kFirstPoint;
   const std::uint32_t count = insertion.triangle_count();
   result.simplices = make_list<2>(input, memory, count);
-  if (input.region) result.inside.resize(count);
+  const auto list = [&](const auto& number) {
+    list_simplices<2>(result, points.region.has_value(),
+                      [&](std::uint32_t begin, std::uint32_t end, ListingNotes& notes) {
+                        list_range(triangles, begin, end, number, points.region,
+                                   result.simplices.data(), notes);
+                      });
+  };
   if (insertion.repetitions().empty()) {
-    list_simplices(
-        triangles, [shift](Words& v) { v += shift; }, points.region, result);
+    list([shift](Words& v) { v += shift; });
   } else {
     const std::vector<VertexId> kept = kernel::choose_kept<2>(input, insertion.repetitions());
-    list_simplices(
-        triangles,
-        [&](Words& v) {
-          for (int i = 0; i < 4; ++i) v[i] = kept[v[i]] + shift;
-        },
-        points.region, result);
+    list([&](Words& v) {
+      for (int i = 0; i < 4; ++i) v[i] = kept[v[i]] + shift;
+    });
     result.duplicates = kernel::list_duplicates(insertion.repetitions(), kept, input.first_vertex);
   }
   return result;

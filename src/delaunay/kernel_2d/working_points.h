@@ -24,8 +24,8 @@ struct WorkingPoints {
   const Point<2>* scaled = nullptr;
   const Point<2>* originals = nullptr;  ///< those the caller gave, from kFirstPoint on
   bool lattice = false;
-  double largest = 0;  ///< magnitude of a scaled coordinate
-  Box<2> region{};     ///< scaled; empty if there is none
+  double largest = 0;            ///< magnitude of a scaled coordinate
+  std::optional<Box<2>> region{};  ///< scaled
 
   [[nodiscard]] const Point<2>& original(VertexId v) const { return originals[v - kFirstPoint]; }
 };

@@ -4,8 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
-#include <limits>
+#include <optional>
 #include <vector>
 
 #include "src/delaunay/insertion_rounds.h"
@@ -13,6 +12,7 @@
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_3d/working_points.h"
 #include "src/delaunay/lanes.h"
+#include "src/delaunay/simplex_listing.h"
 #include "src/delaunay/vectors.h"
 #include "src/delaunay/working_memory.h"
 #include "src/error.h"
@@ -26,39 +26,51 @@ constexpr std::size_t kMostPoints = (std::size_t{1} << 28) - 2;
 /// Room for so many cells a point is made at first; scattered points have 6.8.
 constexpr std::size_t kUsualCells = 7;
 
-/// Whether a finite cell's true circumsphere is certainly inside the box and touches no side: see
-/// docs/algorithm.md ("Spheres inside a box").
-bool certainly_inside(const Cell& cell, const Box<3>& box) {
-  double gap = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < 3; ++k) {
-    gap = std::min({gap, cell.centre[k] - box.lo[k], box.hi[k] - cell.centre[k]});
-  }
-  return gap > 0 && gap * gap > cell.squared_radius + 2 * tolerance_of(cell.squared_radius);
+using Pair = Reals<2>;
+
+/// A bit for each of two spheres: whether the true circumsphere of a finite cell is certainly
+/// inside the box and touches no side. See docs/algorithm.md ("Spheres inside a box").
+std::uint32_t certainly_inside(const Records<2>& spheres, const Box<3>& box) {
+  const auto lesser = [](const Pair& a, const Pair& b) { return a < b ? a : b; };
+  const auto gap_along = [&](const Pair& centre, int k) {
+    return lesser(centre - box.lo[k], box.hi[k] - centre);
+  };
+  const Pair gap =
+      lesser(lesser(gap_along(spheres.x, 0), gap_along(spheres.y, 1)), gap_along(spheres.z, 2));
+  const Pair tolerance = (Pair)((Integers<2>)spheres.w << kMantissaBits);
+  return mask_of((Pair)((gap > 0) & (gap * gap > spheres.w + 2 * tolerance)));
 }
 
-/// Turns the kernel's cells into simplices, numbered alike; number() turns four vertices into final
-/// ones. The simplices may lie where the cells are: those are larger, so the list never comes to
-/// lie over one that is still to be read. Fills BaseCase::inside if it has been given room.
+/// Turns a range of the kernel's cells into simplices; number() turns four vertices into final
+/// ones. The simplices may lie where the first half of the cells before the range are.
 template <typename Number>
-void list_simplices(const CellArray& cells, const Number& number, const Box<3>& region,
-                    BaseCase<3>& result) {
-  const auto count = static_cast<std::uint32_t>(result.simplices.size());
-  for (std::uint32_t c = 0; c < count; ++c) {
-    Cell cell;
-    std::memcpy(&cell, &cells.at_cell(CellArray::cell(c)), sizeof cell);
+void list_range(const CellArray& cells, std::uint32_t begin, std::uint32_t end,
+                const Number& number, const std::optional<Box<3>>& region, Simplex<3>* simplices,
+                ListingNotes& notes) {
+  const auto list = [&](std::uint32_t c, std::uint32_t inside) {
+    const Cell& cell = cells.at_cell(CellArray::cell(c));
     Words vertices, neighbours;
     load(cell.vertices, vertices);
     load(cell.neighbours, neighbours);
     const Words infinite = (Words)(vertices == kInfinite);  // all bits, and so kInfiniteVertex
     number(vertices);
-    Simplex<3>& simplex = result.simplices[c];
-    store(vertices | infinite, simplex.vertices.data());
-    store(neighbours >> CellArray::kNumberShift, simplex.neighbours.data());
+    store(vertices | infinite, simplices[c].vertices.data());
+    store(neighbours >> CellArray::kNumberShift, simplices[c].neighbours.data());
     const bool finite = mask_of(infinite) == 0;
-    if (!finite) result.hull.push_back(c);
-    if (c < result.inside.size()) {
-      result.inside[c] = static_cast<std::uint8_t>(finite && certainly_inside(cell, region));
+    if (!finite) notes.hull.push_back(c);
+    if (region && !(finite && inside != 0)) notes.not_inside.push_back(c);
+  };
+  for (std::uint32_t c = begin; c < end; c += 2) {
+    const std::uint32_t last = std::min(c + 1, end - 1);
+    std::uint32_t inside = 0;
+    if (region) {
+      inside = certainly_inside(gather<2>([&](std::uint32_t i) -> const double* {
+                                  return cells.at_cell(CellArray::cell(i == 0 ? c : last)).centre;
+                                }),
+                                *region);
     }
+    list(c, inside & 1);
+    if (last != c) list(last, inside >> 1);
   }
 }
 
@@ -75,18 +87,20 @@ BaseCase<3> triangulate(const BaseCaseInput<3>& input, std::span<const VertexId>
   result.dimension = 3;
   const VertexId shift = input.first_vertex - kFirstPoint;
   result.simplices = make_list<3>(input, memory, insertion.cell_count());
-  if (input.region) result.inside.resize(insertion.cell_count());
+  const auto list = [&](const auto& number) {
+    list_simplices<3>(result, points.region.has_value(),
+                      [&](std::uint32_t begin, std::uint32_t end, ListingNotes& notes) {
+                        list_range(insertion.cells(), begin, end, number, points.region,
+                                   result.simplices.data(), notes);
+                      });
+  };
   if (insertion.repetitions().empty()) {
-    list_simplices(
-        insertion.cells(), [shift](Words& v) { v = v / 4 + shift; }, points.region, result);
+    list([shift](Words& v) { v = v / 4 + shift; });
   } else {
     const std::vector<VertexId> kept = kernel::choose_kept<3>(input, insertion.repetitions());
-    list_simplices(
-        insertion.cells(),
-        [&](Words& v) {
-          for (int i = 0; i < 4; ++i) v[i] = kept[v[i] / 4] + shift;
-        },
-        points.region, result);
+    list([&](Words& v) {
+      for (int i = 0; i < 4; ++i) v[i] = kept[v[i] / 4] + shift;
+    });
     result.duplicates = kernel::list_duplicates(insertion.repetitions(), kept, input.first_vertex);
   }
   return result;

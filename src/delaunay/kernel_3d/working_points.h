@@ -29,9 +29,9 @@ struct WorkingPoints {
   bool tiny = false;
   /// A power of two, at least the distance between any two of the scaled points.
   double extent = 0;
-  double largest = 0;     ///< magnitude of a scaled coordinate
-  std::size_t count = 0;  ///< of vertices, the infinite one included
-  Box<3> region;          ///< scaled; empty if there is none
+  double largest = 0;            ///< magnitude of a scaled coordinate
+  std::size_t count = 0;         ///< of vertices, the infinite one included
+  std::optional<Box<3>> region;  ///< scaled
 
   [[nodiscard]] const double* at(VertexRef v) const { return coordinates + v; }
   [[nodiscard]] const Point<3>& original(VertexRef v) const {
