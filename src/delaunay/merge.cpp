@@ -203,7 +203,7 @@ void Merge<D>::triangulate_border(const BorderTriangulator<D>& triangulate, Task
   std::vector<Point<D>> points;
   points.reserve(border_vertices_.size());
   for (const VertexId v : border_vertices_) points.push_back(triangulation_.points[v]);
-  border_mesh_ = triangulate(std::move(points), part_.size(), task);
+  border_mesh_ = triangulate(points, part_.size(), task);
 }
 
 /// Calls body(number, id) for the simplices of border_mesh_ of these flat numbers.

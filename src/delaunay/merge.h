@@ -34,7 +34,7 @@ inline constexpr double kLargestBorder = 0.5;
 /// Triangulates a border's points for a merge of so many points; vertex v of the result is point
 /// input_index[v] of those given.
 template <int D>
-using BorderTriangulator = std::function<Triangulation<D>(std::vector<Point<D>> points,
+using BorderTriangulator = std::function<Triangulation<D>(std::span<const Point<D>> points,
                                                           std::size_t part_size, Task& task)>;
 
 /// Makes one triangulation of the parts that are `part`'s children (Algorithm 1 of Funke, Sanders

@@ -93,8 +93,8 @@ struct Duplicate {
 /// If the points do not span D dimensions there are no simplices.
 template <int D>
 struct Triangulation {
-  std::vector<Point<D>> points;         ///< by vertex number, equal points included
-  std::vector<VertexId> input_index;    ///< by vertex number
+  BlockArray<Point<D>> points;          ///< by vertex number, equal points included
+  BlockArray<VertexId> input_index;     ///< by vertex number
   std::vector<SimplexBlock<D>> blocks;  ///< in the order of the tree of merges, children first
   std::vector<SimplexId> hull;          ///< the infinite simplices, one for each facet of the hull
   std::vector<Duplicate> duplicates;    ///< sorted by the dropped point's vertex number

@@ -213,8 +213,11 @@ std::string compare_kernel_with_cgal(std::span<const Point<D>> points, std::uint
     place = hilbert_order<D>(points, box);
   }
   Triangulation<D> t;
-  for (const VertexId i : place) t.points.push_back(points[i]);
-  t.input_index = place;
+  t.points = BlockArray<Point<D>>(points.size());
+  t.input_index = BlockArray<VertexId>(points.size());
+  std::transform(place.begin(), place.end(), t.points.begin(),
+                 [&](VertexId i) { return points[i]; });
+  std::copy(place.begin(), place.end(), t.input_index.begin());
   const BaseCaseInput<D> input{
       .points = t.points, .input_index = t.input_index, .in_place = seed % 4 >= 2};
   const std::vector<VertexId> basis = affine_basis<D>(input.points);
