@@ -126,11 +126,9 @@ class Merge {
   }
 
   void triangulate(Task& task) {
-    std::vector<Point<D>> points;
-    points.reserve(border_vertices_.size());
-    for (const VertexId v : border_vertices_) {
-      points.push_back(result_.border.vertices[v].position);
-    }
+    BlockArray<Point<D>> points(border_vertices_.size());
+    std::transform(border_vertices_.begin(), border_vertices_.end(), points.begin(),
+                   [&](VertexId v) { return result_.border.vertices[v].position; });
     mesh_ = border_delaunay<D>(std::move(points), task);
     result_.border.dimension = std::max(result_.border.dimension, mesh_.dimension);
   }

@@ -56,21 +56,27 @@ std::size_t border_base_case_size(std::size_t points, std::size_t largest) {
                     std::min(kSmallestBorderBaseCase, largest), largest);
 }
 
+/// Made by all threads.
+template <typename T>
+BlockArray<T> copy_of(std::span<const T> items) {
+  constexpr std::size_t kGrain = std::size_t{1} << 16;
+  BlockArray<T> copy(items.size());
+  parallel_for(items.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::copy(items.begin() + begin, items.begin() + end, copy.begin() + begin);
+  });
+  return copy;
+}
+
 /// Algorithm 1 on one array of points.
 template <int D>
 class Run {
  public:
   /// `in_place` says where base cases leave their simplices: see BaseCaseInput.
-  Run(std::span<const Point<D>> points, const DelaunayOptions& options, bool in_place)
+  Run(BlockArray<Point<D>> points, const DelaunayOptions& options, bool in_place)
       : options_(options), in_place_(in_place) {
-    constexpr std::size_t kGrain = std::size_t{1} << 16;
-    result_.points = BlockArray<Point<D>>(points.size());
-    result_.input_index = BlockArray<VertexId>(points.size());
-    parallel_for(points.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-      std::copy(points.begin() + begin, points.begin() + end, result_.points.begin() + begin);
-      std::iota(result_.input_index.begin() + begin, result_.input_index.begin() + end,
-                static_cast<VertexId>(begin));
-    });
+    result_.points = std::move(points);
+    result_.input_index = BlockArray<VertexId>(result_.points.size());
+    std::iota(result_.input_index.begin(), result_.input_index.end(), VertexId{0});
   }
 
   Triangulation<D> triangulate(std::size_t base_case_size, Task& task) && {
@@ -146,8 +152,8 @@ class Run {
     group.wait();
     PartSurface surface = merge<D>(
         result_, marks_, part, surfaces, part.block != root_block_,
-        [this](std::span<const Point<D>> points, std::size_t part_size, Task& border_task) {
-          return triangulate_border(points, part_size, border_task);
+        [this](BlockArray<Point<D>> points, std::size_t part_size, Task& border_task) {
+          return triangulate_border(std::move(points), part_size, border_task);
         },
         task);
     if (surface.open) {
@@ -184,7 +190,7 @@ class Run {
     marks_[part.block] = {};
   }
 
-  Triangulation<D> triangulate_border(std::span<const Point<D>> points, std::size_t part_size,
+  Triangulation<D> triangulate_border(BlockArray<Point<D>> points, std::size_t part_size,
                                       Task& task) const {
     const auto count = static_cast<double>(points.size());
     std::size_t base_case_size = points.size();
@@ -193,7 +199,7 @@ class Run {
     }
     DelaunayOptions options = options_;
     options.progress = nullptr;
-    return Run(points, options, false).triangulate(base_case_size, task);
+    return Run(std::move(points), options, false).triangulate(base_case_size, task);
   }
 
   const DelaunayOptions& options_;
@@ -226,18 +232,18 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
   Triangulation<D> result;
   Task unused;
   with_threads(threads, [&] {
-    result = Run<D>(points, options, in_place)
+    result = Run<D>(copy_of(points), options, in_place)
                  .triangulate(base_case_size, options.tasks == nullptr ? unused : *options.tasks);
   });
   return result;
 }
 
 template <int D>
-Triangulation<D> border_delaunay(std::span<const Point<D>> points, Task& task) {
+Triangulation<D> border_delaunay(BlockArray<Point<D>> points, Task& task) {
   const std::size_t base_case_size =
       std::max<std::size_t>(points.size() / 4, kGoodBorderBaseCase<D>);
   const DelaunayOptions options;
-  return Run<D>(points, options, false).triangulate(base_case_size, task);
+  return Run<D>(std::move(points), options, false).triangulate(base_case_size, task);
 }
 
 template <int D>
@@ -245,8 +251,8 @@ void recycle(Triangulation<D> used) {
   for (SimplexBlock<D>& block : used.blocks) recycle<D>(std::move(block.simplices));
 }
 
-template Triangulation<2> border_delaunay<2>(std::span<const Point<2>>, Task&);
-template Triangulation<3> border_delaunay<3>(std::span<const Point<3>>, Task&);
+template Triangulation<2> border_delaunay<2>(BlockArray<Point<2>>, Task&);
+template Triangulation<3> border_delaunay<3>(BlockArray<Point<3>>, Task&);
 template Triangulation<2> delaunay<2>(std::span<const Point<2>>, const DelaunayOptions&);
 template Triangulation<3> delaunay<3>(std::span<const Point<3>>, const DelaunayOptions&);
 template void recycle<2>(Triangulation<2>);

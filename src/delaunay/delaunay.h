@@ -38,7 +38,7 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
 /// runs on its threads, divides only what is large (a border's parts are nearly all border, so that
 /// merging them costs as much again), and keeps memory for the base cases to come.
 template <int D>
-Triangulation<D> border_delaunay(std::span<const Point<D>> points, Task& task);
+Triangulation<D> border_delaunay(BlockArray<Point<D>> points, Task& task);
 
 /// Keeps the memory of the simplices of a triangulation that is no longer needed for the next call
 /// of delaunay(), which at its end gives the system what it did not use. Without

@@ -200,10 +200,10 @@ std::vector<VertexId> Merge<D>::vertices_of(const std::vector<Vertices>& simplic
 
 template <int D>
 void Merge<D>::triangulate_border(const BorderTriangulator<D>& triangulate, Task& task) {
-  std::vector<Point<D>> points;
-  points.reserve(border_vertices_.size());
-  for (const VertexId v : border_vertices_) points.push_back(triangulation_.points[v]);
-  border_mesh_ = triangulate(points, part_.size(), task);
+  BlockArray<Point<D>> points(border_vertices_.size());
+  std::transform(border_vertices_.begin(), border_vertices_.end(), points.begin(),
+                 [&](VertexId v) { return triangulation_.points[v]; });
+  border_mesh_ = triangulate(std::move(points), part_.size(), task);
 }
 
 /// Calls body(number, id) for the simplices of border_mesh_ of these flat numbers.

@@ -34,8 +34,8 @@ inline constexpr double kLargestBorder = 0.5;
 /// Triangulates a border's points for a merge of so many points; vertex v of the result is point
 /// input_index[v] of those given.
 template <int D>
-using BorderTriangulator = std::function<Triangulation<D>(std::span<const Point<D>> points,
-                                                          std::size_t part_size, Task& task)>;
+using BorderTriangulator =
+    std::function<Triangulation<D>(BlockArray<Point<D>> points, std::size_t part_size, Task& task)>;
 
 /// Makes one triangulation of the parts that are `part`'s children (Algorithm 1 of Funke, Sanders
 /// 2017, for any number of children at once):
