@@ -295,7 +295,9 @@ class TileRun {
       const Node& node, const LeafToSettle<D>& leaf,
       const std::optional<std::vector<std::uint32_t>>& not_inside) const {
     const auto may_be_changed = change_test(siblings_up(node));
-    const std::vector<std::uint32_t> open = not_inside ? *not_inside : open_questions(node, leaf);
+    std::vector<std::uint32_t> asked;
+    if (!not_inside) asked = open_questions(node, leaf);
+    const std::span<const std::uint32_t> open = not_inside ? *not_inside : asked;
     std::vector<Fate> fates(leaf.simplex_count(), Fate::kFinal);
     for_each_region<D>(
         open.size(), [&](std::size_t i) { return leaf.simplex(open[i]); }, leaf.points,

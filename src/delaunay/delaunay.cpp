@@ -121,11 +121,8 @@ class Run {
     marks_[part.block].assign(leaf.simplices.size(),
                               leaf.not_inside ? Mark::kFinal : Mark::kInterior);
     if (leaf.not_inside) {
-      surface.changeable.emplace();
-      for (const std::uint32_t i : *leaf.not_inside) {
-        marks_[part.block][i] = Mark::kInterior;
-        surface.changeable->push_back({part.block, i});
-      }
+      for (const std::uint32_t i : *leaf.not_inside) marks_[part.block][i] = Mark::kInterior;
+      surface.changeable = std::move(leaf.not_inside);
     }
     if (in_place_) leaf.simplices.shrink();
     result_.blocks[part.block].simplices = std::move(leaf.simplices);

@@ -90,20 +90,38 @@ std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
 
 template <int D>
 std::vector<SimplexId> border_among(const Triangulation<D>& triangulation,
-                                    std::span<const SimplexId> candidates,
+                                    std::span<const SimplexId> hull, std::uint32_t block,
+                                    std::span<const std::uint32_t> candidates,
                                     std::span<const Part<D>* const> others,
                                     std::span<BlockMarks> marks) {
-  std::vector<std::vector<SimplexId>> found(grain_count(candidates.size(), kCandidateGrain));
+  BlockMarks& mark = marks[block];
   parallel_for(candidates.size(), kCandidateGrain,
-               [&](std::size_t g, std::size_t begin, std::size_t end) {
-                 for_each_changeable<D>(candidates.subspan(begin, end - begin), triangulation,
-                                        others, [&](SimplexId id) {
-                                          marks[id.block][id.index] = Mark::kBorder;
-                                          found[g].push_back(id);
-                                        });
+               [&](std::size_t, std::size_t begin, std::size_t end) {
+                 std::vector<SimplexId> some;
+                 for (const std::uint32_t s : candidates.subspan(begin, end - begin)) {
+                   some.push_back({block, s});
+                 }
+                 for_each_changeable<D>(some, triangulation, others,
+                                        [&](SimplexId id) { mark[id.index] = Mark::kPicked; });
                });
+  // Slivers of which no circumsphere can be certified are picked wherever they are.
+  std::vector<SimplexId> reached;
+  const auto reach = [&](SimplexId id) {
+    if (mark[id.index] != Mark::kPicked) return;
+    mark[id.index] = Mark::kBorder;
+    reached.push_back(id);
+  };
+  for (const SimplexId id : hull) reach(id);
+  while (!reached.empty()) {
+    const SimplexId id = reached.back();
+    reached.pop_back();
+    for (int i = 0; i <= D; ++i) reach(triangulation.neighbour(id, i));
+  }
   std::vector<SimplexId> border;
-  for (const auto& some : found) border.insert(border.end(), some.begin(), some.end());
+  for (const std::uint32_t s : candidates) {
+    if (mark[s] == Mark::kBorder) border.push_back({block, s});
+    if (mark[s] == Mark::kPicked) mark[s] = Mark::kInterior;
+  }
   return border;
 }
 
@@ -116,9 +134,11 @@ template std::vector<SimplexId> find_border<3>(const Triangulation<3>&, std::spa
                                                std::span<const Part<3>* const>,
                                                std::span<BlockMarks>);
 template std::vector<SimplexId> border_among<2>(const Triangulation<2>&, std::span<const SimplexId>,
+                                                std::uint32_t, std::span<const std::uint32_t>,
                                                 std::span<const Part<2>* const>,
                                                 std::span<BlockMarks>);
 template std::vector<SimplexId> border_among<3>(const Triangulation<3>&, std::span<const SimplexId>,
+                                                std::uint32_t, std::span<const std::uint32_t>,
                                                 std::span<const Part<3>* const>,
                                                 std::span<BlockMarks>);
 

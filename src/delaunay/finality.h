@@ -76,6 +76,7 @@ void for_each_region(std::size_t count, const Corners& corners, std::span<const 
 /// What merging needs to remember of each simplex, in parallel with the blocks of a triangulation.
 enum class Mark : std::uint8_t {
   kInterior,  ///< not in the border, or not yet looked at
+  kPicked,    ///< a sibling may change it by itself; in the border if connected to the hull by such
   kBorder,    ///< some sibling may change it
   kSurvivor,  ///< in the border, and found again in the triangulation of the border
   kFinal,     ///< no point of another part can change it: it is in no border
@@ -92,11 +93,12 @@ std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
                                    std::span<const Part<D>* const> others,
                                    std::span<BlockMarks> marks);
 
-/// The same without a search, of a part whose border has no other simplices than `candidates`; in
-/// their order.
+/// The same border, of a leaf whose border has no other simplices than `candidates`, numbers in its
+/// block; in their order. What is tested lies in the order of memory, and not where a search leads.
 template <int D>
 std::vector<SimplexId> border_among(const Triangulation<D>& triangulation,
-                                    std::span<const SimplexId> candidates,
+                                    std::span<const SimplexId> hull, std::uint32_t block,
+                                    std::span<const std::uint32_t> candidates,
                                     std::span<const Part<D>* const> others,
                                     std::span<BlockMarks> marks);
 

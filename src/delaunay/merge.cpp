@@ -156,7 +156,8 @@ void Merge<D>::find_borders(Task& task) {
         if (o != c) others.push_back(&part_.children[o]);
       }
       borders[c] = children_[c].changeable
-                       ? border_among<D>(triangulation_, *children_[c].changeable, others, marks_)
+                       ? border_among<D>(triangulation_, children_[c].hull, part_.children[c].block,
+                                         *children_[c].changeable, others, marks_)
                        : find_border<D>(triangulation_, children_[c].hull, others, marks_);
       corners[c] = corners_of(borders[c]);
       vertices[c] = vertices_of(corners[c], part_.children[c]);

@@ -22,9 +22,9 @@ struct PartSurface {
   bool open = true;
   std::vector<SimplexId> hull;     ///< its infinite simplices; none if open
   std::vector<VertexId> vertices;  ///< all its distinct vertices, sorted, if open
-  /// All simplices that points of other parts may change, and perhaps more, the hull among them.
-  /// Known only of leaves, and only if their kernel tells.
-  std::optional<std::vector<SimplexId>> changeable;
+  /// The numbers, ascending, of all simplices that points of other parts may change, and perhaps
+  /// more, the hull among them. Known only of leaves, and only if their kernel tells.
+  std::optional<std::vector<std::uint32_t>> changeable;
 };
 
 /// A border with more than this share of a part's points does not pay: such a part stays open, and

@@ -80,11 +80,10 @@ Block Block::without_huge_pages(std::size_t bytes) {
 
 Block Block::of(std::size_t bytes) {
   Block block = without_huge_pages(bytes);
-  ask_for_huge_pages(block.memory_.get(), block.capacity());
+  ask_for_huge_pages(block.memory_.get(), bytes);
   return block;
 }
 
-/// The last huge page is not asked for if it would be used in part.
 void* Block::reserve(std::size_t bytes) {
   if (bytes > capacity()) {
     *this = {};

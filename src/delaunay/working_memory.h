@@ -11,7 +11,8 @@ namespace spillway {
 /// Asks for huge pages where the memory spans some: a wish, without it everything is only slower.
 void ask_for_huge_pages(void* memory, std::size_t bytes);
 
-/// A block of memory that only grows. Blocks that span huge pages ask for them.
+/// A block of memory that only grows. It asks for the huge pages that lie in what it was made for;
+/// one that would be used in part would be taken as a whole.
 class Block {
  public:
   /// A block of this size, aligned for cache lines. Throws std::bad_alloc.

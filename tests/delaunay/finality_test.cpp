@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
+#include "src/delaunay/base_case.h"
 #include "src/delaunay/delaunay.h"
 #include "src/delaunay/schedule.h"
 #include "src/geometry/predicates.h"
@@ -98,27 +100,73 @@ TYPED_TEST(Finality, BorderSearchFindsAllThatASiblingDestroys) {
   EXPECT_LT(border.size(), all);
 }
 
-TYPED_TEST(Finality, BorderAmongAllSimplicesHasAllThatTheSearchFinds) {
+/// Expects that the border picked from the list of a leaf's kernel is the one that a search finds.
+template <int D>
+void expect_border_of_search(const std::vector<Point<D>>& points, const Part<D>& sibling) {
+  std::vector<VertexId> index(points.size());
+  std::iota(index.begin(), index.end(), VertexId{0});
+  Box<D> box;
+  for (const Point<D>& p : points) box.expand(p);
+  Box<D> cell = whole_space<D>();
+  cut_back(cell, box, sibling.box);
+  BaseCase<D> leaf =
+      triangulate_base_case<D>({.points = points, .input_index = index, .region = cell});
+  Triangulation<D> triangulation;
+  triangulation.points = BlockArray<Point<D>>(points.size());
+  std::copy(points.begin(), points.end(), triangulation.points.begin());
+  triangulation.blocks.resize(1);
+  triangulation.blocks[0].simplices = std::move(leaf.simplices);
+  for (const std::uint32_t s : leaf.hull) triangulation.hull.push_back({0, s});
+  const std::size_t count = triangulation.blocks[0].simplices.size();
+  const std::vector<std::uint32_t> candidates = leaf.not_inside.value();
+  EXPECT_TRUE(std::is_sorted(candidates.begin(), candidates.end()));
+
+  const std::vector<const Part<D>*> others{&sibling};
+  std::vector<BlockMarks> marks{BlockMarks(count, Mark::kFinal)};
+  for (const std::uint32_t s : candidates) marks[0][s] = Mark::kInterior;
+  const auto picked =
+      border_among<D>(triangulation, triangulation.hull, 0, candidates, others, marks);
+  EXPECT_TRUE(std::is_sorted(picked.begin(), picked.end()));
+  std::vector<BlockMarks> unmarked{BlockMarks(count, Mark::kInterior)};
+  auto searched = find_border<D>(triangulation, triangulation.hull, others, unmarked);
+  std::sort(searched.begin(), searched.end());
+  EXPECT_EQ(picked, searched);
+  EXPECT_LT(picked.size(), count);
+  for (std::uint32_t s = 0; s < count; ++s) {
+    const bool found = std::binary_search(picked.begin(), picked.end(), SimplexId{0, s});
+    EXPECT_EQ(found, marks[0][s] == Mark::kBorder);
+    EXPECT_NE(marks[0][s], Mark::kPicked);
+  }
+}
+
+TYPED_TEST(Finality, BorderPickedFromALeafsListIsThatOfTheSearch) {
   constexpr int kD = TypeParam::value;
-  const Halves<kD> halves(8);
-  const std::vector<const Part<kD>*> others{&halves.right};
-  std::vector<BlockMarks> fresh;
-  for (const auto& block : halves.left.blocks) {
-    fresh.emplace_back(block.simplices.size(), Mark::kInterior);
+  for (std::uint64_t seed = 8; seed <= 10; ++seed) {
+    const Halves<kD> halves(seed);
+    expect_border_of_search<kD>({halves.left.points.begin(), halves.left.points.end()},
+                                halves.right);
   }
-  std::vector<SimplexId> all;
-  halves.left.for_each_simplex([&](SimplexId id, const Simplex<kD>&) { all.push_back(id); });
-  std::vector<BlockMarks> marks = fresh;
-  const auto border = border_among<kD>(halves.left, all, others, marks);
-  EXPECT_TRUE(std::is_sorted(border.begin(), border.end()));
-  EXPECT_LT(border.size(), all.size());
-  for (const SimplexId id : all) {
-    EXPECT_EQ(marks[id.block][id.index] == Mark::kBorder,
-              std::binary_search(border.begin(), border.end(), id));
+}
+
+/// Of its slivers, many cannot be certified, wherever they are.
+TEST(FinalityInSpace, BorderPickedFromARotatedLatticeIsThatOfTheSearch) {
+  std::vector<Point<3>> left;
+  std::vector<Point<3>> right;
+  for (int x = -8; x < 8; ++x) {
+    for (int y = -8; y < 8; ++y) {
+      for (int z = -8; z < 8; ++z) {
+        const double u = std::cos(0.3) * x - std::sin(0.3) * y;
+        const double v = std::sin(0.3) * x + std::cos(0.3) * y;
+        const Point<3> p{u, std::cos(0.7) * v - std::sin(0.7) * z,
+                         std::sin(0.7) * v + std::cos(0.7) * z};
+        (p[0] < 0 ? left : right).push_back(p);
+      }
+    }
   }
-  for (const SimplexId id : find_border<kD>(halves.left, halves.left.hull, others, fresh)) {
-    EXPECT_TRUE(std::binary_search(border.begin(), border.end(), id));
-  }
+  std::vector<VertexId> index(right.size());
+  std::iota(index.begin(), index.end(), VertexId{0});
+  const Part<3> sibling = divide<3>(right, index, {.leaf_size = 40});
+  expect_border_of_search<3>(left, sibling);
 }
 
 }  // namespace

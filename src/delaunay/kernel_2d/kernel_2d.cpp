@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "src/delaunay/kernel_2d/insertion.h"
@@ -32,8 +33,10 @@ bool certainly_inside(const Triangle& triangle, const Box<2>& box) {
   return gap > 0 && gap * gap > triangle.outer + (triangle.outer - triangle.inner);
 }
 
+static_assert(sizeof(Triangle) >= 2 * sizeof(Simplex<2>), "simplices are listed over triangles");
+
 /// Turns a range of the kernel's triangles into simplices; number() turns vertices into final ones.
-/// The simplices may lie where the first half of the triangles before the range are.
+/// The simplices may lie where the triangles are: see kernel::list_simplices.
 template <typename Number>
 void list_range(const TriangleArray& triangles, std::uint32_t begin, std::uint32_t end,
                 const Number& number, const std::optional<Box<2>>& region, Simplex<2>* simplices,

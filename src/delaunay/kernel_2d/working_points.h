@@ -24,7 +24,7 @@ struct WorkingPoints {
   const Point<2>* scaled = nullptr;
   const Point<2>* originals = nullptr;  ///< those the caller gave, from kFirstPoint on
   bool lattice = false;
-  double largest = 0;            ///< magnitude of a scaled coordinate
+  double largest = 0;              ///< magnitude of a scaled coordinate
   std::optional<Box<2>> region{};  ///< scaled
 
   [[nodiscard]] const Point<2>& original(VertexId v) const { return originals[v - kFirstPoint]; }

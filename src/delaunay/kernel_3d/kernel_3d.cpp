@@ -41,8 +41,10 @@ std::uint32_t certainly_inside(const Records<2>& spheres, const Box<3>& box) {
   return mask_of((Pair)((gap > 0) & (gap * gap > spheres.w + 2 * tolerance)));
 }
 
+static_assert(sizeof(Cell) >= 2 * sizeof(Simplex<3>), "simplices are listed over cells");
+
 /// Turns a range of the kernel's cells into simplices; number() turns four vertices into final
-/// ones. The simplices may lie where the first half of the cells before the range are.
+/// ones. The simplices may lie where the cells are: see kernel::list_simplices.
 template <typename Number>
 void list_range(const CellArray& cells, std::uint32_t begin, std::uint32_t end,
                 const Number& number, const std::optional<Box<3>>& region, Simplex<3>* simplices,
