@@ -7,10 +7,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <limits>
 #include <memory>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -38,9 +40,10 @@ struct Plan {
 };
 
 /// Takes memory from the system and gives it back. On a virtual machine, memory that nobody has
-/// used for some seconds may be the host's again; fetching it would go into one time or another.
+/// used for some seconds may be the host's again; fetching it would go into one time or another. So
+/// much that the host has not taken all again before a run of CGAL ends.
 void touch_memory() {
-  constexpr std::size_t kBytes = std::size_t{1} << 30;
+  constexpr std::size_t kBytes = std::size_t{4} << 30;
   constexpr std::size_t kPage = 4096;
   struct Free {
     void operator()(char* memory) const { std::free(memory); }
@@ -55,10 +58,13 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Leaves no memory of earlier runs with the process.
+/// Leaves no memory of earlier runs with the process. Waits until the host has had its turn with
+/// what is free, two seconds after it became so (Linux, free page reporting), or that would fall
+/// into the next run.
 void give_back_memory() {
   release_base_case_memory();
   malloc_trim(0);
+  std::this_thread::sleep_for(std::chrono::seconds(3));
   touch_memory();
 }
 
