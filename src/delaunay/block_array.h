@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <type_traits>
 #include <utility>
@@ -16,6 +17,11 @@ class BlockArray {
   BlockArray() = default;
 
   explicit BlockArray(std::size_t size) : BlockArray(Block::of(size * sizeof(T)), size) {}
+
+  /// All items are `value`.
+  BlockArray(std::size_t size, const T& value) : BlockArray(size) {
+    std::fill(begin(), end(), value);
+  }
 
   /// Takes over a block, which has room for `size` items.
   BlockArray(Block block, std::size_t size) : block_(std::move(block)), size_(size) {}

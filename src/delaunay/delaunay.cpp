@@ -56,12 +56,13 @@ std::size_t border_base_case_size(std::size_t points, std::size_t largest) {
                     std::min(kSmallestBorderBaseCase, largest), largest);
 }
 
+constexpr std::size_t kCopyGrain = std::size_t{1} << 16;
+
 /// Made by all threads.
 template <typename T>
 BlockArray<T> copy_of(std::span<const T> items) {
-  constexpr std::size_t kGrain = std::size_t{1} << 16;
   BlockArray<T> copy(items.size());
-  parallel_for(items.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_for(items.size(), kCopyGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
     std::copy(items.begin() + begin, items.begin() + end, copy.begin() + begin);
   });
   return copy;
@@ -76,7 +77,11 @@ class Run {
       : options_(options), in_place_(in_place) {
     result_.points = std::move(points);
     result_.input_index = BlockArray<VertexId>(result_.points.size());
-    std::iota(result_.input_index.begin(), result_.input_index.end(), VertexId{0});
+    VertexId* const index = result_.input_index.begin();
+    parallel_for(result_.points.size(), kCopyGrain,
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   std::iota(index + begin, index + end, static_cast<VertexId>(begin));
+                 });
   }
 
   Triangulation<D> triangulate(std::size_t base_case_size, Task& task) && {
@@ -118,8 +123,8 @@ class Run {
     surface.dimension = leaf.dimension;
     surface.open = leaf.dimension < D;
     for (const std::uint32_t i : leaf.hull) surface.hull.push_back({part.block, i});
-    marks_[part.block].assign(leaf.simplices.size(),
-                              leaf.not_inside ? Mark::kFinal : Mark::kInterior);
+    marks_[part.block] =
+        BlockMarks(leaf.simplices.size(), leaf.not_inside ? Mark::kFinal : Mark::kInterior);
     if (leaf.not_inside) {
       for (const std::uint32_t i : *leaf.not_inside) marks_[part.block][i] = Mark::kInterior;
       surface.changeable = std::move(leaf.not_inside);

@@ -22,6 +22,7 @@ constexpr std::size_t kPointsOfSample = 16;
 /// Parts below this size are divided in the task that made them.
 constexpr std::size_t kSmallestParallelPart = 1 << 14;
 constexpr std::size_t kBoxGrain = 1 << 16;
+constexpr std::size_t kSampleGrain = 1 << 13;
 
 template <int D>
 class Divider {
@@ -93,14 +94,18 @@ class Divider {
   /// Moves the points below a cut, about share/whole of all, to the front; returns where the others
   /// begin. Neither side is empty.
   [[nodiscard]] VertexId cut(const Part<D>& part, int axis, unsigned share, unsigned whole) const {
-    std::vector<double> sample;
     const std::size_t stride = std::max<std::size_t>(
         1,
         part.size() / std::clamp(part.size() / kPointsOfSample, kSmallestSample, kLargestSample));
-    for (std::size_t i = part.begin; i + stride <= part.end; i += stride) {
-      sample.push_back(
-          points_[i + mix64(i) % stride][axis]);  // jittered: rows of grids have a period
-    }
+    std::vector<double> sample(part.size() / stride);
+    parallel_for(
+        sample.size(), kSampleGrain, [&](std::size_t, std::size_t first, std::size_t last) {
+          for (std::size_t s = first; s < last; ++s) {
+            const std::size_t i = part.begin + s * stride;
+            sample[s] =
+                points_[i + mix64(i) % stride][axis];  // jittered: rows of grids have a period
+          }
+        });
     const auto rank = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() * share / whole);
     std::nth_element(sample.begin(), rank, sample.end());
     const double value = *rank;

@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kBorderBatch = 512;
 constexpr std::size_t kCandidateGrain = 4096;
 
-/// Calls visit(id) for those of the simplices that a point of `others` may change, in their order.
+/// Calls visit(id, region) for those of the simplices that a point of `others` may change, in their
+/// order.
 template <int D, typename Visit>
 void for_each_changeable(std::span<const SimplexId> simplices,
                          const Triangulation<D>& triangulation,
@@ -25,9 +26,31 @@ void for_each_changeable(std::span<const SimplexId> simplices,
       [&](std::size_t s, const ConflictRegion<D>& region) {
         if (std::any_of(others.begin(), others.end(),
                         [&](const Part<D>* other) { return region.may_meet_leaf(*other); })) {
-          visit(simplices[s]);
+          visit(simplices[s], region);
         }
       });
+}
+
+/// Marks those of `vague` as border that have a neighbour there, and what is connected to them.
+template <int D>
+void connect(std::span<const SimplexId> vague, const Triangulation<D>& triangulation,
+             BlockMarks& marks) {
+  std::vector<SimplexId> reached;
+  const auto reach = [&](SimplexId id) {
+    if (marks[id.index] != Mark::kVague) return;
+    marks[id.index] = Mark::kBorder;
+    reached.push_back(id);
+  };
+  for (const SimplexId id : vague) {
+    for (int i = 0; i <= D; ++i) {
+      if (marks[triangulation.neighbour(id, i).index] == Mark::kBorder) reach(id);
+    }
+    while (!reached.empty()) {
+      const SimplexId from = reached.back();
+      reached.pop_back();
+      for (int i = 0; i <= D; ++i) reach(triangulation.neighbour(from, i));
+    }
+  }
 }
 
 }  // namespace
@@ -75,13 +98,14 @@ std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
                        return mark(id).load(std::memory_order_relaxed) == Mark::kInterior;
                      });
         std::vector<SimplexId> mine;
-        for_each_changeable<D>(fresh, triangulation, others, [&](SimplexId id) {
-          if (mark(id).exchange(Mark::kBorder, std::memory_order_relaxed) != Mark::kInterior) {
-            return;
-          }
-          mine.push_back(id);
-          for (int i = 0; i <= D; ++i) found.push_back(triangulation.neighbour(id, i));
-        });
+        for_each_changeable<D>(
+            fresh, triangulation, others, [&](SimplexId id, const auto& /*region*/) {
+              if (mark(id).exchange(Mark::kBorder, std::memory_order_relaxed) != Mark::kInterior) {
+                return;
+              }
+              mine.push_back(id);
+              for (int i = 0; i <= D; ++i) found.push_back(triangulation.neighbour(id, i));
+            });
         const std::lock_guard lock(mutex);
         border.insert(border.end(), mine.begin(), mine.end());
       });
@@ -89,38 +113,31 @@ std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
 }
 
 template <int D>
-std::vector<SimplexId> border_among(const Triangulation<D>& triangulation,
-                                    std::span<const SimplexId> hull, std::uint32_t block,
+std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::uint32_t block,
                                     std::span<const std::uint32_t> candidates,
                                     std::span<const Part<D>* const> others,
                                     std::span<BlockMarks> marks) {
+  // What others really change is connected to the hull, whose regions are exact, by such. So are
+  // not all slivers of which no circumsphere is certified: those of rotated lattices are anywhere.
   BlockMarks& mark = marks[block];
-  parallel_for(candidates.size(), kCandidateGrain,
-               [&](std::size_t, std::size_t begin, std::size_t end) {
-                 std::vector<SimplexId> some;
-                 for (const std::uint32_t s : candidates.subspan(begin, end - begin)) {
-                   some.push_back({block, s});
-                 }
-                 for_each_changeable<D>(some, triangulation, others,
-                                        [&](SimplexId id) { mark[id.index] = Mark::kPicked; });
-               });
-  // Slivers of which no circumsphere can be certified are picked wherever they are.
-  std::vector<SimplexId> reached;
-  const auto reach = [&](SimplexId id) {
-    if (mark[id.index] != Mark::kPicked) return;
-    mark[id.index] = Mark::kBorder;
-    reached.push_back(id);
-  };
-  for (const SimplexId id : hull) reach(id);
-  while (!reached.empty()) {
-    const SimplexId id = reached.back();
-    reached.pop_back();
-    for (int i = 0; i <= D; ++i) reach(triangulation.neighbour(id, i));
-  }
+  std::vector<std::vector<SimplexId>> vague(grain_count(candidates.size(), kCandidateGrain));
+  parallel_for(
+      candidates.size(), kCandidateGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
+        std::vector<SimplexId> some;
+        for (const std::uint32_t s : candidates.subspan(begin, end - begin)) {
+          some.push_back({block, s});
+        }
+        for_each_changeable<D>(some, triangulation, others,
+                               [&](SimplexId id, const ConflictRegion<D>& region) {
+                                 mark[id.index] = region.tight() ? Mark::kBorder : Mark::kVague;
+                                 if (!region.tight()) vague[g].push_back(id);
+                               });
+      });
+  for (const auto& some : vague) connect<D>(some, triangulation, mark);
   std::vector<SimplexId> border;
   for (const std::uint32_t s : candidates) {
     if (mark[s] == Mark::kBorder) border.push_back({block, s});
-    if (mark[s] == Mark::kPicked) mark[s] = Mark::kInterior;
+    if (mark[s] == Mark::kVague) mark[s] = Mark::kInterior;
   }
   return border;
 }
@@ -133,12 +150,12 @@ template std::vector<SimplexId> find_border<2>(const Triangulation<2>&, std::spa
 template std::vector<SimplexId> find_border<3>(const Triangulation<3>&, std::span<const SimplexId>,
                                                std::span<const Part<3>* const>,
                                                std::span<BlockMarks>);
-template std::vector<SimplexId> border_among<2>(const Triangulation<2>&, std::span<const SimplexId>,
-                                                std::uint32_t, std::span<const std::uint32_t>,
+template std::vector<SimplexId> border_among<2>(const Triangulation<2>&, std::uint32_t,
+                                                std::span<const std::uint32_t>,
                                                 std::span<const Part<2>* const>,
                                                 std::span<BlockMarks>);
-template std::vector<SimplexId> border_among<3>(const Triangulation<3>&, std::span<const SimplexId>,
-                                                std::uint32_t, std::span<const std::uint32_t>,
+template std::vector<SimplexId> border_among<3>(const Triangulation<3>&, std::uint32_t,
+                                                std::span<const std::uint32_t>,
                                                 std::span<const Part<3>* const>,
                                                 std::span<BlockMarks>);
 

@@ -26,6 +26,13 @@ class ConflictRegion {
   /// Whether it is that of an infinite simplex.
   [[nodiscard]] bool infinite() const { return infinite_; }
 
+  /// Whether the region is at most a thousandth (of its radius) larger than the true one.
+  [[nodiscard]] bool tight() const {
+    constexpr double kLargestError = 0x1p-10;
+    return infinite_ ||
+           ball_.error * ball_.error < kLargestError * kLargestError * ball_.squared_radius;
+  }
+
   /// False only if the region certainly has no point of the box.
   [[nodiscard]] bool may_meet(const Box<D>& box) const;
 
@@ -76,12 +83,12 @@ void for_each_region(std::size_t count, const Corners& corners, std::span<const 
 /// What merging needs to remember of each simplex, in parallel with the blocks of a triangulation.
 enum class Mark : std::uint8_t {
   kInterior,  ///< not in the border, or not yet looked at
-  kPicked,    ///< a sibling may change it by itself; in the border if connected to the hull by such
+  kVague,     ///< in the border if connected to it by such: its region is not tight
   kBorder,    ///< some sibling may change it
   kSurvivor,  ///< in the border, and found again in the triangulation of the border
   kFinal,     ///< no point of another part can change it: it is in no border
 };
-using BlockMarks = std::vector<Mark>;
+using BlockMarks = BlockArray<Mark>;
 
 /// The border of one part against its siblings: every simplex that a point of `others` may change,
 /// found from the infinite simplices `hull` by a search over neighbours (such simplices are
@@ -93,11 +100,11 @@ std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
                                    std::span<const Part<D>* const> others,
                                    std::span<BlockMarks> marks);
 
-/// The same border, of a leaf whose border has no other simplices than `candidates`, numbers in its
-/// block; in their order. What is tested lies in the order of memory, and not where a search leads.
+/// The same border, but for rounding, of a leaf whose border has no other simplices than
+/// `candidates`, numbers in its block; in their order. What is tested lies in the order of memory,
+/// and not where a search leads.
 template <int D>
-std::vector<SimplexId> border_among(const Triangulation<D>& triangulation,
-                                    std::span<const SimplexId> hull, std::uint32_t block,
+std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::uint32_t block,
                                     std::span<const std::uint32_t> candidates,
                                     std::span<const Part<D>* const> others,
                                     std::span<BlockMarks> marks);

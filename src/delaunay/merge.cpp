@@ -105,8 +105,8 @@ class Merge {
     return first_of_block_[id.block] + id.index;
   }
 
-  [[nodiscard]] std::vector<Vertices> corners_of(const std::vector<SimplexId>& simplices) const;
-  [[nodiscard]] static std::vector<VertexId> vertices_of(const std::vector<Vertices>& simplices,
+  void join(const std::vector<std::vector<SimplexId>>& borders);
+  [[nodiscard]] static std::vector<VertexId> vertices_of(std::span<const Vertices> simplices,
                                                          const Part<D>& child);
   template <typename Body>
   void for_mesh_simplices(std::size_t begin, std::size_t end, const Body& body) const;
@@ -124,7 +124,7 @@ class Merge {
   std::vector<VertexId> ends_;  ///< of all children but the last
 
   std::vector<SimplexId> border_;          ///< of all children
-  std::vector<Vertices> border_corners_;   ///< its simplices' vertices
+  BlockArray<Vertices> border_corners_;    ///< its simplices' vertices
   std::vector<std::uint8_t> survived_;     ///< whether border_mesh_ has them, too
   std::vector<VertexId> border_vertices_;  ///< sorted
   Triangulation<D> border_mesh_;
@@ -142,49 +142,58 @@ void Merge<D>::find_borders(Task& task) {
   const Stopwatch watch(task.seconds);
   const std::size_t count = children_.size();
   std::vector<std::vector<SimplexId>> borders(count);
-  std::vector<std::vector<Vertices>> corners(count);
-  std::vector<std::vector<VertexId>> vertices(count);
   TaskGroup group;
   for (std::size_t c = 0; c < count; ++c) {
     group.run([&, c] {
-      if (children_[c].open) {
-        vertices[c] = children_[c].vertices;
-        return;
-      }
+      if (children_[c].open) return;
       std::vector<const Part<D>*> others;
       for (std::size_t o = 0; o < count; ++o) {
         if (o != c) others.push_back(&part_.children[o]);
       }
       borders[c] = children_[c].changeable
-                       ? border_among<D>(triangulation_, children_[c].hull, part_.children[c].block,
+                       ? border_among<D>(triangulation_, part_.children[c].block,
                                          *children_[c].changeable, others, marks_)
                        : find_border<D>(triangulation_, children_[c].hull, others, marks_);
-      corners[c] = corners_of(borders[c]);
-      vertices[c] = vertices_of(corners[c], part_.children[c]);
     });
   }
   group.wait();
-  for (std::size_t c = 0; c < count; ++c) {
-    border_.insert(border_.end(), borders[c].begin(), borders[c].end());
-    border_corners_.insert(border_corners_.end(), corners[c].begin(), corners[c].end());
-    border_vertices_.insert(border_vertices_.end(), vertices[c].begin(), vertices[c].end());
-  }
+  join(borders);
   task.points = border_vertices_.size();
   task.pieces = std::max<std::size_t>(1, grain_count(border_.size(), kGrain));
 }
 
+/// Sets border_, border_corners_ and border_vertices_ from the children's borders.
 template <int D>
-auto Merge<D>::corners_of(const std::vector<SimplexId>& simplices) const -> std::vector<Vertices> {
-  std::vector<Vertices> corners(simplices.size());
-  for (std::size_t s = 0; s < simplices.size(); ++s) {
-    corners[s] = triangulation_.simplex(simplices[s]).vertices;
+void Merge<D>::join(const std::vector<std::vector<SimplexId>>& borders) {
+  std::size_t total = 0;
+  for (const auto& some : borders) total += some.size();
+  border_.resize(total);
+  border_corners_ = BlockArray<Vertices>(total);
+  std::vector<std::vector<VertexId>> vertices(borders.size());
+  std::size_t begin = 0;
+  TaskGroup group;
+  for (std::size_t c = 0; c < borders.size(); ++c) {
+    group.run([&, c, begin] {
+      const std::size_t size = borders[c].size();
+      std::copy(borders[c].begin(), borders[c].end(), border_.begin() + begin);
+      for (std::size_t b = begin; b < begin + size; ++b) {
+        border_corners_[b] = triangulation_.simplex(border_[b]).vertices;
+      }
+      vertices[c] = children_[c].open ? children_[c].vertices
+                                      : vertices_of(std::span(border_corners_).subspan(begin, size),
+                                                    part_.children[c]);
+    });
+    begin += borders[c].size();
   }
-  return corners;
+  group.wait();
+  for (const auto& some : vertices) {
+    border_vertices_.insert(border_vertices_.end(), some.begin(), some.end());
+  }
 }
 
 /// The finite vertices of a child's simplices, sorted.
 template <int D>
-std::vector<VertexId> Merge<D>::vertices_of(const std::vector<Vertices>& simplices,
+std::vector<VertexId> Merge<D>::vertices_of(std::span<const Vertices> simplices,
                                             const Part<D>& child) {
   std::vector<bool> seen(child.size());
   for (const Vertices& corners : simplices) {
@@ -263,7 +272,9 @@ void Merge<D>::accept(Task& task) {
   task.points = border_vertices_.size();
   const Stopwatch watch(task.seconds);
 
-  for (const VertexId v : border_mesh_.input_index) renumbered_.push_back(border_vertices_[v]);
+  renumbered_.resize(border_mesh_.input_index.size());
+  std::transform(border_mesh_.input_index.begin(), border_mesh_.input_index.end(),
+                 renumbered_.begin(), [&](VertexId v) { return border_vertices_[v]; });
   std::size_t total = 0;
   for (const SimplexBlock<D>& block : border_mesh_.blocks) {
     first_of_block_.push_back(total);
@@ -286,7 +297,7 @@ void Merge<D>::accept(Task& task) {
   }
 
   new_block().simplices = BlockArray<Simplex<D>>(created_count);
-  marks_[part_.block].assign(created_count, Mark::kInterior);
+  marks_[part_.block] = BlockMarks(created_count, Mark::kInterior);
   std::vector<std::vector<SimplexId>> hulls(grain_count(total, kGrain));
   parallel_for(total, kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
     for_mesh_simplices(begin, end, [&](std::size_t number, SimplexId id) {

@@ -122,12 +122,13 @@ void expect_border_of_search(const std::vector<Point<D>>& points, const Part<D>&
   EXPECT_TRUE(std::is_sorted(candidates.begin(), candidates.end()));
 
   const std::vector<const Part<D>*> others{&sibling};
-  std::vector<BlockMarks> marks{BlockMarks(count, Mark::kFinal)};
+  std::vector<BlockMarks> marks;
+  marks.emplace_back(count, Mark::kFinal);
   for (const std::uint32_t s : candidates) marks[0][s] = Mark::kInterior;
-  const auto picked =
-      border_among<D>(triangulation, triangulation.hull, 0, candidates, others, marks);
+  const auto picked = border_among<D>(triangulation, 0, candidates, others, marks);
   EXPECT_TRUE(std::is_sorted(picked.begin(), picked.end()));
-  std::vector<BlockMarks> unmarked{BlockMarks(count, Mark::kInterior)};
+  std::vector<BlockMarks> unmarked;
+  unmarked.emplace_back(count, Mark::kInterior);
   auto searched = find_border<D>(triangulation, triangulation.hull, others, unmarked);
   std::sort(searched.begin(), searched.end());
   EXPECT_EQ(picked, searched);
@@ -135,7 +136,7 @@ void expect_border_of_search(const std::vector<Point<D>>& points, const Part<D>&
   for (std::uint32_t s = 0; s < count; ++s) {
     const bool found = std::binary_search(picked.begin(), picked.end(), SimplexId{0, s});
     EXPECT_EQ(found, marks[0][s] == Mark::kBorder);
-    EXPECT_NE(marks[0][s], Mark::kPicked);
+    EXPECT_NE(marks[0][s], Mark::kVague);
   }
 }
 
