@@ -31,24 +31,26 @@ void for_each_changeable(std::span<const SimplexId> simplices,
       });
 }
 
-/// Marks those of `vague` as border that have a neighbour there, and what is connected to them.
+/// Marks those kVague ones of a leaf's `candidates` kBorder that have a neighbour there, and what
+/// is connected to them by kVague ones. All neighbours are in the leaf's block.
 template <int D>
-void connect(std::span<const SimplexId> vague, const Triangulation<D>& triangulation,
+void connect(std::span<const std::uint32_t> candidates, const SimplexBlock<D>& block,
              BlockMarks& marks) {
-  std::vector<SimplexId> reached;
-  const auto reach = [&](SimplexId id) {
-    if (marks[id.index] != Mark::kVague) return;
-    marks[id.index] = Mark::kBorder;
-    reached.push_back(id);
+  std::vector<std::uint32_t> reached;
+  const auto reach = [&](std::uint32_t s) {
+    if (marks[s] != Mark::kVague) return;
+    marks[s] = Mark::kBorder;
+    reached.push_back(s);
   };
-  for (const SimplexId id : vague) {
-    for (int i = 0; i <= D; ++i) {
-      if (marks[triangulation.neighbour(id, i).index] == Mark::kBorder) reach(id);
+  for (const std::uint32_t s : candidates) {
+    if (marks[s] != Mark::kVague) continue;
+    for (const std::uint32_t n : block.simplices[s].neighbours) {
+      if (marks[n] == Mark::kBorder) reach(s);
     }
     while (!reached.empty()) {
-      const SimplexId from = reached.back();
+      const std::uint32_t from = reached.back();
       reached.pop_back();
-      for (int i = 0; i <= D; ++i) reach(triangulation.neighbour(from, i));
+      for (const std::uint32_t n : block.simplices[from].neighbours) reach(n);
     }
   }
 }
@@ -117,12 +119,9 @@ std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::
                                     std::span<const std::uint32_t> candidates,
                                     std::span<const Part<D>* const> others,
                                     std::span<BlockMarks> marks) {
-  // What others really change is connected to the hull, whose regions are exact, by such. So are
-  // not all slivers of which no circumsphere is certified: those of rotated lattices are anywhere.
   BlockMarks& mark = marks[block];
-  std::vector<std::vector<SimplexId>> vague(grain_count(candidates.size(), kCandidateGrain));
   parallel_for(
-      candidates.size(), kCandidateGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
+      candidates.size(), kCandidateGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
         std::vector<SimplexId> some;
         for (const std::uint32_t s : candidates.subspan(begin, end - begin)) {
           some.push_back({block, s});
@@ -130,10 +129,9 @@ std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::
         for_each_changeable<D>(some, triangulation, others,
                                [&](SimplexId id, const ConflictRegion<D>& region) {
                                  mark[id.index] = region.tight() ? Mark::kBorder : Mark::kVague;
-                                 if (!region.tight()) vague[g].push_back(id);
                                });
       });
-  for (const auto& some : vague) connect<D>(some, triangulation, mark);
+  connect<D>(candidates, triangulation.blocks[block], mark);
   std::vector<SimplexId> border;
   for (const std::uint32_t s : candidates) {
     if (mark[s] == Mark::kBorder) border.push_back({block, s});

@@ -26,7 +26,7 @@ class ConflictRegion {
   /// Whether it is that of an infinite simplex.
   [[nodiscard]] bool infinite() const { return infinite_; }
 
-  /// Whether the region is at most a thousandth (of its radius) larger than the true one.
+  /// Whether the region is the true one, or reaches less than a hundredth of the radius farther.
   [[nodiscard]] bool tight() const {
     constexpr double kLargestError = 0x1p-10;
     return infinite_ ||
@@ -83,7 +83,8 @@ void for_each_region(std::size_t count, const Corners& corners, std::span<const 
 /// What merging needs to remember of each simplex, in parallel with the blocks of a triangulation.
 enum class Mark : std::uint8_t {
   kInterior,  ///< not in the border, or not yet looked at
-  kVague,     ///< in the border if connected to it by such: its region is not tight
+  kVague,     ///< a sibling may change it, by a region that is not tight; in the border if
+              ///< connected to it by such
   kBorder,    ///< some sibling may change it
   kSurvivor,  ///< in the border, and found again in the triangulation of the border
   kFinal,     ///< no point of another part can change it: it is in no border

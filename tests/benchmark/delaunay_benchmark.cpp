@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <limits>
 #include <memory>
+#include <new>
 #include <string>
 #include <thread>
 #include <utility>
@@ -37,20 +38,25 @@ struct Plan {
   unsigned children = 2;
   std::vector<std::size_t> simulated_base_cases{262'144, 65'536, 16'384, 4'096};
   unsigned simulated_cores = 1'024;
+  std::size_t touched = 4;
 };
 
-/// Takes memory from the system and gives it back. On a virtual machine, memory that nobody has
-/// used for some seconds may be the host's again; fetching it would go into one time or another. So
-/// much that the host has not taken all again before a run of CGAL ends.
-void touch_memory() {
-  constexpr std::size_t kBytes = std::size_t{4} << 30;
+/// Takes so many GiB from the system and gives them back. On a virtual machine, memory that nobody
+/// has used for some seconds may be the host's again (Linux, free page reporting, which begins two
+/// seconds after memory became free): fetching it would go into one time or another. Waits for that
+/// first, or it would fall into the next run.
+void touch_memory(std::size_t gibibytes) {
+  if (gibibytes == 0) return;
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  const std::size_t bytes = gibibytes << 30;
   constexpr std::size_t kPage = 4096;
   struct Free {
     void operator()(char* memory) const { std::free(memory); }
   };
-  const std::unique_ptr<char, Free> memory(static_cast<char*>(std::aligned_alloc(kPage, kBytes)));
-  ask_for_huge_pages(memory.get(), kBytes);
-  for (std::size_t i = 0; i < kBytes; i += kPage) static_cast<volatile char*>(memory.get())[i] = 1;
+  const std::unique_ptr<char, Free> memory(static_cast<char*>(std::aligned_alloc(kPage, bytes)));
+  if (memory == nullptr) throw std::bad_alloc();
+  ask_for_huge_pages(memory.get(), bytes);
+  for (std::size_t i = 0; i < bytes; i += kPage) static_cast<volatile char*>(memory.get())[i] = 1;
 }
 
 double median(std::vector<double> values) {
@@ -58,14 +64,11 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Leaves no memory of earlier runs with the process. Waits until the host has had its turn with
-/// what is free, two seconds after it became so (Linux, free page reporting), or that would fall
-/// into the next run.
-void give_back_memory() {
+/// Leaves no memory of earlier runs with the process.
+void give_back_memory(const Plan& plan) {
   release_base_case_memory();
   malloc_trim(0);
-  std::this_thread::sleep_for(std::chrono::seconds(3));
-  touch_memory();
+  touch_memory(plan.touched);
 }
 
 /// Leaves its memory to the next run.
@@ -90,7 +93,7 @@ std::string simulate(const std::string& family, std::span<const Point<D>> points
                      double cgal_seconds, const Plan& plan) {
   std::vector<Task> runs(plan.simulated_base_cases.size());
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    give_back_memory();
+    give_back_memory(plan);
     time_ours<D>(points, {.threads = 1,
                           .base_case_size = plan.simulated_base_cases[r],
                           .children = plan.children,
@@ -118,7 +121,7 @@ std::size_t take_turn(std::span<const Point<D>> points, const Plan& plan, Times&
                       Times& reused) {
   std::size_t simplices = 0;
   const auto run = [&](std::vector<double> Times::*times, const auto& time) {
-    give_back_memory();
+    give_back_memory(plan);
     for (Times* memory : {&fresh, &reused}) {
       const Timing timing = time();
       if (simplices != 0 && timing.simplices != simplices) {
@@ -190,6 +193,8 @@ int main(int argc, char** argv) {
                  "Sizes of base cases to simulate more cores with; one of 0 to leave it")
       ->delimiter(',');
   app.add_option("--simulated-cores", plan.simulated_cores, "Most cores to simulate");
+  app.add_option("--touch", plan.touched,
+                 "GiB to touch before each pair of runs, after some seconds; 0: neither");
   CLI11_PARSE(app, argc, argv);
   // What is freed stays with the process until give_back_memory().
   constexpr int kLargestThreshold = 32 << 20;

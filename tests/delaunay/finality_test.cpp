@@ -15,6 +15,22 @@
 namespace spillway {
 namespace {
 
+/// Whether one of the others destroys a simplex of this triangulation.
+template <int D>
+bool destroyed(const Simplex<D>& simplex, const Triangulation<D>& triangulation,
+               const std::vector<Point<D>>& others) {
+  std::array<Point<D>, D + 1> corners;
+  const int infinite = simplex.infinite_place();
+  for (int i = 0; i <= D; ++i) {
+    if (i != infinite) corners[i] = triangulation.points[simplex.vertices[i]];
+  }
+  return std::any_of(others.begin(), others.end(), [&](const Point<D>& p) {
+    if (infinite < 0) return in_sphere<D>(corners, p) > 0;
+    corners[infinite] = p;
+    return orientation<D>(corners) > 0;
+  });
+}
+
 /// Two halves of a random set: the left triangulated, the right a tree of boxes.
 template <int D>
 struct Halves {
@@ -39,20 +55,6 @@ struct Halves {
     std::iota(index.begin(), index.end(), VertexId{0});
     right = divide<D>(right_points, index, {.leaf_size = 40});
   }
-
-  /// Whether a point of the right half destroys the simplex of the left one.
-  [[nodiscard]] bool destroyed(const Simplex<D>& simplex) const {
-    std::array<Point<D>, D + 1> corners;
-    const int infinite = simplex.infinite_place();
-    for (int i = 0; i <= D; ++i) {
-      if (i != infinite) corners[i] = left.points[simplex.vertices[i]];
-    }
-    return std::any_of(right_points.begin(), right_points.end(), [&](const Point<D>& p) {
-      if (infinite < 0) return in_sphere<D>(corners, p) > 0;
-      corners[infinite] = p;
-      return orientation<D>(corners) > 0;
-    });
-  }
 };
 
 template <typename Dimension>
@@ -70,7 +72,7 @@ TYPED_TEST(Finality, NeverCallsASimplexFinalThatASiblingDestroys) {
     for_each_region<kD>(
         simplices.size(), [&](std::size_t s) { return simplices[s].vertices; }, halves.left.points,
         [&](std::size_t s, const ConflictRegion<kD>& region) {
-          if (halves.destroyed(simplices[s])) {
+          if (destroyed<kD>(simplices[s], halves.left, halves.right_points)) {
             EXPECT_TRUE(region.may_meet_leaf(halves.right));
           }
         });
@@ -93,16 +95,26 @@ TYPED_TEST(Finality, BorderSearchFindsAllThatASiblingDestroys) {
     ++all;
     const bool found = std::binary_search(border.begin(), border.end(), id);
     EXPECT_EQ(found, marks[id.block][id.index] == Mark::kBorder);
-    if (halves.destroyed(simplex)) {
+    if (destroyed<kD>(simplex, halves.left, halves.right_points)) {
       EXPECT_TRUE(found);
     }
   });
   EXPECT_LT(border.size(), all);
 }
 
-/// Expects that the border picked from the list of a leaf's kernel is the one that a search finds.
+/// A border picked from the list of a leaf's kernel.
 template <int D>
-void expect_border_of_search(const std::vector<Point<D>>& points, const Part<D>& sibling) {
+struct PickedBorder {
+  Triangulation<D> triangulation;
+  std::vector<std::uint32_t> candidates;
+  std::vector<SimplexId> picked;
+};
+
+/// Expects that it has all that `others_points`, which are the sibling's, destroy, and, which
+/// merging does not need, that it is the one that a search finds.
+template <int D>
+PickedBorder<D> expect_border_of_search(const std::vector<Point<D>>& points, const Part<D>& sibling,
+                                        const std::vector<Point<D>>& others_points) {
   std::vector<VertexId> index(points.size());
   std::iota(index.begin(), index.end(), VertexId{0});
   Box<D> box;
@@ -137,7 +149,11 @@ void expect_border_of_search(const std::vector<Point<D>>& points, const Part<D>&
     const bool found = std::binary_search(picked.begin(), picked.end(), SimplexId{0, s});
     EXPECT_EQ(found, marks[0][s] == Mark::kBorder);
     EXPECT_NE(marks[0][s], Mark::kVague);
+    if (!found) {
+      EXPECT_FALSE(destroyed<D>(triangulation.simplex({0, s}), triangulation, others_points));
+    }
   }
+  return {std::move(triangulation), candidates, picked};
 }
 
 TYPED_TEST(Finality, BorderPickedFromALeafsListIsThatOfTheSearch) {
@@ -145,7 +161,7 @@ TYPED_TEST(Finality, BorderPickedFromALeafsListIsThatOfTheSearch) {
   for (std::uint64_t seed = 8; seed <= 10; ++seed) {
     const Halves<kD> halves(seed);
     expect_border_of_search<kD>({halves.left.points.begin(), halves.left.points.end()},
-                                halves.right);
+                                halves.right, halves.right_points);
   }
 }
 
@@ -153,6 +169,7 @@ TYPED_TEST(Finality, BorderPickedFromALeafsListIsThatOfTheSearch) {
 TEST(FinalityInSpace, BorderPickedFromARotatedLatticeIsThatOfTheSearch) {
   std::vector<Point<3>> left;
   std::vector<Point<3>> right;
+  std::vector<Point<3>> near_the_cut;
   for (int x = -8; x < 8; ++x) {
     for (int y = -8; y < 8; ++y) {
       for (int z = -8; z < 8; ++z) {
@@ -161,13 +178,28 @@ TEST(FinalityInSpace, BorderPickedFromARotatedLatticeIsThatOfTheSearch) {
         const Point<3> p{u, std::cos(0.7) * v - std::sin(0.7) * z,
                          std::sin(0.7) * v + std::cos(0.7) * z};
         (p[0] < 0 ? left : right).push_back(p);
+        if (p[0] >= 0 && p[0] < 2) near_the_cut.push_back(p);
       }
     }
   }
   std::vector<VertexId> index(right.size());
   std::iota(index.begin(), index.end(), VertexId{0});
   const Part<3> sibling = divide<3>(right, index, {.leaf_size = 40});
-  expect_border_of_search<3>(left, sibling);
+  const PickedBorder<3> border = expect_border_of_search<3>(left, sibling, near_the_cut);
+  std::array<std::size_t, 2> vague{};  // left out, picked
+  for_each_region<3>(
+      border.candidates.size(),
+      [&](std::size_t c) {
+        return border.triangulation.simplex({0, border.candidates[c]}).vertices;
+      },
+      border.triangulation.points,
+      [&](std::size_t c, const ConflictRegion<3>& region) {
+        const SimplexId id{0, border.candidates[c]};
+        const bool found = std::binary_search(border.picked.begin(), border.picked.end(), id);
+        if (!region.tight()) ++vague[found ? 1 : 0];
+      });
+  EXPECT_GT(vague[0], 0U);
+  EXPECT_GT(vague[1], 0U);
 }
 
 }  // namespace
