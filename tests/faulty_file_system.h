@@ -30,7 +30,8 @@ class FaultyFileSystem : public FileSystem {
   std::map<std::string, std::string> files;
   std::map<std::string, std::string> parts;
 
-  /// Whether inputs know their size and can go back, and outputs can be rewritten; false makes all of them pipes.
+  /// Whether inputs know their size and can go back, and outputs can be rewritten; false makes all
+  /// of them pipes.
   bool seekable = true;
   /// Reads end here, whatever size() says: a file that shrinks while it is read.
   std::uint64_t reads_end_at = std::numeric_limits<std::uint64_t>::max();

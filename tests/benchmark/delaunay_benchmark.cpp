@@ -102,6 +102,7 @@ std::string simulate(const std::string& family, std::span<const Point<D>> points
   std::string row = fmt::format("| {}D {} |", D, family);
   for (unsigned cores = 1; cores <= plan.simulated_cores; cores *= 2) {
     std::vector<double> seconds;
+    seconds.reserve(runs.size());
     for (const Task& run : runs) seconds.push_back(greedy_makespan(run, cores));
     const auto best = std::min_element(seconds.begin(), seconds.end());
     row += fmt::format(" {:.1f} ({}) |", cgal_seconds / *best,
