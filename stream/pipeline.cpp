@@ -27,7 +27,11 @@ void run(TileEngine<D>& engine, PointSource& source, MemoryBudget& budget,
          const StreamOptions& options) {
   options.begin_phase("read");
   engine.spill(feed_of(source, options, engine.times()));
-  options.end_phase();
+  options.end_phase(source.points_read());
+  if (engine.points_to_divide() > 0) {
+    options.begin_phase("divide");
+    options.end_phase(engine.divide_large());
+  }
   options.begin_phase("triangulate");
   const std::optional<TileNode<D>> root = engine.nodes();
   if (!root) refuse_empty_input(source.counts());
@@ -35,7 +39,7 @@ void run(TileEngine<D>& engine, PointSource& source, MemoryBudget& budget,
   budget.set_enough(enough_memory<D>(root->points));
   const Border<D> left = engine.triangulate(*root, {});
   if (left.open()) refuse_open(left, engine.points());
-  options.end_phase();
+  options.end_phase(engine.points());
 }
 
 }  // namespace

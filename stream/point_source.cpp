@@ -376,7 +376,7 @@ PointCounts PointSource::counts() const {
 
 std::uint64_t PointSource::points_read() const {
   const std::lock_guard lock(counts_mutex_);
-  return counts_.read - counts_.withheld;
+  return counts_.read;
 }
 
 std::optional<double> PointSource::fraction_read() const {

@@ -120,7 +120,7 @@ class PointSource {
 
   /// What became of the records so far.
   [[nodiscard]] PointCounts counts() const;
-  /// Records read so far, withheld ones not counted.
+  /// Records read so far, dropped ones among them: counts().read.
   [[nodiscard]] std::uint64_t points_read() const;
   /// How far all inputs have been read, from 0 to 1; nothing if that is unknown.
   [[nodiscard]] std::optional<double> fraction_read() const;

@@ -30,9 +30,10 @@ struct StreamOptions {
   /// Told the box around all points in x and y, in the coordinates in which the source gives them,
   /// before the first block is written.
   std::function<void(const Box<2>&)> extent_known = [](const Box<2>&) {};
-  /// Called when a phase begins ("read", "triangulate"), and when it has ended.
+  /// Called when a phase begins: "read", "divide" if there are tiles to be divided again,
+  /// "triangulate"; and when it has ended, with all points that have been through it.
   std::function<void(const char* phase)> begin_phase = [](const char*) {};
-  std::function<void()> end_phase = [] {};
+  std::function<void(std::uint64_t points)> end_phase = [](std::uint64_t) {};
   /// Told how many points have been through the phase; called by many threads.
   std::function<void(std::uint64_t points, std::optional<double> fraction)> progress =
       [](std::uint64_t, std::optional<double>) {};
@@ -55,8 +56,10 @@ struct StreamFigures {
   std::uint64_t retriangulated = 0;           ///< points in triangulations of borders
   std::uint64_t border_simplices = 0;         ///< most that were resident at a time
   std::uint64_t border_bytes = 0;
-  double read_seconds = 0;         ///< wall time of reading, dealing and spilling
-  double triangulate_seconds = 0;  ///< wall time of all that follows
+  std::uint64_t divided_points = 0;  ///< of tiles that were divided again, each time
+  double read_seconds = 0;           ///< wall time of reading, dealing and spilling
+  double divide_seconds = 0;         ///< wall time of dividing tiles again
+  double triangulate_seconds = 0;    ///< wall time of all that follows
   /// Seconds of all threads together, by Stage.
   std::array<double, kStageNames.size()> stage_seconds{};
   Task tasks;

@@ -65,6 +65,14 @@ void TileEngine<D>::spill(const PointFeed& feed) {
 }
 
 template <int D>
+std::uint64_t TileEngine<D>::divide_large() {
+  const Stopwatch watch(figures_.divide_seconds);
+  const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(Point<3>),
+                            "points that wait to be spilled");
+  return figures_.divided_points = tree_.divide_large(options_.progress);
+}
+
+template <int D>
 Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& outside) {
   const Stopwatch watch(figures_.triangulate_seconds);
   tile_options_.leaf_size =

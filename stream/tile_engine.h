@@ -30,7 +30,7 @@ struct ExpectedPoints {
 };
 
 /// Takes the points of one process from the feed to the border that is left of them: spill(), then
-/// triangulate(), both inside of with_threads(threads()).
+/// divide_large(), then triangulate(), all inside of with_threads(threads()).
 template <int D>
 class TileEngine {
  public:
@@ -43,6 +43,11 @@ class TileEngine {
 
   /// Deals all points of the feed into tiles.
   void spill(const PointFeed& feed);
+
+  /// After spill(): points of tiles that are too large, and are to be divided before nodes(); and
+  /// their division, which returns how many points were dealt again.
+  [[nodiscard]] std::uint64_t points_to_divide() const { return tree_.points_to_divide(); }
+  std::uint64_t divide_large();
 
   /// Calls this for the indices of each tile's points when it is loaded: to put others there, which
   /// need not be known before.

@@ -53,9 +53,6 @@ void TileTree::fill(const PointFeed& source) {
               [&](Batch& batch) { source.decode(batch.piece, batch.points); });
   for (const Tile& tile : tiles_) points_ += tile.points;
   if (!divided_ && points_ > options_.capacity) divide_first();
-  for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
-    while (too_large(tiles_[t])) divide(t);
-  }
 }
 
 void TileTree::fill(const std::function<bool(PointBlock&)>& source) {
@@ -249,8 +246,39 @@ void TileTree::split(CutTree& cuts, std::uint32_t number, std::vector<Point<3>> 
   cuts.cut(number, axis, value);
 }
 
-/// Divides a tile that has too many points, all of which are in.
-void TileTree::divide(std::uint32_t number) {
+std::uint64_t TileTree::points_to_divide() const {
+  std::uint64_t points = 0;
+  for (const Tile& tile : tiles_) points += too_large(tile) ? tile.points : 0;
+  return points;
+}
+
+std::uint64_t TileTree::divide_large(const DivisionProgress& progress) {
+  std::uint64_t all = points_to_divide();
+  std::uint64_t done = 0;
+  double fraction = 0;  // what is found to be too large again does not take it back
+  for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
+    while (too_large(tiles_[t])) {
+      const std::uint64_t points = tiles_[t].points;
+      const std::size_t before = tiles_.size();
+      divide(t, [&](std::uint64_t of_tile) {
+        fraction =
+            std::max(fraction, static_cast<double>(done + of_tile) / static_cast<double>(all));
+        progress(done + of_tile, fraction);
+      });
+      done += points;
+      if (too_large(tiles_[t])) all += tiles_[t].points;
+      for (std::size_t part = before; part < tiles_.size(); ++part) {
+        if (too_large(tiles_[part])) all += tiles_[part].points;
+      }
+    }
+  }
+  return done;
+}
+
+/// Divides a tile that has too many points, all of which are in. Tells how many of them have been
+/// taken out of it.
+void TileTree::divide(std::uint32_t number,
+                      const std::function<void(std::uint64_t points)>& progress) {
   Tile whole = std::exchange(tiles_[number], {});
   tiles_[number].box = whole.box;  // split() looks at it
   auto cuts = std::make_shared<CutTree>(*cuts_);
@@ -261,9 +289,12 @@ void TileTree::divide(std::uint32_t number) {
   tiles_.resize(cuts->tiles());
   cuts_ = std::move(cuts);
   buffered_ -= whole.buffer.room();
+  std::uint64_t taken = 0;
   auto block = whole.blocks.begin();
   const auto fetch = [&](Batch& batch) {
+    progress(taken);
     if (block == whole.blocks.end()) return false;
+    taken += block->points;
     batch.stored.resize(block->size);
     whole.file->read(block->offset, batch.stored);
     batch.where = fmt::format("{}, byte {}", whole.file->name(), block->offset);

@@ -68,14 +68,26 @@ class TileTree {
  public:
   TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times);
 
-  /// Deals all points of `source` and makes the tiles final. Reading, decoding, dealing, encoding
-  /// and writing go on beside each other; the result does not depend on threads.
+  /// Told how many points have been dealt again, and what share that is of all for which this is
+  /// known to be necessary, from 0 to 1.
+  using DivisionProgress = std::function<void(std::uint64_t points, double fraction)>;
+
+  /// Deals all points of `source`. Reading, decoding, dealing, encoding and writing go on beside
+  /// each other; the result does not depend on threads.
   void fill(const PointFeed& source);
 
   /// The same with points that need no decoding: `source` works as PointReader::read().
   void fill(const std::function<bool(PointBlock&)>& source);
 
-  /// The tree of tiles, neighbours that fit together made one; nothing if there are no points.
+  /// Points of the tiles that fill() has left too large.
+  [[nodiscard]] std::uint64_t points_to_divide() const;
+
+  /// Divides those tiles, and parts of them that are too large again. Returns how many points were
+  /// dealt again, those dealt twice counted twice.
+  std::uint64_t divide_large(const DivisionProgress& progress);
+
+  /// The tree of tiles, none of which is too large any more, neighbours that fit together made one;
+  /// nothing if there are no points.
   template <int D>
   [[nodiscard]] std::optional<TileNode<D>> nodes() const;
 
@@ -133,7 +145,7 @@ class TileTree {
   void divide_first();
   [[nodiscard]] bool sample_is_representative() const;
   void add_expected_points(std::vector<Point<3>>& sample) const;
-  void divide(std::uint32_t number);
+  void divide(std::uint32_t number, const std::function<void(std::uint64_t points)>& progress);
   void split(CutTree& cuts, std::uint32_t number, std::vector<Point<3>> sample,
              std::size_t parts) const;
   void deal_from_memory(PointBuffer points);

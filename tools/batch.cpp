@@ -114,7 +114,7 @@ class Batch {
       if (!running_.empty()) finish_step(wait_for_any_child());
       progress_.update(ended_, static_cast<double>(ended_) / static_cast<double>(runs_.size()));
     }
-    progress_.end();
+    progress_.end(ended_);
     return summarize(std::chrono::duration<double>(Clock::now() - start).count());
   }
 

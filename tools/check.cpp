@@ -78,10 +78,7 @@ class Comparison {
 
   void run(const CheckOptions& how, CheckReport& report) {
     if (!source_) return;
-    progress_.begin("compare", "points");
-    points_->compare(*source_, how, report);
-    progress_.update(source_->points_read(), 1);
-    progress_.end();
+    points_->compare(*source_, how, report, progress_);
     if (source_->counts().dropped() > 0) progress_.say(describe(source_->counts()));
   }
 
@@ -95,16 +92,14 @@ class Comparison {
 Outcome check_whole(ProbedInput& input, const CheckCommandOptions& options, Progress& progress) {
   progress.begin("read mesh", "simplices");
   const Mesh mesh = read_mesh(input, options.mesh, options.mesh_format);
-  progress.update(mesh.corners.size() / mesh.corners_per_simplex(), 1);
-  progress.end();
+  progress.end(mesh.corners.size() / mesh.corners_per_simplex());
   const int dimension = mesh.header.dimension;
   CheckOptions how = check_options(options);
   Comparison comparison(dimension, options, how, progress);
   progress.begin("check", "simplices");
   CheckReport report = check_mesh(mesh, how);
   if (how.vertex) std::for_each(mesh.vertices.begin(), mesh.vertices.end(), how.vertex);
-  progress.update(report.simplices, 1);
-  progress.end();
+  progress.end(report.simplices);
   comparison.run(how, report);
   return {report, dimension};
 }
@@ -119,7 +114,7 @@ Outcome check_stream(ProbedInput& input, const CheckCommandOptions& options, Pro
   };
   progress.begin("check", "simplices");
   CheckReport report = check_mesh_stream(*reader, how);
-  progress.end();
+  progress.end(report.simplices);
   comparison.run(how, report);
   return {report, dimension};
 }

@@ -147,9 +147,9 @@ int run(const ContourCommandOptions& options) {
                 .progress = progress,
                 .threads = thread_count(options)},
                statistics);
-  progress.begin("write", "");
+  progress.begin("write", "lines");
   statistics.output_bytes = use.finish();
-  statistics.write_seconds = progress.end();
+  statistics.write_seconds = progress.end(use.writer().lines());
   statistics.stream.left_out += use.writer().left_out();
   statistics.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -133,8 +133,7 @@ void convert_mesh(ProbedInput& input, InputKind kind, const MeshConversion& conv
     totals = convert_whole(read_mesh(input, input.path(), conversion.input_format), format,
                            input.path(), output, scratch);
   }
-  progress.update(totals.simplices, 1);
-  progress.end();
+  progress.end(totals.simplices);
   progress.say(fmt::format("{} vertices, {} simplices in {}", totals.vertices, totals.simplices,
                            files_of(output, format)));
   if (const std::string note = rounding_note(format); !note.empty()) progress.say(note);

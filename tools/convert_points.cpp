@@ -101,7 +101,6 @@ class PointConversion {
       return source_.fetch(slots[slot].piece);
     };
     isolated([&] { run_pipeline(kSlots, fetch, stages); });
-    progress.update(source_.points_read(), 1);
     writer->finish();
     return written;
   }
@@ -161,7 +160,7 @@ void convert_points(PointSource& source, const PointOutput& output, const Lattic
                     ScratchFolder& scratch, Progress& progress) {
   PointConversion conversion(source, output, choice, scratch);
   const std::uint64_t written = conversion.run(progress);
-  progress.end();
+  progress.end(source.points_read());
   conversion.tell_changes(progress);
   const PointCounts counts = source.counts();
   if (counts.dropped() > 0) progress.say(describe(counts));

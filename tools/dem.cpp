@@ -137,7 +137,7 @@ class Run : public TerrainUse {
       }
     });
     statistics_.output_bytes = file.finish();
-    statistics_.write_seconds = progress_.end();
+    statistics_.write_seconds = progress_.end(std::uint64_t{dem.grid().columns} * dem.grid().rows);
     statistics_.seconds = std::chrono::duration<double>(Clock::now() - start_).count();
     report(dem);
   }

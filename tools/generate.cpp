@@ -68,7 +68,7 @@ int run(const GenerateOptions& options) {
     if (made < block.size()) break;
   }
   writer->finish();
-  progress.end();
+  progress.end(written);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   progress.say(fmt::format("{} points of {} written to {}, {:.2f} s", written, options.family,
                            options.output.name(), seconds.count()));

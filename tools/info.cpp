@@ -83,7 +83,7 @@ Json describe_points(ProbedInput& input, const InfoOptions& options, Progress& p
     points += block.size();
     progress.update(source->points_read(), source->fraction_read());
   }
-  progress.end();
+  progress.end(source->points_read());
   const PointCounts counts = source->counts();
   Json json;
   json["name"] = header.name;
@@ -136,8 +136,7 @@ Json mesh_json(const std::string& path, const Header& header, const MeshFigures&
 Json describe_mesh(ProbedInput& input, Progress& progress) {
   progress.begin("read", "vertices");
   const Mesh mesh = read_mesh(input, input.path());
-  progress.update(mesh.vertices.size(), 1);
-  progress.end();
+  progress.end(mesh.vertices.size());
   Box<3> box;
   for (const Point<3>& vertex : mesh.vertices) box.expand(vertex);
   const std::string extension = std::filesystem::path(input.path()).extension().string();
@@ -162,7 +161,7 @@ Json describe_mesh_stream(ProbedInput& input, Progress& progress) {
   };
   progress.begin("read", "simplices");
   const CheckReport found = count_mesh_stream(*reader, options);
-  progress.end();
+  progress.end(found.simplices);
   if (found.fault_count > 0) {
     throw Error(fmt::format("{}: {}; the file is corrupt, write it again", input.path(),
                             found.faults.front()));

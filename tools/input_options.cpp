@@ -219,8 +219,10 @@ std::unique_ptr<PointSource> make_point_source(FileSystem& files,
   how.force_crs = options.force_crs;
   how.warn = [&progress](std::string_view text) { progress.say(text); };
   how.detail = [&progress](std::string_view text) { progress.detail(text); };
-  how.progress = [&progress](std::uint64_t points, std::optional<double> fraction) {
-    progress.update(points, fraction);
+  // Over ranks the exchange of the points is still to come.
+  const bool reads_all = use.ranks == nullptr;
+  how.progress = [&progress, reads_all](std::uint64_t points, std::optional<double> fraction) {
+    progress.update(points, reads_all ? fraction : std::nullopt);
   };
   const bool looks = use.ranks == nullptr || use.ranks->rank() == 0;
   const std::vector<std::string> paths =

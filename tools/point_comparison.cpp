@@ -85,20 +85,35 @@ class TileComparison {
   std::vector<VertexId> order_;
 };
 
+/// Compares all tiles of a tree.
 template <int D>
-std::uint64_t compare_tiles(TileTree& tree, const TileNode<D>& node, Faults& faults) {
-  if (node.children.empty())
-    return TileComparison<D>(tree.decode<D>(tree.read(node)), faults).run();
-  std::uint64_t distinct = 0;
-  for (const TileNode<D>& child : node.children) distinct += compare_tiles(tree, child, faults);
-  return distinct;
-}
+class TreeComparison {
+ public:
+  TreeComparison(TileTree& tree, Faults& faults, Progress& progress)
+      : tree_(tree), faults_(faults), progress_(progress) {}
 
-template <int D>
-std::uint64_t compare_all(TileTree& tree, Faults& faults) {
-  const auto root = tree.nodes<D>();
-  return root ? compare_tiles<D>(tree, *root, faults) : 0;
-}
+  /// The number of distinct points of the input.
+  std::uint64_t run() {
+    const auto root = tree_.nodes<D>();
+    return root ? compare(*root) : 0;
+  }
+
+ private:
+  std::uint64_t compare(const TileNode<D>& node) {
+    std::uint64_t distinct = 0;
+    for (const TileNode<D>& child : node.children) distinct += compare(child);
+    if (!node.children.empty()) return distinct;
+    distinct = TileComparison<D>(tree_.decode<D>(tree_.read(node)), faults_).run();
+    done_ += node.points;
+    progress_.update(done_, static_cast<double>(done_) / static_cast<double>(tree_.points()));
+    return distinct;
+  }
+
+  TileTree& tree_;
+  Faults& faults_;
+  Progress& progress_;
+  std::uint64_t done_ = 0;
+};
 
 }  // namespace
 
@@ -124,8 +139,8 @@ void PointComparison::put_away() {
   file_->append(bytes);
 }
 
-void PointComparison::compare(PointSource& input, const CheckOptions& options,
-                              CheckReport& report) {
+void PointComparison::compare(PointSource& input, const CheckOptions& options, CheckReport& report,
+                              Progress& progress) {
   StageTimes times;
   TileTree tree(
       {.dimension = dimension_,
@@ -151,6 +166,7 @@ void PointComparison::compare(PointSource& input, const CheckOptions& options,
       ++block;
       return true;
     }
+    progress.update(input.points_read(), input.fraction_read());
     if (!input.read(points)) return false;
     if (input.lattice()) {
       for (Point<3>& point : points.points) point = input.lattice()->to_world(point);
@@ -158,8 +174,18 @@ void PointComparison::compare(PointSource& input, const CheckOptions& options,
     return true;
   };
   with_threads(options.threads == 0 ? available_threads() : options.threads, [&] {
+    progress.begin("read points", "points");
     tree.fill(next);
-    distinct = dimension_ == 2 ? compare_all<2>(tree, faults) : compare_all<3>(tree, faults);
+    progress.end(input.points_read());
+    if (tree.points_to_divide() > 0) {
+      progress.begin("divide", "points");
+      progress.end(tree.divide_large(
+          [&](std::uint64_t points, double fraction) { progress.update(points, fraction); }));
+    }
+    progress.begin("compare", "points");
+    distinct = dimension_ == 2 ? TreeComparison<2>(tree, faults, progress).run()
+                               : TreeComparison<3>(tree, faults, progress).run();
+    progress.end(tree.points());
   });
   if (faults.count() > before) return;
   report.proved.push_back(

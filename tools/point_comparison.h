@@ -10,6 +10,7 @@
 #include "stream/point_source.h"
 #include "stream/tile_block.h"
 #include "tools/checker.h"
+#include "tools/progress.h"
 
 namespace spillway {
 
@@ -25,8 +26,10 @@ class PointComparison {
 
   /// Adds to `report` whether the vertices so far are exactly the distinct points of `input`, both
   /// by their first `dimension` output coordinates, and, in the plane, whether each vertex's height
-  /// lies between those of its points. Reads the input to its end.
-  void compare(PointSource& input, const CheckOptions& options, CheckReport& report);
+  /// lies between those of its points. Reads the input to its end. Its phases are "read points",
+  /// of the input; "divide", if need be; and "compare", of vertices and of points that are kept.
+  void compare(PointSource& input, const CheckOptions& options, CheckReport& report,
+               Progress& progress);
 
  private:
   void put_away();

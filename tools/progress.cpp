@@ -1,5 +1,6 @@
 #include "tools/progress.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "tools/json_text.h"
@@ -44,13 +45,14 @@ void Progress::begin(const std::string& phase, const std::string& unit) {
 
 void Progress::update(std::uint64_t done, std::optional<double> fraction) {
   const std::lock_guard lock(mutex_);
-  state_.done = done;
-  state_.fraction = fraction;
+  state_.done = std::max(state_.done, done);
+  state_.fraction = fraction ? std::max(state_.fraction, fraction) : std::nullopt;
 }
 
-double Progress::end() {
+double Progress::end(std::uint64_t done) {
   ticker_ = {};
   const std::lock_guard lock(mutex_);
+  state_.done = done;
   state_.finished = true;
   state_.seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   if (style_ == ProgressStyle::kTerminal) {

@@ -34,9 +34,11 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void begin(const std::string& phase, const std::string& unit);
+  /// Says how far the phase is. Of what several threads say, in any order, the most counts; a
+  /// fraction that has become unknown is not shown.
   void update(std::uint64_t done, std::optional<double> fraction);
-  /// Ends the phase and returns how many seconds it took.
-  double end();
+  /// Ends the phase, in which so many units were done, and returns how many seconds it took.
+  double end(std::uint64_t done);
   /// Ends a phase that failed, or none, without a line about it.
   void give_up();
 

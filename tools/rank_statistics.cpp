@@ -27,25 +27,27 @@ Json to_json(const MergeFigures& merge) {
 Json rank_json(const RankMesh& mesh, const Ranks& ranks) {
   const StreamFigures& figures = mesh.figures;
   const distributed::Traffic sent = distributed::traffic();
-  Json json = {
-      {"rank", ranks.rank()},
-      {"points", figures.totals.points},
-      {"vertices", figures.totals.vertices},
-      {"simplices", figures.totals.simplices},
-      {"threads", figures.threads},
-      {"tiles", figures.tiles},
-      {"leaves", figures.leaves},
-      {"spilled_bytes", figures.spilled_bytes},
-      {"border_simplices", figures.border_simplices},
-      {"border_bytes", figures.border_bytes},
-      {"peak_rss_bytes", peak_rss_bytes()},
-      {"phases", {{"read", figures.read_seconds}, {"triangulate", figures.triangulate_seconds}}},
-      {"messages_sent", sent.messages},
-      {"bytes_sent", sent.bytes},
-      {"points_sent", mesh.exchanged_points},
-      {"point_bytes_sent", mesh.exchanged_bytes},
-      {"border_simplices_sent", mesh.border_simplices_sent},
-      {"border_bytes_sent", mesh.border_bytes_sent}};
+  Json json = {{"rank", ranks.rank()},
+               {"points", figures.totals.points},
+               {"vertices", figures.totals.vertices},
+               {"simplices", figures.totals.simplices},
+               {"threads", figures.threads},
+               {"tiles", figures.tiles},
+               {"leaves", figures.leaves},
+               {"spilled_bytes", figures.spilled_bytes},
+               {"border_simplices", figures.border_simplices},
+               {"border_bytes", figures.border_bytes},
+               {"peak_rss_bytes", peak_rss_bytes()},
+               {"phases",
+                {{"read", figures.read_seconds},
+                 {"divide", figures.divide_seconds},
+                 {"triangulate", figures.triangulate_seconds}}},
+               {"messages_sent", sent.messages},
+               {"bytes_sent", sent.bytes},
+               {"points_sent", mesh.exchanged_points},
+               {"point_bytes_sent", mesh.exchanged_bytes},
+               {"border_simplices_sent", mesh.border_simplices_sent},
+               {"border_bytes_sent", mesh.border_bytes_sent}};
   Json stages;
   for (std::size_t s = 0; s < kStageNames.size(); ++s) {
     stages[kStageNames[s]] = figures.stage_seconds[s];
@@ -58,18 +60,18 @@ Json rank_json(const RankMesh& mesh, const Ranks& ranks) {
 
 /// Sums of what is counted, the longest of what is timed.
 void combine(StreamFigures& figures, const Ranks& ranks) {
-  std::vector<std::uint64_t> sums = {figures.threads,          figures.tiles,
-                                     figures.leaves,           figures.spilled_points,
-                                     figures.spilled_bytes,    figures.final_in_leaves,
-                                     figures.final_in_tiles,   figures.retriangulated,
-                                     figures.border_simplices, figures.border_bytes};
+  std::vector<std::uint64_t> sums = {
+      figures.threads,        figures.tiles,          figures.leaves,
+      figures.spilled_points, figures.spilled_bytes,  figures.final_in_leaves,
+      figures.final_in_tiles, figures.retriangulated, figures.border_simplices,
+      figures.border_bytes,   figures.divided_points};
   ranks.reduce(sums, Reduction::kSum);
   auto sum = sums.begin();
   figures.threads = static_cast<unsigned>(*sum++);
   for (std::uint64_t* const figure :
        {&figures.tiles, &figures.leaves, &figures.spilled_points, &figures.spilled_bytes,
         &figures.final_in_leaves, &figures.final_in_tiles, &figures.retriangulated,
-        &figures.border_simplices, &figures.border_bytes}) {
+        &figures.border_simplices, &figures.border_bytes, &figures.divided_points}) {
     *figure = *sum++;
   }
   std::uint64_t levels = figures.final_by_level.size();
@@ -77,10 +79,12 @@ void combine(StreamFigures& figures, const Ranks& ranks) {
   figures.final_by_level.resize(levels);
   ranks.reduce(figures.final_by_level, Reduction::kSum);
   ranks.reduce(figures.stage_seconds, Reduction::kSum);
-  std::array<double, 2> phases = {figures.read_seconds, figures.triangulate_seconds};
+  std::array<double, 3> phases = {figures.read_seconds, figures.divide_seconds,
+                                  figures.triangulate_seconds};
   ranks.reduce(phases, Reduction::kMost);
   figures.read_seconds = phases[0];
-  figures.triangulate_seconds = phases[1];
+  figures.divide_seconds = phases[1];
+  figures.triangulate_seconds = phases[2];
 }
 
 double ratio(std::uint64_t part, std::uint64_t whole) {

@@ -178,13 +178,13 @@ int run(const RenderCommandOptions& options) {
   feed_terrain(options, use,
                {.budget = budget, .scratch = *scratch, .progress = progress, .threads = threads},
                statistics);
-  progress.begin("draw", "");
+  progress.begin("draw", "pixels");
   std::optional<Picture> picture;
   with_threads(threads, [&] { picture = use.scene().draw(); });
   if (!options.transparent) picture->put_onto(kWhite);
   statistics.output_bytes = write_png(disk(), options.output, picture->columns(), picture->rows(),
                                       picture->bytes(), options.transparent);
-  statistics.write_seconds = progress.end();
+  statistics.write_seconds = progress.end(std::uint64_t{picture->columns()} * picture->rows());
   statistics.stream.left_out += use.scene().left_out();
   statistics.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

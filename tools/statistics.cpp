@@ -64,6 +64,7 @@ Json to_json(const RunStatistics& statistics) {
   json["peak_rss_bytes"] = peak_rss_bytes();
   json["seconds"] = statistics.seconds;
   json["phases"] = {{"read", stream.read_seconds},
+                    {"divide", stream.divide_seconds},
                     {"triangulate", stream.triangulate_seconds},
                     {"write", statistics.write_seconds}};
   Json stages;
@@ -77,6 +78,7 @@ Json to_json(const RunStatistics& statistics) {
   json["leaf_size"] = stream.leaf_size;
   json["spilled_points"] = stream.spilled_points;
   json["spilled_bytes"] = stream.spilled_bytes;
+  json["divided_points"] = stream.divided_points;
   json["final"] = {{"in_leaves", stream.final_in_leaves},
                    {"in_tiles", stream.final_in_tiles},
                    {"by_level", stream.final_by_level}};

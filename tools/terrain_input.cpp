@@ -83,7 +83,7 @@ class TerrainFeed {
     if (kind == InputKind::kMeshStream) {
       feed_stream(input);
     } else {
-      feed_whole(read_mesh(input, path, options_.mesh_format));
+      feed_whole(read_whole(input));
     }
     return true;
   }
@@ -149,11 +149,7 @@ class TerrainFeed {
     }
     Box<2> extent;
     if (use_.wants_extent()) {
-      tools_.progress.begin("extent", "");
-      const auto reader = open_mesh_stream_reader(*files, path, options_.mesh_format);
-      const bool needed = reader->header().dimension == 2;
-      for (MeshBlock block; needed && reader->read(block);) expand(extent, block.vertices);
-      tools_.progress.end();
+      find_extent(*open_mesh_stream_reader(*files, path, options_.mesh_format), extent);
       files = &disk();
     }
     const auto reader = open_mesh_stream_reader(*files, path, options_.mesh_format);
@@ -164,10 +160,21 @@ class TerrainFeed {
     use_.extent_known(extent);
     tools_.progress.begin(simplices(), simplices());
     with_threads(tools_.threads, [&] { pass_on(*reader, writer); });
-    statistics_.stream.triangulate_seconds = tools_.progress.end();
+    statistics_.stream.triangulate_seconds = tools_.progress.end(reader->totals().simplices);
     statistics_.stream.totals = reader->totals();
     statistics_.on_lattice = header.lattice.has_value();
     writer.finish(reader->totals());
+  }
+
+  void find_extent(MeshStreamReader& reader, Box<2>& extent) {
+    if (reader.header().dimension != 2) return;
+    tools_.progress.begin("extent", "vertices");
+    std::uint64_t vertices = 0;
+    for (MeshBlock block; reader.read(block);) {
+      expand(extent, block.vertices);
+      tools_.progress.update(vertices += block.vertices.size(), reader.fraction_read());
+    }
+    tools_.progress.end(vertices);
   }
 
   /// Several blocks are prepared at a time.
@@ -192,6 +199,13 @@ class TerrainFeed {
            tools_.progress.update(done += slots[slot].triangles, reader.fraction_read());
          }}};
     run_pipeline(slots.size(), source, stages);
+  }
+
+  Mesh read_whole(ProbedInput& input) {
+    tools_.progress.begin("read mesh", "simplices");
+    Mesh mesh = read_mesh(input, input.path(), options_.mesh_format);
+    tools_.progress.end(mesh.corners.size() / mesh.corners_per_simplex());
+    return mesh;
   }
 
   void feed_whole(Mesh mesh) {
@@ -223,7 +237,7 @@ class TerrainFeed {
       writer.prepare(block);
       writer.write(std::move(block));
     });
-    statistics_.stream.triangulate_seconds = tools_.progress.end();
+    statistics_.stream.triangulate_seconds = tools_.progress.end(totals.simplices);
     writer.finish(totals);
   }
 
@@ -242,7 +256,12 @@ class TerrainFeed {
   std::unique_ptr<ScratchFile> copy_to_scratch(InputFile& input) {
     auto copy = tools_.scratch.create("mesh");
     std::vector<std::byte> piece(std::size_t{1} << 20);
-    while (const std::size_t got = input.read(piece)) copy->append(std::span(piece).first(got));
+    tools_.progress.begin("copy", "bytes");
+    while (const std::size_t got = input.read(piece)) {
+      copy->append(std::span(piece).first(got));
+      tools_.progress.update(copy->size(), std::nullopt);
+    }
+    tools_.progress.end(copy->size());
     return copy;
   }
 

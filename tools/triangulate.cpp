@@ -162,8 +162,7 @@ int run(const TriangulateOptions& options, const MeshTarget& target, RunStatisti
   const auto finish = [&](const auto& finish_output) {
     progress.begin("write", D == 2 ? "triangles" : "tetrahedra");
     statistics.output_bytes = finish_output();
-    progress.update(statistics.stream.totals.simplices, 1);
-    statistics.write_seconds = progress.end();
+    statistics.write_seconds = progress.end(statistics.stream.totals.simplices);
   };
   if (ranks != nullptr) {
     const auto output = open_mesh_output(disk(), target, header, *scratch, *ranks);

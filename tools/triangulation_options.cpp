@@ -89,7 +89,7 @@ StreamOptions stream_options(const TriangulationOptions& options, Progress& prog
   stream.heights = height_choice_by_name(options.duplicates);
   stream.max_edge = parse_max_edge(options.max_edge);
   stream.begin_phase = [&progress](const char* phase) { progress.begin(phase, "points"); };
-  stream.end_phase = [&progress] { progress.end(); };
+  stream.end_phase = [&progress](std::uint64_t points) { progress.end(points); };
   stream.progress = [&progress](std::uint64_t points, std::optional<double> fraction) {
     progress.update(points, fraction);
   };

@@ -10,13 +10,13 @@
 namespace spillway {
 
 PieceTable::PieceTable(PointSource& source, const distributed::Ranks& ranks, ScratchFolder& scratch,
-                       StageTimes& times)
+                       StageTimes& times, const std::function<void()>& progress)
     : source_(source),
       ranks_(ranks),
       times_(times),
       numbered_(source.thins() || source.numbers_pieces()) {
   choose_owners();
-  store_own_inputs(scratch);
+  store_own_inputs(scratch, progress);
 }
 
 /// Until all is stored, `end` is the number of pieces of an input alone.
@@ -36,7 +36,7 @@ void PieceTable::choose_owners() {
   }
 }
 
-void PieceTable::store_own_inputs(ScratchFolder& scratch) {
+void PieceTable::store_own_inputs(ScratchFolder& scratch, const std::function<void()>& progress) {
   stored_.resize(inputs_.size());
   std::vector<std::uint64_t> pieces(inputs_.size());
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
@@ -44,7 +44,7 @@ void PieceTable::store_own_inputs(ScratchFolder& scratch) {
       pieces[i] = ranks_.rank() == 0 ? inputs_[i].end : 0;
     } else if (*inputs_[i].owner == ranks_.rank()) {
       if (!source_.thins()) source_.begin_piece(inputs_[i].number, std::nullopt);
-      store(stored_[i], scratch);
+      store(stored_[i], scratch, progress);
       pieces[i] = stored_[i].size();
     }
   }
@@ -54,7 +54,8 @@ void PieceTable::store_own_inputs(ScratchFolder& scratch) {
 }
 
 /// Reads an input to its end. Unless numbered_, a piece's indices begin with 0.
-void PieceTable::store(std::vector<Stored>& pieces, ScratchFolder& scratch) {
+void PieceTable::store(std::vector<Stored>& pieces, ScratchFolder& scratch,
+                       const std::function<void()>& progress) {
   SourcePiece batch;
   PointBlock block;
   std::vector<std::byte> bytes;
@@ -72,6 +73,7 @@ void PieceTable::store(std::vector<Stored>& pieces, ScratchFolder& scratch) {
     if (!file_) file_ = scratch.create("input");
     pieces.push_back({file_->size(), bytes.size(), more});
     file_->append(bytes);
+    progress();
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -18,9 +19,10 @@ namespace spillway {
 /// its scratch folder, when the table is made.
 class PieceTable {
  public:
-  /// Collective. The points of `source` have an index. All must outlive it.
+  /// Collective. The points of `source` have an index. All must outlive it. `progress` is called
+  /// while inputs are read from front to back.
   PieceTable(PointSource& source, const distributed::Ranks& ranks, ScratchFolder& scratch,
-             StageTimes& times);
+             StageTimes& times, const std::function<void()>& progress);
 
   /// Number of pieces.
   [[nodiscard]] std::uint64_t size() const { return inputs_.back().end; }
@@ -54,8 +56,9 @@ class PieceTable {
   [[nodiscard]] const Input& input_of(std::uint64_t piece) const;
   [[nodiscard]] std::uint64_t begin_of(const Input& input) const;
   void choose_owners();
-  void store_own_inputs(ScratchFolder& scratch);
-  void store(std::vector<Stored>& pieces, ScratchFolder& scratch);
+  void store_own_inputs(ScratchFolder& scratch, const std::function<void()>& progress);
+  void store(std::vector<Stored>& pieces, ScratchFolder& scratch,
+             const std::function<void()>& progress);
 
   PointSource& source_;
   const distributed::Ranks& ranks_;

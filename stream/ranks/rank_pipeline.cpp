@@ -61,6 +61,7 @@ class RankRun {
   RankMesh run() {
     with_threads(engine_.threads(), [&] {
       const RankDivision division = read();
+      divide_tiles();
       options_.begin_phase("triangulate");
       const std::optional<TileNode<D>> own = engine_.nodes();
       const RankTree<D> tree(division, own, ranks_);
@@ -70,7 +71,7 @@ class RankRun {
       budget_.set_enough(enough_memory<D>(all.points) + all.points * kMergedBytes);
       if (tree.own_node()) triangulate(tree);
       collect(tree);
-      options_.end_phase();
+      options_.end_phase(result_.totals.points);
     });
     release_base_case_memory();
     return std::move(result_);
@@ -90,7 +91,9 @@ class RankRun {
 
   RankDivision read() {
     options_.begin_phase("read");
-    PieceTable pieces(source_, ranks_, scratch_, engine_.times());
+    // How much of the reading it is that comes before the exchange is not known.
+    PieceTable pieces(source_, ranks_, scratch_, engine_.times(),
+                      [&] { options_.progress(source_.points_read(), std::nullopt); });
     const RankDivision division = divide_among_ranks(pieces, D, ranks_);
     const std::uint64_t sent_before = distributed::traffic().bytes;
     const ExchangeRound most = round();
@@ -111,8 +114,21 @@ class RankRun {
         count_through(index, before);
       });
     }
-    options_.end_phase();
+    options_.end_phase(of_all_ranks(source_.points_read()));
     return division;
+  }
+
+  /// A phase of all ranks if any has tiles that are too large.
+  void divide_tiles() {
+    if (of_all_ranks(engine_.points_to_divide()) == 0) return;
+    options_.begin_phase("divide");
+    options_.end_phase(of_all_ranks(engine_.divide_large()));
+  }
+
+  /// The sum of what each rank counts. Collective.
+  [[nodiscard]] std::uint64_t of_all_ranks(std::uint64_t count) const {
+    ranks_.reduce(std::span(&count, 1), Reduction::kSum);
+    return count;
   }
 
   /// What a round may have; the same at all ranks.

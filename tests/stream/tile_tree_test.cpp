@@ -61,6 +61,8 @@ struct Filled {
   std::size_t largest = 0;
   std::size_t tiles = 0;
   double writes = 0;  ///< of a point, on average
+  std::uint64_t to_divide = 0;
+  std::uint64_t divided = 0;
 };
 
 Filled fill(const Points& points, Knowledge known, unsigned threads = 2) {
@@ -83,6 +85,18 @@ Filled fill(const Points& points, Knowledge known, unsigned threads = 2) {
       next += count;
       return count > 0;
     });
+    std::uint64_t told = 0;
+    double share = 0;
+    filled.to_divide = tree.points_to_divide();
+    filled.divided = tree.divide_large([&](std::uint64_t dealt, double fraction) {
+      EXPECT_GE(dealt, told);
+      EXPECT_GE(fraction, share);
+      EXPECT_LE(fraction, 1);
+      told = dealt;
+      share = fraction;
+    });
+    EXPECT_LE(told, filled.divided);
+    EXPECT_EQ(tree.points_to_divide(), 0U);
     const auto visit = [&](const auto& self, const TileNode<2>& node) -> void {
       for (const auto& child : node.children) self(self, child);
       if (!node.children.empty()) return;
@@ -114,6 +128,7 @@ TEST_P(TileTreeOfOrder, KeepsEveryPointInTilesOfTheCapacity) {
     const Filled filled = fill(points, known);
     EXPECT_LE(filled.largest, kCapacity);
     EXPECT_LE(filled.writes, 2.0);
+    EXPECT_GE(filled.divided, filled.to_divide);
     Points expected = points;
     std::sort(expected.begin(), expected.end());
     EXPECT_TRUE(filled.points == expected);
@@ -129,6 +144,12 @@ TEST(TileTree, WritesEveryPointOnceWhenTheHeaderTellsTheTruth) {
     EXPECT_LE(fill(make_points(order, 300'000), {true, true}).writes, 1.02)
         << static_cast<int>(order);
   }
+}
+
+TEST(TileTree, DividesTilesAgainThatFillWithoutNotice) {
+  const Filled filled = fill(make_points(Order::kSorted, 300'000), {});
+  EXPECT_GT(filled.to_divide, kCapacity);
+  EXPECT_EQ(fill(make_points(Order::kRandom, 5'000), {}).divided, 0U);
 }
 
 TEST(TileTree, WritesNothingIfEverythingFits) {
@@ -158,6 +179,7 @@ TEST(TileTree, SurvivesAHeaderThatLies) {
       block.points = given ? Points() : points;
       return !std::exchange(given, true);
     });
+    tree.divide_large([](std::uint64_t, double) {});
     ASSERT_TRUE(tree.nodes<2>());
     EXPECT_EQ(tree.nodes<2>()->points, points.size());
   });
@@ -176,6 +198,7 @@ TEST(TileTree, SaysWhenTheDiskIsFull) {
         block.points = given ? Points() : points;
         return !std::exchange(given, true);
       });
+      tree.divide_large([](std::uint64_t, double) {});
       FAIL() << "the cap was not kept";
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("--max-tmp"), std::string::npos) << error.what();

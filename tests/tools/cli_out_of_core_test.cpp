@@ -163,7 +163,7 @@ TEST_F(OutOfCore, StatsTellWhatWasSpilledAndWhatStayed) {
                             "merge", "encode", "write"}) {
     EXPECT_GT(stats["stages"][stage], 0.0) << stage;
   }
-  for (const char* phase : {"read", "triangulate", "write"}) {
+  for (const char* phase : {"read", "divide", "triangulate", "write"}) {
     EXPECT_TRUE(stats["phases"].contains(phase)) << phase;
   }
 }

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "tests/tools/command_runner.h"
+#include "tests/tools/progress_lines.h"
 
 namespace spillway::test {
 namespace {
@@ -69,6 +70,45 @@ class RanksOfTheCommand : public testing::Test {
 
   Workspace work_;
 };
+
+TEST_F(RanksOfTheCommand, EndEachPhaseOfTheProgressWithTheTotalsOfAll) {
+  work_.succeed(
+      "spillway generate -q terrain -n 200000 -o in.las\n"
+      "spillway convert -q in.las -o in.txt");
+  const auto run = [&](const std::string& command) {
+    SCOPED_TRACE(command);
+    const Result result = work_.run(command + " --stats run.json --progress json");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return ended_phases(result.err);
+  };
+  using Phases = std::vector<EndedPhase>;
+  for (const int count : {1, 2, 3}) {
+    for (const std::string arguments : {"in.las -o a.spm", "in.las --every 2 -o a.spm",
+                                        "in.las --thin 4 -o a.spm", "- -o a.spm < in.txt"}) {
+      const Phases phases = run(ranks(count, "triangulate " + arguments));
+      const auto stats = nlohmann::json::parse(work_.read("run.json"));
+      EXPECT_EQ(phases, (Phases{{"read", 200000, "points"},
+                                {"triangulate", stats["points"], "points"},
+                                {"write", stats["simplices"], "triangles"}}))
+          << count << ' ' << arguments;
+    }
+  }
+  work_.succeed("spillway generate -q terrain -n 2500000 -o many.spp");
+  const Phases divided =
+      run(ranks(2, "triangulate - --tile 20000 --memory 32M -o a.spm < many.spp"));
+  const auto stats = nlohmann::json::parse(work_.read("run.json"));
+  EXPECT_GT(stats["divided_points"], 0);
+  EXPECT_EQ(divided, (Phases{{"read", 2500000, "points"},
+                             {"divide", stats["divided_points"], "points"},
+                             {"triangulate", 2500000, "points"},
+                             {"write", stats["simplices"], "triangles"}}));
+  const Phases dem = run(ranks(2, "dem in.las --resolution 5 -o a.tif"));
+  const auto raster = nlohmann::json::parse(work_.read("run.json"))["raster"];
+  const std::uint64_t pixels = raster["columns"].get<int>() * raster["rows"].get<int>();
+  EXPECT_EQ(dem, (Phases{{"read", 200000, "points"},
+                         {"triangulate", 200000, "points"},
+                         {"write", pixels, "pixels"}}));
+}
 
 TEST_F(RanksOfTheCommand, GiveTheSameMeshForAnyNumberOfThem) {
   work_.succeed("spillway generate -q terrain -n 300000 -o in.las");

@@ -28,6 +28,9 @@ spillway_command_test(cli_out_of_core_fault_tests fault
 spillway_command_test(cli_input_tests cli
   tools/cli_filter_test.cpp tools/cli_inputs_test.cpp)
 
+spillway_command_test(cli_progress_tests cli
+  tools/cli_progress_test.cpp tools/progress_lines.cpp)
+
 spillway_command_test(cli_batch_tests cli
   tools/cli_batch_test.cpp tools/cli_contour_test.cpp)
 
@@ -40,5 +43,5 @@ spillway_command_test(cli_render_tests cli
 target_link_libraries(cli_render_tests PRIVATE PNG::PNG)
 
 spillway_command_test(cli_ranks_tests mpi
-  tools/cli_ranks_test.cpp)
+  tools/cli_ranks_test.cpp tools/progress_lines.cpp)
 target_compile_definitions(cli_ranks_tests PRIVATE SPILLWAY_MPIRUN="${MPIEXEC_EXECUTABLE}")

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <sstream>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include "src/error.h"
@@ -10,6 +14,7 @@
 #include "tools/core_simulation.h"
 #include "tools/facet_count.h"
 #include "tools/json_text.h"
+#include "tools/progress.h"
 #include "tools/progress_line.h"
 
 namespace spillway {
@@ -83,6 +88,30 @@ TEST(ProgressJson, LeavesUnknownsNull) {
   EXPECT_TRUE(json["fraction"].is_null());
   EXPECT_TRUE(json["seconds_left"].is_null());
   EXPECT_EQ(json["rate"], 5.0);
+}
+
+TEST(ProgressOfThreads, TheMostCountsInWhateverOrderTheySayIt) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress(ProgressStyle::kJson, false, false);
+    progress.begin("triangulate", "points");
+    progress.update(200, 0.5);
+    progress.update(100, 0.25);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+    progress.end(400);
+  }
+  std::istringstream lines(testing::internal::GetCapturedStderr());
+  std::string line;
+  ASSERT_TRUE(std::getline(lines, line));
+  const auto state = nlohmann::json::parse(line);
+  EXPECT_EQ(state["done"], 200);
+  EXPECT_EQ(state["fraction"], 0.5);
+  EXPECT_EQ(state["finished"], false);
+  ASSERT_TRUE(std::getline(lines, line));
+  const auto last = nlohmann::json::parse(line);
+  EXPECT_EQ(last["done"], 400);
+  EXPECT_EQ(last["fraction"], 1);
+  EXPECT_EQ(last["finished"], true);
 }
 
 TEST(JsonText, BytesThatAreNoTextDoNotFail) {

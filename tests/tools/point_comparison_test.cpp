@@ -40,7 +40,8 @@ CheckReport compare(const Points& vertices, const Points& input, int dimension) 
   for (const Point<3>& vertex : vertices) comparison.add_vertex(vertex);
   PointSource source(disk(), {path}, {.dimension = dimension, .index = true});
   CheckReport report;
-  comparison.compare(source, {}, report);
+  Progress silent(ProgressStyle::kNone, true, false);
+  comparison.compare(source, {}, report, silent);
   ::unlink(path.c_str());
   return report;
 }
