@@ -239,6 +239,11 @@ std::vector<PointHeader> PointSource::headers() const {
   return headers;
 }
 
+bool PointSource::has_heights() const {
+  return std::ranges::any_of(
+      inputs_, [](const Input& input) { return input.facts.header.coordinates != 2; });
+}
+
 bool PointSource::has_attributes() const {
   return options_.reader.attributes && std::ranges::any_of(inputs_, [](const Input& input) {
            return input.facts.header.point_format >= 0;

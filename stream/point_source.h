@@ -112,6 +112,8 @@ class PointSource {
   [[nodiscard]] const std::string& crs() const { return crs_; }
   /// Of all inputs, in their order.
   [[nodiscard]] std::vector<PointHeader> headers() const;
+  /// Whether the points of any input have z.
+  [[nodiscard]] bool has_heights() const;
   /// Whether z is on lattice(), too: an integer, and not an output coordinate.
   [[nodiscard]] bool heights_on_lattice() const { return heights_on_lattice_; }
   /// Whether blocks come with attributes: they were asked for, and an input has them. A block of an

@@ -32,6 +32,7 @@ constexpr const char* kExamples =
     "Exit code 0: proved. 1: refuted, with the first offending simplices, or not readable.";
 
 struct CheckCommandOptions {
+  const CLI::App* app = nullptr;
   std::string mesh;
   std::string mesh_format;
   std::vector<std::string> points;
@@ -171,6 +172,9 @@ std::string text_report(const Outcome& outcome, const CheckCommandOptions& optio
 }
 
 int run(const CheckCommandOptions& options) {
+  if (options.points.empty()) {
+    refuse_given(*options.app, kInputOptionNames, "without --points");
+  }
   Progress progress = make_progress(options.report, options.mesh == "-");
   ProbedInput input(disk(), options.mesh);
   const Outcome outcome = is_stream(input, options) ? check_stream(input, options, progress)
@@ -184,6 +188,7 @@ int run(const CheckCommandOptions& options) {
 Subcommand add_check(CLI::App& root) {
   const auto options = std::make_shared<CheckCommandOptions>();
   CLI::App* app = root.add_subcommand("check", "Prove that a mesh is a Delaunay triangulation");
+  options->app = app;
   app->footer(kExamples);
   app->add_option("MESH", options->mesh, "Mesh file; - is a mesh stream from a pipe")->required();
   app->add_option("--points", options->points,

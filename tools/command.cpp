@@ -54,16 +54,19 @@ UsageError usage_error(const CLI::App& root, const CLI::ParseError& error) {
   for (const OptionInfo& option : options_of(app)) {
     if (!option.positional) names.insert(names.end(), option.names.begin(), option.names.end());
   }
-  std::string meant;
-  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
-    for (const std::string& word : app.remaining()) {
-      if (meant.empty() && word.starts_with("--")) {
-        meant = suggestion(word.substr(0, word.find('=')), names);
-      }
+  // An option that there is not may well be the reason why another one seems to be missing.
+  for (const std::string& word : root.remaining(true)) {
+    if (word.size() < 2 || word.front() != '-') continue;
+    const std::string name = word.substr(0, word.find('='));
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
+      return UsageError(
+          fmt::format("{} is an option of {}: give it behind that word", name, app.get_name()));
     }
+    const std::string meant = name.starts_with("--") ? suggestion(name, names) : "";
+    return UsageError(fmt::format("{} has no option {}{} (see `spillway {} --help`)",
+                                  app.get_name(), name, meant, app.get_name()));
   }
-  return UsageError(
-      fmt::format("{}{} (see `spillway {} --help`)", error.what(), meant, app.get_name()));
+  return UsageError(fmt::format("{} (see `spillway {} --help`)", error.what(), app.get_name()));
 }
 
 /// All options and subcommands.

@@ -74,6 +74,27 @@ std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options)
   return make_scratch_folder(parent, cap);
 }
 
+std::vector<std::string_view> given_options(const CLI::App& app,
+                                            std::span<const std::string_view> options) {
+  std::vector<std::string_view> given;
+  for (const std::string_view name : options) {
+    const CLI::Option* const option = app.get_option_no_throw(std::string(name));
+    if (option != nullptr && option->count() > 0) given.push_back(name);
+  }
+  return given;
+}
+
+void refuse_given(const CLI::App& app, std::span<const std::string_view> options,
+                  std::string_view where) {
+  std::vector<std::string_view> given = given_options(app, options);
+  if (given.empty()) return;
+  const std::string_view last = given.back();
+  given.pop_back();
+  throw UsageError(fmt::format("{}{}{} {} no effect {}: leave {} away", fmt::join(given, ", "),
+                               given.empty() ? "" : " and ", last, given.empty() ? "has" : "have",
+                               where, given.empty() ? "it" : "them"));
+}
+
 CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,
                         const std::vector<std::string>& words, const std::string& description) {
   CLI::Option* option = app.add_option(name, value, description);

@@ -4,7 +4,9 @@
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +51,19 @@ std::uint64_t memory_limit(const MemoryOptions& options);
 /// A scratch folder as --tmpdir and --max-tmp ask for it. Throws UsageError, and Error if the
 /// folder of --tmpdir cannot be written to.
 std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options);
+
+/// Those of these options that were given to the subcommand. What it does not have is never given.
+std::vector<std::string_view> given_options(const CLI::App& app,
+                                            std::span<const std::string_view> options);
+
+/// Throws UsageError if any of these options was given to the subcommand: "--id and --every have no
+/// effect WHERE: leave them away".
+void refuse_given(const CLI::App& app, std::span<const std::string_view> options,
+                  std::string_view where);
+inline void refuse_given(const CLI::App& app, std::initializer_list<std::string_view> options,
+                         std::string_view where) {
+  refuse_given(app, std::span(options.begin(), options.size()), where);
+}
 
 /// An option that takes one of some words. The words become its value name, separated by `|`, which
 /// is also where completion and manual find them.

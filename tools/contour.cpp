@@ -61,9 +61,7 @@ std::string driver_of(const std::string& path) {
 
 Levels levels_of(const ContourCommandOptions& options) {
   if (!options.levels.empty()) {
-    if (options.interval || options.base != 0) {
-      throw UsageError("--levels names all heights: leave --interval and --base away");
-    }
+    refuse_given(*options.app, {"--interval", "--base"}, "with --levels, which names all heights");
     return Levels::of_list(options.levels);
   }
   if (!options.interval) {

@@ -3,11 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -19,6 +17,7 @@
 #include "tools/command_options.h"
 #include "tools/convert_meshes.h"
 #include "tools/convert_points.h"
+#include "tools/input_list.h"
 #include "tools/input_options.h"
 
 namespace spillway {
@@ -35,6 +34,7 @@ constexpr const char* kExamples =
     "a whole.";
 
 struct ConvertOptions {
+  const CLI::App* app = nullptr;
   std::vector<std::string> inputs;
   InputOptions input;
   std::string mesh_format;
@@ -50,16 +50,6 @@ std::vector<std::string> output_format_names() {
   const std::vector<std::string> meshes = mesh_format_names();
   names.insert(names.end(), meshes.begin(), meshes.end());
   return names;
-}
-
-/// Whether an argument is a list, a folder or a pattern.
-bool stands_for_several(const std::string& argument) {
-  std::error_code unknown;
-  const std::filesystem::path path(argument);
-  return (argument.size() > 1 && argument.front() == '@') ||
-         std::filesystem::is_directory(path, unknown) ||
-         (argument.find_first_of("*?[") != std::string::npos &&
-          !std::filesystem::exists(path, unknown));
 }
 
 /// Several inputs, and what stands for several, are points.
@@ -126,11 +116,9 @@ void run_mesh(const ConvertOptions& options, ProbedInput& input, InputKind kind,
   if (options.inputs.size() > 1) {
     throw UsageError("several meshes do not become one: convert them one by one");
   }
-  if (options.input.filters() || !options.lattice.empty() || !options.output.las_version.empty()) {
-    throw UsageError(fmt::format(
-        "{}: this is a mesh, and filters, --scale, --offset and --las-version are for points",
-        input.path()));
-  }
+  std::vector<std::string_view> of_points(kInputOptionNames.begin(), kInputOptionNames.end());
+  of_points.insert(of_points.end(), {"--scale", "--offset", "--las-version"});
+  refuse_given(*options.app, of_points, fmt::format("on {}, which is a mesh", input.path()));
   check_mesh_output(options);
   convert_mesh(input, kind, {options.mesh_format, options.output.path, options.output.format},
                scratch, progress);
@@ -177,6 +165,7 @@ void add_axes_option(CLI::App& app, const std::string& name, std::vector<double>
 Subcommand add_convert(CLI::App& root) {
   const auto options = std::make_shared<ConvertOptions>();
   CLI::App* app = root.add_subcommand("convert", "Write points or a mesh in another format");
+  options->app = app;
   app->footer(kExamples);
   app->add_option(
          "IN", options->inputs,

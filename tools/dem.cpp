@@ -61,10 +61,6 @@ class Run : public TerrainUse {
     statistics_.output = options.output;
     statistics_.output_format = "tif";
     statistics_.memory_limit = limit_;
-    const bool lit = options.azimuth_option->count() + options.altitude_option->count() > 0;
-    if (lit && std::ranges::count(dem_options_.products, DemProduct::kHillshade) == 0) {
-      progress_.say("--azimuth and --altitude are for hillshade, which is not among the products");
-    }
   }
 
   int run() {

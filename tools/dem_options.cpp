@@ -52,6 +52,18 @@ std::vector<DemProduct> parse_products(const std::string& text) {
   return products;
 }
 
+void check_products(const CLI::App& app, const std::vector<DemProduct>& products) {
+  const auto has = [&](DemProduct product) {
+    return std::find(products.begin(), products.end(), product) != products.end();
+  };
+  if (!has(DemProduct::kHillshade)) {
+    refuse_given(app, {"--azimuth", "--altitude"}, "without hillshade among the products");
+  }
+  if (products == std::vector{DemProduct::kDensity}) {
+    refuse_given(app, {"--duplicates", "--max-edge"}, "on density, which counts vertices");
+  }
+}
+
 Box<2> parse_raster_bounds(const std::string& text) {
   const Box<3> box = parse_bounds(text);
   if (std::isfinite(box.lo[2]) || !(box.lo[0] < box.hi[0] && box.lo[1] < box.hi[1])) {
@@ -68,6 +80,7 @@ void add_dem_options(CLI::App& app, DemCommandOptions& options) {
   // These are filters of points there; here they say what the raster is like.
   app.remove_option(app.get_option("--bounds"));
   app.remove_option(app.get_option("--resolution"));
+  options.own_options = {"--bounds", "--resolution"};
   const std::string group = "Raster";
   app.add_option("--resolution", options.resolution, "Side of a pixel, in units of x and y")
       ->type_name("R")
@@ -78,24 +91,24 @@ void add_dem_options(CLI::App& app, DemCommandOptions& options) {
   app.add_flag("--align", options.align, "Put edges of pixels on multiples of R")->group(group);
   app.add_option("--like", options.like, "Put pixels where this raster has them")
       ->type_name("FILE")
-      ->group(group);
+      ->group(group)
+      // Its coordinate system is compared with that of a mesh, too.
+      ->each([&options](const std::string&) { options.own_options.emplace_back("--force-crs"); });
   app.add_option("--product", options.products,
                  "height, slope, aspect, hillshade, density; several, with commas, become bands")
       ->type_name("LIST")
       ->capture_default_str()
       ->group(group);
-  options.azimuth_option =
-      app.add_option("--azimuth", options.light.azimuth, "Where a hillshade's light comes from")
-          ->type_name("DEGREES")
-          ->check(CLI::Range(0.0, 360.0).description(""))
-          ->capture_default_str()
-          ->group(group);
-  options.altitude_option =
-      app.add_option("--altitude", options.light.altitude, "Its height above the horizon")
-          ->type_name("DEGREES")
-          ->check(CLI::Range(0.0, 90.0).description(""))
-          ->capture_default_str()
-          ->group(group);
+  app.add_option("--azimuth", options.light.azimuth, "Where a hillshade's light comes from")
+      ->type_name("DEGREES")
+      ->check(CLI::Range(0.0, 360.0).description(""))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--altitude", options.light.altitude, "Its height above the horizon")
+      ->type_name("DEGREES")
+      ->check(CLI::Range(0.0, 90.0).description(""))
+      ->capture_default_str()
+      ->group(group);
   app.add_option("--nodata", options.nodata, "Value of pixels without data")
       ->type_name("V")
       ->capture_default_str()
@@ -118,15 +131,13 @@ DemOptions dem_options(const DemCommandOptions& options, RasterGrid& like) {
     if (!options.bounds.empty()) dem.grid.bounds = parse_raster_bounds(options.bounds);
     dem.grid.align = options.align;
   } else {
-    if (!options.resolution.empty() || !options.bounds.empty() || options.align) {
-      throw UsageError(
-          "--like tells where all pixels lie: leave --resolution, --bounds and --align "
-          "away");
-    }
+    refuse_given(*options.app, {"--resolution", "--bounds", "--align"},
+                 "with --like, which tells where all pixels lie");
     like = gdal().read_raster_grid(options.like);
     dem.grid.given = like.pixels;
   }
   dem.products = parse_products(options.products);
+  check_products(*options.app, dem.products);
   dem.light = options.light;
   dem.nodata = parse_nodata(options.nodata);
   return dem;

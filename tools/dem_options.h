@@ -22,8 +22,6 @@ struct DemCommandOptions : TerrainOptions {
   std::string compression = "deflate";
   bool cloud_optimized = false;
   Light light;
-  const CLI::Option* azimuth_option = nullptr;
-  const CLI::Option* altitude_option = nullptr;
 };
 
 void add_dem_options(CLI::App& app, DemCommandOptions& options);

@@ -29,6 +29,7 @@ constexpr const char* kExamples =
 constexpr std::size_t kBlockSize = 65536;  // points made and written at a time
 
 struct GenerateOptions {
+  const CLI::App* app = nullptr;
   std::string family;
   std::string count;
   std::string dimension = "2";
@@ -44,6 +45,12 @@ int run(const GenerateOptions& options) {
   what.count = parse_point_count(options.count);
   what.dimension = options.dimension == "3" ? 3 : 2;
   what.seed = options.seed;
+  if (what.family == Family::kTerrain) {
+    refuse_given(*options.app, {"--dim"}, "on terrain, which always has z");
+  }
+  if (what.family == Family::kLattice) {
+    refuse_given(*options.app, {"--seed"}, "on lattice, of which there is only one");
+  }
   const auto generator = make_generator(what);
 
   PointWriterOptions how;
@@ -80,6 +87,7 @@ int run(const GenerateOptions& options) {
 Subcommand add_generate(CLI::App& root) {
   const auto options = std::make_shared<GenerateOptions>();
   CLI::App* app = root.add_subcommand("generate", "Make points to try things with");
+  options->app = app;
   app->footer(
       fmt::format("FAMILY is one of {}.\n\n{}", fmt::join(family_names(), ", "), kExamples));
   add_choice(*app, "FAMILY", options->family, family_names(), "What the points look like")

@@ -37,6 +37,7 @@ constexpr const char* kExamples =
     "All points are read, so extents and counts are exact, whatever headers say.";
 
 struct InfoOptions {
+  const CLI::App* app = nullptr;
   std::vector<std::string> files;
   bool json = false;
   InputOptions input;
@@ -181,11 +182,13 @@ Json describe_mesh_stream(ProbedInput& input, Progress& progress) {
   return json;
 }
 
-Json describe_input(const std::string& path, const InfoOptions& options, Progress& progress) {
-  ProbedInput input(disk(), path);
-  if (path == "-" && !options.input.format.empty())
-    return describe_points(input, options, progress);
-  switch (kind_of_input(input)) {
+InputKind kind_of(ProbedInput& input, const InfoOptions& options) {
+  const bool told = input.path() == "-" && !options.input.format.empty();
+  return told ? InputKind::kPoints : kind_of_input(input);
+}
+
+Json describe_input(ProbedInput& input, const InfoOptions& options, Progress& progress) {
+  switch (kind_of(input, options)) {
     case InputKind::kMesh:
       return describe_mesh(input, progress);
     case InputKind::kMeshStream:
@@ -240,9 +243,9 @@ void add_common_keys(double seconds, Json& json) {
   json["seconds"] = seconds;
 }
 
-void tell(const std::string& path, const InfoOptions& options, Progress& progress) {
+void tell(ProbedInput& input, const InfoOptions& options, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  Json json = describe_input(path, options, progress);
+  Json json = describe_input(input, options, progress);
   if (options.json) {
     add_common_keys(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
                     json);
@@ -250,15 +253,44 @@ void tell(const std::string& path, const InfoOptions& options, Progress& progres
   write_text("-", options.json ? json_text(json) + "\n" : describe(json));
 }
 
+/// Whether an input is points, or cannot be looked at, which is told in its turn.
+bool may_be_points(ProbedInput& input, const InfoOptions& options) {
+  try {
+    return kind_of(input, options) == InputKind::kPoints;
+  } catch (const Error&) {
+    return true;
+  }
+}
+
+/// Throws UsageError if there are options for points, and no points. What is read of a pipe for
+/// that stays with `pipe`.
+void check_point_options(const std::vector<std::string>& paths, const InfoOptions& options,
+                         ProbedInput& pipe) {
+  const bool points = std::ranges::any_of(paths, [&](const std::string& path) {
+    if (path == pipe.path()) return may_be_points(pipe, options);
+    ProbedInput input(disk(), path);
+    return may_be_points(input, options);
+  });
+  if (points) return;
+  refuse_given(*options.app, kInputOptionNames,
+               paths.size() == 1 ? fmt::format("on {}, which is a mesh", paths.front())
+                                 : "on these files, which are meshes");
+}
+
 int run(const InfoOptions& options) {
   Progress progress = make_progress(
       options.report, std::count(options.files.begin(), options.files.end(), "-") > 0);
   const auto paths =
       expand_inputs(options.files, [&](std::string_view text) { progress.say(text); });
+  ProbedInput pipe(disk(), "-");
+  if (!given_options(*options.app, kInputOptionNames).empty()) {
+    check_point_options(paths, options, pipe);
+  }
   int exit_code = kExitDone;
   for (const std::string& path : paths) {
     try {
-      tell(path, options, progress);
+      ProbedInput file(disk(), path);
+      tell(path == pipe.path() ? pipe : file, options, progress);
     } catch (const UsageError&) {
       throw;
     } catch (const ClosedPipe&) {
@@ -278,12 +310,14 @@ int run(const InfoOptions& options) {
 Subcommand add_info(CLI::App& root) {
   const auto options = std::make_shared<InfoOptions>();
   CLI::App* app = root.add_subcommand("info", "Tell what point files and meshes hold");
+  options->app = app;
   app->footer(kExamples);
   app->add_option("FILE", options->files,
                   "Point files and meshes; - is points or a mesh stream from a pipe")
       ->required();
   app->add_flag("--json", options->json, "One JSON object a line for each file");
   add_input_options(*app, options->input);
+  app->remove_option(app->get_option("--force-crs"));  // each file is told of for itself
   add_memory_options(*app, options->memory);
   add_report_options(*app, options->report);
   return {app, [options] { return run(*options); }};

@@ -72,10 +72,15 @@ void append_matches(const std::string& pattern, Found& found) {
   for (const std::string& name : names) append_name(name, found);
 }
 
-void append(const std::string& argument, Found& found) {
+bool is_pattern(const std::string& argument) {
   std::error_code unknown;
-  const bool pattern = argument.find_first_of("*?[") != std::string::npos;
-  if (pattern && !fs::exists(argument, unknown)) {
+  return argument.find_first_of("*?[") != std::string::npos && !fs::exists(argument, unknown);
+}
+
+bool is_list(const std::string& argument) { return argument.size() > 1 && argument.front() == '@'; }
+
+void append(const std::string& argument, Found& found) {
+  if (is_pattern(argument)) {
     append_matches(argument, found);
   } else {
     append_name(argument, found);
@@ -115,11 +120,16 @@ void append_list(const std::string& list, Found& found) {
 
 }  // namespace
 
+bool stands_for_several(const std::string& argument) {
+  std::error_code unknown;
+  return is_list(argument) || is_pattern(argument) || fs::is_directory(argument, unknown);
+}
+
 std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments,
                                        const std::function<void(std::string_view)>& notice) {
   Found found;
   for (const std::string& argument : arguments) {
-    if (argument.size() > 1 && argument.front() == '@') {
+    if (is_list(argument)) {
       append_list(argument.substr(1), found);
     } else if (argument == "-") {
       found.files.push_back(argument);

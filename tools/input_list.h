@@ -7,6 +7,9 @@
 
 namespace spillway {
 
+/// Whether an argument is a list, a folder or a pattern, as below.
+bool stands_for_several(const std::string& argument);
+
 /// The files that arguments stand for, in the order of the arguments:
 /// - "-" and names of files: themselves, as is what names nothing that there is;
 /// - a folder: the point files in it, by extension, sorted; not those of folders below it, and not

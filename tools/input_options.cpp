@@ -211,8 +211,11 @@ std::unique_ptr<PointSource> make_point_source(FileSystem& files,
                 .attributes = use.attributes,
                 .resolution = options.resolution};
   how.filter = point_filter(options);
+  bool by_height = false;
   if (!options.thin.empty()) {
     how.thinning = parse_thinning(options.thin);
+    by_height =
+        how.thinning->choice == ThinChoice::kLowest || how.thinning->choice == ThinChoice::kHighest;
     how.thinning->memory = use.memory / kThinningShare;
     how.thinning->scratch = &scratch;
   }
@@ -233,6 +236,12 @@ std::unique_ptr<PointSource> make_point_source(FileSystem& files,
   auto source = use.ranks != nullptr ? open_shared_source(files, paths, how, *use.ranks)
                                      : std::make_unique<PointSource>(files, paths, std::move(how));
   if (options.resolution > 0) check_levels(source->headers(), progress);
+  if (by_height && !source->has_heights()) {
+    throw UsageError(
+        fmt::format("--thin {}: the points have no z to choose one by; thin them by "
+                    "first or center",
+                    options.thin));
+  }
   return source;
 }
 

@@ -2,6 +2,7 @@
 // What all subcommands that read points have in common: which inputs, and which of their points.
 
 #include <CLI/App.hpp>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -33,6 +34,11 @@ struct InputOptions {
   /// Whether any option asks for fewer points than there are, withheld ones apart.
   [[nodiscard]] bool filters() const;
 };
+
+/// The names of the options that add_input_options() adds.
+inline constexpr std::array<std::string_view, 10> kInputOptionNames = {
+    "--input-format", "--force-crs", "--keep-withheld", "--every", "--keep-class",
+    "--drop-class",   "--returns",   "--bounds",        "--thin",  "--resolution"};
 
 /// --input-format, --force-crs, and the group "Filters".
 void add_input_options(CLI::App& app, InputOptions& options);

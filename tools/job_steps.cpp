@@ -47,13 +47,7 @@ constexpr std::array kNeeded = {
 constexpr std::array<std::string_view, 9> kShared = {
     "threads", "memory", "tmpdir", "max-tmp", "progress", "quiet", "verbose", "output", "stats"};
 
-/// A kind of output: what makes it, and how.
-struct Kind {
-  std::string subcommand;
-  std::vector<std::string> arguments;
-};
-
-Kind kind_by_name(const Job& job, const std::string& name) {
+OutputKind kind_by_name(const Job& job, const std::string& name) {
   const std::size_t dot = name.find('.');
   if (dot == std::string::npos) {
     try {
@@ -77,11 +71,18 @@ Kind kind_by_name(const Job& job, const std::string& name) {
                     "of {}",
                     job.name, name, fmt::join(names, ", ")));
   }
-  Kind kind{std::string(product->subcommand), {}};
+  OutputKind kind{std::string(product->subcommand), {}};
   if (!product->option.empty()) {
     kind.arguments = {std::string(product->option), std::string(product->value)};
   }
   return kind;
+}
+
+/// The value of --product with which a raster of this kind is made.
+std::string products_of(const OutputKind& kind, const Job& job) {
+  if (!kind.arguments.empty()) return kind.arguments.back();
+  const auto given = job.options.find("product");
+  return given == job.options.end() ? "height" : fmt::format("{}", fmt::join(given->second, ","));
 }
 
 bool is_mesh_stream(const std::string& kind) { return kind == "spm"; }
@@ -132,14 +133,15 @@ std::vector<JobStep> JobPlanner::plan(const Job& job) const {
 /// The output comes last, behind -o.
 JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
                          const std::vector<std::string>& inputs, bool of_points) const {
-  Kind kind = kind_by_name(job, kind_name);
+  OutputKind kind = kind_by_name(job, kind_name);
   if (!of_points && kind.subcommand == "triangulate") kind.subcommand = "convert";
   JobStep step;
   step.arguments = {kind.subcommand};
   step.arguments.insert(step.arguments.end(), inputs.begin(), inputs.end());
   step.arguments.insert(step.arguments.end(), kind.arguments.begin(), kind.arguments.end());
   for (const auto& [name, values] : job.options) {
-    if (!takes_option(job, kind.subcommand, of_points, name)) continue;
+    if (!takes_option(job, kind, of_points, name)) continue;
+    step.options.push_back(name);
     if (values.empty()) step.arguments.push_back("--" + name);
     for (const std::string& value : values) {
       step.arguments.push_back(fmt::format("--{}={}", name, value));
@@ -150,16 +152,26 @@ JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
   return step;
 }
 
-/// Whether an option of a job is one for this step. What triangulate has concerns the points, and
-/// is nothing for a step that begins with a mesh. Where a job makes a raster, --bounds and
-/// --resolution are the raster's, whatever else it makes: they do not change the triangulation
-/// then.
-bool JobPlanner::takes_option(const Job& job, const std::string& subcommand, bool of_points,
+/// Whether an option of a job has an effect on this step. What triangulate has concerns the points,
+/// and is nothing for a step that begins with a mesh, but that --force-crs is about --like, too.
+/// Where a job makes a raster, --bounds and --resolution are the raster's, whatever else it makes:
+/// they do not change the triangulation then.
+bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_points,
                               const std::string& name) const {
+  const std::string& subcommand = kind.subcommand;
   if (option(subcommand, name) == nullptr) return false;
-  const bool makes_raster = std::any_of(job.to.begin(), job.to.end(), [&](const std::string& kind) {
-    return kind_by_name(job, kind).subcommand == "dem";
-  });
+  if (subcommand == "dem") {
+    const std::string products = products_of(kind, job);
+    if (name == "product") return kind.arguments.empty();
+    if (name == "azimuth" || name == "altitude") {
+      return products.find("hillshade") != std::string::npos;
+    }
+    if (name == "force-crs" && job.options.contains("like")) return true;
+    if (products == "density" && (name == "max-edge" || name == "duplicates")) return false;
+  }
+  const bool makes_raster = std::any_of(
+      job.to.begin(), job.to.end(),
+      [&](const std::string& other) { return kind_by_name(job, other).subcommand == "dem"; });
   if (makes_raster && (name == "bounds" || name == "resolution")) return subcommand == "dem";
   return of_points || option("triangulate", name) == nullptr;
 }
@@ -181,12 +193,12 @@ void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps
       throw UsageError(fmt::format("{}: --{} is for all jobs together: give it to batch itself",
                                    job.name, name));
     }
-    const bool known = std::any_of(steps.begin(), steps.end(), [&](const JobStep& s) {
-      return option(s.arguments.front(), name) != nullptr;
+    const bool used = std::any_of(steps.begin(), steps.end(), [&](const JobStep& step) {
+      return std::find(step.options.begin(), step.options.end(), name) != step.options.end();
     });
-    if (!known) {
+    if (!used) {
       throw UsageError(
-          fmt::format("{}: none of its outputs knows the option --{}", job.name, name));
+          fmt::format("{}: none of its outputs has a use for the option --{}", job.name, name));
     }
   }
 }

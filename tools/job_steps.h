@@ -8,9 +8,16 @@
 
 namespace spillway {
 
+/// A kind of output: what makes it, and how.
+struct OutputKind {
+  std::string subcommand;
+  std::vector<std::string> arguments;
+};
+
 /// One run of a subcommand within a job.
 struct JobStep {
   std::vector<std::string> arguments;  ///< the subcommand first
+  std::vector<std::string> options;    ///< the names of those of the job's options that it takes
   std::string output;                  ///< the file it makes
   bool temporary = false;              ///< `output` only serves the steps behind
 };
@@ -34,7 +41,7 @@ class JobPlanner {
  private:
   [[nodiscard]] JobStep step(const Job& job, const std::string& kind,
                              const std::vector<std::string>& inputs, bool of_points) const;
-  [[nodiscard]] bool takes_option(const Job& job, const std::string& subcommand, bool of_points,
+  [[nodiscard]] bool takes_option(const Job& job, const OutputKind& kind, bool of_points,
                                   const std::string& name) const;
   void check_options(const Job& job, const std::vector<JobStep>& steps) const;
 

@@ -135,10 +135,7 @@ void check_outputs(const RenderCommandOptions& options) {
   if (options.output == options.stats_path) {
     throw UsageError("the picture and --stats cannot go to the same place: " + options.output);
   }
-  if (options.dimension == "3" && options.duplicates_option->count() > 0) {
-    throw UsageError(
-        "--duplicates chooses a height for points of equal x and y: leave it away with --dim 3");
-  }
+  check_duplicates(options, options.dimension);
   check_can_create(disk(), options.output);
   if (!options.stats_path.empty()) check_can_create(disk(), options.stats_path);
 }

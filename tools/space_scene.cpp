@@ -209,6 +209,9 @@ std::unique_ptr<Scene> make_space_scene(const RenderRequest& request, const Terr
     return std::make_unique<HullScene>(request, header);
   }
   if (request.view) throw UsageError("--view is for the hull: leave it away with --slice");
+  if (request.wireframe) {
+    throw UsageError("--wireframe is for the hull and terrains: a slice has edges without it");
+  }
   return std::make_unique<SliceScene>(request, header);
 }
 

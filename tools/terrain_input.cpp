@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <numeric>
@@ -15,6 +16,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "tools/command_options.h"
+#include "tools/input_list.h"
 #include "tools/rank_statistics.h"
 
 namespace spillway {
@@ -70,22 +72,45 @@ class TerrainFeed {
       return false;
     }
     const std::string& path = options_.inputs.front();
-    const bool one = options_.inputs.size() == 1 && options_.input.format.empty() &&
-                     (path == "-" || std::filesystem::is_regular_file(path));
-    if (!one) return false;
+    const bool several = options_.inputs.size() > 1 || stands_for_several(path);
+    if (several)
+      refuse_given(*options_.app, {"--mesh-format"}, "on several inputs, which are points");
+    if (!options_.input.format.empty()) {
+      refuse_given(*options_.app, {"--mesh-format"}, "with --input-format, which is of points");
+      return false;
+    }
+    if (several) return false;
+    if (path != "-" && !std::filesystem::is_regular_file(path)) {
+      if (std::filesystem::exists(path)) {
+        refuse_given(*options_.app, {"--mesh-format"},
+                     fmt::format("on {}: meshes are read from files and standard input", path));
+      }
+      return false;
+    }
     ProbedInput input(disk(), path);
     const InputKind kind = options_.mesh_format.empty() ? kind_of_input(input) : kind_by_format();
     if (kind == InputKind::kPoints) {
       feed_points(input);
       return true;
     }
-    if (options_.input.filters()) throw UsageError(path + " is a mesh: filters are for points");
+    refuse_options_of_points();
     if (kind == InputKind::kMeshStream) {
       feed_stream(input);
     } else {
       feed_whole(read_whole(input));
     }
     return true;
+  }
+
+  void refuse_options_of_points() const {
+    std::vector<std::string_view> names(kInputOptionNames.begin(), kInputOptionNames.end());
+    names.insert(names.end(), kTriangulationOptionNames.begin(), kTriangulationOptionNames.end());
+    names.emplace_back("--dim");
+    std::erase_if(names, [&](std::string_view name) {
+      return std::ranges::find(options_.own_options, name) != options_.own_options.end();
+    });
+    refuse_given(*options_.app, names,
+                 fmt::format("on {}, which is a mesh", options_.inputs.front()));
   }
 
   /// Over ranks there are points only. What is none of them is said when they are opened.
@@ -120,6 +145,7 @@ class TerrainFeed {
         make_point_source(files, options_.inputs, options_.input,
                           {.dimension = D, .memory = tools_.budget.limit(), .ranks = tools_.ranks},
                           tools_.scratch, tools_.progress);
+    check_heights(options_, *source);
     MeshStreamWriter& writer = use_.begin({D, source->lattice(), source->crs(), std::nullopt});
     stream.extent_known = [this](const Box<2>& extent) { use_.extent_known(extent); };
     if (tools_.ranks != nullptr) {

@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "formats/mesh_stream.h"
 #include "formats/scratch_folder.h"
@@ -23,6 +25,8 @@ struct TerrainOptions : TriangulationOptions {
   std::string mesh_format;
   std::string dimension = "2";  ///< in which points are triangulated: 2 or 3
   bool tetrahedra = false;      ///< whether a mesh may be of tetrahedra, too
+  /// Options that tell of points elsewhere, and have a meaning of their own here.
+  std::vector<std::string_view> own_options;
 };
 
 /// IN, --mesh-format and what triangulate has.

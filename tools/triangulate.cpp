@@ -150,6 +150,7 @@ int run(const TriangulateOptions& options, const MeshTarget& target, RunStatisti
       {.dimension = D, .index = options.input_index, .memory = budget.limit(), .ranks = ranks},
       *scratch, progress);
   PointSource& source = *points;
+  check_heights(options, source);
   MeshStreamHeader header;
   header.dimension = D;
   header.has_input_index = options.input_index;
@@ -225,10 +226,7 @@ int run(const TriangulateOptions& options) {
       throw UsageError("--simulate-cores is for one process: start it without mpirun");
     }
   }
-  if (options.dimension == "3" && options.duplicates_option->count() > 0) {
-    throw UsageError(
-        "--duplicates chooses a height for points of equal x and y: leave it away with --dim 3");
-  }
+  check_duplicates(options, options.dimension);
   if (options.output == options.stats_path) {
     throw UsageError("the mesh and --stats cannot go to the same place: " + options.output);
   }

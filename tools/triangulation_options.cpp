@@ -26,9 +26,9 @@ DivisionScheme division_by_name(const std::string& name) {
 }  // namespace
 
 void add_triangulation_options(CLI::App& app, TriangulationOptions& options) {
-  options.duplicates_option =
-      add_choice(app, "--duplicates", options.duplicates, height_choice_names(),
-                 "Which z a vertex of several points of equal x, y gets");
+  options.app = &app;
+  add_choice(app, "--duplicates", options.duplicates, height_choice_names(),
+             "Which z a vertex of several points of equal x, y gets");
   app.add_option("--max-edge", options.max_edge, "Leave out simplices with an edge longer than L")
       ->type_name("L");
   add_input_options(app, options.input);
@@ -57,6 +57,17 @@ void add_triangulation_options(CLI::App& app, TriangulationOptions& options) {
       ->capture_default_str();
   add_choice(app, "--kernel", options.kernel, {"spillway", "cgal"},
              "What triangulates base cases; both give the same mesh");
+}
+
+void check_duplicates(const TriangulationOptions& options, const std::string& dimension) {
+  if (dimension != "3") return;
+  refuse_given(*options.app, {"--duplicates"},
+               "with --dim 3, as it chooses a height for points of equal x and y");
+}
+
+void check_heights(const TriangulationOptions& options, const PointSource& source) {
+  if (source.has_heights()) return;
+  refuse_given(*options.app, {"--duplicates"}, "on points without z");
 }
 
 unsigned thread_count(const TriangulationOptions& options) {

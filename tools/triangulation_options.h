@@ -2,9 +2,11 @@
 // What subcommands that triangulate points have in common.
 
 #include <CLI/App.hpp>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "stream/pipeline.h"
@@ -15,10 +17,10 @@ namespace spillway {
 
 /// As on the command line.
 struct TriangulationOptions {
+  const CLI::App* app = nullptr;  ///< the subcommand
   std::vector<std::string> inputs;
   InputOptions input;
   std::string duplicates = "first";
-  const CLI::Option* duplicates_option = nullptr;
   std::string max_edge;
   unsigned threads = 0;
   MemoryOptions memory;
@@ -34,6 +36,18 @@ struct TriangulationOptions {
 /// All but IN and those of ReportOptions: --duplicates, --max-edge, the input's, --threads, the
 /// memory's, --stats, and how the work is divided.
 void add_triangulation_options(CLI::App& app, TriangulationOptions& options);
+
+/// Of these the names of those that have no effect where a mesh is read, beside those of
+/// add_input_options().
+inline constexpr std::array<std::string_view, 6> kTriangulationOptionNames = {
+    "--duplicates", "--base-case", "--tile", "--division", "--children", "--kernel"};
+
+/// Throws UsageError if --duplicates is given, though points of equal x and y are no duplicates:
+/// in three dimensions.
+void check_duplicates(const TriangulationOptions& options, const std::string& dimension);
+
+/// Throws UsageError if --duplicates is given for points without heights.
+void check_heights(const TriangulationOptions& options, const PointSource& source);
 
 /// The number of threads that --threads asks for.
 unsigned thread_count(const TriangulationOptions& options);

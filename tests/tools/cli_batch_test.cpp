@@ -113,7 +113,7 @@ TEST_F(Batch, RefusesAListWithMistakesBeforeAnyWork) {
               HasSubstr("no output can be made as \"dwg\""));
   EXPECT_THAT(
       error_of_list("e.json", R"({"jobs": [{"in": "in/north.las", "options": {"colour": 1}}]})"),
-      HasSubstr("knows the option --colour"));
+      HasSubstr("has a use for the option --colour"));
   EXPECT_THAT(
       error_of_list("f.json", R"({"jobs": [{"in": "in/north.las", "options": {"dim": 5}}]})"),
       HasSubstr("--dim"));

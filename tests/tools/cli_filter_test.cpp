@@ -88,7 +88,7 @@ TEST_F(Filters, TheSameComesThroughAPipe) {
 }
 
 TEST_F(Filters, ThinningInLittleMemoryIsThinningInMuch) {
-  work_.succeed("spillway generate -q uniform -n 400000 -o in.npy");
+  work_.succeed("spillway generate -q uniform --dim 3 -n 400000 -o in.npy");
   for (const std::string choice : {"first", "lowest", "highest", "center"}) {
     const std::string thin = "--thin 0.002:" + choice;
     const std::string much = hash(thin + " --memory 2G", "in.npy");

@@ -329,7 +329,7 @@ constexpr std::array kRefused = {
     Refused{"DuplicatesInSpace", "points.txt --dim 3 -o view.png --duplicates lowest", 2,
             "--duplicates"},
     Refused{"EverythingTooLong", "points.txt -o view.png --max-edge 0.01", 1, "nothing is left"},
-    Refused{"FilteredMesh", "tin.obj -o view.png --every 2", 2, "filters"},
+    Refused{"FilteredMesh", "tin.obj -o view.png --every 2", 2, "--every has no effect"},
     Refused{"MissingInput", "nowhere.las -o view.png", 1, "nowhere.las"},
 };
 

@@ -18,6 +18,7 @@ spillway_command_test(cli_tests cli
   tools/cli_convert_points_test.cpp
   tools/cli_convert_test.cpp tools/cli_stream_test.cpp
   tools/cli_triangulate_test.cpp
+  tools/cli_unused_options_test.cpp
   tools/cli_usage_test.cpp)
 spillway_command_test(cli_fault_tests fault
   tools/cli_fault_test.cpp)

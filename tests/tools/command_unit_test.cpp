@@ -16,9 +16,19 @@
 #include "tools/json_text.h"
 #include "tools/progress.h"
 #include "tools/progress_line.h"
+#include "tools/triangulation_options.h"
 
 namespace spillway {
 namespace {
+
+/// All options but --help.
+std::vector<std::string> long_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option != app.get_help_ptr()) names.push_back(option->get_name());
+  }
+  return names;
+}
 
 TEST(CoreList, DotsStandForDoubling) {
   using List = std::vector<unsigned>;
@@ -57,6 +67,22 @@ TEST(Count, TakesDigitsAndExponents) {
   for (const char* text : {"", "-1", "1.5", "1e-3", "1e400", "nan", "ten", "5 ", "1e6x"}) {
     EXPECT_THROW(parse_point_count(text), UsageError) << text;
   }
+}
+
+TEST(OptionNames, AreThoseThatThereAre) {
+  CLI::App input;
+  InputOptions input_options;
+  add_input_options(input, input_options);
+  std::vector<std::string> known(kInputOptionNames.begin(), kInputOptionNames.end());
+  EXPECT_THAT(long_names(input), testing::UnorderedElementsAreArray(known));
+  CLI::App all;
+  TriangulationOptions options;
+  add_triangulation_options(all, options);
+  known.insert(known.end(), kTriangulationOptionNames.begin(), kTriangulationOptionNames.end());
+  // These have an effect on a mesh, or are settings for any work.
+  known.insert(known.end(),
+               {"--max-edge", "--threads", "--memory", "--tmpdir", "--max-tmp", "--stats"});
+  EXPECT_THAT(long_names(all), testing::UnorderedElementsAreArray(known));
 }
 
 TEST(ProgressLine, ShowsWhatIsKnown) {
