@@ -46,3 +46,9 @@ target_link_libraries(cli_render_tests PRIVATE PNG::PNG)
 spillway_command_test(cli_ranks_tests mpi
   tools/cli_ranks_test.cpp tools/progress_lines.cpp)
 target_compile_definitions(cli_ranks_tests PRIVATE SPILLWAY_MPIRUN="${MPIEXEC_EXECUTABLE}")
+
+# Two runs of the same commands make the same files and messages, and leave nothing in temporary folders.
+add_test(NAME Digests.TwoRunsAreTheSame
+  COMMAND ${PROJECT_SOURCE_DIR}/tests/digests.sh --twice $<TARGET_FILE:spillway>
+    "^(generate-terrain|mesh-(spm|npy|gpkg)|option-(stats|json|tiles)|core-space|thin-lowest|dem-products|contour-shp|render-wireframe|info-points|check-points|convert-text|batch-several|fault-(cut|max-edge)|usage-option)$")
+set_tests_properties(Digests.TwoRunsAreTheSame PROPERTIES LABELS cli TIMEOUT 300)
