@@ -17,7 +17,7 @@ spillway_test(point_input_test unit
   LIBS spillway_stream fmt::fmt)
 
 spillway_test(dem_test property
-  SOURCES stream/dem_test.cpp
+  SOURCES stream/dem_test.cpp stream/dem_oracle_test.cpp
   LIBS spillway_stream
   TIMEOUT 300)
 
