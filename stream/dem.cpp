@@ -49,25 +49,40 @@ std::uint64_t tiles_in(const PixelWindow& window) {
 }
 
 /// Decided, but nothing: it must be told from what is still undecided.
-constexpr float kLevel = std::numeric_limits<float>::infinity();
+constexpr float kUndefined = std::numeric_limits<float>::infinity();
 
 /// What is the same all over a triangle; nothing for what is not.
 float value_of(DemProduct product, const Gradient& gradient, const Point<3>& light) {
-  switch (product) {
-    case DemProduct::kHeight:
-    case DemProduct::kDensity:
-      break;
-    case DemProduct::kSlope:
-      return static_cast<float>(slope_of(gradient));
-    case DemProduct::kAspect: {
-      const double aspect = aspect_of(gradient);
-      return std::isnan(aspect) ? kLevel : static_cast<float>(aspect);
-    }
-    case DemProduct::kHillshade:
-      return static_cast<float>(hillshade_of(gradient, light));
-  }
-  return kLevel;
+  double value = std::numeric_limits<double>::quiet_NaN();
+  if (product == DemProduct::kSlope) value = slope_of(gradient);
+  if (product == DemProduct::kAspect) value = aspect_of(gradient);
+  if (product == DemProduct::kHillshade) value = hillshade_of(gradient, light);
+  return std::isnan(value) ? kUndefined : static_cast<float>(value);
 }
+
+/// The values that readers take for nodata, and what is written in their place. GDAL compares
+/// floats but for some roundings (its ARE_REAL_EQUAL()).
+struct NodataNeighbourhood {
+  explicit NodataNeighbourhood(float nodata) : lowest(nodata), highest(nodata) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const auto is_taken = [nodata](float value) {
+      constexpr double kShare = 2.0 * std::numeric_limits<float>::epsilon();
+      return std::abs(double{value} - nodata) < kShare * std::abs(double{value} + nodata);
+    };
+    while (is_taken(std::nextafter(lowest, -kInfinity))) {
+      lowest = std::nextafter(lowest, -kInfinity);
+    }
+    while (is_taken(std::nextafter(highest, kInfinity))) {
+      highest = std::nextafter(highest, kInfinity);
+    }
+    replacement = std::nextafter(highest, kInfinity);
+    if (std::isinf(replacement)) replacement = std::nextafter(lowest, -kInfinity);
+  }
+
+  float lowest;
+  float highest;
+  float replacement;  ///< the next value that is told from nodata
+};
 
 }  // namespace
 
@@ -287,15 +302,20 @@ RasterOptions Dem::raster_options() const {
   return raster;
 }
 
+/// How much of a tile is in the raster.
+Dem::TileSize Dem::size_of_tile(std::uint64_t number) const {
+  const auto row = static_cast<std::uint32_t>(number / tiles_across_ * kRasterTile);
+  const auto column = static_cast<std::uint32_t>(number % tiles_across_ * kRasterTile);
+  return {std::min(kRasterTile, grid_.rows - row), std::min(kRasterTile, grid_.columns - column)};
+}
+
 /// Takes a tile from the store and makes of it what is written.
 void Dem::finish_tile(std::uint64_t number, std::span<const std::vector<std::byte>> others,
                       std::vector<float>& pixels) {
   store_->take(number, pixels, others);
-  const auto row = static_cast<std::uint32_t>(number / tiles_across_ * kRasterTile);
-  const auto column = static_cast<std::uint32_t>(number % tiles_across_ * kRasterTile);
-  const std::uint32_t rows = std::min(kRasterTile, grid_.rows - row);
-  const std::uint32_t columns = std::min(kRasterTile, grid_.columns - column);
+  const auto [rows, columns] = size_of_tile(number);
   std::uint64_t with_data = 0;
+  const NodataNeighbourhood nodata(options_.nodata);
   for (std::size_t b = 0; b < options_.products.size(); ++b) {
     const bool density = options_.products[b] == DemProduct::kDensity;
     const auto band =
@@ -309,10 +329,8 @@ void Dem::finish_tile(std::uint64_t number, std::span<const std::vector<std::byt
         continue;
       }
       if (b == 0) ++with_data;
-      // What would be taken for nothing is moved by as little as can be.
-      if (pixel == options_.nodata) {
-        pixel = std::nextafter(pixel, std::numeric_limits<float>::infinity());
-      }
+      if (pixel >= nodata.lowest && pixel <= nodata.highest) pixel = nodata.replacement;
+      pixel += 0.0F;  // -0 becomes 0
     }
   }
   pixels_with_data_ += with_data;
@@ -348,7 +366,8 @@ void Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>&
           static_cast<std::uint32_t>(number / tiles_across_),
           std::span(pixels).subspan(b * RasterStore::kTilePixels, RasterStore::kTilePixels));
     }
-    done += RasterStore::kTilePixels;
+    const auto [rows, columns] = size_of_tile(number);
+    done += std::uint64_t{rows} * columns;
     progress(done);
   };
   const std::vector<PipelineStage> stages = {{.in_order = false, .work = take},

@@ -78,8 +78,9 @@ class Dem {
   /// What another Dem of the same grid has of a tile; called tile by tile, in order.
   using OtherParts = std::function<std::vector<std::vector<std::byte>>(std::uint64_t tile)>;
 
-  /// Writes all tiles, row by row, and forgets them. `progress` is told the pixels so far. Of other
-  /// Dems of the same grid, which have painted other triangles, `others` gives what they have.
+  /// Writes all tiles, row by row, and forgets them. `progress` is told how many of the raster's
+  /// pixels are written: a pixel with all its bands counts once. Of other Dems of the same grid,
+  /// which have painted other triangles, `others` gives what they have.
   void write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
              const OtherParts& others = nullptr);
 
@@ -96,6 +97,10 @@ class Dem {
 
  private:
   struct Work;
+  struct TileSize {
+    std::uint32_t rows;
+    std::uint32_t columns;
+  };
 
   [[nodiscard]] Triangle in_output(const Triangle& placed) const;
   void paint_pixels(const Triangle& canonical, const PixelWindow& window, Work& work);
@@ -103,6 +108,7 @@ class Dem {
   void paint_large(const Triangle& canonical, const PixelWindow& whole);
   void finish_tile(std::uint64_t number, std::span<const std::vector<std::byte>> others,
                    std::vector<float>& pixels);
+  [[nodiscard]] TileSize size_of_tile(std::uint64_t number) const;
   [[nodiscard]] std::uint64_t tile_number(std::uint32_t row, std::uint32_t column) const;
 
   const DemOptions options_;

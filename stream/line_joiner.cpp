@@ -15,6 +15,30 @@ namespace {
 /// Fewer points of a line than these are not worth a place on the disk.
 constexpr std::size_t kLeastStored = 16;
 
+/// Where a ring must begin to come first in lexicographic order of its whole sequence of points:
+/// at its least point, and where it visits this several times, at the visit that goes on least.
+/// Two beginnings race; the one that loses rules out all that it has passed (Shiloach, "Fast
+/// canonization of circular strings", 1981).
+std::size_t least_beginning(std::span<const Point<2>> ring) {
+  const std::size_t size = ring.size();
+  std::size_t one = 0;
+  std::size_t other = 1;
+  for (std::size_t equal = 0; one < size && other < size && equal < size;) {
+    const auto at = [&](std::size_t begin) {
+      const std::size_t place = begin + equal;
+      return ring[place < size ? place : place - size];
+    };
+    if (at(one) == at(other)) {
+      ++equal;
+      continue;
+    }
+    (at(other) < at(one) ? one : other) += equal + 1;
+    if (one == other) ++other;
+    equal = 0;
+  }
+  return std::min(one, other);
+}
+
 }  // namespace
 
 std::size_t CrossingHash::operator()(const Crossing& crossing) const {
@@ -65,7 +89,7 @@ void LineJoiner::add(const IsoSegment& segment) {
     begins_.erase(behind);
     if (first == second) {
       append(open_[first].back, segment.to_point);
-      give_out(std::move(open_[first]), true);
+      give_out(std::move(open_[first]));
     } else {
       join(open_[first], std::move(open_[second]));
       ends_[open_[first].end] = first;
@@ -131,7 +155,7 @@ void LineJoiner::release(const std::function<bool(const Crossing&)>& is_final) {
     }
     at = ends_.erase(at);
     begins_.erase(line.begin);
-    give_out(std::move(line), false);
+    give_out(std::move(line));
     forget(number);
   }
 }
@@ -189,18 +213,18 @@ std::vector<Point<2>> LineJoiner::points_of(Line&& line) {
   return points;
 }
 
-void LineJoiner::give_out(Line&& line, bool closed) {
+void LineJoiner::give_out(Line&& line) {
   for (const Piece& piece : line.middle) points_in_memory_ -= piece.points.size();
   const std::int64_t level = line.begin.level;
   std::vector<Point<2>> points = points_of(std::move(line));
   points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (closed && points.size() > 1) {
-    // The last point is the first one again.
+  if (points.size() < 2) return;  // a summit just as high as the level
+  if (points.front() == points.back()) {
     points.pop_back();
-    std::rotate(points.begin(), std::min_element(points.begin(), points.end()), points.end());
+    const auto begin = static_cast<std::ptrdiff_t>(least_beginning(points));
+    std::rotate(points.begin(), points.begin() + begin, points.end());
     points.push_back(points.front());
   }
-  if (points.size() < 2) return;  // a summit just as high as the level
   ++lines_;
   sink_(points, level);
 }

@@ -23,8 +23,9 @@ struct CrossingHash {
 /// when they outgrow their memory.
 class LineJoiner {
  public:
-  /// Receives a whole line, without repeated points; a closed one ends with the point that it
-  /// begins with, the least of all in lexicographic order.
+  /// Receives a whole line, without repeated points. One that ends with the point that it begins
+  /// with is closed, and has of all beginnings the one whose sequence of points is the least in
+  /// lexicographic order: so it begins at its least point.
   using Sink = std::function<void(std::span<const Point<2>> points, std::int64_t level)>;
 
   /// `memory`: bytes for points of open lines. `scratch` must outlive it.
@@ -68,7 +69,7 @@ class LineJoiner {
   static void enter(OpenEnds& ends, const Crossing& crossing, Number number);
   void join(Line& first, Line&& second);
   static void gather_front(Line& line);
-  void give_out(Line&& line, bool closed);
+  void give_out(Line&& line);
   void forget(Number number);
   void spill();
   void store(Piece& piece);

@@ -60,9 +60,14 @@ std::vector<std::byte> encode(std::span<const float> pixels, std::span<const Run
   return block;
 }
 
-/// What a kPreferred pixel holds while no preferred value has come: its sign tells.
-float as_provisional(float value) { return -value; }
+// Whether the value of a kPreferred pixel is only provisional, as no preferred one has come, is
+// marked by the sign bit. Values have no signs, so it is free; what they bring in it is cleared.
+float as_preferred(float value) { return std::copysign(value, 1.0F); }
+float as_provisional(float value) { return std::copysign(value, -1.0F); }
 bool is_provisional(float pixel) { return std::signbit(pixel); }
+
+/// Floats count one by one up to here.
+constexpr float kLargestSum = 0x1p24F;
 
 /// What becomes of a pixel that holds `old` when `value` comes.
 float combined(float old, float value, PixelRule rule) {
@@ -72,9 +77,10 @@ float combined(float old, float value, PixelRule rule) {
       return value;
     case PixelRule::kPreferred:
       if (!is_provisional(value)) return value;
-      return is_provisional(old) ? std::max(old, value) : old;
+      return is_provisional(old) ? std::max(old, value)
+                                 : old;  // the smaller one: marks are minuses
     case PixelRule::kSum:
-      return old + value;
+      return std::min(old + value, kLargestSum);
   }
   return value;
 }
@@ -83,7 +89,7 @@ float combined(float old, float value, PixelRule rule) {
 
 void put_pixel(float& pixel, float value, PixelRule rule, bool preferred) {
   if (rule == PixelRule::kEqual || (rule == PixelRule::kPreferred && preferred)) {
-    set_pixel(pixel, value);
+    set_pixel(pixel, rule == PixelRule::kPreferred ? as_preferred(value) : value);
     return;
   }
   const std::atomic_ref<float> shared(pixel);
@@ -211,7 +217,7 @@ void RasterStore::take(std::uint64_t number, std::vector<float>& pixels,
   for (std::size_t b = 0; b < bands_.size(); ++b) {
     if (bands_[b] != PixelRule::kPreferred) continue;
     for (float& pixel : std::span(pixels).subspan(b * kTilePixels, kTilePixels)) {
-      pixel = std::abs(pixel);
+      pixel = as_preferred(pixel);
     }
   }
 }

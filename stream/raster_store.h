@@ -21,14 +21,14 @@ namespace spillway {
 /// and what comes out in the end does not depend on the order.
 enum class PixelRule : std::uint8_t {
   kEqual,      ///< whatever is put there is equal
-  kPreferred,  ///< values from 0; the preferred one if there is one, else the smallest
-  kSum,        ///< all of them added; whole numbers, up to 2^24
+  kPreferred,  ///< values from 0 (-0 is 0); the preferred one if there is one, else the smallest
+  kSum,        ///< all of them added; whole numbers, 2^24 at most
 };
 
 /// Puts a value into a pixel; so may other threads at the same time.
 void put_pixel(float& pixel, float value, PixelRule rule, bool preferred);
 
-/// The same for kEqual, and for what is preferred.
+/// The same for kEqual.
 inline void set_pixel(float& pixel, float value) {
   std::atomic_ref<float>(pixel).store(value, std::memory_order_relaxed);
 }

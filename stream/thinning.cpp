@@ -13,7 +13,7 @@
 namespace spillway {
 namespace {
 
-/// Files that the points of a pass are put aside to.
+/// Most files that the points of a pass are put aside to.
 constexpr std::size_t kParts = 16;
 constexpr std::size_t kBuffers =
     kParts * PointBuffer::kPiece * (sizeof(Point<3>) + sizeof(std::uint64_t));
@@ -136,6 +136,7 @@ void Thinning::offer(const Candidate& candidate) {
     return;
   }
   candidates_.push_back(candidate);
+  if (level_ > 0) met_.push_back(candidate.key);
   slots_[place] = {short_hash, static_cast<std::uint32_t>(candidates_.size())};
   if (2 * candidates_.size() > slots_.size()) grow();
 }
@@ -152,7 +153,7 @@ void Thinning::grow() {
 
 /// Cells that share a file in one pass are spread over all files in the next.
 void Thinning::put_aside(const Candidate& candidate, std::uint64_t hash) {
-  Part& part = parts_[mix64(hash + level_) % kParts];
+  Part& part = parts_[mix64(hash + level_) % parts_.size()];
   part.buffer.append(std::span(&candidate.point, 1), std::span(&candidate.key, 1));
   if (part.buffer.size() == PointBuffer::kPiece) write(part);
 }
@@ -181,9 +182,11 @@ void Thinning::end_pass() {
 
 void Thinning::run_pass(Part part) {
   candidates_.clear();
-  given_ = 0;
+  met_.clear();
   slots_.assign(kFewestSlots, {});
-  parts_.resize(kParts);
+  std::size_t count = 0;
+  for (const TileBlock& block : part.blocks) count += block.points;
+  parts_.resize(std::min(kParts, count / capacity_ + 1));  // such that theirs find room
   level_ = part.level;
   passing_ = true;
   PointBlock points;
@@ -196,28 +199,56 @@ void Thinning::run_pass(Part part) {
   }
 }
 
-bool Thinning::next(PointBlock& block) {
-  block.clear();
-  if (passing_) end_pass();
-  while (given_ == candidates_.size()) {
-    if (waiting_.empty()) {
-      std::vector<Candidate>().swap(candidates_);
-      given_ = 0;
-      return false;
-    }
+/// Thins the points of all files. All their cells were met after those that had found room.
+void Thinning::work_off_files() {
+  capacity_ -= capacity_ / (kBytesPerCell / sizeof(std::uint64_t));  // for met_
+  kept_.emplace(options_.memory, scratch_);
+  while (!waiting_.empty()) {
     Part part = std::move(waiting_.back());
     waiting_.pop_back();
     run_pass(std::move(part));
     end_pass();
+    kept_->begin_run();
+    for (std::size_t begin = 0; begin < candidates_.size(); begin += PointBuffer::kPiece) {
+      sorted_.clear();
+      for (std::size_t i = begin; i < std::min(candidates_.size(), begin + PointBuffer::kPiece);
+           ++i) {
+        sorted_.push_back({met_[i], candidates_[i].key, candidates_[i].point});
+      }
+      kept_->append(sorted_);
+    }
   }
-  const std::size_t count = std::min(kBlockPoints, candidates_.size() - given_);
-  for (std::size_t i = given_; i < given_ + count; ++i) {
-    block.points.push_back(candidates_[i].point);
-    block.index.push_back(candidates_[i].key >> kAttributeBits);
-    if (attributes_) block.attributes.push_back(attributes_of(candidates_[i].key));
+  std::vector<Candidate>().swap(candidates_);
+  std::vector<std::uint64_t>().swap(met_);
+}
+
+/// Whether there are candidates to give, after new ones have taken the place of those given.
+bool Thinning::has_more() {
+  if (given_ < candidates_.size()) return true;
+  given_ = 0;
+  candidates_.clear();
+  if (!waiting_.empty()) work_off_files();
+  if (kept_ && kept_->next(sorted_, PointBuffer::kPiece)) {
+    for (const RunPoint& p : sorted_) candidates_.push_back({p.point, p.key});
+    return true;
   }
-  given_ += count;
-  return true;
+  std::vector<Candidate>().swap(candidates_);
+  return false;
+}
+
+bool Thinning::next(PointBlock& block) {
+  block.clear();
+  if (passing_) end_pass();
+  while (block.size() < kBlockPoints && has_more()) {
+    const std::size_t end = std::min(candidates_.size(), given_ + kBlockPoints - block.size());
+    for (; given_ < end; ++given_) {
+      const Candidate& candidate = candidates_[given_];
+      block.points.push_back(candidate.point);
+      block.index.push_back(candidate.key >> kAttributeBits);
+      if (attributes_) block.attributes.push_back(attributes_of(candidate.key));
+    }
+  }
+  return block.size() > 0;
 }
 
 }  // namespace spillway

@@ -12,6 +12,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 #include "stream/point_buffer.h"
+#include "stream/point_runs.h"
 #include "stream/tile_block.h"
 
 namespace spillway {
@@ -31,18 +32,20 @@ struct ThinningOptions {
 /// Keeps one point of each cell of a grid, in bounded memory. Cells are met in the order of the
 /// points; those that come while there is room stay in a hash table, and see all their points. The
 /// points of the others go to files, by a hash of the cell, and each file is thinned afterwards in
-/// the same way. Which points are kept depends neither on their order nor on the memory.
+/// the same way. What is kept of the files is sorted on the disk, so that all points come in the
+/// order in which their cells were met. Neither which points are kept nor their order depends on
+/// the memory, and which are kept does not even depend on the order of points.
 class Thinning {
  public:
   /// `scratch` must outlive it.
   Thinning(const ThinningOptions& options, ScratchFolder& scratch);
 
-  /// Takes points, each with its index. Their attributes are kept if any block has some. Throws
-  /// Error if cells are too small to be counted.
+  /// Takes points, each with its index; indices ascend. Attributes are kept if any block has some.
+  /// Throws Error if cells are too small to be counted.
   void add(const PointBlock& block);
 
-  /// After the last add(): replaces `block` by the next kept points; false at the end. If all cells
-  /// found room, points come in the order in which their cells were met.
+  /// After the last add(): replaces `block` by the next kept points, in the order in which their
+  /// cells were met; false at the end. Blocks are full but for the last.
   bool next(PointBlock& block);
 
   /// Points that lost against another one of their cell so far.
@@ -77,14 +80,19 @@ class Thinning {
   void write(Part& part);
   void end_pass();
   void run_pass(Part part);
+  void work_off_files();
+  bool has_more();
 
   ThinningOptions options_;
   ScratchFolder& scratch_;
-  std::size_t capacity_;  ///< cells in memory
-  std::vector<Candidate> candidates_;
-  std::vector<Slot> slots_;  ///< as many as a power of 2, half full at most
-  std::vector<Part> parts_;  ///< of the pass that is going on
+  std::size_t capacity_;               ///< cells in memory
+  std::vector<Candidate> candidates_;  ///< in the order in which their cells were met
+  std::vector<std::uint64_t> met_;     ///< of points from files: the first key of each cell
+  std::vector<Slot> slots_;            ///< as many as a power of 2, half full at most
+  std::vector<Part> parts_;            ///< of the pass that is going on
   std::vector<Part> waiting_;
+  std::optional<PointRuns> kept_;  ///< of the points from files
+  std::vector<RunPoint> sorted_;   ///< that go into it or come out of it
   unsigned level_ = 0;
   bool attributes_ = false;  ///< points have them
   bool passing_ = true;      ///< candidates_ may still get better

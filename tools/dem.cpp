@@ -123,7 +123,7 @@ class Run : public TerrainUse {
     RasterFile file(std::move(raster));
     const double pixels = static_cast<double>(dem.grid().columns) * dem.grid().rows;
     const auto progress = [&](std::uint64_t done) {
-      progress_.update(done, std::min(1.0, static_cast<double>(done) / pixels));
+      progress_.update(done, static_cast<double>(done) / pixels);
     };
     with_threads(dem_options_.threads, [&] {
       if (ranks_ != nullptr) {

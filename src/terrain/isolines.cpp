@@ -16,13 +16,13 @@ constexpr std::int64_t kMostInTriangle = 1'000'000;
 constexpr double kLargestNumber = 0x1p52;
 
 /// Where the level crosses the edge from one corner to another. The order in which they are given
-/// does not matter.
+/// does not matter. Zeros have no sign, so that equal places have equal bits.
 Point<2> crossing_point(const Point<3>& one, const Point<3>& other, double height) {
   const auto& [a, b] = std::minmax(one, other);
-  if (a[2] == height) return {a[0], a[1]};
-  if (b[2] == height) return {b[0], b[1]};
+  if (a[2] == height) return {a[0] + 0.0, a[1] + 0.0};
+  if (b[2] == height) return {b[0] + 0.0, b[1] + 0.0};
   const double share = (height - a[2]) / (b[2] - a[2]);
-  return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
+  return {a[0] + share * (b[0] - a[0]) + 0.0, a[1] + share * (b[1] - a[1]) + 0.0};
 }
 
 Crossing crossing(const Corner& one, const Corner& other, std::int64_t level) {
@@ -53,6 +53,7 @@ Levels Levels::of_list(std::vector<double> heights) {
   levels.list_ = std::move(heights);
   std::sort(levels.list_.begin(), levels.list_.end());
   levels.list_.erase(std::unique(levels.list_.begin(), levels.list_.end()), levels.list_.end());
+  for (double& height : levels.list_) height += 0.0;  // -0 becomes 0
   return levels;
 }
 

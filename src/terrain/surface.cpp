@@ -77,8 +77,9 @@ double slope_of(const Gradient& gradient) {
 double aspect_of(const Gradient& gradient) {
   if (gradient[0] == 0 && gradient[1] == 0) return std::numeric_limits<double>::quiet_NaN();
   const double degrees = std::atan2(-gradient[0], -gradient[1]) / kDegree;
-  const double turned = degrees >= 0 ? degrees : degrees + 360;
-  return static_cast<float>(turned) < 360 ? turned : 0;
+  const double turned = degrees < 0 ? degrees + 360 : degrees;
+  // Due north is 0: neither -0, as the arc tangent has it, nor 360.
+  return turned > 0 && static_cast<float>(turned) < 360 ? turned : 0;
 }
 
 Point<3> direction_of(const Light& light) {
@@ -93,7 +94,7 @@ double hillshade_of(const Gradient& gradient, const Point<3>& light_direction) {
       light_direction[2] - light_direction[0] * gradient[0] - light_direction[1] * gradient[1];
   const double cosine =
       towards_light / std::sqrt(1 + gradient[0] * gradient[0] + gradient[1] * gradient[1]);
-  return 255 * std::clamp(cosine, 0.0, 1.0);
+  return 255 * std::clamp(cosine, 0.0, 1.0) + 0.0;  // a sum of zeros is 0, not -0
 }
 
 }  // namespace spillway

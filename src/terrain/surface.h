@@ -44,6 +44,8 @@ struct Light {
   double altitude = 45;  ///< above the horizon
 };
 
+// What follows is never -0.
+
 /// Steepness in degrees, from 0 (level) to 90.
 double slope_of(const Gradient& gradient);
 

@@ -76,6 +76,12 @@ Contours contours_of_grid(int n, const Height& height, double interval, std::siz
   return result;
 }
 
+std::vector<std::pair<double, Line>> sorted(const Contours& contours) {
+  std::vector<std::pair<double, Line>> lines(contours.lines.begin(), contours.lines.end());
+  std::sort(lines.begin(), lines.end());
+  return lines;
+}
+
 double area(const Line& line) {
   double twice = 0;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
@@ -101,11 +107,6 @@ TEST(Contours, OfAConeAreClosedRingsThatTurnLeftAroundTheSummit) {
 
 TEST(Contours, DoNotDependOnTheOrderOfTrianglesOrBlocks) {
   const auto wavy = [](double x, double y) { return 7 * std::sin(x / 5) * std::cos(y / 7); };
-  const auto sorted = [](const Contours& contours) {
-    std::vector<std::pair<double, Line>> lines(contours.lines.begin(), contours.lines.end());
-    std::sort(lines.begin(), lines.end());
-    return lines;
-  };
   const auto expected = sorted(contours_of_grid(50, wavy, 0.5, 100000, 1));
   EXPECT_GT(expected.size(), 50U);
   for (const std::size_t block_size : {1U, 7U, 400U}) {
@@ -147,6 +148,47 @@ TEST(Contours, GoThroughTheDiskWhenTheyOutgrowTheirMemory) {
   EXPECT_TRUE(std::ranges::is_permutation(spilled.lines, in_memory.lines));
 }
 
+/// The least sequence of all that a ring has, by trying every beginning.
+Line least_rotation(const Line& ring) {
+  Line least(ring.begin(), ring.end() - 1);
+  Line turned = least;
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+    least = std::min(least, turned);
+  }
+  least.push_back(least.front());
+  return least;
+}
+
+TEST(Contours, ThatMeetThemselvesAreTheSameInEveryOrder) {
+  std::size_t meetings_at_the_beginning = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    // Few whole heights, zeros of both signs among them: levels pass through vertices everywhere.
+    std::mt19937 random(seed);
+    std::map<std::pair<double, double>, double> heights;
+    const auto height = [&](double x, double y) {
+      const auto [found, is_new] = heights.try_emplace({x, y});
+      if (is_new) {
+        found->second = static_cast<double>(random() % 4) - 2;
+        if (found->second == 0 && random() % 2 == 0) found->second = -0.0;
+      }
+      return found->second;
+    };
+    const auto expected = sorted(contours_of_grid(15, height, 1, 100000, 0));
+    for (const auto& [level, line] : expected) {
+      if (line.front() != line.back()) continue;
+      EXPECT_EQ(line, least_rotation(line));
+      if (std::count(line.begin(), line.end(), line.front()) > 2) ++meetings_at_the_beginning;
+    }
+    for (const std::size_t block_size : {1U, 7U, 100U}) {
+      const std::uint64_t memory = block_size == 7 ? 512 : 1 << 20;
+      ASSERT_EQ(sorted(contours_of_grid(15, height, 1, block_size, seed + 1, memory)), expected)
+          << seed << ", " << block_size;
+    }
+  }
+  EXPECT_GT(meetings_at_the_beginning, 20U);
+}
+
 TEST(Contours, OfOnlyLevelGroundAreNone) {
   EXPECT_TRUE(contours_of_grid(
                   5, [](double, double) { return 2.0; }, 1, 3, 6)
@@ -171,12 +213,44 @@ TEST(Levels, RefuseAnIntervalThatHeightsCannotTellApart) {
   }
 }
 
+TEST(Levels, HaveNoMinusZero) {
+  EXPECT_FALSE(std::signbit(Levels::of_list({-0.0}).height(0)));
+  EXPECT_FALSE(std::signbit(Levels::every(0.5, -0.0).height(0)));
+}
+
 TEST(Levels, RefuseWhatMakesNoSense) {
   EXPECT_THROW(Levels::every(0, 0), UsageError);
   EXPECT_THROW(Levels::every(-1, 0), UsageError);
   EXPECT_THROW(Levels::every(NAN, 0), UsageError);
   EXPECT_THROW(Levels::of_list({}), UsageError);
   EXPECT_THROW(static_cast<void>(Levels::every(1e-300, 0).between(5, 6)), Error);
+}
+
+TEST(LineJoiner, AFigureEightThroughItsLeastPointBeginsAlikeInEveryOrder) {
+  // Two loops from (0, 0); also one in which both loops are alike for some points.
+  for (const Line& ring : {Line{{0, 0}, {2, 1}, {2, 2}, {0, 0}, {2, -2}, {2, -1}},
+                           Line{{0, 0}, {1, 0}, {2, 5}, {0, 0}, {1, 0}, {2, 4}},
+                           Line{{0, 0}, {1, 0}, {0, 0}, {1, 0}}, Line{{0, 0}, {1, 0}}}) {
+    std::vector<IsoSegment> segments;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const std::size_t next = (i + 1) % ring.size();
+      segments.push_back({{{i, 100}, 0}, {{next, 100}, 0}, ring[i], ring[next]});
+    }
+    Line closed = ring;
+    closed.push_back(ring.front());
+    std::mt19937 random(4);
+    for (int turn = 0; turn < 50; ++turn) {
+      std::shuffle(segments.begin(), segments.end(), random);
+      const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+      std::vector<Line> lines;
+      LineJoiner joiner([&](std::span<const Point<2>> points,
+                            std::int64_t) { lines.emplace_back(points.begin(), points.end()); },
+                        1 << 20, *scratch);
+      for (const IsoSegment& segment : segments) joiner.add(segment);
+      joiner.finish();
+      EXPECT_EQ(lines, std::vector<Line>(1, least_rotation(closed)));
+    }
+  }
 }
 
 TEST(LineJoiner, RefusesTrianglesThatDoNotFitTogether) {

@@ -2,6 +2,7 @@
 
 #include "stream/dem.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,106 +11,21 @@
 
 #include "src/error.h"
 #include "src/geometry/predicates.h"
-#include "stream/dem_writer.h"
-#include "tests/stream/stream_runner.h"
-#include "tests/terrain/terrain_mesh.h"
+#include "tests/stream/dem_runner.h"
 
 namespace spillway {
 namespace {
 
 using testing::edges_touched;
+using testing::kAllProducts;
+using testing::kMemory;
+using testing::raster_of;
+using testing::Rastered;
 using testing::square_points;
 using testing::triangles_of;
-
-constexpr std::uint64_t kMemory = std::uint64_t{64} << 20;
-
-/// Keeps what is written, band by band.
-class KeepingRaster : public Raster {
- public:
-  KeepingRaster(const PixelGrid& grid, std::size_t count)
-      : grid_(grid), bands(count, std::vector<float>(std::size_t{grid.columns} * grid.rows)) {}
-
-  void write_tile(std::size_t band, std::uint32_t tile_column, std::uint32_t tile_row,
-                  std::span<const float> pixels) override {
-    ASSERT_EQ(pixels.size(), RasterStore::kTilePixels);
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const std::size_t column = tile_column * kRasterTile + i % kRasterTile;
-      const std::size_t row = tile_row * kRasterTile + i / kRasterTile;
-      if (column < grid_.columns && row < grid_.rows) {
-        bands[band][row * grid_.columns + column] = pixels[i];
-      }
-    }
-  }
-  void finish() override {}
-
- private:
-  PixelGrid grid_;
-
- public:
-  std::vector<std::vector<float>> bands;
-};
-
-struct Rastered {
-  PixelGrid grid;
-  std::vector<std::vector<float>> bands;
-  std::uint64_t with_data = 0;
-  std::uint64_t spilled = 0;
-};
-
-Rastered finished(Dem& dem, const DemOptions& options) {
-  KeepingRaster raster(dem.grid(), options.products.size());
-  dem.write(raster, [](std::uint64_t) {});
-  return {dem.grid(), std::move(raster.bands), dem.pixels_with_data(), dem.spilled_bytes()};
-}
-
-/// Points through the whole pipeline.
-Rastered raster_of(const std::vector<Point<3>>& points, DemOptions options,
-                   StreamOptions stream = {}) {
-  if (options.memory == 0) options.memory = kMemory;
-  options.threads = stream.threads;
-  const std::string path = write_points<3>(points);
-  PointSource source(disk(), {path}, {.dimension = 2});
-  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  MemoryBudget budget(kMemory);
-  Dem dem(options, source.lattice(), *scratch);
-  stream.extent_known = [&dem](const Box<2>& extent) { dem.begin(extent); };
-  DemWriter writer(dem);
-  (void)triangulate_stream<2>(source, writer, *scratch, budget, stream);
-  return finished(dem, options);
-}
-
-/// Triangles as they are, without any pipeline.
-Rastered raster_of(const std::vector<Triangle>& triangles, const PixelGrid& grid,
-                   DemOptions options) {
-  options.memory = kMemory;
-  options.grid.given = grid;
-  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  Dem dem(options, std::nullopt, *scratch);
-  dem.begin(Box<2>{});
-  std::vector<Point<3>> vertices;
-  std::vector<std::uint32_t> corners;
-  for (const Triangle& triangle : triangles) {
-    for (const Point<3>& corner : triangle) {
-      corners.push_back(static_cast<std::uint32_t>(vertices.size()));
-      vertices.push_back(corner);
-    }
-  }
-  dem.paint(vertices, corners);
-  return finished(dem, options);
-}
-
-std::vector<Point<3>> with_heights(const std::vector<Point<2>>& points,
-                                   const testing::HeightOf& height) {
-  std::vector<Point<3>> result;
-  for (const Point<2>& p : points) result.push_back({p[0], p[1], height(p[0], p[1])});
-  return result;
-}
+using testing::with_heights;
 
 double rough(double x, double y) { return 50 * std::sin(x) * std::cos(2 * y) + x; }
-
-const DemOptions kAllProducts{.products = {DemProduct::kHeight, DemProduct::kSlope,
-                                           DemProduct::kAspect, DemProduct::kHillshade,
-                                           DemProduct::kDensity}};
 
 TEST(Dem, EveryPixelIsWhatThePlaneOfItsTriangleSays) {
   for (const bool whole : {false, true}) {
@@ -237,14 +153,76 @@ TEST(Dem, LongEdgesLeaveNoData) {
   EXPECT_EQ(raster_of(triangles_of(points, rough), dem.grid, options).bands, dem.bands);
 }
 
-TEST(Dem, AHeightThatEqualsNodataIsMovedByTheLeastBit) {
-  DemOptions options{.nodata = 7};
-  options.grid = {.resolution = 1};
-  const Rastered dem = raster_of(
-      with_heights(square_points(50, 10, true, 2), [](double, double) { return 7; }), options);
-  EXPECT_GT(dem.with_data, 10U);
-  EXPECT_EQ(std::count(dem.bands[0].begin(), dem.bands[0].end(), std::nextafter(7.0F, 8.0F)),
-            static_cast<std::ptrdiff_t>(dem.with_data));
+/// Whether GDAL takes a float for nodata: its ARE_REAL_EQUAL().
+bool gdal_takes_for_nodata(float value, float nodata) {
+  return value == nodata || std::abs(value - nodata) < std::numeric_limits<float>::epsilon() *
+                                                           std::abs(value + nodata) * 2;
+}
+
+TEST(Dem, WhatWouldBeTakenForNodataIsMovedByAFewStepsOfAFloat) {
+  testing::Random random(3);
+  std::vector<float> values = {7, -9999, 0.1F, 1e-44F, -1e-40F, 1, -1, 65536, 1e30F};
+  for (int i = 0; i < 200; ++i) values.push_back(static_cast<float>(random.uniform(-1e4, 1e4)));
+  const PixelGrid grid{0, 8, 1, 8, 8};
+  for (const float nodata : values) {
+    for (const float height :
+         {nodata, std::nextafter(nodata, -INFINITY), std::nextafter(nodata, INFINITY)}) {
+      const double z = height;
+      DemOptions options{.nodata = nodata};
+      const Rastered dem =
+          raster_of({Triangle{{{-9, -9, z}, {99, -9, z}, {-9, 99, z}}}}, grid, options);
+      EXPECT_EQ(dem.with_data, 64U);
+      for (const float pixel : dem.bands[0]) {
+        ASSERT_FALSE(gdal_takes_for_nodata(pixel, nodata)) << nodata;
+        ASSERT_NEAR(pixel, nodata, 1e-6 * std::abs(nodata) + 1e-44);
+      }
+    }
+  }
+}
+
+TEST(Dem, ZerosOfAllProductsAreToldFromANodataOfZero) {
+  DemOptions options = kAllProducts;
+  options.light.altitude = 0;
+  options.nodata = 0;
+  const Rastered dem = raster_of({Triangle{{{-9, -9, -0.0}, {99, -9, 0}, {-9, 99, -0.0}}}},
+                                 {0, 8, 1, 8, 8}, options);
+  for (std::size_t b = 0; b < 5; ++b) {
+    const float expected = b == 2 ? 0.0F : std::numeric_limits<float>::denorm_min();  // level
+    EXPECT_THAT(dem.bands[b], ::testing::Each(expected)) << dem_product_names()[b];
+  }
+}
+
+TEST(Dem, ZerosHaveNoSign) {
+  DemOptions options = kAllProducts;
+  options.light.altitude = 0;
+  const Rastered dem = raster_of({Triangle{{{-9, -9, -0.0}, {99, -9, 0}, {-9, 99, -0.0}}}},
+                                 {0, 8, 1, 8, 8}, options);
+  for (const std::vector<float>& band : dem.bands) {
+    for (const float pixel : band) EXPECT_TRUE(pixel == -9999 || !std::signbit(pixel));
+  }
+}
+
+TEST(Dem, NodataOfTheLargestFloatLeavesHeightsFinite) {
+  const float most = std::numeric_limits<float>::max();
+  const double z = most;
+  const Rastered dem = raster_of({Triangle{{{-9, -9, z}, {99, -9, z}, {-9, 99, z}}}},
+                                 {0, 8, 1, 8, 8}, {.nodata = most});
+  EXPECT_THAT(dem.bands[0], ::testing::Each(::testing::Lt(most)));
+}
+
+TEST(Dem, PixelsAreCountedOnceAndNoneBesideTheRaster) {
+  for (const auto& [columns, rows] : {std::pair{200U, 200U}, {256U, 256U}, {300U, 520U}}) {
+    DemOptions options = kAllProducts;
+    options.memory = kMemory;
+    const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+    Dem dem(options, std::nullopt, *scratch);
+    dem.begin(PixelGrid{0, 0, 1, columns, rows});
+    testing::KeepingRaster raster(dem.grid(), options.products.size());
+    std::vector<std::uint64_t> counts;
+    dem.write(raster, [&](std::uint64_t pixels) { counts.push_back(pixels); });
+    EXPECT_TRUE(std::is_sorted(counts.begin(), counts.end()));
+    EXPECT_EQ(counts.back(), std::uint64_t{columns} * rows);
+  }
 }
 
 TEST(Dem, PixelsThatDoNotFitIntoMemoryGoToTheDiskAndComeBack) {
@@ -284,6 +262,44 @@ TEST(RasterStore, PreferredValuesWinOverOthersInAnyOrder) {
     EXPECT_EQ(pixels[1], 0);
     EXPECT_TRUE(std::isnan(pixels[2]));
   }
+}
+
+TEST(RasterStore, ZerosOfEitherSignAreZerosPreferredOrNot) {
+  for (const float zero : {0.0F, -0.0F}) {
+    for (const bool preferred_first : {false, true}) {
+      const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+      RasterStore store({PixelRule::kPreferred}, std::uint64_t{8} << 20, *scratch);
+      {
+        RasterStore::Hand hand(store);
+        float* const pixels = hand.tile(0);
+        for (const bool preferred : {preferred_first, !preferred_first}) {
+          put_pixel(pixels[0], preferred ? 66.0F : zero, PixelRule::kPreferred, preferred);
+          put_pixel(pixels[1], preferred ? zero : 66.0F, PixelRule::kPreferred, preferred);
+          put_pixel(pixels[2], preferred ? 66.0F : zero, PixelRule::kPreferred, false);
+        }
+      }
+      std::vector<float> pixels;
+      store.take(0, pixels);
+      EXPECT_EQ(pixels[0], 66);
+      EXPECT_EQ(pixels[1], 0);
+      EXPECT_EQ(pixels[2], 0);
+      EXPECT_FALSE(std::signbit(pixels[1]) || std::signbit(pixels[2]));
+    }
+  }
+}
+
+TEST(RasterStore, SumsStopAtTheSamePlaceInOnePartAndInMany) {
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  RasterStore store({PixelRule::kSum}, std::uint64_t{8} << 20, *scratch);
+  RasterStore other({PixelRule::kSum}, std::uint64_t{8} << 20, *scratch);
+  for (RasterStore* const one : {&store, &other}) {
+    RasterStore::Hand hand(*one);
+    for (int i = 0; i < 3; ++i) put_pixel(hand.tile(0)[0], 0x1.8p23F, PixelRule::kSum, true);
+  }
+  std::vector<float> pixels;
+  const std::vector<std::vector<std::byte>> parts = {other.take_part(0)};
+  store.take(0, pixels, parts);
+  EXPECT_EQ(pixels[0], 0x1p24F);
 }
 
 TEST(RasterStore, AFullDiskIsAnError) {

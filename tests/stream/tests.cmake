@@ -12,12 +12,12 @@ spillway_test(stream_fault_test fault
   LIBS spillway_stream spillway_generators)
 
 spillway_test(point_input_test unit
-  SOURCES stream/common_lattice_test.cpp stream/point_filter_test.cpp stream/point_source_test.cpp
-          stream/thinning_test.cpp
+  SOURCES stream/common_lattice_test.cpp stream/point_filter_test.cpp stream/point_runs_test.cpp
+          stream/point_source_test.cpp stream/thinning_test.cpp
   LIBS spillway_stream fmt::fmt)
 
 spillway_test(dem_test property
-  SOURCES stream/dem_test.cpp
+  SOURCES stream/dem_test.cpp stream/dem_oracle_test.cpp
   LIBS spillway_stream
   TIMEOUT 300)
 

@@ -102,6 +102,16 @@ TEST(Surface, SlopeAndAspectOfPlanes) {
   EXPECT_EQ(static_cast<float>(aspect_of({1e-12, -1})), 0);  // not 360
 }
 
+TEST(Surface, NoProductIsMinusZero) {
+  const auto is_zero = [](double value) { return value == 0 && !std::signbit(value); };
+  for (const double zero : {0.0, -0.0}) {
+    EXPECT_TRUE(is_zero(aspect_of({zero, -1})));
+    EXPECT_TRUE(is_zero(slope_of({zero, -zero})));
+    EXPECT_TRUE(is_zero(hillshade_of({zero, zero}, {zero, zero, zero})));
+    EXPECT_TRUE(is_zero(hillshade_of({zero, 1}, {0, 1, -0.0})));
+  }
+}
+
 TEST(Surface, GradientIsInOutputUnits) {
   const Triangle canonical = in_canonical_order({{{0, 0, 5}, {100, 0, 7}, {0, 100, 4}}});
   const Gradient gradient = TrianglePlane(canonical, {0.01, 0.02}).gradient();

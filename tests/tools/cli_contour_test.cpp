@@ -1,9 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "tests/tools/command_runner.h"
 
@@ -67,6 +70,44 @@ TEST_F(Contour, DrawsTheSameOfPointsMeshesAndStreams) {
   EXPECT_EQ(lines("mesh.geojson"), lines("points.geojson"));
   EXPECT_EQ(lines("stream.geojson"), lines("points.geojson"));
   EXPECT_EQ(lines("pipe.geojson"), lines("points.geojson"));
+}
+
+/// Whole heights from -2 to 2 on a grid of 40 x 40 points, in an order given by a seed. Lines at
+/// whole heights meet themselves and others all over.
+std::string whole_heights(unsigned seed) {
+  std::mt19937 heights(11);
+  std::vector<std::string> lines;
+  for (int i = 0; i < 1600; ++i) {
+    lines.push_back(std::to_string(i % 40) + " " + std::to_string(i / 40) + " " +
+                    std::to_string(static_cast<int>(heights() % 5) - 2) + "\n");
+  }
+  std::shuffle(lines.begin(), lines.end(), std::mt19937(seed));
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  return text;
+}
+
+TEST_F(Contour, ThatMeetThemselvesDependOnNoTilesThreadsAndOrders) {
+  const auto lines = [&](const std::string& input, const std::string& options) {
+    space.succeed("spillway contour -q " + input + " -o c.geojson --interval 1 " + options);
+    std::multiset<std::string> set;
+    for (const nlohmann::json& line : features(space, "c.geojson")) set.insert(line.dump());
+    return set;
+  };
+  space.write("in.txt", whole_heights(0));
+  const auto expected = lines("in.txt", "--threads 1");
+  EXPECT_GT(expected.size(), 300U);
+  unsigned seed = 1;
+  for (const std::string options :
+       {"--threads 2", "--tile 500", "--tile 100", "--base-case 9 --threads 4",
+        "--tile 200 --base-case 25 --children 3", "--division cycling --tile 300"}) {
+    space.write("in.txt", whole_heights(seed++));
+    EXPECT_EQ(lines("in.txt", options), expected) << options;
+    space.succeed("spillway triangulate -q in.txt -o in.spm " + options +
+                  " && spillway triangulate -q in.txt -o in.obj " + options);
+    EXPECT_EQ(lines("in.spm", ""), expected) << options;
+    EXPECT_EQ(lines("in.obj", ""), expected) << options;
+  }
 }
 
 TEST_F(Contour, WritesGeoPackagesAndShapefiles) {

@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -160,6 +162,95 @@ TEST(Dem, ThreadsTilesAndWaysThroughMeshesGiveTheSameBytes) {
   for (const char* name : {"two.tif", "tiles.tif", "pipe.tif", "spm.tif", "chain.tif", "ply.tif"}) {
     EXPECT_TRUE(work.read(name) == bytes) << name;
   }
+}
+
+/// Whole numbers on a grid, z from -1 to 1 with zeros of both signs, shuffled by a seed; a point at
+/// several z only if they are equal.
+std::string ties(int side, unsigned seed) {
+  std::vector<std::string> lines;
+  for (int i = 0; i < side * side; ++i) {
+    const int x = i % side;
+    const int y = i / side;
+    const int kind = (x / 5 + 2 * (y / 5)) % 4;  // level, random, falling to north, to west
+    const int rise = kind == 0 ? 0 : kind == 1 ? (x * 7 + y * 5) % 11 % 3 - 1 : kind == 2 ? -y : x;
+    const std::string z = rise != 0 ? fmt::format("{}", rise) : i % 2 == 0 ? "0" : "-0.0";
+    for (int copy = 0; copy <= i % 3 / 2; ++copy)
+      lines.push_back(fmt::format("{} {} {}\n", x, y, z));
+  }
+  std::shuffle(lines.begin(), lines.end(), std::mt19937(seed));
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  return text;
+}
+
+TEST(Dem, TiesAndZerosGiveTheSameBytesInEveryOrderAndWay) {
+  const Workspace work;
+  const std::string dem =
+      "spillway dem -q --resolution 0.5 --bounds=-1.25,-1.25,41.25,41.25 "
+      "--product height,slope,aspect,hillshade,density --compress none ";
+  work.write("in.txt", ties(40, 0));
+  work.succeed(
+      "spillway triangulate -q in.txt -o tin.spm && spillway triangulate -q in.txt -o tin.obj");
+  work.succeed(dem + "in.txt -o one.tif --threads 1");
+  const std::string expected = work.read("one.tif");
+  const std::vector<std::string> ways = {
+      " --memory 64M --tile 64",  " --tile 100",
+      " --base-case 7",           " --tile 250 --base-case 20 --children 3",
+      " --memory 256M --tile 64", " --division cycling --base-case 30",
+      " --kernel cgal",           " --tile 1000"};
+  for (unsigned threads = 1; threads <= 8; ++threads) {
+    const std::string& way = ways[threads - 1];
+    work.write("in.txt", ties(40, threads));
+    const std::string with_threads = fmt::format(" --threads {} ", threads);
+    work.succeed(dem + "in.txt -o points.tif" + with_threads + way);
+    EXPECT_TRUE(work.read("points.tif") == expected) << threads << way;
+    work.succeed("spillway triangulate -q in.txt -o tin.spm" + way);
+    for (const std::string mesh : {"tin.spm", "tin.obj"}) {
+      work.succeed(dem + mesh + " -o mesh.tif" + with_threads);
+      EXPECT_TRUE(work.read("mesh.tif") == expected) << mesh << threads << way;
+    }
+    work.succeed(
+        "{ grep ^v tin.obj; grep ^f tin.obj | awk '{ print NR * 7 % 101, $1, $3, $4, $2 }' | "
+        "sort -n | cut -d' ' -f2-; } > turned.obj && mv turned.obj tin.obj");
+  }
+}
+
+TEST(Dem, AFacetThatFallsDueNorthHasNoSayBesideTheOneThatOwnsTheCentre) {
+  const Workspace work;
+  const std::string vertices = "v 0 0 10\nv 4 8 2\nv -6 8 2\nv 9 1 0\n";
+  work.write("one.obj", vertices + "f 1 2 3\nf 1 4 2\n");
+  work.write("other.obj", vertices + "f 1 4 2\nf 1 2 3\n");
+  for (const std::string name : {"one", "other"}) {
+    work.succeed("spillway dem -q " + name + ".obj -o " + name +
+                 ".tif --resolution 1 --bounds=-6.5,-0.5,9.5,8.5 --product aspect");
+  }
+  EXPECT_TRUE(work.read("one.tif") == work.read("other.tif"));
+  const Opened dem(work, "one.tif");
+  EXPECT_NEAR(dem.pixels()[6 * 16 + 7], 66.0375, 1e-4);  // the centre (1, 2), on the common edge
+  EXPECT_EQ(dem.pixels()[2 * 16 + 6], 0);                // (0, 6), due north
+}
+
+TEST(Dem, HeightsEqualToNodataStayValidForGdal) {
+  const Workspace work;
+  work.write("level.txt", "0 0 7\n10 0 7\n0 10 7\n10 10 7\n");
+  work.succeed("spillway dem -q level.txt -o level.tif --resolution 1 --nodata 7");
+  const Opened dem(work, "level.tif");
+  double mean = 0;
+  ASSERT_EQ(dem.band().ComputeStatistics(0, nullptr, nullptr, &mean, nullptr, nullptr, nullptr),
+            CE_None);
+  EXPECT_NEAR(mean, 7, 1e-5);
+}
+
+TEST(Dem, ProgressCountsThePixelsThatThereAre) {
+  const Workspace work;
+  work.succeed("spillway generate -q uniform -n 500 --dim 3 -o in.txt");
+  const Result dem = work.run(
+      "spillway dem in.txt -o dem.tif --resolution 0.005 --bounds 0,0,1,1 --progress json "
+      "--product height,slope");
+  ASSERT_EQ(dem.exit_code, 0) << dem.err;
+  EXPECT_THAT(dem.err, HasSubstr(R"("phase":"write","done":40000,"unit":"pixels","fraction":1.0)"));
+  EXPECT_THAT(work.run("spillway dem in.txt -o dem.tif --resolution 0.005 --bounds 0,0,1,1").err,
+              HasSubstr("write: 40.0k pixels"));
 }
 
 TEST(Dem, ProductsBecomeBandsWithTheirNames) {

@@ -99,6 +99,44 @@ TEST_F(Filters, ThinningInLittleMemoryIsThinningInMuch) {
   }
 }
 
+TEST_F(Filters, ThinnedPointsComeInOneOrderWhateverTheMemoryAndTheWay) {
+  work_.succeed(
+      "spillway generate -q terrain -n 60000 -o one.las && "
+      "spillway generate -q terrain -n 60000 --seed 2 -o two.las");
+  for (const std::string choice : {"first", "lowest", "highest", "center"}) {
+    const std::string thin = "--thin 0.4:" + choice;
+    work_.succeed("spillway convert -q one.las two.las -o all.las --memory 1G " + thin);
+    const std::string expected = work_.read("all.las");
+    EXPECT_GT(expected.size(), 100'000U);
+    for (const std::string memory : {"1M", "3M", "5M", "32M"}) {
+      work_.succeed("spillway convert -q one.las two.las -o all.las --memory " + memory + " " +
+                    thin);
+      EXPECT_TRUE(work_.read("all.las") == expected) << choice << ", " << memory;
+    }
+    work_.succeed("spillway convert -q - two.las -o all.las --memory 2M < one.las " + thin);
+    EXPECT_TRUE(work_.read("all.las") == expected) << choice << ", a pipe";
+    for (const std::string format : {"txt", "npy", "spp"}) {
+      if (choice != "lowest") break;
+      work_.succeed("spillway convert -q one.las -o few." + format + " --memory 1M " + thin +
+                    " && spillway convert -q one.las -o many." + format + " --memory 1G " + thin +
+                    " && cmp few." + format + " many." + format);
+    }
+  }
+}
+
+TEST_F(Filters, AMeshOfThinnedPointsHasTheSameBytesWhereTheyWereThinnedOnTheDisk) {
+  // Tiles and leaves are given, so that nothing but the order of points could differ. 32M have room
+  // for fewer cells than there are.
+  work_.succeed("spillway generate -q terrain -n 120000 -o in.las");
+  const std::string command =
+      "spillway triangulate -q --thin 0.1:lowest --tile 5000 --base-case 500 ";
+  work_.succeed(command + "in.las -o much.spm --memory 1G && " + command +
+                "in.las -o little.spm --memory 32M --threads 1 --stats little.json && " + command +
+                "- -o pipe.spm --memory 32M < in.las && cmp much.spm little.spm && "
+                "cmp much.spm pipe.spm");
+  EXPECT_GT(nlohmann::json::parse(work_.read("little.json"))["points"], 100'000);
+}
+
 TEST_F(Filters, ThinningChoosesHeights) {
   work_.write("points.txt", "0 0 5\n0.5 0.5 1\n0.9 0.9 9\n3 0 0\n0 3 0\n");
   const auto vertices = [&](const std::string& choice) {
