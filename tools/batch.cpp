@@ -312,11 +312,15 @@ Subcommand add_batch(CLI::App& root) {
   take_one_list(
       app->add_option("--to", options->to, "Outputs of each job, like ply,dem.tif,hillshade.tif"))
       ->type_name("KIND,...");
-  app->add_option("-j,--jobs", options->at_a_time, "Most jobs at a time; 0: one a thread")
+  take_whole_number(
+      app->add_option("-j,--jobs", options->at_a_time, "Most jobs at a time; 0: one a thread"), 0,
+      kMostThreads)
       ->type_name("N")
       ->capture_default_str();
   app->add_flag("--resume", options->resume, "Leave out jobs that are complete and unchanged");
-  app->add_option("--threads", options->threads, "Threads of all jobs together; 0: all there are")
+  take_whole_number(app->add_option("--threads", options->threads,
+                                    "Threads of all jobs together; 0: all there are"),
+                    0, kMostThreads)
       ->type_name("N")
       ->capture_default_str();
   add_memory_options(*app, options->memory);

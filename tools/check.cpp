@@ -200,10 +200,10 @@ Subcommand add_check(CLI::App& root) {
   app->add_flag("--json", options->json, "Print the report as one JSON object");
   add_choice(*app, "--mesh-format", options->mesh_format, mesh_format_names(),
              "Format of the mesh, where the name does not tell");
-  app->add_option("--threads", options->threads,
-                  "Threads to prove a mesh stream with; 0: all there are")
+  take_whole_number(app->add_option("--threads", options->threads,
+                                    "Threads to prove a mesh stream with; 0: all there are"),
+                    0, kMostThreads)
       ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""))
       ->capture_default_str();
   add_memory_options(*app, options->memory);
   add_input_options(*app, options->input);

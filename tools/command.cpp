@@ -69,6 +69,21 @@ UsageError usage_error(const CLI::App& root, const CLI::ParseError& error) {
   return UsageError(fmt::format("{} (see `spillway {} --help`)", error.what(), app.get_name()));
 }
 
+/// Throws UsageError if an option or a positional was given an empty text: "$UNSET" in a script is
+/// no way to leave it away.
+void refuse_empty_values(const CLI::App& root) {
+  for (const CLI::App* app : root.get_subcommands()) {
+    for (const CLI::Option* option : app->get_options()) {
+      for (const std::string& value : option->results()) {
+        if (value.empty()) {
+          throw UsageError(fmt::format("{}: the value is empty (see `spillway {} --help`)",
+                                       option->get_name(), app->get_name()));
+        }
+      }
+    }
+  }
+}
+
 /// All options and subcommands.
 class CommandTree {
  public:
@@ -119,6 +134,7 @@ void check_command_line(const std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError& error) {
     throw usage_error(tree.root(), error);
   }
+  refuse_empty_values(tree.root());
 }
 
 int run_command(int argc, const char* const* argv) {
@@ -147,6 +163,7 @@ int run_command(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     throw usage_error(root, error);
   }
+  refuse_empty_values(root);
   return tree.run();
 }
 

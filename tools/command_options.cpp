@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <system_error>
+#include <utility>
 
 #include "src/distributed/ranks.h"
 #include "src/error.h"
@@ -19,13 +21,26 @@
 namespace spillway {
 namespace {
 
-/// parse_memory_size() whose complaint names the option.
-std::uint64_t parse_size(std::string_view option, const std::string& text) {
-  try {
-    return parse_memory_size(text);
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}: {}", option, error.what()));
+/// A check that help does not speak of; `wrong` says what is wrong with a text, nothing if it is
+/// right, and may write it in another way.
+CLI::Option* check_by(CLI::Option* option, std::function<std::string(std::string&)> wrong) {
+  return option->transform(CLI::Validator(std::move(wrong), ""));
+}
+
+std::vector<double> parse_numbers(const std::string& text) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string_view part = std::string_view(text).substr(begin, end - begin);
+    const auto number = parse_number(part);
+    if (!number) {
+      throw UsageError(
+          fmt::format("\"{}\" is no number; give several with commas between them", part));
+    }
+    numbers.push_back(*number);
+    begin = end + 1;
   }
+  return numbers;
 }
 
 }  // namespace
@@ -47,24 +62,28 @@ std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
 }
 
 void add_memory_options(CLI::App& app, MemoryOptions& options) {
-  app.add_option("--memory", options.limit,
-                 "Memory to keep to, as 512M or 2G [a quarter of the machine's, at most 2G]")
+  take_parsed(
+      app.add_option("--memory", options.limit,
+                     "Memory to keep to, as 512M or 2G [a quarter of the machine's, at most 2G]"),
+      parse_memory_size)
       ->type_name("SIZE");
   app.add_option("--tmpdir", options.scratch_parent,
                  "Folder for what does not fit into memory [$TMPDIR, else /tmp]")
       ->type_name("DIR");
-  app.add_option("--max-tmp", options.scratch_cap, "Most of the disk to use for that [no limit]")
+  take_parsed(app.add_option("--max-tmp", options.scratch_cap,
+                             "Most of the disk to use for that [no limit]"),
+              parse_memory_size)
       ->type_name("SIZE");
 }
 
 std::uint64_t memory_limit(const MemoryOptions& options) {
-  if (!options.limit.empty()) return parse_size("--memory", options.limit);
+  if (!options.limit.empty()) return parse_memory_size(options.limit);
   return default_memory_limit(static_cast<unsigned>(distributed::launch().ranks_here));
 }
 
 std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options) {
   std::optional<std::uint64_t> cap;
-  if (!options.scratch_cap.empty()) cap = parse_size("--max-tmp", options.scratch_cap);
+  if (!options.scratch_cap.empty()) cap = parse_memory_size(options.scratch_cap);
   // What was asked for by name is tried at once, not when hours of work are to be written there.
   const std::string& parent = options.scratch_parent;
   if (!parent.empty() && ::access((parent + "/.").c_str(), W_OK | X_OK) != 0) {
@@ -137,16 +156,80 @@ Progress make_progress(const ReportOptions& options, bool reads_pipe) {
   return {style, options.quiet, options.verbose};
 }
 
-std::string check_whole_number(const std::string& text) {
-  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-  if (digits && text.find_first_not_of('0') != std::string::npos) return "";
-  return fmt::format("\"{}\" is no whole number above 0", text);
+std::optional<double> parse_number(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  double number = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = fault == std::errc() && end == text.data() + text.size();
+  return whole && std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
-std::string check_positive_number(const std::string& text) {
-  double number = 0;
-  if (CLI::detail::lexical_cast(text, number) && number > 0 && std::isfinite(number)) return "";
-  return fmt::format("\"{}\" is no number above 0", text);
+CLI::Option* take_whole_number(CLI::Option* option, std::uint64_t least, std::uint64_t most) {
+  return check_by(option, [least, most](std::string& text) -> std::string {
+    std::uint64_t number = 0;
+    const char* const last = text.data() + text.size();
+    const auto [end, fault] = std::from_chars(text.data(), last, number);
+    if (fault == std::errc() && end == last && number >= least && number <= most) {
+      text = fmt::format("{}", number);  // not taken for octal
+      return "";
+    }
+    if (most == std::numeric_limits<std::uint64_t>::max()) {
+      return fmt::format("\"{}\" is no whole number of at least {}", text, least);
+    }
+    return fmt::format("\"{}\" is no whole number from {} to {}", text, least, most);
+  });
+}
+
+CLI::Option* take_number(CLI::Option* option) {
+  return check_by(option, [](std::string& text) -> std::string {
+    return parse_number(text) ? "" : fmt::format("\"{}\" is no number", text);
+  });
+}
+
+CLI::Option* take_positive_number(CLI::Option* option) {
+  return check_by(option, [](std::string& text) -> std::string {
+    return parse_number(text).value_or(0) > 0 ? ""
+                                              : fmt::format("\"{}\" is no number above 0", text);
+  });
+}
+
+CLI::Option* take_number_between(CLI::Option* option, double least, double most) {
+  return check_by(option, [least, most](std::string& text) -> std::string {
+    const auto number = parse_number(text);
+    if (number && *number >= least && *number <= most) return "";
+    return fmt::format("\"{}\" is no number from {} to {}", text, least, most);
+  });
+}
+
+CLI::Option* take_parsed(CLI::Option* option, std::function<void(const std::string& text)> parse) {
+  return check_by(option, [parse = std::move(parse)](std::string& text) -> std::string {
+    try {
+      parse(text);
+      return "";
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+  });
+}
+
+CLI::Option* add_number_list(CLI::App& app, const std::string& name, std::vector<double>& values,
+                             const std::string& description, bool positive) {
+  const auto keep = [&values](const std::vector<std::string>& texts) {
+    values.clear();
+    for (const std::string& text : texts) {
+      const std::vector<double> numbers = parse_numbers(text);
+      values.insert(values.end(), numbers.begin(), numbers.end());
+    }
+  };
+  CLI::Option* const option =
+      app.add_option_function<std::vector<std::string>>(name, keep, description);
+  return take_parsed(option->allow_extra_args(false), [positive](const std::string& text) {
+    const std::vector<double> numbers = parse_numbers(text);
+    const auto wrong = std::ranges::find_if(numbers, [](double number) { return number <= 0; });
+    if (positive && wrong != numbers.end()) {
+      throw UsageError(fmt::format("\"{}\" is no number above 0", *wrong));
+    }
+  });
 }
 
 std::uint64_t parse_point_count(std::string_view text) {

@@ -4,8 +4,11 @@
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +18,9 @@
 #include "tools/progress.h"
 
 namespace spillway {
+
+/// Most that --threads takes.
+inline constexpr unsigned kMostThreads = 4096;
 
 /// Help with `--option VALUE  description [default]`.
 class HelpFormatter : public CLI::Formatter {
@@ -77,10 +83,25 @@ CLI::Option* take_one_list(CLI::Option* option);
 /// Whether an option, or a positional, takes any number of arguments.
 bool takes_many(const CLI::Option& option);
 
-/// Checks for CLI::Validator: what is wrong with a text that is no whole number above 0, or no
-/// finite number above 0; empty if nothing is.
-std::string check_whole_number(const std::string& text);
-std::string check_positive_number(const std::string& text);
+/// A finite decimal number, like 12, -0.5 or 1e6; nothing for any other text, hexadecimal numbers
+/// and such with blanks included.
+std::optional<double> parse_number(std::string_view text);
+
+/// Make an option refuse what is no such number: a whole one is of digits only, others are as
+/// parse_number() reads them. They return the option.
+CLI::Option* take_whole_number(CLI::Option* option, std::uint64_t least = 0,
+                               std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+CLI::Option* take_number(CLI::Option* option);
+CLI::Option* take_positive_number(CLI::Option* option);
+CLI::Option* take_number_between(CLI::Option* option, double least, double most);
+
+/// Makes an option refuse what `parse` throws a UsageError for, which says what is wrong with the
+/// text but does not name the option. Returns the option.
+CLI::Option* take_parsed(CLI::Option* option, std::function<void(const std::string& text)> parse);
+
+/// An option of several numbers, separated by commas, above 0 if `positive`.
+CLI::Option* add_number_list(CLI::App& app, const std::string& name, std::vector<double>& values,
+                             const std::string& description, bool positive = false);
 
 /// Reads a number of things: digits, or with an exponent (1e6, 2.5e6). Throws UsageError for
 /// anything else, negative and fractional numbers included.

@@ -181,12 +181,12 @@ Subcommand add_contour(CLI::App& root) {
   app->add_option("-o,--output", options->output, "Vector file: .gpkg, .shp or .geojson")
       ->required()
       ->type_name("FILE");
-  app->add_option("--interval", options->interval, "Height between two lines")->type_name("H");
-  app->add_option("--base", options->base, "A height that intervals are counted from")
+  take_positive_number(app->add_option("--interval", options->interval, "Height between two lines"))
+      ->type_name("H");
+  take_number(app->add_option("--base", options->base, "A height that intervals are counted from"))
       ->type_name("H")
       ->capture_default_str();
-  take_one_list(
-      app->add_option("--levels", options->levels, "Heights of lines, instead of an interval"))
+  add_number_list(*app, "--levels", options->levels, "Heights of lines, instead of an interval")
       ->type_name("H,...");
   add_terrain_options(*app, *options);
   add_report_options(*app, options->report);

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -147,19 +147,6 @@ int run(const ConvertOptions& options) {
   return kExitDone;
 }
 
-void add_axes_option(CLI::App& app, const std::string& name, std::vector<double>& values,
-                     bool positive, const std::string& description) {
-  const auto check = [name, positive](const std::string& text) {
-    double value = 0;
-    const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-    if (number && (value > 0 || !positive)) return std::string();
-    return fmt::format("\"{}\" is no {} number", text, positive ? "positive" : "finite");
-  };
-  take_one_list(app.add_option(name, values, description))
-      ->type_name("N[,N,N]")
-      ->check(CLI::Validator(check, ""));
-}
-
 }  // namespace
 
 Subcommand add_convert(CLI::App& root) {
@@ -179,10 +166,12 @@ Subcommand add_convert(CLI::App& root) {
   add_choice(*app, "--mesh-format", options->mesh_format, mesh_format_names(),
              "The input is a mesh of this format, which neither content nor name tell");
   add_las_version(*app, options->output);
-  add_axes_option(*app, "--scale", options->lattice.scale, true,
-                  "Round coordinates to multiples of this; one number, or one for each axis");
-  add_axes_option(*app, "--offset", options->lattice.offset, false,
-                  "Count these multiples from here on; likewise");
+  add_number_list(*app, "--scale", options->lattice.scale,
+                  "Round coordinates to multiples of this; one number, or one for each axis", true)
+      ->type_name("N[,N,N]");
+  add_number_list(*app, "--offset", options->lattice.offset,
+                  "Count these multiples from here on; likewise")
+      ->type_name("N[,N,N]");
   add_input_options(*app, options->input);
   add_memory_options(*app, options->memory);
   add_report_options(*app, options->report);

@@ -12,9 +12,8 @@ namespace {
 constexpr unsigned kMostCores = 1U << 20;
 
 [[noreturn]] void refuse(std::string_view text) {
-  throw UsageError(fmt::format(
-      "--simulate-cores: '{}' is not a list like 1,2,8 or 1,2,4,...,1024 of 1 to {} cores", text,
-      kMostCores));
+  throw UsageError(fmt::format("'{}' is not a list like 1,2,8 or 1,2,4,...,1024 of 1 to {} cores",
+                               text, kMostCores));
 }
 
 }  // namespace

@@ -15,23 +15,21 @@ namespace spillway {
 namespace {
 
 double parse_resolution(const std::string& text) {
-  double resolution = 0;
   constexpr double kLargest = 1e100;
-  const bool number = CLI::detail::lexical_cast(text, resolution);
-  if (!number || !(resolution >= 1 / kLargest && resolution <= kLargest)) {
-    throw UsageError(fmt::format("--resolution: \"{}\" is no length; give a number above 0", text));
+  const auto resolution = parse_number(text);
+  if (!resolution || !(*resolution >= 1 / kLargest && *resolution <= kLargest)) {
+    throw UsageError(fmt::format("\"{}\" is no length; give a number above 0", text));
   }
-  return resolution;
+  return *resolution;
 }
 
 float parse_nodata(const std::string& text) {
-  double value = 0;
-  const bool number = CLI::detail::lexical_cast(text, value);
-  if (!number || std::isinf(static_cast<float>(value))) {
-    throw UsageError(
-        fmt::format("--nodata: \"{}\" is no value of a pixel; give a number or nan", text));
+  if (text == "nan" || text == "NaN") return std::numeric_limits<float>::quiet_NaN();
+  const auto value = parse_number(text);
+  if (!value || std::isinf(static_cast<float>(*value))) {
+    throw UsageError(fmt::format("\"{}\" is no value of a pixel; give a number or nan", text));
   }
-  return static_cast<float>(value);
+  return static_cast<float>(*value) + 0.0F;  // -0 becomes 0
 }
 
 std::vector<DemProduct> parse_products(const std::string& text) {
@@ -40,13 +38,12 @@ std::vector<DemProduct> parse_products(const std::string& text) {
   for (const std::string& name : CLI::detail::split(text, ',')) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-      throw UsageError(
-          fmt::format("--product: \"{}\" is none; give {}, several separated by commas", name,
-                      fmt::join(names, ", ")));
+      throw UsageError(fmt::format("\"{}\" is none; give {}, several separated by commas", name,
+                                   fmt::join(names, ", ")));
     }
     products.push_back(static_cast<DemProduct>(found - names.begin()));
     if (std::count(products.begin(), products.end(), products.back()) > 1) {
-      throw UsageError(fmt::format("--product: {} is there twice", name));
+      throw UsageError(fmt::format("{} is there twice", name));
     }
   }
   return products;
@@ -67,7 +64,7 @@ void check_products(const CLI::App& app, const std::vector<DemProduct>& products
 Box<2> parse_raster_bounds(const std::string& text) {
   const Box<3> box = parse_bounds(text);
   if (std::isfinite(box.lo[2]) || !(box.lo[0] < box.hi[0] && box.lo[1] < box.hi[1])) {
-    throw UsageError(fmt::format("--bounds: \"{}\" is no area; give xmin,ymin,xmax,ymax", text));
+    throw UsageError(fmt::format("\"{}\" is no area; give xmin,ymin,xmax,ymax", text));
   }
   return {{box.lo[0], box.lo[1]}, {box.hi[0], box.hi[1]}};
 }
@@ -82,10 +79,13 @@ void add_dem_options(CLI::App& app, DemCommandOptions& options) {
   app.remove_option(app.get_option("--resolution"));
   options.own_options = {"--bounds", "--resolution"};
   const std::string group = "Raster";
-  app.add_option("--resolution", options.resolution, "Side of a pixel, in units of x and y")
+  take_parsed(
+      app.add_option("--resolution", options.resolution, "Side of a pixel, in units of x and y"),
+      parse_resolution)
       ->type_name("R")
       ->group(group);
-  app.add_option("--bounds", options.bounds, "Cover xmin,ymin,xmax,ymax [all points]")
+  take_parsed(app.add_option("--bounds", options.bounds, "Cover xmin,ymin,xmax,ymax [all points]"),
+              parse_raster_bounds)
       ->type_name("BOX")
       ->group(group);
   app.add_flag("--align", options.align, "Put edges of pixels on multiples of R")->group(group);
@@ -94,22 +94,26 @@ void add_dem_options(CLI::App& app, DemCommandOptions& options) {
       ->group(group)
       // Its coordinate system is compared with that of a mesh, too.
       ->each([&options](const std::string&) { options.own_options.emplace_back("--force-crs"); });
-  app.add_option("--product", options.products,
-                 "height, slope, aspect, hillshade, density; several, with commas, become bands")
+  take_parsed(app.add_option(
+                  "--product", options.products,
+                  "height, slope, aspect, hillshade, density; several, with commas, become bands"),
+              parse_products)
       ->type_name("LIST")
       ->capture_default_str()
       ->group(group);
-  app.add_option("--azimuth", options.light.azimuth, "Where a hillshade's light comes from")
+  take_number_between(
+      app.add_option("--azimuth", options.light.azimuth, "Where a hillshade's light comes from"), 0,
+      360)
       ->type_name("DEGREES")
-      ->check(CLI::Range(0.0, 360.0).description(""))
       ->capture_default_str()
       ->group(group);
-  app.add_option("--altitude", options.light.altitude, "Its height above the horizon")
+  take_number_between(
+      app.add_option("--altitude", options.light.altitude, "Its height above the horizon"), 0, 90)
       ->type_name("DEGREES")
-      ->check(CLI::Range(0.0, 90.0).description(""))
       ->capture_default_str()
       ->group(group);
-  app.add_option("--nodata", options.nodata, "Value of pixels without data")
+  take_parsed(app.add_option("--nodata", options.nodata, "Value of pixels without data"),
+              parse_nodata)
       ->type_name("V")
       ->capture_default_str()
       ->group(group);

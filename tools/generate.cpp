@@ -92,11 +92,12 @@ Subcommand add_generate(CLI::App& root) {
       fmt::format("FAMILY is one of {}.\n\n{}", fmt::join(family_names(), ", "), kExamples));
   add_choice(*app, "FAMILY", options->family, family_names(), "What the points look like")
       ->required();
-  app->add_option("-n,--count", options->count, "How many points; 1e6 is a million")
+  take_parsed(app->add_option("-n,--count", options->count, "How many points; 1e6 is a million"),
+              parse_point_count)
       ->required()
       ->type_name("N");
   add_choice(*app, "--dim", options->dimension, {"2", "3"}, "Dimension; terrain always has z");
-  app->add_option("--seed", options->seed, "Another seed, other points")
+  take_whole_number(app->add_option("--seed", options->seed, "Another seed, other points"))
       ->type_name("S")
       ->capture_default_str();
   app->add_option("-o,--output", options->output.path, "Point file; - is standard output")

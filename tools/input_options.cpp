@@ -40,20 +40,15 @@ std::optional<T> number_of(std::string_view text) {
   return value;
 }
 
-std::optional<double> finite_number_of(std::string_view text) {
-  const auto value = number_of<double>(text);
-  return value && std::isfinite(*value) ? value : std::nullopt;
-}
-
 PointFilter point_filter(const InputOptions& options) {
   PointFilter filter;
   filter.every = options.every;
   if (!options.keep_class.empty()) {
-    filter.classes = parse_classes("--keep-class", options.keep_class);
+    filter.classes = parse_classes(options.keep_class);
   }
   if (!options.drop_class.empty()) {
     if (!filter.classes) filter.classes = std::bitset<256>().set();
-    *filter.classes &= ~parse_classes("--drop-class", options.drop_class);
+    *filter.classes &= ~parse_classes(options.drop_class);
   }
   if (!options.returns.empty()) filter.returns = parse_returns(options.returns);
   if (!options.bounds.empty()) filter.bounds = parse_bounds(options.bounds);
@@ -91,31 +86,38 @@ void add_input_options(CLI::App& app, InputOptions& options) {
                "Take coordinates as they are, though inputs have different coordinate systems");
   const std::string group = "Filters (of the points that are read)";
   const auto add = [&](const char* name, std::string& value, const char* type, const char* what) {
-    app.add_option(name, value, what)->type_name(type)->group(group);
+    return app.add_option(name, value, what)->type_name(type)->group(group);
   };
   app.add_flag("--keep-withheld", options.keep_withheld,
                "Use points that LAS files flag as withheld, too")
       ->group(group);
-  app.add_option("--every", options.every, "Use records 0, N, 2N, ... of each input")
+  take_whole_number(
+      app.add_option("--every", options.every, "Use records 0, N, 2N, ... of each input"), 1)
       ->type_name("N")
-      ->check(CLI::Validator(check_whole_number, ""))
       ->group(group);
-  add("--keep-class", options.keep_class, "LIST", "Use points of these classes, as 2,3-5");
-  add("--drop-class", options.drop_class, "LIST", "Leave out points of these classes");
-  add("--returns", options.returns, "LIST",
-      "Use these returns of a pulse: first, last, single, numbers");
-  add("--bounds", options.bounds, "BOX",
-      "Use points in xmin,ymin,xmax,ymax or xmin,ymin,zmin,xmax,ymax,zmax");
-  add("--thin", options.thin, "CELL[:CHOICE]",
-      "Use one point a cell of a grid: the first, lowest, highest one or that at its center");
-  app.add_option("--resolution", options.resolution,
-                 "Of COPC files, read the levels needed for points so far apart; others whole")
+  take_parsed(
+      add("--keep-class", options.keep_class, "LIST", "Use points of these classes, as 2,3-5"),
+      parse_classes);
+  take_parsed(add("--drop-class", options.drop_class, "LIST", "Leave out points of these classes"),
+              parse_classes);
+  take_parsed(add("--returns", options.returns, "LIST",
+                  "Use these returns of a pulse: first, last, single, numbers"),
+              parse_returns);
+  take_parsed(add("--bounds", options.bounds, "BOX",
+                  "Use points in xmin,ymin,xmax,ymax or xmin,ymin,zmin,xmax,ymax,zmax"),
+              parse_bounds);
+  take_parsed(
+      add("--thin", options.thin, "CELL[:CHOICE]",
+          "Use one point a cell of a grid: the first, lowest, highest one or that at its center"),
+      parse_thinning);
+  take_positive_number(
+      app.add_option("--resolution", options.resolution,
+                     "Of COPC files, read the levels needed for points so far apart; others whole"))
       ->type_name("R")
-      ->check(CLI::Validator(check_positive_number, ""))
       ->group(group);
 }
 
-std::bitset<256> parse_classes(std::string_view option, std::string_view text) {
+std::bitset<256> parse_classes(std::string_view text) {
   std::bitset<256> classes;
   for (const std::string_view part : split(text, ',')) {
     const std::vector<std::string_view> ends = split(part, '-');
@@ -123,9 +125,9 @@ std::bitset<256> parse_classes(std::string_view option, std::string_view text) {
     const auto last = number_of<std::uint8_t>(ends.back());
     if (!first || !last || ends.size() > 2 || *first > *last) {
       throw UsageError(
-          fmt::format("{}: \"{}\" is no list of classes; give numbers from 0 to 255 "
+          fmt::format("\"{}\" is no list of classes; give numbers from 0 to 255 "
                       "and ranges, as 2,3-5",
-                      option, text));
+                      text));
     }
     for (unsigned c = *first; c <= *last; ++c) classes.set(c);
   }
@@ -146,7 +148,7 @@ ReturnFilter parse_returns(std::string_view text) {
       filter.numbers.set(*number);
     } else {
       throw UsageError(
-          fmt::format("--returns: \"{}\" is none; give first, last, single, or "
+          fmt::format("\"{}\" is none; give first, last, single, or "
                       "numbers from 1 to 15, separated by commas",
                       text));
     }
@@ -157,7 +159,7 @@ ReturnFilter parse_returns(std::string_view text) {
 Box<3> parse_bounds(std::string_view text) {
   std::vector<double> numbers;
   for (const std::string_view part : split(text, ',')) {
-    numbers.push_back(finite_number_of(part).value_or(std::nan("")));
+    numbers.push_back(parse_number(part).value_or(std::nan("")));
   }
   Box<3> box;
   const std::size_t axes = numbers.size() / 2;
@@ -166,7 +168,7 @@ Box<3> parse_bounds(std::string_view text) {
       std::ranges::none_of(numbers, [](double number) { return std::isnan(number); });
   if (!valid) {
     throw UsageError(
-        fmt::format("--bounds: \"{}\" is no box; give xmin,ymin,xmax,ymax or "
+        fmt::format("\"{}\" is no box; give xmin,ymin,xmax,ymax or "
                     "xmin,ymin,zmin,xmax,ymax,zmax, without blanks",
                     text));
   }
@@ -174,8 +176,8 @@ Box<3> parse_bounds(std::string_view text) {
     box.lo[k] = k < axes ? numbers[k] : -std::numeric_limits<double>::infinity();
     box.hi[k] = k < axes ? numbers[axes + k] : std::numeric_limits<double>::infinity();
     if (box.lo[k] > box.hi[k]) {
-      throw UsageError(fmt::format("--bounds: \"{}\" has a least {} above the most: {} > {}", text,
-                                   "xyz"[k], box.lo[k], box.hi[k]));
+      throw UsageError(fmt::format("\"{}\" has a least {} above the most: {} > {}", text, "xyz"[k],
+                                   box.lo[k], box.hi[k]));
     }
   }
   return box;
@@ -185,14 +187,14 @@ ThinningRequest parse_thinning(std::string_view text) {
   const std::vector<std::string_view> parts = split(text, ':');
   const std::string_view choice = parts.size() == 2 ? parts.back() : "first";
   ThinningRequest thinning;
-  thinning.cell = finite_number_of(parts.front()).value_or(0);
+  thinning.cell = parse_number(parts.front()).value_or(0);
   if (choice == "lowest") thinning.choice = ThinChoice::kLowest;
   if (choice == "highest") thinning.choice = ThinChoice::kHighest;
   if (choice == "center") thinning.choice = ThinChoice::kCenter;
   const bool known = choice == "first" || thinning.choice != ThinChoice::kFirst;
   if (!(thinning.cell > 0) || !known || parts.size() > 2) {
     throw UsageError(
-        fmt::format("--thin: \"{}\" is not as 0.5 or 0.5:lowest; give the side of a "
+        fmt::format("\"{}\" is not as 0.5 or 0.5:lowest; give the side of a "
                     "cell, above 0, and first, lowest, highest or center",
                     text));
   }

@@ -62,8 +62,8 @@ std::unique_ptr<PointSource> make_point_source(FileSystem& files,
                                                ScratchFolder& scratch, Progress& progress);
 
 /// Reads the value of --keep-class: numbers and ranges, "2,3-5". This and what follows throws
-/// UsageError that says what is expected.
-std::bitset<256> parse_classes(std::string_view option, std::string_view text);
+/// UsageError that says what is expected, for take_parsed().
+std::bitset<256> parse_classes(std::string_view text);
 
 /// Reads the value of --returns: "first", "last", "single" and numbers, separated by commas.
 ReturnFilter parse_returns(std::string_view text);

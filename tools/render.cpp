@@ -61,20 +61,16 @@ struct RenderCommandOptions : TerrainOptions {
 AxisPlane parse_slice(const std::string& text) {
   const std::string axes = "xyz";
   const std::size_t axis = text.empty() ? std::string::npos : axes.find(text[0]);
-  AxisPlane plane;
-  if (axis == std::string::npos || text.size() < 3 || text[1] != '=' ||
-      !CLI::detail::lexical_cast(text.substr(2), plane.value) || !std::isfinite(plane.value)) {
-    throw UsageError(
-        fmt::format("--slice: \"{}\" is no plane; give x=VALUE, y=VALUE or z=VALUE", text));
+  const auto value =
+      text.size() < 3 || text[1] != '=' ? std::nullopt : parse_number(text.substr(2));
+  if (axis == std::string::npos || !value) {
+    throw UsageError(fmt::format("\"{}\" is no plane; give x=VALUE, y=VALUE or z=VALUE", text));
   }
-  plane.axis = static_cast<int>(axis);
-  return plane;
+  return {static_cast<int>(axis), *value};
 }
 
 Box<2> parse_zoom(const std::vector<double>& numbers) {
-  const bool finite =
-      std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::isfinite(n); });
-  if (numbers.size() != 4 || !finite || numbers[0] >= numbers[2] || numbers[1] >= numbers[3]) {
+  if (numbers.size() != 4 || numbers[0] >= numbers[2] || numbers[1] >= numbers[3]) {
     throw UsageError("--zoom takes a box of some area: xmin,ymin,xmax,ymax");
   }
   return {{numbers[0], numbers[1]}, {numbers[2], numbers[3]}};
@@ -88,8 +84,7 @@ RenderRequest parse_request(const RenderCommandOptions& options) {
   if (options.exaggeration != 0) request.exaggeration = options.exaggeration;
   if (!options.slice.empty()) request.slice = parse_slice(options.slice);
   if (!options.view.empty()) {
-    if (options.view.size() != 2 || !std::isfinite(options.view[0]) ||
-        !(std::abs(options.view[1]) <= 90)) {
+    if (options.view.size() != 2 || std::abs(options.view[1]) > 90) {
       throw UsageError("--view takes an azimuth and an elevation from -90 to 90 degrees, as 30,25");
     }
     request.view = {options.view[0], options.view[1]};
@@ -216,26 +211,27 @@ Subcommand add_render(CLI::App& root) {
   add_choice(*app, "--dim", options->dimension, {"2", "3"},
              "How points are triangulated: a terrain, or tetrahedra");
   const std::string group = "Picture";
-  app->add_option("--size", options->size, "Pixels of the longer side")
+  take_whole_number(app->add_option("--size", options->size, "Pixels of the longer side"),
+                    kLeastSize, kMostSize)
       ->type_name("N")
-      ->check(CLI::Range(kLeastSize, kMostSize).description(""))
       ->capture_default_str()
       ->group(group);
-  take_one_list(
-      app->add_option("--zoom", options->zoom, "Show xmin,ymin,xmax,ymax only [everything]"))
+  add_number_list(*app, "--zoom", options->zoom, "Show xmin,ymin,xmax,ymax only [everything]")
       ->type_name("BOX")
       ->group(group);
   app->add_flag("--wireframe", options->wireframe, "Draw the edges of triangles")->group(group);
-  app->add_option("--exaggerate", options->exaggeration,
-                  "Shade a terrain as if it were Z times as high [such that slopes are seen]")
+  take_positive_number(
+      app->add_option("--exaggerate", options->exaggeration,
+                      "Shade a terrain as if it were Z times as high [such that slopes are seen]"))
       ->type_name("Z")
-      ->check(CLI::Validator(check_positive_number, ""))
       ->group(group);
-  take_one_list(app->add_option("--view", options->view,
-                                "Look at tetrahedra from AZIMUTH,ELEVATION in degrees [30,25]"))
+  add_number_list(*app, "--view", options->view,
+                  "Look at tetrahedra from AZIMUTH,ELEVATION in degrees [30,25]")
       ->type_name("A,E")
       ->group(group);
-  app->add_option("--slice", options->slice, "Cut tetrahedra by a plane: x=VALUE, y=... or z=...")
+  take_parsed(app->add_option("--slice", options->slice,
+                              "Cut tetrahedra by a plane: x=VALUE, y=... or z=..."),
+              parse_slice)
       ->type_name("PLANE")
       ->group(group);
   app->add_flag("--transparent", options->transparent,

@@ -53,7 +53,7 @@ class TerrainFeed {
 
   void run() {
     statistics_.inputs = options_.inputs;
-    statistics_.max_edge = parse_max_edge(options_.max_edge);
+    statistics_.max_edge = max_edge(options_);
     if (!feed_one_input()) feed_points(disk());
     if (statistics_.stream.totals.simplices == 0) {
       if (statistics_.stream.left_out == 0) {

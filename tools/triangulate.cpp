@@ -75,8 +75,10 @@ void add_options(CLI::App& app, TriangulateOptions& options) {
   add_choice(app, "--output-format", options.output_format, mesh_format_names(),
              "Format of the mesh, where the name does not tell");
   add_triangulation_options(app, options);
-  app.add_option("--simulate-cores", options.core_list,
-                 "Run on one thread and print what so many cores would take, as 1,2,4,...,1024")
+  take_parsed(app.add_option(
+                  "--simulate-cores", options.core_list,
+                  "Run on one thread and print what so many cores would take, as 1,2,4,...,1024"),
+              parse_core_list)
       ->type_name("LIST");
   add_report_options(app, options.report);
 }

@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 
 #include "src/delaunay/base_case.h"
 #include "src/distributed/ranks.h"
@@ -29,31 +28,33 @@ void add_triangulation_options(CLI::App& app, TriangulationOptions& options) {
   options.app = &app;
   add_choice(app, "--duplicates", options.duplicates, height_choice_names(),
              "Which z a vertex of several points of equal x, y gets");
-  app.add_option("--max-edge", options.max_edge, "Leave out simplices with an edge longer than L")
+  take_positive_number(app.add_option("--max-edge", options.max_edge,
+                                      "Leave out simplices with an edge longer than L"))
       ->type_name("L");
   add_input_options(app, options.input);
-  app.add_option("--threads", options.threads, "Threads to use; 0: all there are")
+  take_whole_number(
+      app.add_option("--threads", options.threads, "Threads to use; 0: all there are"), 0,
+      kMostThreads)
       ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""))
       ->capture_default_str();
   add_memory_options(app, options.memory);
   app.add_option("--stats", options.stats_path, "Write figures and the task tree of the run")
       ->type_name("FILE");
-  app.add_option("--base-case", options.base_case_size,
-                 "Most points of one sequential base case (a leaf); 0: chosen by number and memory")
+  take_whole_number(app.add_option("--base-case", options.base_case_size,
+                                   "Most points of one sequential base case (a leaf); 0: chosen by "
+                                   "number and memory"))
       ->type_name("N")
-      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
       ->capture_default_str();
-  app.add_option("--tile", options.tile_capacity,
-                 "Most points of a tile that is loaded at a time; 0: chosen by the memory")
+  take_whole_number(
+      app.add_option("--tile", options.tile_capacity,
+                     "Most points of a tile that is loaded at a time; 0: chosen by the memory"))
       ->type_name("N")
-      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
       ->capture_default_str();
   add_choice(app, "--division", options.division, {"longest", "cycling", "constant"},
              "Which axis the division of points cuts");
-  app.add_option("--children", options.children, "Parts that are merged at a time")
+  take_whole_number(
+      app.add_option("--children", options.children, "Parts that are merged at a time"), 2, 1024)
       ->type_name("K")
-      ->check(CLI::Range(2, 1024).description(""))
       ->capture_default_str();
   add_choice(app, "--kernel", options.kernel, {"spillway", "cgal"},
              "What triangulates base cases; both give the same mesh");
@@ -79,14 +80,8 @@ unsigned thread_count(const TriangulationOptions& options) {
   return bound ? available : std::max(1U, available / sharing);
 }
 
-std::optional<double> parse_max_edge(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  double length = 0;
-  const bool number = CLI::detail::lexical_cast(text, length);
-  if (!number || !(length > 0) || !std::isfinite(length)) {
-    throw UsageError(fmt::format("--max-edge: \"{}\" is no length; give a number above 0", text));
-  }
-  return length;
+std::optional<double> max_edge(const TriangulationOptions& options) {
+  return parse_number(options.max_edge);
 }
 
 StreamOptions stream_options(const TriangulationOptions& options, Progress& progress) {
@@ -98,7 +93,7 @@ StreamOptions stream_options(const TriangulationOptions& options, Progress& prog
   stream.division = division_by_name(options.division);
   stream.children = options.children;
   stream.heights = height_choice_by_name(options.duplicates);
-  stream.max_edge = parse_max_edge(options.max_edge);
+  stream.max_edge = max_edge(options);
   stream.begin_phase = [&progress](const char* phase) { progress.begin(phase, "points"); };
   stream.end_phase = [&progress](std::uint64_t points) { progress.end(points); };
   stream.progress = [&progress](std::uint64_t points, std::optional<double> fraction) {

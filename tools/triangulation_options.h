@@ -52,8 +52,8 @@ void check_heights(const TriangulationOptions& options, const PointSource& sourc
 /// The number of threads that --threads asks for.
 unsigned thread_count(const TriangulationOptions& options);
 
-/// The length that --max-edge gives; nothing if it is not given. Throws UsageError.
-std::optional<double> parse_max_edge(const std::string& text);
+/// The length that --max-edge gives; nothing if it is not given.
+std::optional<double> max_edge(const TriangulationOptions& options);
 
 /// The pipeline's options, phases and progress going to `progress`, which must outlive them.
 StreamOptions stream_options(const TriangulationOptions& options, Progress& progress);

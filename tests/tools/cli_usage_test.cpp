@@ -3,7 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
+#include <map>
+#include <regex>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/tools/command_runner.h"
 
@@ -78,6 +84,122 @@ INSTANTIATE_TEST_SUITE_P(
         "contour in.txt -o x.gpkg --interval 0", "batch in.txt --to dem.tif --output-dir o",
         "batch in.txt --to ply,contour.gpkg --output-dir o",
         "batch in.txt ./in.txt --to ply --output-dir o", "info", "check", "completion tcsh"));
+
+/// An option that takes a number, or several, as help shows it.
+struct NumericOption {
+  std::string name;
+  std::string value_name;
+};
+
+/// All options of a subcommand that do not take files, folders or words: new ones, too.
+std::vector<NumericOption> numeric_options(const Workspace& work, const std::string& subcommand) {
+  const std::regex line("\\n +(?:-[a-zA-Z],)?(--[a-z-]+) ([^ \\n]+)");
+  const std::string help = work.succeed("spillway " + subcommand + " --help");
+  std::vector<NumericOption> options;
+  for (std::sregex_iterator at(help.begin(), help.end(), line), end; at != end; ++at) {
+    const std::string value_name = (*at)[2];
+    const bool other = value_name.starts_with("FILE") || value_name == "DIR" ||
+                       value_name == "KIND,..." || value_name.find('|') != std::string::npos;
+    // Flags have no value: what follows is their description.
+    const bool flag = std::islower(static_cast<unsigned char>(value_name.back())) != 0;
+    if (!other && !flag) options.push_back({(*at)[1], value_name});
+  }
+  return options;
+}
+
+/// Whether a number that is bad for most options is a good one for this.
+bool is_good(const std::string& option, const std::string& value) {
+  if (value == "nan") return option == "--nodata";
+  if (value == "-1") {
+    return option == "--nodata" || option == "--base" || option == "--levels" ||
+           option == "--offset";
+  }
+  return value == "1,5" &&
+         (option == "--levels" || option == "--view" || option == "--returns" ||
+          option == "--keep-class" || option == "--drop-class" || option == "--simulate-cores");
+}
+
+TEST(Usage, BadNumbersAreRefusedByEveryOptionOfEverySubcommand) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 300 -o in.las");
+  work.succeed("spillway triangulate -q in.las -o in.ply");
+  const auto names = work.names();
+  const std::map<std::string, std::string> commands = {
+      {"triangulate", "in.las -o x.ply"},
+      {"dem", "in.las -o x.tif"},
+      {"contour", "in.las -o x.geojson"},
+      {"render", "in.las -o x.png"},
+      {"info", "in.las"},
+      {"convert", "in.las -o x.las"},
+      {"generate", "uniform -o x.txt"},
+      {"check", "in.ply --points in.las"},
+      {"batch", "in.las --to ply,dem.tif --output-dir out"}};
+  const std::map<std::string, std::vector<std::pair<std::string, std::string>>> needed = {
+      {"dem", {{"--resolution", "5"}}},
+      {"batch", {{"--resolution", "5"}}},
+      {"contour", {{"--interval", "5"}}},
+      {"generate", {{"--count", "9"}}}};
+  const std::vector<std::string> bad = {"-1", "nan", "inf", "0x10", "1e999", "1,5", " 5", "5x", ""};
+  std::size_t options = 0;
+  for (const auto& [subcommand, arguments] : commands) {
+    std::string script;
+    std::vector<std::string> told;
+    for (const NumericOption& option : numeric_options(work, subcommand)) {
+      ++options;
+      std::string command = subcommand + " " + arguments;
+      if (const auto found = needed.find(subcommand); found != needed.end()) {
+        for (const auto& [name, value] : found->second) {
+          const bool levels = option.name == "--levels";
+          if (name != option.name && !levels) command.append(" ").append(name + " " + value);
+        }
+      }
+      for (const std::string& value : bad) {
+        if (is_good(option.name, value)) continue;
+        told.push_back(command + " " + option.name + " '" + value + "'");
+        script += "code=0; spillway " + told.back() +
+                  " > out 2> err || code=$?; echo $code $(wc -l < err) $(cat err)\n";
+      }
+    }
+    work.write("cases", script + "rm out err cases");
+    std::istringstream answers(work.succeed(". ./cases"));
+    for (const std::string& command : told) {
+      std::string answer;
+      ASSERT_TRUE(std::getline(answers, answer));
+      EXPECT_THAT(answer, StartsWith("2 1 spillway: error: ")) << command;
+      EXPECT_LT(answer.size(), 250U) << command;
+    }
+    EXPECT_EQ(work.names(), names) << subcommand;
+  }
+  EXPECT_GT(options, 80U);
+}
+
+TEST(Usage, WhatIsWrongWithANumberIsSaidInAFewWords) {
+  const Workspace work;
+  work.write("in.txt", "0 0 0\n1 0 0\n0 1 0\n");
+  const auto error = [&](const std::string& arguments) {
+    return work.run("spillway " + arguments).err;
+  };
+  EXPECT_THAT(error("triangulate in.txt -o x.ply --tile -1"),
+              HasSubstr("error: --tile: \"-1\" is no whole number of at least 0 (see"));
+  EXPECT_THAT(error("triangulate in.txt -o x.ply --children 1"),
+              HasSubstr("error: --children: \"1\" is no whole number from 2 to 1024 (see"));
+  EXPECT_THAT(error("dem in.txt -o x.tif --resolution 1 --azimuth nan"),
+              HasSubstr("error: --azimuth: \"nan\" is no number from 0 to 360 (see"));
+  EXPECT_THAT(error("contour in.txt -o x.gpkg --interval 0x10"),
+              HasSubstr("error: --interval: \"0x10\" is no number above 0 (see"));
+  EXPECT_THAT(error("triangulate in.txt -o x.ply --thin ''"), HasSubstr("error: --thin: \"\" is"));
+  EXPECT_THAT(error("triangulate in.txt -o x.ply --tmpdir ''"),
+              HasSubstr("error: --tmpdir: the value is empty"));
+  EXPECT_THAT(error("contour in.txt -o x.gpkg --levels 1,,2"), HasSubstr("\"\" is no number"));
+}
+
+TEST(Usage, NumbersAreDecimalAlsoWithZerosInFront) {
+  const Workspace work;
+  EXPECT_EQ(work.succeed("spillway generate -q uniform -n 5 --seed 0010 -o -"),
+            work.succeed("spillway generate -q uniform -n 5 --seed 10 -o -"));
+  work.write("in.txt", "0 0 0\n1 0 5\n0 1 0\n");
+  EXPECT_EQ(work.run("spillway contour in.txt -o c.gpkg --levels +2,-1e0,.5,3.").exit_code, 0);
+}
 
 TEST(Completion, BashCompletesSubcommandsOptionsAndValues) {
   const Workspace work;
