@@ -144,7 +144,8 @@ TEST_F(Contour, SaysWhatIsWrongWithTheCommandLine) {
     return result.err;
   };
   EXPECT_THAT(error_of("-o c.gpkg"), HasSubstr("--interval"));
-  EXPECT_THAT(error_of("-o c.gpkg --interval -1"), HasSubstr("--interval: \"-1\" is no number above 0"));
+  EXPECT_THAT(error_of("-o c.gpkg --interval -1"),
+              HasSubstr("--interval: \"-1\" is no number above 0"));
   EXPECT_THAT(error_of("-o c.gpkg --interval 1 --levels 3"),
               HasSubstr("--levels names all heights"));
   EXPECT_THAT(error_of("-o c.dwg --interval 1"), HasSubstr(".gpkg, .shp, .geojson or .json"));
