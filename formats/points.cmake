@@ -4,6 +4,7 @@ pkg_check_modules(libzstd REQUIRED IMPORTED_TARGET libzstd)
 target_sources(spillway_formats PRIVATE
   decompress.cpp
   file_system.cpp
+  geotiff_keys.cpp
   input_source.cpp
   las_crs.cpp
   las_header.cpp

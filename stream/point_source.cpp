@@ -144,8 +144,13 @@ void PointSource::add_input(const std::string& path, SourceFacts::Input facts) {
 
 void PointSource::check_coordinate_systems() {
   std::vector<InputCrs> systems;
-  for (const Input& input : inputs_)
-    systems.push_back({input.facts.header.name, input.facts.header.crs});
+  for (const Input& input : inputs_) {
+    const PointHeader& header = input.facts.header;
+    systems.push_back({header.name, header.crs, header.crs_note});
+    if (!header.crs.empty() && !header.crs_note.empty()) {
+      options_.detail(fmt::format("{}: {}", header.name, header.crs_note));
+    }
+  }
   crs_ = common_crs(systems, options_.force_crs, options_.warn);
 }
 

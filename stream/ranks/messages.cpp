@@ -30,6 +30,7 @@ void pack_header(Packer& message, const PointHeader& header) {
   pack_optional(message, header.lattice);
   pack_optional(message, header.extent);
   message.put_list(header.crs);
+  message.put_list(header.crs_note);
   message.put_list(header.software);
 }
 
@@ -44,6 +45,7 @@ PointHeader unpack_header(Unpacker& message) {
   header.lattice = unpack_optional<Lattice>(message);
   header.extent = unpack_optional<Box<3>>(message);
   header.crs = message.take_list<std::string>();
+  header.crs_note = message.take_list<std::string>();
   header.software = message.take_list<std::string>();
   return header;
 }
