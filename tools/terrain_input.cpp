@@ -121,7 +121,9 @@ class TerrainFeed {
                           {.dimension = D, .memory = tools_.budget.limit(), .ranks = tools_.ranks},
                           tools_.scratch, tools_.progress);
     MeshStreamWriter& writer = use_.begin({D, source->lattice(), source->crs(), std::nullopt});
-    stream.extent_known = [this](const Box<2>& extent) { use_.extent_known(extent); };
+    stream.extent_known = [this](const Box<2>& extent, std::uint64_t points) {
+      use_.extent_known(extent, points);
+    };
     if (tools_.ranks != nullptr) {
       const RankMesh mesh = triangulate_over_ranks<D>(*source, writer, tools_.scratch,
                                                       tools_.budget, stream, *tools_.ranks);
@@ -148,11 +150,15 @@ class TerrainFeed {
       files = &disk();
     }
     Box<2> extent;
+    std::uint64_t vertices = 0;
     if (use_.wants_extent()) {
       tools_.progress.begin("extent", "");
       const auto reader = open_mesh_stream_reader(*files, path, options_.mesh_format);
       const bool needed = reader->header().dimension == 2;
-      for (MeshBlock block; needed && reader->read(block);) expand(extent, block.vertices);
+      for (MeshBlock block; needed && reader->read(block);) {
+        expand(extent, block.vertices);
+        vertices += block.vertices.size();
+      }
       tools_.progress.end();
       files = &disk();
     }
@@ -161,7 +167,7 @@ class TerrainFeed {
     check_dimension(header.dimension);
     MeshStreamWriter& writer =
         use_.begin({header.dimension, header.lattice, header.crs, statistics_.max_edge});
-    use_.extent_known(extent);
+    use_.extent_known(extent, vertices);
     tools_.progress.begin(simplices(), simplices());
     with_threads(tools_.threads, [&] { pass_on(*reader, writer); });
     statistics_.stream.triangulate_seconds = tools_.progress.end();
@@ -211,7 +217,7 @@ class TerrainFeed {
     statistics_.on_lattice = lattice.has_value();
     MeshStreamWriter& writer =
         use_.begin({mesh.header.dimension, lattice, mesh.header.crs, statistics_.max_edge});
-    use_.extent_known(extent);
+    use_.extent_known(extent, mesh.vertices.size());
     MeshBlock block;
     block.vertices = std::move(mesh.vertices);
     block.corners.assign(mesh.corners.begin(), mesh.corners.end());

@@ -216,6 +216,14 @@ TEST_F(RanksThatFail, RefuseDegenerateInputsInBothDimensions) {
   expect_failure(ranks(8, "triangulate -q equal.txt -o b.ply"), "only 1 distinct point");
   expect_failure(ranks(5, "triangulate -q equal.txt --dim 3 -o b.ply"), "only 1 distinct point");
   expect_failure(ranks(8, "triangulate -q one.txt -o b.ply"), "only 1 distinct point");
+  // Much more than the borders of such points could have.
+  work_.succeed(
+      "spillway generate -q collinear -n 400000 -o line.spp && "
+      "spillway generate -q coplanar --dim 3 -n 400000 -o plane.spp");
+  expect_failure(ranks(3, "triangulate -q line.spp --memory 32M -o b.ply"),
+                 "all 400000 points lie on one line");
+  expect_failure(ranks(3, "triangulate -q plane.spp --dim 3 --memory 96M -o b.ply"),
+                 "all 400000 points lie in one plane");
 }
 
 TEST_F(RanksThatFail, SayWhatIsWrongWithOneOfThem) {
@@ -231,6 +239,11 @@ TEST_F(RanksThatFail, SayWhatIsWrongWithOneOfThem) {
     expect_failure(both("", different), "other options", 2);
   }
   EXPECT_TRUE(fs::is_empty(work_.folder() / "one"));
+}
+
+TEST_F(RanksThatFail, AskBeforeARasterOfManyPixelsForFewPoints) {
+  work_.write("far.txt", "0 0 1\n1 0 2\n0 1 3\n5000 5000 4\n");
+  expect_failure(ranks(2, "dem -q far.txt --resolution 1 -o b.tif"), "5000 x 5000 pixels");
 }
 
 TEST_F(RanksThatFail, RefuseMeshesForRasters) {
