@@ -10,6 +10,7 @@ target_sources(spillway_formats PRIVATE
   las_header.cpp
   las_reader.cpp
   las_writer.cpp
+  lattice_check.cpp
   line_reader.cpp
   npy_header.cpp
   npy_reader.cpp

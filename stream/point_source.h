@@ -132,7 +132,10 @@ class PointSource {
     std::shared_ptr<PointReader> reader;  ///< kept from the start only for what opens just once
     LatticeMap map;                       ///< from its integers to those of lattice_
     bool as_it_is = false;                ///< its coordinates are those of read()
-    std::uint64_t records = 0;            ///< fetched so far
+    /// Integers above this one may not be apart in output coordinates: blocks that have such are
+    /// looked at more closely. Nothing if it does not give any.
+    std::optional<double> exact_up_to;
+    std::uint64_t records = 0;  ///< fetched so far
   };
 
   void set_reader_options();
@@ -140,7 +143,9 @@ class PointSource {
   void add_input(const std::string& path, SourceFacts::Input facts);
   void relate_inputs();
   void check_coordinate_systems();
+  void check_own_lattices();
   void find_lattice();
+  [[nodiscard]] std::optional<CommonLattice> exact_common_lattice() const;
   void explain_lattice();
   void find_extent();
   void find_expected();

@@ -26,7 +26,8 @@ spillway_command_test(cli_out_of_core_tests cli
 spillway_command_test(cli_out_of_core_fault_tests fault
   tools/cli_out_of_core_fault_test.cpp)
 spillway_command_test(cli_input_tests cli
-  tools/cli_crs_test.cpp tools/cli_filter_test.cpp tools/cli_inputs_test.cpp)
+  tools/cli_crs_test.cpp tools/cli_filter_test.cpp tools/cli_inputs_test.cpp
+  tools/cli_lattice_test.cpp)
 
 spillway_command_test(cli_batch_tests cli
   tools/cli_batch_test.cpp tools/cli_contour_test.cpp)
