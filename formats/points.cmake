@@ -3,6 +3,7 @@
 pkg_check_modules(libzstd REQUIRED IMPORTED_TARGET libzstd)
 target_sources(spillway_formats PRIVATE
   decompress.cpp
+  file_digest.cpp
   file_system.cpp
   geotiff_keys.cpp
   input_source.cpp

@@ -97,6 +97,7 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
   set_reader_options();
   for (std::size_t i = 0; i < paths.size(); ++i) {
     add_input(paths[i], facts.inputs[i]);
+    inputs_.back().same_file = !facts.inputs[i].digest;
   }
   relate_inputs();
 }
@@ -151,6 +152,9 @@ void PointSource::inspect(const std::string& path) {
   // The n-th records of an input can be told in its pieces only if these know what comes before.
   const bool in_pieces = opens_again && (options_.filter.every == 1 || header.count);
   add_input(path, {header, in_pieces ? reader->pieces() : std::nullopt, !opens_again});
+  if (options_.digests && opens_again) {
+    inputs_.back().facts.digest = digest_of(*files_.open(path));
+  }
   if (!opens_again) inputs_.back().reader = std::move(reader);
 }
 
@@ -348,8 +352,25 @@ void PointSource::begin_piece(std::size_t input, std::optional<std::uint64_t> pi
   by_pieces_ = true;
   first_of_piece_.reset();
   Input& current = inputs_[current_];
+  check_same_file(current);
   if (!current.reader) current.reader = open_point_reader(files_, current.path, options_.reader);
   if (piece) current.reader->begin_piece(*piece);
+}
+
+/// Looks at a file once; what has changed since is not seen.
+void PointSource::check_same_file(Input& input) const {
+  if (input.same_file) return;
+  const FileDigest digest = digest_of(*files_.open(input.path));
+  if (digest != input.facts.digest) {
+    const bool sizes = digest.size != input.facts.digest->size;
+    throw Error(fmt::format(
+        "{}: {} reads another file of this name than the one that was looked at first ({}); all "
+        "must see the same files",
+        input.facts.header.name, options_.viewer,
+        sizes ? fmt::format("{} bytes, not {}", digest.size, input.facts.digest->size)
+              : "of the same size, but with other contents"));
+  }
+  input.same_file = true;
 }
 
 /// Where indices cannot count through all inputs, those of a piece begin with 0.

@@ -58,6 +58,7 @@ void pack(Packer& message, const SourceFacts& facts) {
     pack_header(message, input.header);
     pack_optional(message, input.pieces);
     message.put(input.opens_once);
+    pack_optional(message, input.digest);
   }
   message.put_list(facts.crs);
 }
@@ -70,6 +71,7 @@ SourceFacts unpack_source_facts(Unpacker& message) {
     input.header = unpack_header(message);
     input.pieces = unpack_optional<std::uint64_t>(message);
     input.opens_once = message.take<bool>();
+    input.digest = unpack_optional<FileDigest>(message);
   }
   facts.crs = message.take_list<std::string>();
   return facts;

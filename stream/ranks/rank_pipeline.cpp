@@ -1,5 +1,7 @@
 #include "stream/ranks/rank_pipeline.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <span>
@@ -333,6 +335,8 @@ template RankMesh triangulate_over_ranks<3>(PointSource&, MeshStreamWriter&, Scr
 std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<std::string> paths,
                                                 PointSourceOptions options, const Ranks& ranks) {
   options.index = true;
+  options.digests = true;
+  options.viewer = fmt::format("rank {}", ranks.rank());
   std::unique_ptr<PointSource> source;
   distributed::Packer packer;
   if (ranks.rank() == 0) {

@@ -241,6 +241,26 @@ TEST_F(RanksThatFail, SayWhatIsWrongWithOneOfThem) {
   EXPECT_TRUE(fs::is_empty(work_.folder() / "one"));
 }
 
+TEST_F(RanksThatFail, TellWhichOfThemSeesAnotherFileOfTheSameName) {
+  work_.succeed(
+      "mkdir one two && spillway generate -q terrain -n 300000 -o one/in.las && "
+      "spillway generate -q terrain -n 300000 --seed 2 -o two/in.las");
+  const auto job = [&] {
+    return fmt::format("{0} -n 1 -wdir one {1} {2} : -n 1 -wdir two {1} {2}", kMpirun,
+                       SPILLWAY_COMMAND, "triangulate -q in.las -o ../b.spm");
+  };
+  expect_failure(job(), "in.las: rank 1 reads another file of this name");
+  // Another scale of z alone.
+  work_.succeed(
+      "cp one/in.las two/in.las && printf '\\001' |"
+      " dd of=two/in.las bs=1 seek=147 conv=notrunc status=none");
+  expect_failure(job(), "of the same size, but with other contents");
+  work_.succeed("head -c 6000000 one/in.las > two/in.las");
+  expect_failure(job(), "rank 1 reads another file of this name");
+  work_.succeed("cp one/in.las two/in.las && " + job());
+  EXPECT_EQ(work_.info("b.spm").at("points"), 300'000);
+}
+
 TEST_F(RanksThatFail, AskBeforeARasterOfManyPixelsForFewPoints) {
   work_.write("far.txt", "0 0 1\n1 0 2\n0 1 3\n5000 5000 4\n");
   expect_failure(ranks(2, "dem -q far.txt --resolution 1 -o b.tif"), "5000 x 5000 pixels");
