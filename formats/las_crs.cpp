@@ -11,6 +11,7 @@
 
 #include "formats/bytes.h"
 #include "formats/fields.h"
+#include "formats/geotiff_keys.h"
 #include "formats/las_header.h"
 #include "src/error.h"
 
@@ -20,7 +21,8 @@ namespace {
 /// A coordinate system as GeoTIFF keys tell it.
 struct Code {
   std::uint16_t number;
-  bool geographic;
+  CrsKind kind;
+  bool whole = true;  ///< all of the system; false: its horizontal part
 };
 
 std::optional<std::uint16_t> epsg_number(std::string_view text) {
@@ -31,13 +33,23 @@ std::optional<std::uint16_t> epsg_number(std::string_view text) {
 
 bool is_wkt(std::string_view crs) { return crs.find_first_of("[(") != std::string_view::npos; }
 
-bool is_geographic(std::string_view keyword) {
-  return keyword == "GEOGCS" || keyword == "GEOGCRS" || keyword == "GEOGRAPHICCRS" ||
-         keyword == "GEODCRS" || keyword == "GEODETICCRS";
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
 }
 
-bool is_projected(std::string_view keyword) {
-  return keyword == "PROJCS" || keyword == "PROJCRS" || keyword == "PROJECTEDCRS";
+/// What kind of system a keyword begins; nothing for none that GeoTIFF keys tell.
+std::optional<CrsKind> kind_of(std::string_view keyword, std::string_view wkt) {
+  if (keyword == "PROJCS" || keyword == "PROJCRS" || keyword == "PROJECTEDCRS") {
+    return CrsKind::kProjected;
+  }
+  if (keyword == "GEOCCS") return CrsKind::kGeocentric;
+  if (keyword == "GEODCRS" || keyword == "GEODETICCRS") {
+    return contains(wkt, "CS[Cartesian") ? CrsKind::kGeocentric : CrsKind::kGeographic;
+  }
+  if (keyword == "GEOGCS" || keyword == "GEOGCRS" || keyword == "GEOGRAPHICCRS") {
+    return CrsKind::kGeographic;
+  }
+  return std::nullopt;
 }
 
 bool is_compound(std::string_view keyword) {
@@ -64,10 +76,12 @@ std::optional<Code> code_of_wkt(std::string_view wkt) {
     if (c == '[' || c == '(') {
       const std::string_view keyword = wkt.substr(word, at - word);
       const bool described = path.size() == 1 || (path.size() == 2 && is_compound(path[0]));
-      if (described && (is_projected(path.back()) || is_geographic(path.back())) &&
-          (keyword == "AUTHORITY" || keyword == "ID")) {
+      const bool is_id = keyword == "AUTHORITY" || keyword == "ID";
+      const std::optional<CrsKind> kind =
+          described && is_id ? kind_of(path.back(), wkt) : std::nullopt;
+      if (kind) {
         const std::optional<std::uint16_t> number = epsg_of_authority(wkt.substr(at + 1));
-        if (number) return Code{*number, is_geographic(path.back())};
+        if (number) return Code{*number, *kind, path.size() == 1};
       }
       path.push_back(keyword);
     } else if ((c == ']' || c == ')') && !path.empty()) {
@@ -84,9 +98,15 @@ std::optional<Code> code_of(const std::string& crs, const std::string& wkt) {
   if (!crs.starts_with(kPrefix)) return std::nullopt;
   const std::optional<std::uint16_t> number = epsg_number(crs.substr(kPrefix.size()));
   if (!number) return std::nullopt;
-  const std::optional<Code> known = code_of_wkt(wkt);
-  if (known && known->number == *number) return known;
-  return Code{*number, *number >= 4000 && *number < 5000};  // where most of each kind are
+  if (!wkt.empty()) return code_of_wkt(wkt);
+  const std::optional<CrsKind> kind = kind_of_epsg(*number);
+  if (!kind || *kind == CrsKind::kOther) {
+    throw Error(
+        fmt::format("whether {} is projected or geographic, which LAS has to say, GDAL does not "
+                    "tell: its module is not installed or does not know the code; write spp",
+                    crs));
+  }
+  return Code{*number, *kind};
 }
 
 void append_record(LasCrs& crs, std::uint16_t id, std::span<const std::byte> content) {
@@ -107,27 +127,6 @@ void append_wkt(LasCrs& crs, const std::string& wkt) {
   append_record(crs, kLasWktRecord, std::as_bytes(std::span(wkt.c_str(), wkt.size() + 1)));
 }
 
-/// A GeoTIFF directory of two keys: what the model is, and its code.
-void append_geotiff_keys(LasCrs& crs, const Code& code) {
-  constexpr std::uint16_t kModelType = 1024;
-  constexpr std::uint16_t kProjected = 1;
-  constexpr std::uint16_t kGeographic = 2;
-  const std::array<std::uint16_t, 12> keys = {
-      1,
-      1,
-      0,
-      2,  // version 1.1.0, two keys
-      kModelType,
-      0,
-      1,
-      code.geographic ? kGeographic : kProjected,
-      code.geographic ? kGeotiffGeographicType : kGeotiffProjectedCsType,
-      0,
-      1,
-      code.number};
-  append_record(crs, kLasGeotiffRecord, std::as_bytes(std::span(keys)));
-}
-
 }  // namespace
 
 LasCrs las_crs(const std::string& crs, const std::string& wkt, bool version14) {
@@ -142,8 +141,10 @@ LasCrs las_crs(const std::string& crs, const std::string& wkt, bool version14) {
                     crs));
   }
   const bool use_keys = code && (!version14 || best_wkt.empty());
-  if (use_keys) append_geotiff_keys(result, *code);
-  if (!use_keys || is_wkt(crs)) append_wkt(result, best_wkt);
+  if (use_keys) {
+    append_record(result, kLasGeotiffRecord, geotiff_keys_of(code->number, code->kind));
+  }
+  if (!use_keys || is_wkt(crs) || !code->whole) append_wkt(result, best_wkt);
   result.wkt_bit = version14 && !use_keys;
   return result;
 }

@@ -7,9 +7,11 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "formats/bytes.h"
+#include "formats/geotiff_keys.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -152,46 +154,38 @@ Box<3> read_extent(std::span<const std::byte> bytes) {
   return extent;
 }
 
-/// "EPSG:n" from the keys of a GeoTIFF directory, or nothing.
-std::string crs_of_geotiff_keys(std::span<const std::byte> keys) {
-  constexpr std::size_t kEntry = 4 * sizeof(std::uint16_t);
-  std::uint16_t geographic = 0;
-  std::uint16_t projected = 0;
-  for (std::size_t at = kEntry; at + kEntry <= keys.size(); at += kEntry) {
-    const auto key = load<std::uint16_t>(&keys[at]);
-    const auto location = load<std::uint16_t>(&keys[at + 2]);
-    const auto value = load<std::uint16_t>(&keys[at + 6]);
-    if (location != 0 || value == kGeotiffUserDefined) continue;
-    if (key == kGeotiffGeographicType) geographic = value;
-    if (key == kGeotiffProjectedCsType) projected = value;
-  }
-  const std::uint16_t code = projected != 0 ? projected : geographic;
-  return code != 0 ? fmt::format("EPSG:{}", code) : "";
-}
-
-/// What variable length records say, before the points or behind them.
-class Records {
+/// What variable length records say of the coordinate system, before the points or behind them.
+class CrsRecords {
  public:
   static bool tells_crs(std::string_view user, std::uint16_t record) {
-    return user == kLasCrsUser && (record == kLasWktRecord || record == kLasGeotiffRecord);
+    return user == kLasCrsUser && (record == kLasWktRecord || record == kLasGeotiffRecord ||
+                                   record == kLasGeotiffTextRecord);
   }
 
-  /// Keeps the coordinate system of a record that tells it.
-  void take_crs(std::uint16_t record, std::span<const std::byte> content) {
+  /// Keeps what a record tells that tells_crs().
+  void take(std::uint16_t record, std::span<const std::byte> content) {
     if (record == kLasWktRecord) wkt_ = clean_text(as_text(content));
-    if (record == kLasGeotiffRecord) epsg_ = crs_of_geotiff_keys(content);
+    if (record == kLasGeotiffRecord) keys_.emplace(content.begin(), content.end());
+    if (record == kLasGeotiffTextRecord) text_ = as_text(content);
   }
 
-  [[nodiscard]] const std::string& crs() const { return wkt_.empty() ? epsg_ : wkt_; }
+  /// Puts what they tell into the header: WKT before keys.
+  void tell(LasHeader& header) const {
+    if (wkt_.empty() && !keys_) return;
+    GeotiffCrs told = wkt_.empty() ? read_geotiff_keys(*keys_, text_) : GeotiffCrs{wkt_, ""};
+    header.crs = std::move(told.crs);
+    header.crs_note = std::move(told.note);
+  }
 
  private:
   std::string wkt_;
-  std::string epsg_;
+  std::optional<std::vector<std::byte>> keys_;
+  std::string text_;
 };
 
 /// Reads the variable length records up to the points into `header`.
 void read_vlrs(InputSource& source, const Layout& layout, LasHeader& header) {
-  Records records;
+  CrsRecords records;
   std::array<std::byte, kLasVlrHeaderSize> start_of_record;
   std::vector<std::byte> content;
   for (std::uint32_t i = 0; i < layout.vlr_count; ++i) {
@@ -209,7 +203,7 @@ void read_vlrs(InputSource& source, const Layout& layout, LasHeader& header) {
     const auto record = load<std::uint16_t>(&start_of_record[18]);
     content.resize(load<std::uint16_t>(&start_of_record[20]));
     read_part(content);
-    if (Records::tells_crs(user, record)) records.take_crs(record, content);
+    if (CrsRecords::tells_crs(user, record)) records.take(record, content);
     if (i == 0 && user == kCopcUser && record == kCopcInfoId) {
       header.copc = parse_copc_info(content);
     }
@@ -219,17 +213,17 @@ void read_vlrs(InputSource& source, const Layout& layout, LasHeader& header) {
           parse_laz_record(content, header.point_format, header.record_length, source.name());
     }
   }
-  header.crs = records.crs();
+  records.tell(header);
 }
 
-/// The coordinate system from the records behind the points. What is damaged there ends the search,
-/// as the points can be read without.
-std::string crs_of_evlrs(InputSource& source, const Layout& layout) {
+/// Puts the coordinate system that the records behind the points tell into the header. What is
+/// damaged there ends the search, as the points can be read without.
+void read_crs_of_evlrs(InputSource& source, const Layout& layout, LasHeader& las) {
   constexpr std::uint32_t kMostRecords = 1000;
   constexpr std::uint64_t kLongest = std::uint64_t{1} << 20;
   const std::optional<std::uint64_t> size = source.size();
   const std::uint64_t back = source.position();
-  Records records;
+  CrsRecords records;
   std::array<std::byte, kLasEvlrHeaderSize> header;
   std::vector<std::byte> content;
   std::uint64_t at = layout.evlr_start;
@@ -241,15 +235,15 @@ std::string crs_of_evlrs(InputSource& source, const Layout& layout) {
     if (length > *size - at) break;
     const std::string user = clean_text(as_text(std::span(header).subspan(2, 16)));
     const auto record = load<std::uint16_t>(&header[18]);
-    if (Records::tells_crs(user, record) && length <= kLongest) {
+    if (CrsRecords::tells_crs(user, record) && length <= kLongest) {
       content.resize(length);
       if (source.read(content) < length) break;
-      records.take_crs(record, content);
+      records.take(record, content);
     }
     at += length;
   }
   if (source.position() != back) source.seek(back);
-  return records.crs();
+  records.tell(las);
 }
 
 /// What begins first behind the points; nothing that would begin before them.
@@ -352,7 +346,7 @@ LasHeader read_las_header(InputSource& source) {
   check_layout(source, layout);
   read_vlrs(source, layout, header);
   check_compression(source, layout, header);
-  if (header.crs.empty()) header.crs = crs_of_evlrs(source, layout);
+  if (header.crs.empty() && layout.evlr_count > 0) read_crs_of_evlrs(source, layout, header);
   if (!source.skip(layout.offset_to_points - source.position())) {
     fail(source, fmt::format("the file ends at byte {}, before the points; get a complete copy",
                              source.position()));
@@ -371,6 +365,7 @@ PointHeader las_point_header(const LasHeader& las, const std::string& path) {
   header.lattice = las.lattice;
   if (!las.extent.empty()) header.extent = las.extent;
   header.crs = las.crs;
+  header.crs_note = las.crs_note;
   header.software = las.software;
   return header;
 }

@@ -50,13 +50,11 @@ inline constexpr std::size_t kLasVlrHeaderSize = 54;
 inline constexpr std::size_t kLasEvlrHeaderSize = 60;  ///< of the records behind the points
 
 /// Records that tell the coordinate system: their user, WKT, and a directory of GeoTIFF keys with
-/// the keys that have an EPSG code and the value that stands for none.
+/// the text that keys refer to.
 inline constexpr std::string_view kLasCrsUser = "LASF_Projection";
 inline constexpr std::uint16_t kLasWktRecord = 2112;
 inline constexpr std::uint16_t kLasGeotiffRecord = 34735;
-inline constexpr std::uint16_t kGeotiffGeographicType = 2048;
-inline constexpr std::uint16_t kGeotiffProjectedCsType = 3072;
-inline constexpr std::uint16_t kGeotiffUserDefined = 32767;
+inline constexpr std::uint16_t kLasGeotiffTextRecord = 34737;
 
 /// Shortest record of each point format, in bytes; longer ones carry extra bytes at their end.
 inline constexpr std::array<std::size_t, 11> kLasRecordLengths = {20, 28, 26, 34, 57, 63,
@@ -77,6 +75,7 @@ struct LasHeader {
   Lattice lattice;
   Box<3> extent;                       ///< empty if the header's bounds are not ordered
   std::string crs;                     ///< WKT, or "EPSG:n", or empty
+  std::string crs_note;                ///< as PointHeader has it
   std::string software;                ///< generating software
   std::uint64_t offset_to_points = 0;  ///< compressed or not
   /// Where waveforms or extended records begin behind the points, if there are any.

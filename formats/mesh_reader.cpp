@@ -13,6 +13,7 @@
 #include "formats/glb_reader.h"
 #include "formats/input_source.h"
 #include "formats/landxml_reader.h"
+#include "formats/lattice_check.h"
 #include "formats/mesh_block.h"
 #include "formats/mesh_writer.h"
 #include "formats/npy_header.h"
@@ -150,18 +151,7 @@ Mesh collect(MeshStreamReader& stream) {
   return mesh;
 }
 
-}  // namespace
-
-bool is_mesh(FileSystem& files, const std::string& path) {
-  if (path == "-") return false;
-  if (is_npy_mesh(files, path)) return true;
-  InputSource source(files.open(path));
-  std::optional<MeshFormat> format = format_of_content(source);
-  if (!format) format = format_of_name(path);
-  return format == MeshFormat::kPly ? is_ply_mesh(source) : format.has_value();
-}
-
-Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name) {
+Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string& format_name) {
   std::optional<MeshFormat> format;
   if (!format_name.empty()) format = mesh_format(path, format_name);
   if (format == MeshFormat::kNpy || (!format && is_npy_mesh(files, path))) {
@@ -195,6 +185,27 @@ Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& fo
     default:
       return read_ply(*source);
   }
+}
+
+}  // namespace
+
+bool is_mesh(FileSystem& files, const std::string& path) {
+  if (path == "-") return false;
+  if (is_npy_mesh(files, path)) return true;
+  InputSource source(files.open(path));
+  std::optional<MeshFormat> format = format_of_content(source);
+  if (!format) format = format_of_name(path);
+  return format == MeshFormat::kPly ? is_ply_mesh(source) : format.has_value();
+}
+
+Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name) {
+  Mesh mesh = read_any_mesh(files, path, format_name);
+  if (mesh.header.lattice) {
+    check_lattice(path, *mesh.header.lattice,
+                  integers_of(*mesh.header.lattice, box_around(mesh.vertices)),
+                  mesh.header.dimension);
+  }
+  return mesh;
 }
 
 }  // namespace spillway

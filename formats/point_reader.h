@@ -77,6 +77,8 @@ struct PointHeader {
   std::optional<Lattice> lattice;      ///< set if the points come as integers
   std::optional<Box<3>> extent;        ///< in output coordinates, where the header gives it
   std::string crs;                     ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
+  std::string crs_note;                ///< why there is none, though the source tells of one; or
+                                       ///< what is not read of it; empty: neither
   std::string software;                ///< generating software, LAS only
 };
 

@@ -3,12 +3,15 @@
 pkg_check_modules(libzstd REQUIRED IMPORTED_TARGET libzstd)
 target_sources(spillway_formats PRIVATE
   decompress.cpp
+  file_digest.cpp
   file_system.cpp
+  geotiff_keys.cpp
   input_source.cpp
   las_crs.cpp
   las_header.cpp
   las_reader.cpp
   las_writer.cpp
+  lattice_check.cpp
   line_reader.cpp
   npy_header.cpp
   npy_reader.cpp

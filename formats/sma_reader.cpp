@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "formats/fields.h"
+#include "formats/lattice_check.h"
 #include "formats/line_reader.h"
 #include "formats/live_vertices.h"
 #include "formats/mesh.h"
@@ -68,6 +69,10 @@ class SmaReader : public MeshStreamReader {
       return false;
     }
     close(block);
+    if (header_.lattice) {
+      check_lattice(source_->name(), *header_.lattice, box_around(block.vertices),
+                    header_.dimension);
+    }
     return true;
   }
 

@@ -7,6 +7,7 @@
 
 #include "formats/block_stream.h"
 #include "formats/columns.h"
+#include "formats/lattice_check.h"
 #include "formats/live_vertices.h"
 #include "formats/mesh_notes.h"
 #include "formats/spm_block.h"
@@ -93,6 +94,10 @@ class SpmReader : public MeshStreamReader {
 
   void parse_mesh(MeshBlock& block) {
     const SpmCounts counts = read_spm_content(stream_.content(), header_, stream_.where(), block);
+    if (header_.lattice) {
+      check_lattice(stream_.where(), *header_.lattice, box_around(block.vertices),
+                    header_.dimension);
+    }
     if (counts.numbers > counts.vertices + block.imported.size()) {
       stream_.fail("a block has short numbers that stand for no vertex");
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "formats/gdal/gdal.h"
@@ -30,10 +31,32 @@ bool same(const std::string& a, const std::string& b) {
   }
 }
 
+/// " (and n more)" for so many beside the first one.
+std::string and_more(std::size_t inputs) {
+  return inputs > 1 ? fmt::format(" (and {} more)", inputs - 1) : "";
+}
+
+/// Says, once for each reason, why inputs that tell of a coordinate system have none.
+void tell_notes(std::span<const InputCrs> inputs,
+                const std::function<void(std::string_view)>& warn) {
+  std::map<std::string_view, std::size_t> count;
+  for (const InputCrs& input : inputs) {
+    if (input.crs.empty() && !input.note.empty()) ++count[input.note];
+  }
+  for (const InputCrs& input : inputs) {
+    const auto found = count.find(input.note);
+    if (!input.crs.empty() || found == count.end()) continue;
+    warn(fmt::format("warning: {}{}: taken to have no coordinate system: {}", input.name,
+                     and_more(found->second), input.note));
+    count.erase(found);
+  }
+}
+
 }  // namespace
 
 std::string common_crs(std::span<const InputCrs> inputs, bool force,
                        const std::function<void(std::string_view)>& warn) {
+  tell_notes(inputs, warn);
   const auto first = std::find_if(inputs.begin(), inputs.end(),
                                   [](const InputCrs& input) { return !input.crs.empty(); });
   if (first == inputs.end()) return "";
@@ -60,9 +83,8 @@ std::string common_crs(std::span<const InputCrs> inputs, bool force,
     }
   }
   if (unknown != nullptr) {
-    warn(fmt::format(
-        "warning: {}{} names no coordinate system; taken to be that of {}", unknown->name,
-        unknown_count > 1 ? fmt::format(" (and {} more)", unknown_count - 1) : "", first->name));
+    warn(fmt::format("warning: {}{} names no coordinate system; taken to be that of {}",
+                     unknown->name, and_more(unknown_count), first->name));
   }
   return first->crs;
 }

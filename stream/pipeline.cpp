@@ -35,10 +35,10 @@ void run(TileEngine<D>& engine, PointSource& source, MemoryBudget& budget,
   options.begin_phase("triangulate");
   const std::optional<TileNode<D>> root = engine.nodes();
   if (!root) refuse_empty_input(source.counts());
-  options.extent_known(plane_of(root->box));
+  refuse_flat_points(engine.span(), engine.points());
+  options.extent_known(plane_of(root->box), root->points);
   budget.set_enough(enough_memory<D>(root->points));
-  const Border<D> left = engine.triangulate(*root, {});
-  if (left.open()) refuse_open(left, engine.points());
+  engine.triangulate(*root, {});
   options.end_phase(engine.points());
 }
 

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "formats/lattice_check.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "stream/input_crs.h"
@@ -38,6 +39,24 @@ Box<3> common_part(const Box<3>& a, const Box<3>& b) {
     if (part.lo[k] > part.hi[k]) return {};
   }
   return part;
+}
+
+/// Integers up to `largest`, their signs aside.
+Box<3> integers_up_to(double largest) {
+  return {{-largest, -largest, -largest}, {largest, largest, largest}};
+}
+
+/// The integers that a source with a lattice may give, by its format; its extent may be false.
+Box<3> possible_integers(const PointHeader& header) {
+  return integers_up_to(header.format == "spp" ? 0x1p53 : 0x1p31);
+}
+
+Box<3> mapped(const Box<3>& integers, const LatticeMap& map) {
+  Box<3> box;
+  for (const Point<3>& corner : {integers.lo, integers.hi}) {
+    box.expand(Point<3>{map.map(0, corner[0]), map.map(1, corner[1]), map.map(2, corner[2])});
+  }
+  return box;
 }
 
 /// The share of a box, by its area in x, y, that a part of it has.
@@ -78,6 +97,7 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
   set_reader_options();
   for (std::size_t i = 0; i < paths.size(); ++i) {
     add_input(paths[i], facts.inputs[i]);
+    inputs_.back().same_file = !facts.inputs[i].digest;
   }
   relate_inputs();
 }
@@ -91,6 +111,7 @@ SourceFacts PointSource::facts() const {
 
 /// Finds out what all inputs have in common.
 void PointSource::relate_inputs() {
+  check_own_lattices();
   find_lattice();
   find_extent();
   find_expected();
@@ -131,6 +152,9 @@ void PointSource::inspect(const std::string& path) {
   // The n-th records of an input can be told in its pieces only if these know what comes before.
   const bool in_pieces = opens_again && (options_.filter.every == 1 || header.count);
   add_input(path, {header, in_pieces ? reader->pieces() : std::nullopt, !opens_again});
+  if (options_.digests && opens_again) {
+    inputs_.back().facts.digest = digest_of(*files_.open(path));
+  }
   if (!opens_again) inputs_.back().reader = std::move(reader);
 }
 
@@ -144,27 +168,68 @@ void PointSource::add_input(const std::string& path, SourceFacts::Input facts) {
 
 void PointSource::check_coordinate_systems() {
   std::vector<InputCrs> systems;
-  for (const Input& input : inputs_)
-    systems.push_back({input.facts.header.name, input.facts.header.crs});
+  for (const Input& input : inputs_) {
+    const PointHeader& header = input.facts.header;
+    systems.push_back({header.name, header.crs, header.crs_note});
+    if (!header.crs.empty() && !header.crs_note.empty()) {
+      options_.detail(fmt::format("{}: {}", header.name, header.crs_note));
+    }
+  }
   crs_ = common_crs(systems, options_.force_crs, options_.warn);
 }
 
-void PointSource::find_lattice() {
+/// Throws Error if an input's lattice does not keep its points apart, by the extent that its header
+/// tells. Where only the points can show it, each block is looked at when it comes.
+void PointSource::check_own_lattices() {
+  for (Input& input : inputs_) {
+    const PointHeader& header = input.facts.header;
+    if (!header.lattice) continue;
+    const Box<3> possible = possible_integers(header);
+    if (is_exact(*header.lattice, possible, options_.dimension)) continue;
+    input.exact_up_to = exact_up_to(*header.lattice, options_.dimension);
+    if (!header.extent) continue;
+    check_lattice(header.name, *header.lattice,
+                  common_part(integers_of(*header.lattice, *header.extent), possible),
+                  options_.dimension);
+  }
+}
+
+/// A lattice for all inputs that keeps the points of each apart from those of all others.
+std::optional<CommonLattice> PointSource::exact_common_lattice() const {
   std::vector<Lattice> lattices;
   std::vector<double> largest;
   for (const Input& input : inputs_) {
-    if (!input.facts.header.lattice) continue;
+    if (!input.facts.header.lattice) return std::nullopt;
     lattices.push_back(*input.facts.header.lattice);
     largest.push_back(largest_integer(input.facts.header));
   }
-  if (lattices.size() == inputs_.size()) {
-    if (const auto common = find_common_lattice(lattices, options_.dimension, largest)) {
-      lattice_ = common->lattice;
-      heights_on_lattice_ = common->heights;
-      for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i].map = common->maps[i];
+  std::optional<CommonLattice> common = find_common_lattice(lattices, options_.dimension, largest);
+  for (std::size_t i = 0; common && i < inputs_.size(); ++i) {
+    if (common->maps[i].is_identity()) continue;  // as its own lattice does
+    const Box<3> integers = mapped(integers_up_to(largest[i]), common->maps[i]);
+    if (!is_exact(common->lattice, integers, options_.dimension)) return std::nullopt;
+  }
+  return common;
+}
+
+void PointSource::find_lattice() {
+  if (const auto common = exact_common_lattice()) {
+    lattice_ = common->lattice;
+    heights_on_lattice_ = common->heights;
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      Input& input = inputs_[i];
+      input.map = common->maps[i];
+      while (input.exact_up_to.value_or(0) >= 1 &&
+             !is_exact(*lattice_, mapped(integers_up_to(*input.exact_up_to), input.map),
+                       options_.dimension)) {
+        *input.exact_up_to /= 2;
+      }
     }
   }
-  if (!lattices.empty()) explain_lattice();
+  if (std::ranges::any_of(
+          inputs_, [](const Input& input) { return input.facts.header.lattice.has_value(); })) {
+    explain_lattice();
+  }
 }
 
 /// Says on which lattice the points come, if it is not that of the only input; without one, which
@@ -292,8 +357,25 @@ void PointSource::begin_piece(std::size_t input, std::optional<std::uint64_t> pi
   by_pieces_ = true;
   first_of_piece_.reset();
   Input& current = inputs_[current_];
+  check_same_file(current);
   if (!current.reader) current.reader = open_point_reader(files_, current.path, options_.reader);
   if (piece) current.reader->begin_piece(*piece);
+}
+
+/// Looks at a file once; what has changed since is not seen.
+void PointSource::check_same_file(Input& input) const {
+  if (input.same_file) return;
+  const FileDigest digest = digest_of(*files_.open(input.path));
+  if (digest != input.facts.digest) {
+    const bool sizes = digest.size != input.facts.digest->size;
+    throw Error(fmt::format(
+        "{}: {} reads another file of this name than the one that was looked at first ({}); all "
+        "must see the same files",
+        input.facts.header.name, options_.viewer,
+        sizes ? fmt::format("{} bytes, not {}", digest.size, input.facts.digest->size)
+              : "of the same size, but with other contents"));
+  }
+  input.same_file = true;
 }
 
 /// Where indices cannot count through all inputs, those of a piece begin with 0.
@@ -327,6 +409,14 @@ bool PointSource::fetch_input(SourcePiece& piece) {
 void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   piece.reader->decode(piece.raw, block);
   const Input& input = inputs_[piece.input];
+  if (input.exact_up_to && any_beyond(block.points, *input.exact_up_to)) {
+    const PointHeader& header = input.facts.header;
+    const Box<3> box = box_around(block.points);
+    check_lattice(header.name, *header.lattice, box, options_.dimension);
+    if (lattice_) {
+      check_lattice(header.name, *lattice_, mapped(box, input.map), options_.dimension);
+    }
+  }
   if (!input.as_it_is) {
     for (Point<3>& point : block.points) point = placed(input, point);
   }

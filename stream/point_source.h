@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/file_digest.h"
 #include "formats/file_system.h"
 #include "formats/point_reader.h"
 #include "formats/scratch_folder.h"
@@ -35,6 +36,8 @@ struct PointSourceOptions {
   PointFilter filter{};
   std::optional<ThinningRequest> thinning{};
   bool force_crs = false;  ///< inputs of different coordinate systems are no error
+  bool digests = false;    ///< facts() have digests, for other processes to compare files by
+  std::string viewer{};    ///< who reads files that another process has looked at, for messages
   /// Receives what is worth a warning, and what only -v shows.
   std::function<void(std::string_view)> warn = [](std::string_view) {};
   std::function<void(std::string_view)> detail = [](std::string_view) {};
@@ -58,6 +61,7 @@ struct SourceFacts {
     PointHeader header;
     std::optional<std::uint64_t> pieces;  ///< that can be read in any order, filters considered
     bool opens_once = false;              ///< a pipe: the rest of it is with who looked at it
+    std::optional<FileDigest> digest{};   ///< of a file, if asked for
   };
   std::vector<Input> inputs;
   std::string crs;  ///< of the first input that names a coordinate system
@@ -71,7 +75,8 @@ class PointSource {
   /// what the filter looks at, or two of different coordinate systems.
   PointSource(FileSystem& files, const std::vector<std::string>& paths, PointSourceOptions options);
 
-  /// The same inputs, looked at by another process: none is opened before it is read.
+  /// The same inputs, looked at by another process: none is opened before it is read. begin_piece()
+  /// throws Error for one that is another file here than there, by its digest.
   PointSource(FileSystem& files, const std::vector<std::string>& paths, PointSourceOptions options,
               const SourceFacts& facts);
 
@@ -133,8 +138,12 @@ class PointSource {
     SourceFacts::Input facts;
     std::shared_ptr<PointReader> reader;  ///< kept from the start only for what opens just once
     LatticeMap map;                       ///< from its integers to those of lattice_
+    bool same_file = true;                ///< as was looked at, or not to be compared
     bool as_it_is = false;                ///< its coordinates are those of read()
-    std::uint64_t records = 0;            ///< fetched so far
+    /// Integers above this one may not be apart in output coordinates: blocks that have such are
+    /// looked at more closely. Nothing if it does not give any.
+    std::optional<double> exact_up_to;
+    std::uint64_t records = 0;  ///< fetched so far
   };
 
   void set_reader_options();
@@ -142,10 +151,13 @@ class PointSource {
   void add_input(const std::string& path, SourceFacts::Input facts);
   void relate_inputs();
   void check_coordinate_systems();
+  void check_own_lattices();
   void find_lattice();
+  [[nodiscard]] std::optional<CommonLattice> exact_common_lattice() const;
   void explain_lattice();
   void find_extent();
   void find_expected();
+  void check_same_file(Input& input) const;
   bool fetch_input(SourcePiece& piece);
   bool fetch_piece(SourcePiece& piece);
   void decode_input(SourcePiece& piece, PointBlock& block);

@@ -28,8 +28,9 @@ struct StreamOptions {
   std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, in output units
   bool input_index = false;
   /// Told the box around all points in x and y, in the coordinates in which the source gives them,
-  /// before the first block is written.
-  std::function<void(const Box<2>&)> extent_known = [](const Box<2>&) {};
+  /// and how many they are, before the first block is written.
+  std::function<void(const Box<2>&, std::uint64_t points)> extent_known = [](const Box<2>&,
+                                                                             std::uint64_t) {};
   /// Called when a phase begins: "read", "divide" if there are tiles to be divided again,
   /// "triangulate"; and when it has ended, with all points that have been through it.
   std::function<void(const char* phase)> begin_phase = [](const char*) {};

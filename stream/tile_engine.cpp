@@ -61,7 +61,10 @@ void TileEngine<D>::spill(const PointFeed& feed) {
   const Stopwatch watch(figures_.read_seconds);
   const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(Point<3>),
                             "points that wait to be spilled");
-  tree_.fill(feed);
+  tree_.fill({.fetch = feed.fetch, .decode = [&](SourcePiece& piece, PointBlock& block) {
+                feed.decode(piece, block);
+                span_.add(block.points);
+              }});
 }
 
 template <int D>
@@ -229,22 +232,7 @@ StreamFigures TileEngine<D>::figures() {
   return std::move(figures_);
 }
 
-template <int D>
-void refuse_open(const Border<D>& border, std::uint64_t points) {
-  const char* simplex = D == 2 ? "triangle" : "tetrahedron";
-  const std::size_t distinct = border.vertices.size();
-  if (distinct <= D) {
-    throw Error(fmt::format("the input has only {} distinct point{}: a {} needs {}", distinct,
-                            distinct == 1 ? "" : "s", simplex, D + 1));
-  }
-  throw Error(fmt::format("all {} points lie {}: there is no {} to make{}", points,
-                          border.dimension == 1 ? "on one line" : "in one plane", simplex,
-                          border.dimension == 2 ? " (--dim 2 makes triangles)" : ""));
-}
-
 template class TileEngine<2>;
 template class TileEngine<3>;
-template void refuse_open<2>(const Border<2>&, std::uint64_t);
-template void refuse_open<3>(const Border<3>&, std::uint64_t);
 
 }  // namespace spillway

@@ -14,6 +14,7 @@
 #include "src/geometry/lattice.h"
 #include "stream/memory_budget.h"
 #include "stream/memory_plan.h"
+#include "stream/point_span.h"
 #include "stream/sequencer.h"
 #include "stream/stream_options.h"
 #include "stream/tile_tree.h"
@@ -48,6 +49,9 @@ class TileEngine {
   /// their division, which returns how many points were dealt again.
   [[nodiscard]] std::uint64_t points_to_divide() const { return tree_.points_to_divide(); }
   std::uint64_t divide_large();
+
+  /// What the points of the feed span.
+  [[nodiscard]] const PointSpan<D>& span() const { return span_; }
 
   /// Calls this for the indices of each tile's points when it is loaded: to put others there, which
   /// need not be known before.
@@ -112,6 +116,7 @@ class TileEngine {
   const std::size_t planned_tile_;  ///< points of a tile, unless --tile is given
   TileOptions tile_options_;
   StreamCounts counts_;
+  PointSpan<D> span_;
   TileTree tree_;
   Sequencer<D> sequencer_;
   std::vector<std::unique_ptr<Node>> nodes_;  ///< in post-order
@@ -124,10 +129,5 @@ class TileEngine {
   std::mutex figures_mutex_;  ///< guards the next one
   StreamFigures figures_;
 };
-
-/// Says plainly why points that do not span D dimensions have no triangulation, given the border
-/// that is all of them.
-template <int D>
-[[noreturn]] void refuse_open(const Border<D>& border, std::uint64_t points);
 
 }  // namespace spillway

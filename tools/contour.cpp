@@ -93,7 +93,7 @@ class ContourUse : public TerrainUse {
   }
 
   [[nodiscard]] bool wants_extent() const override { return false; }
-  void extent_known(const Box<2>& /*extent*/) override {}
+  void extent_known(const Box<2>& /*extent*/, std::uint64_t /*vertices*/) override {}
 
   [[nodiscard]] const ContourWriter& writer() const { return *writer_; }
   [[nodiscard]] std::uint64_t points() const { return points_; }

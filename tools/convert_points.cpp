@@ -69,8 +69,9 @@ class PointConversion {
       how_.attributes = source.has_attributes();
     }
     if (!choice.empty() || (format_ == PointFormat::kLas && !how_.lattice)) {
-      rounding_.emplace(output.name(), chosen_lattice(choice, how_.lattice, extent()),
-                        source.lattice());
+      const Box<3> box = extent();
+      rounding_.emplace(output.name(), chosen_lattice(choice, how_.lattice, box), source.lattice(),
+                        box);
       how_.lattice = rounding_->target();
     } else {
       how_.extent = source.world_extent();

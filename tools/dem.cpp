@@ -14,6 +14,7 @@
 #include "formats/raster_file.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
+#include "src/terrain/grid_choice.h"
 #include "stream/dem_writer.h"
 #include "stream/memory_plan.h"
 #include "stream/ranks/raster_merge.h"
@@ -93,8 +94,10 @@ class Run : public TerrainUse {
   [[nodiscard]] bool wants_extent() const override {
     return !dem_options_.grid.bounds && !dem_options_.grid.given;
   }
-  void extent_known(const Box<2>& extent) override {
-    if (wants_extent()) dem_->begin(extent);
+  void extent_known(const Box<2>& extent, std::uint64_t vertices) override {
+    if (!wants_extent()) return;
+    if (!options_.force_size) check_size(extent, vertices);
+    dem_->begin(extent);
   }
   void add_merged(const MergedPart& part) override { paint_merged(*dem_, part); }
 
@@ -107,6 +110,24 @@ class Run : public TerrainUse {
     throw Error(fmt::format("{} is in {}, but {} in {}; reproject one of them (or --force-crs)",
                             options_.inputs.front(), gdal().crs_name(crs), options_.like,
                             gdal().crs_name(like_.crs)));
+  }
+
+  /// Refuses a raster that is large because of points far away: it has many pixels, and thousands
+  /// for each vertex.
+  void check_size(const Box<2>& extent, std::uint64_t vertices) const {
+    constexpr double kManyPixels = 1e7;
+    constexpr double kManyForAVertex = 2000;
+    const Box<2> box = dem_->in_output(extent);
+    const PixelGrid grid = choose_grid(dem_options_.grid, box);
+    const double pixels = static_cast<double>(grid.columns) * grid.rows;
+    if (pixels <= kManyPixels || pixels <= kManyForAVertex * static_cast<double>(vertices)) return;
+    throw Error(fmt::format(
+        "the points, {} of them, reach from {:.15g}, {:.15g} to {:.15g}, {:.15g}: that is a raster "
+        "of {} x {} pixels, {:.2g} for each of them, as if some lay far away; say what to cover "
+        "with --bounds xmin,ymin,xmax,ymax, give a larger --resolution, or make it as it is with "
+        "--force-size",
+        vertices, box.lo[0], box.lo[1], box.hi[0], box.hi[1], grid.columns, grid.rows,
+        pixels / static_cast<double>(vertices)));
   }
 
   void write() {

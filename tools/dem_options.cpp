@@ -88,6 +88,9 @@ void add_dem_options(CLI::App& app, DemCommandOptions& options) {
               parse_raster_bounds)
       ->type_name("BOX")
       ->group(group);
+  app.add_flag("--force-size", options.force_size,
+               "Cover all points, though some may lie far away and pixels be very many")
+      ->group(group);
   app.add_flag("--align", options.align, "Put edges of pixels on multiples of R")->group(group);
   app.add_option("--like", options.like, "Put pixels where this raster has them")
       ->type_name("FILE")
@@ -127,6 +130,9 @@ void add_dem_options(CLI::App& app, DemCommandOptions& options) {
 
 DemOptions dem_options(const DemCommandOptions& options, RasterGrid& like) {
   DemOptions dem;
+  if (options.force_size && !options.bounds.empty()) {
+    throw UsageError("--bounds tells what to cover: leave --force-size away");
+  }
   if (options.like.empty()) {
     if (options.resolution.empty()) {
       throw UsageError("--resolution R, the side of a pixel, is missing (or --like FILE)");
@@ -135,7 +141,7 @@ DemOptions dem_options(const DemCommandOptions& options, RasterGrid& like) {
     if (!options.bounds.empty()) dem.grid.bounds = parse_raster_bounds(options.bounds);
     dem.grid.align = options.align;
   } else {
-    refuse_given(*options.app, {"--resolution", "--bounds", "--align"},
+    refuse_given(*options.app, {"--resolution", "--bounds", "--align", "--force-size"},
                  "with --like, which tells where all pixels lie");
     like = gdal().read_raster_grid(options.like);
     dem.grid.given = like.pixels;

@@ -16,6 +16,7 @@ struct DemCommandOptions : TerrainOptions {
   std::string resolution;
   std::string bounds;
   bool align = false;
+  bool force_size = false;
   std::string like;
   std::string products = "height";
   std::string nodata = "-9999";

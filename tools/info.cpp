@@ -100,6 +100,7 @@ Json describe_points(ProbedInput& input, const InfoOptions& options, Progress& p
   add_lattice(header.lattice, json);
   json["density"] = density(box, points);
   json["crs"] = text_or_null(header.crs);
+  json["crs_note"] = text_or_null(header.crs_note);
   json["software"] = text_or_null(header.software);
   return json;
 }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "formats/lattice_check.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -54,7 +56,25 @@ Lattice chosen_lattice(const LatticeChoice& choice, const std::optional<Lattice>
   return lattice;
 }
 
+LatticeRounding::LatticeRounding(std::string output, const Lattice& target,
+                                 const std::optional<Lattice>& source, const Box<3>& extent)
+    : output_(std::move(output)), target_(target), source_(source) {
+  // What 32 bits do not reach is told by its point.
+  Box<3> integers = integers_of(target, extent);
+  for (int axis = 0; axis < 3 && !extent.empty(); ++axis) {
+    integers.lo[axis] = std::clamp(integers.lo[axis], kLeast, kMost);
+    integers.hi[axis] = std::clamp(integers.hi[axis], kLeast, kMost);
+  }
+  check_target(integers);
+}
+
+void LatticeRounding::check_target(const Box<3>& integers) const {
+  check_lattice("cannot write " + output_, target_, integers, 3,
+                "choose another --scale or --offset");
+}
+
 void LatticeRounding::round(std::span<Point<3>> points, std::span<const std::uint64_t> index) {
+  Box<3> integers;
   for (std::size_t i = 0; i < points.size(); ++i) {
     Point<3>& p = points[i];
     const Point<3> world = source_ ? source_->to_world(p) : p;
@@ -70,7 +90,9 @@ void LatticeRounding::round(std::span<Point<3>> points, std::span<const std::uin
       }
       farthest_ = std::max(farthest_, std::abs(target_.to_world(axis, p[axis]) - world[axis]));
     }
+    integers.expand(p);
   }
+  check_target(integers);
 }
 
 std::string axes_text(const std::array<double, 3>& values) {

@@ -5,7 +5,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "src/geometry/box.h"
@@ -33,12 +32,14 @@ Lattice chosen_lattice(const LatticeChoice& choice, const std::optional<Lattice>
 class LatticeRounding {
  public:
   /// Points come as integers of `source`, if that is set, else in output coordinates. `output` is
-  /// where they go, for messages.
-  LatticeRounding(std::string output, const Lattice& target, const std::optional<Lattice>& source)
-      : output_(std::move(output)), target_(target), source_(source) {}
+  /// where they go, for messages, and `extent` a box in output coordinates that has some of them,
+  /// or none. Throws Error if `target` does not keep neighbours in it apart.
+  LatticeRounding(std::string output, const Lattice& target, const std::optional<Lattice>& source,
+                  const Box<3>& extent);
 
   /// Replaces points by integers of the target lattice. Throws Error that names the first point
   /// whose integers would take more than 32 bits; `index` has the points' numbers in the input.
+  /// Likewise if the target lattice does not keep them apart from their neighbours.
   void round(std::span<Point<3>> points, std::span<const std::uint64_t> index);
 
   /// How far a coordinate has moved at most; in output units.
@@ -47,6 +48,8 @@ class LatticeRounding {
   [[nodiscard]] const Lattice& target() const { return target_; }
 
  private:
+  void check_target(const Box<3>& integers) const;
+
   std::string output_;
   Lattice target_;
   std::optional<Lattice> source_;

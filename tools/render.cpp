@@ -107,7 +107,9 @@ class RenderUse : public TerrainUse {
   }
 
   [[nodiscard]] bool wants_extent() const override { return !request_.zoom; }
-  void extent_known(const Box<2>& extent) override { scene_->extent_known(extent); }
+  void extent_known(const Box<2>& extent, std::uint64_t /*vertices*/) override {
+    scene_->extent_known(extent);
+  }
 
   [[nodiscard]] Scene& scene() { return *scene_; }
 

@@ -147,7 +147,9 @@ class TerrainFeed {
                           tools_.scratch, tools_.progress);
     check_heights(options_, *source);
     MeshStreamWriter& writer = use_.begin({D, source->lattice(), source->crs(), std::nullopt});
-    stream.extent_known = [this](const Box<2>& extent) { use_.extent_known(extent); };
+    stream.extent_known = [this](const Box<2>& extent, std::uint64_t points) {
+      use_.extent_known(extent, points);
+    };
     if (tools_.ranks != nullptr) {
       const RankMesh mesh = triangulate_over_ranks<D>(*source, writer, tools_.scratch,
                                                       tools_.budget, stream, *tools_.ranks);
@@ -174,8 +176,9 @@ class TerrainFeed {
       files = &disk();
     }
     Box<2> extent;
+    std::uint64_t vertices = 0;
     if (use_.wants_extent()) {
-      find_extent(*open_mesh_stream_reader(*files, path, options_.mesh_format), extent);
+      vertices = find_extent(*open_mesh_stream_reader(*files, path, options_.mesh_format), extent);
       files = &disk();
     }
     const auto reader = open_mesh_stream_reader(*files, path, options_.mesh_format);
@@ -183,7 +186,7 @@ class TerrainFeed {
     check_dimension(header.dimension);
     MeshStreamWriter& writer =
         use_.begin({header.dimension, header.lattice, header.crs, statistics_.max_edge});
-    use_.extent_known(extent);
+    use_.extent_known(extent, vertices);
     tools_.progress.begin(simplices(), simplices());
     with_threads(tools_.threads, [&] { pass_on(*reader, writer); });
     statistics_.stream.triangulate_seconds = tools_.progress.end(reader->totals().simplices);
@@ -192,8 +195,8 @@ class TerrainFeed {
     writer.finish(reader->totals());
   }
 
-  void find_extent(MeshStreamReader& reader, Box<2>& extent) {
-    if (reader.header().dimension != 2) return;
+  std::uint64_t find_extent(MeshStreamReader& reader, Box<2>& extent) {
+    if (reader.header().dimension != 2) return 0;
     tools_.progress.begin("extent", "vertices");
     std::uint64_t vertices = 0;
     for (MeshBlock block; reader.read(block);) {
@@ -201,6 +204,7 @@ class TerrainFeed {
       tools_.progress.update(vertices += block.vertices.size(), reader.fraction_read());
     }
     tools_.progress.end(vertices);
+    return vertices;
   }
 
   /// Several blocks are prepared at a time.
@@ -251,7 +255,7 @@ class TerrainFeed {
     statistics_.on_lattice = lattice.has_value();
     MeshStreamWriter& writer =
         use_.begin({mesh.header.dimension, lattice, mesh.header.crs, statistics_.max_edge});
-    use_.extent_known(extent);
+    use_.extent_known(extent, mesh.vertices.size());
     MeshBlock block;
     block.vertices = std::move(mesh.vertices);
     block.corners.assign(mesh.corners.begin(), mesh.corners.end());

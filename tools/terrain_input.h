@@ -2,6 +2,7 @@
 // What `dem`, `contour` and `render` have in common: the triangles of a terrain, from points that
 // are triangulated on the way, or from a mesh.
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,9 +54,10 @@ class TerrainUse {
   /// Whether extent_known() is needed: a mesh stream has to be read twice then.
   [[nodiscard]] virtual bool wants_extent() const = 0;
 
-  /// The box around all vertices, in the coordinates in which they come, before the first triangle.
-  /// It may be empty where it is not wanted, or where tetrahedra come.
-  virtual void extent_known(const Box<2>& extent) = 0;
+  /// The box around all vertices, in the coordinates in which they come, and how many these are
+  /// (of points: how many points), before the first triangle. It may be empty where it is not
+  /// wanted, or where tetrahedra come.
+  virtual void extent_known(const Box<2>& extent, std::uint64_t vertices) = 0;
 
   /// Over ranks, after the last block of this rank's own tiles: what merges with others have made
   /// final here.

@@ -3,13 +3,23 @@
 // libraries, so it stands in a module of its own that is loaded when first needed: a run that needs
 // none of it pays nothing.
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "formats/gdal/raster.h"
 #include "formats/gdal/vector_layer.h"
 
 namespace spillway {
+
+/// What the coordinates of a system are.
+enum class CrsKind : std::uint8_t {
+  kProjected,   ///< lengths on a map
+  kGeographic,  ///< angles, perhaps with a height
+  kGeocentric,  ///< x, y, z from the centre of the earth
+  kOther,       ///< heights alone, several systems together, a site's own
+};
 
 /// What the module offers. A coordinate system is given as WKT (1 or 2), as "EPSG:n" or as PROJ
 /// text; what GDAL takes for none of these is an Error. May be called by many threads.
@@ -34,6 +44,9 @@ class Gdal {
 
   /// Metres in a unit of x and y; 0 if these are angles.
   [[nodiscard]] virtual double crs_unit(const std::string& crs) const = 0;
+
+  /// What kind of system it is; nothing if GDAL does not know it.
+  [[nodiscard]] virtual std::optional<CrsKind> crs_kind(const std::string& crs) const = 0;
 
   /// Begins a vector file of one layer.
   [[nodiscard]] virtual std::unique_ptr<VectorLayer> create_layer(

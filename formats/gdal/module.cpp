@@ -34,6 +34,9 @@ class LoadedGdal : public Gdal {
   [[nodiscard]] double crs_unit(const std::string& crs) const override {
     return spillway::crs_unit(crs);
   }
+  [[nodiscard]] std::optional<CrsKind> crs_kind(const std::string& crs) const override {
+    return spillway::crs_kind(crs);
+  }
   [[nodiscard]] std::unique_ptr<VectorLayer> create_layer(
       const VectorLayerOptions& options) const override {
     return create_ogr_layer(options);

@@ -16,29 +16,32 @@ bool collinear(const Point<D>& a, const Point<D>& b, const Point<D>& c) {
   return true;
 }
 
+}  // namespace
+
 template <int D>
-bool extends(std::span<const Point<D>> points, const std::vector<VertexId>& basis,
-             const Point<D>& p) {
-  const auto member = [&](std::size_t i) { return points[basis[i]]; };
+bool is_independent(std::span<const Point<D>> basis, const Point<D>& p) {
   if (basis.empty()) return true;
-  if (basis.size() == 1) return p != member(0);
-  if (basis.size() == 2) return !collinear<D>(member(0), member(1), p);
-  if constexpr (D == 3) return orientation<3>({member(0), member(1), member(2), p}) != 0;
+  if (basis.size() == 1) return p != basis[0];
+  if (basis.size() == 2) return !collinear<D>(basis[0], basis[1], p);
+  if constexpr (D == 3) return orientation<3>({basis[0], basis[1], basis[2], p}) != 0;
   return false;
 }
-
-}  // namespace
 
 template <int D>
 std::vector<VertexId> affine_basis(std::span<const Point<D>> points) {
   std::vector<VertexId> basis;
+  std::vector<Point<D>> members;
   for (VertexId i = 0; i < points.size() && basis.size() <= D; ++i) {
-    if (extends<D>(points, basis, points[i])) basis.push_back(i);
+    if (!is_independent<D>(members, points[i])) continue;
+    basis.push_back(i);
+    members.push_back(points[i]);
   }
   return basis;
 }
 
 template std::vector<VertexId> affine_basis<2>(std::span<const Point<2>>);
 template std::vector<VertexId> affine_basis<3>(std::span<const Point<3>>);
+template bool is_independent<2>(std::span<const Point<2>>, const Point<2>&);
+template bool is_independent<3>(std::span<const Point<3>>, const Point<3>&);
 
 }  // namespace spillway

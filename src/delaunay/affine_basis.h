@@ -12,4 +12,8 @@ namespace spillway {
 template <int D>
 std::vector<VertexId> affine_basis(std::span<const Point<D>> points);
 
+/// Whether a point lies outside of the affine hull of at most D affinely independent points. Exact.
+template <int D>
+bool is_independent(std::span<const Point<D>> basis, const Point<D>& p);
+
 }  // namespace spillway

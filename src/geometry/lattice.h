@@ -26,6 +26,14 @@ struct Lattice {
   /// The integer whose world coordinate is exactly `world`; nothing when there is none.
   [[nodiscard]] std::optional<double> to_integer(int axis, double world) const;
 
+  /// Whether to_world() gives finite and distinct numbers for all integers from `lo` to `hi`, of
+  /// which to_integer() finds each again. Proved from the sizes of numbers: true says that it is
+  /// so, and false is said only where doubles are nearly as far apart as integers are, or farther.
+  [[nodiscard]] bool keeps_apart(int axis, double lo, double hi) const;
+
+  /// Whether to_world() of all integers from `lo` to `hi`, and their differences, are finite.
+  [[nodiscard]] bool is_finite(int axis, double lo, double hi) const;
+
   /// Whether the first `dimensions` axes have one scale, so that the Delaunay triangulation of the
   /// integers is that of the scaled points.
   [[nodiscard]] bool isotropic(int dimensions) const;

@@ -30,6 +30,7 @@ void pack_header(Packer& message, const PointHeader& header) {
   pack_optional(message, header.lattice);
   pack_optional(message, header.extent);
   message.put_list(header.crs);
+  message.put_list(header.crs_note);
   message.put_list(header.software);
 }
 
@@ -44,6 +45,7 @@ PointHeader unpack_header(Unpacker& message) {
   header.lattice = unpack_optional<Lattice>(message);
   header.extent = unpack_optional<Box<3>>(message);
   header.crs = message.take_list<std::string>();
+  header.crs_note = message.take_list<std::string>();
   header.software = message.take_list<std::string>();
   return header;
 }
@@ -56,6 +58,7 @@ void pack(Packer& message, const SourceFacts& facts) {
     pack_header(message, input.header);
     pack_optional(message, input.pieces);
     message.put(input.opens_once);
+    pack_optional(message, input.digest);
   }
   message.put_list(facts.crs);
 }
@@ -68,6 +71,7 @@ SourceFacts unpack_source_facts(Unpacker& message) {
     input.header = unpack_header(message);
     input.pieces = unpack_optional<std::uint64_t>(message);
     input.opens_once = message.take<bool>();
+    input.digest = unpack_optional<FileDigest>(message);
   }
   facts.crs = message.take_list<std::string>();
   return facts;

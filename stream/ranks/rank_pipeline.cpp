@@ -1,5 +1,7 @@
 #include "stream/ranks/rank_pipeline.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <span>
@@ -67,7 +69,8 @@ class RankRun {
       const RankTree<D> tree(division, own, ranks_);
       if (tree.nodes().empty()) refuse_empty();
       const TileNode<D>& all = *tree.nodes().back().tiles;
-      options_.extent_known(plane_of(all.box));
+      refuse_flat(all.points);
+      do_together(ranks_, [&] { options_.extent_known(plane_of(all.box), all.points); });
       budget_.set_enough(enough_memory<D>(all.points) + all.points * kMergedBytes);
       if (tree.own_node()) triangulate(tree);
       collect(tree);
@@ -148,6 +151,26 @@ class RankRun {
     do_together(ranks_, [&] { refuse_empty_input(counts); });
   }
 
+  /// What the points of all ranks span is what their parts span together.
+  void refuse_flat(std::uint64_t points) const {
+    distributed::Packer own;
+    own.put_list(engine_.span().facts().points);
+    own.put(engine_.span().facts().others);
+    const auto parts = ranks_.gather(own.bytes(), 0);
+    do_together(ranks_, [&] {
+      if (ranks_.rank() != 0) return;
+      PointSpan<D> all;
+      for (const std::vector<std::byte>& part : parts) {
+        distributed::Unpacker unpacker(part);
+        typename PointSpan<D>::Facts facts;
+        facts.points = unpacker.take_list<std::vector<Point<D>>>();
+        facts.others = unpacker.take<bool>();
+        all.add(facts);
+      }
+      refuse_flat_points(all, points);
+    });
+  }
+
   /// This rank's tiles, and those merges that it leads.
   void triangulate(const RankTree<D>& tree) {
     const std::uint32_t own = *tree.own_node();
@@ -168,7 +191,6 @@ class RankRun {
       }
       if (receiver == ranks_.rank()) border = merge(tree, n, std::move(border), sender);
     }
-    if (border.open()) refuse_open(border, tree.nodes().back().tiles->points);
   }
 
   void send(const Border<D>& border, int receiver) {
@@ -329,6 +351,8 @@ template RankMesh triangulate_over_ranks<3>(PointSource&, MeshStreamWriter&, Scr
 std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<std::string> paths,
                                                 PointSourceOptions options, const Ranks& ranks) {
   options.index = true;
+  options.digests = true;
+  options.viewer = fmt::format("rank {}", ranks.rank());
   std::unique_ptr<PointSource> source;
   distributed::Packer packer;
   if (ranks.rank() == 0) {

@@ -5,6 +5,8 @@ spillway_test(points_test unit
   SOURCES
     formats/compressed_text_test.cpp
     formats/las_corruption_test.cpp
+    formats/file_digest_test.cpp
+    formats/geotiff_keys_test.cpp
     formats/las_reader_test.cpp
     formats/las_shared_data_test.cpp
     formats/npy_reader_test.cpp

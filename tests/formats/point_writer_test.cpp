@@ -292,7 +292,31 @@ TEST(LasCoordinateSystem, CodeBecomesAKeyInVersion12) {
 TEST(LasCoordinateSystem, WktTellsWhatACodeStandsFor) {
   const std::string wkt = "GEOGCRS[\"x\",ID[\"EPSG\",7844]]";
   EXPECT_EQ(geotiff_keys(las_with_crs("EPSG:7844", wkt))[8], 2048);
-  EXPECT_EQ(geotiff_keys(las_with_crs("EPSG:7844"))[8], 3072);
+  EXPECT_EQ(geotiff_keys(las_with_crs("EPSG:7844"))[8], 2048);  // GDAL knows
+}
+
+TEST(LasCoordinateSystem, GeocentricStaysGeocentric) {
+  const std::string wkt1 = "GEOCCS[\"x\",DATUM[\"d\"],AUTHORITY[\"EPSG\",\"4978\"]]";
+  const std::string wkt2 = "GEODCRS[\"x\",DATUM[\"d\"],CS[Cartesian,3],ID[\"EPSG\",4978]]";
+  for (const std::string& las :
+       {las_with_crs("EPSG:4978"), las_with_crs("EPSG:4978", wkt1), las_with_crs(wkt2)}) {
+    EXPECT_EQ(geotiff_keys(las),
+              (std::array<std::uint16_t, 12>{1, 1, 0, 2, 1024, 0, 1, 3, 2048, 0, 1, 4978}));
+  }
+}
+
+TEST(LasCoordinateSystem, CodeOfACompoundSystemHasItsWktBesideTheHorizontalKeys) {
+  const std::string wkt =
+      "COMPD_CS[\"both\",PROJCS[\"a\",AUTHORITY[\"EPSG\",\"27700\"]],VERT_CS[\"c\"],"
+      "AUTHORITY[\"EPSG\",\"7405\"]]";
+  const std::string las = las_with_crs("EPSG:7405", wkt);
+  EXPECT_EQ(geotiff_keys(las)[11], 27700);
+  EXPECT_EQ(read_content("a.las", las).header.crs, wkt);
+}
+
+TEST(LasCoordinateSystem, CodesThatNobodyKnowsAreNotWritten) {
+  EXPECT_THAT(error_of([] { las_with_crs("EPSG:19999"); }),
+              HasSubstr("whether EPSG:19999 is projected or geographic"));
 }
 
 TEST(LasCoordinateSystem, WktStaysInBothVersions) {

@@ -55,6 +55,16 @@ TEST(Spm, RoundTripOfTheHeader) {
   EXPECT_FALSE(read.header.extent) << "an empty box is no extent";
 }
 
+TEST(Spm, LatticeThatDoesNotKeepVerticesApart) {
+  for (const double offset : {1e15, 1e305}) {
+    StreamedMesh mesh = strip(2, 10, 4);
+    mesh.header.lattice = Lattice{{0.01, 0.01, 0.01}, {0, offset, 0}};
+    const std::string bytes = stream_bytes(mesh, MeshFormat::kSpm);
+    EXPECT_THAT(error_of_stream("a.spm", bytes),
+                AllOf(HasSubstr("byte"), HasSubstr("y is an integer times 0.01 plus")));
+  }
+}
+
 TEST(Spm, RoundTripOfDoublesToTheBit) {
   StreamedMesh mesh;
   mesh.blocks.resize(1);

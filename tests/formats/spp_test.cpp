@@ -52,6 +52,22 @@ std::string header_content(std::uint32_t version, std::uint32_t coordinates, std
   return bytes_of(version) + bytes_of(coordinates) + bytes_of(flags);
 }
 
+TEST(Spp, CoordinatesOfALatticeAreIntegersUpTo2To53) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> valid = {0,      -0.0,       1,           -7,    0x1p52 - 1,
+                                     0x1p52, 0x1p52 + 1, -0x1p53 + 1, 0x1p53};
+  EXPECT_EQ(first_invalid_coordinate(valid, true), valid.size());
+  EXPECT_EQ(first_invalid_coordinate({}, true), 0U);
+  for (const double wrong :
+       {0.5, -0x1p52 + 0.5, 0x1p-1074, 1e-300, 0x1p53 + 2, -1e300, inf, -inf, nan, -nan}) {
+    std::vector<double> values = valid;
+    values[5] = wrong;
+    EXPECT_EQ(first_invalid_coordinate(values, true), 5U) << wrong;
+    EXPECT_EQ(first_invalid_coordinate(values, false), std::isfinite(wrong) ? values.size() : 5U);
+  }
+}
+
 TEST(Spp, RoundTripOnALattice) {
   const std::vector<Point<3>> points = random_integers(200000);
   PointWriterOptions options;

@@ -87,6 +87,59 @@ TEST(LatticeTest, IsotropyLooksAtTheFirstAxesOnly) {
   EXPECT_FALSE(lattice.isotropic(3));
 }
 
+/// Whether integers of a range are distinct in the world and come back, tried one by one.
+bool are_apart(const Lattice& lattice, double lo, double hi) {
+  for (double n = lo; n <= hi; ++n) {
+    const double world = lattice.to_world(0, n);
+    if (!std::isfinite(world) || lattice.to_world(0, n + 1) == world ||
+        lattice.to_integer(0, world) != n) {
+      return false;
+    }
+  }
+  return true;
+}
+
+TEST(LatticeTest, WhatIsSaidToKeepIntegersApartDoes) {
+  testing::Random random(7);
+  int kept = 0;
+  int refused = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const double scale =
+        std::ldexp(1.0 + random.uniform(), static_cast<int>(random.integer(-9, 3)));
+    const double size =
+        std::ldexp(1.0 + random.uniform(), static_cast<int>(random.integer(30, 60)));
+    const double base = std::floor(size / scale) * static_cast<double>(random.integer(-1, 1));
+    const Lattice lattice{{trial % 2 == 0 ? scale : -scale, 1, 1},
+                          {trial % 3 == 0 ? 0 : size, 0, 0}};
+    const bool says = std::abs(base) < 0x1p53 && lattice.keeps_apart(0, base, base + 200);
+    (says ? kept : refused) += 1;
+    if (says) {
+      EXPECT_TRUE(are_apart(lattice, base, base + 200))
+          << lattice.scale[0] << " " << lattice.offset[0] << " " << base;
+    }
+  }
+  EXPECT_GT(kept, 2000);
+  EXPECT_GT(refused, 2000);
+}
+
+TEST(LatticeTest, KeepsIntegersApartWhereThatIsExact) {
+  const auto keeps = [](double scale, double offset, double lo, double hi) {
+    return Lattice{{scale, 1, 1}, {offset, 0, 0}}.keeps_apart(0, lo, hi);
+  };
+  EXPECT_TRUE(keeps(1, 0, -0x1p53 + 1, 0x1p53 - 1));
+  EXPECT_TRUE(keeps(0.125, 0x1p49, 0, 1000));
+  EXPECT_FALSE(keeps(0.125, 0x1p50, 0, 1000));
+  EXPECT_TRUE(keeps(0.01, 1e13, -0x1p31, 0x1p31));
+  EXPECT_TRUE(keeps(0.01, 500000, -0x1p31, 0x1p31));
+  EXPECT_FALSE(keeps(0.01, 1e15, 0, 0));
+  EXPECT_FALSE(keeps(0.001, 1e13, 0, 0));
+  EXPECT_TRUE(keeps(1e305, 0, 0, 1000));
+  EXPECT_FALSE(keeps(1e305, 0, 0, 2000));
+  EXPECT_FALSE(keeps(1e305, 0, -1000, 1000));  // differences are infinite
+  EXPECT_FALSE(keeps(0.01, 1e305, 0, 0));
+  EXPECT_TRUE((Lattice{{0.01, 1, 1}, {1e305, 0, 0}}.is_finite(0, -0x1p31, 0x1p31)));
+}
+
 template <typename Dimension>
 class CanonicalHashTest : public ::testing::Test {};
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;

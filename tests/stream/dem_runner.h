@@ -67,7 +67,7 @@ inline Rastered raster_of(const std::vector<Point<3>>& points, DemOptions option
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   MemoryBudget budget(kMemory);
   Dem dem(options, source.lattice(), *scratch);
-  stream.extent_known = [&dem](const Box<2>& extent) { dem.begin(extent); };
+  stream.extent_known = [&dem](const Box<2>& extent, std::uint64_t) { dem.begin(extent); };
   DemWriter writer(dem);
   (void)triangulate_stream<2>(source, writer, *scratch, budget, stream);
   return finished(dem, options);

@@ -244,5 +244,21 @@ TEST_F(PointSourceTest, PiecesThatAreUsedAgainKeepNothingOfTheInputBefore) {
   EXPECT_THAT(attributes, ::testing::ElementsAre(5, 0, 0, 2));
 }
 
+TEST_F(PointSourceTest, IntegersThatALatticeDoesNotKeepApartAreFoundInTheirBlock) {
+  const auto put = [&](double last) {
+    PointWriterOptions options;
+    options.lattice = Lattice{{0.01, 0.01, 0.01}, {0.25, 0, 0}};
+    const auto writer = open_point_writer(files_, "a.spp", options);
+    const std::vector<Point<3>> points = {{0, 0, 0}, {5, 7, 0}, {last, 0, 0}};
+    writer->write(points, {});
+    writer->finish();
+  };
+  put(0x1p40);
+  EXPECT_EQ(read({"a.spp"}).points.size(), 3U);
+  put(-0x1p52);
+  EXPECT_THAT(error_of({"a.spp"}),
+              AllOf(HasSubstr("a.spp"), HasSubstr("x is an integer times 0.01 plus 0.25")));
+}
+
 }  // namespace
 }  // namespace spillway

@@ -1,5 +1,6 @@
 spillway_test(stream_unit_test unit
-  SOURCES stream/contour_test.cpp stream/heights_test.cpp stream/memory_test.cpp stream/tile_tree_test.cpp
+  SOURCES stream/contour_test.cpp stream/heights_test.cpp stream/memory_test.cpp
+          stream/point_span_test.cpp stream/tile_tree_test.cpp
   LIBS spillway_stream)
 
 spillway_test(stream_property_test property

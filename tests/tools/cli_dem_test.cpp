@@ -436,6 +436,45 @@ TEST(DemFaults, ATooLargeGridIsToldBeforeThePointsAreRead) {
   EXPECT_THAT(result.err, HasSubstr("for its index alone"));
 }
 
+/// A square of 400 points and one vertex so far to the north, as text and as a mesh.
+void write_far_vertex(const Workspace& work, double north) {
+  work.write("far.txt", surface(20, 2) + fmt::format("20 {} 7\n", north));
+  work.succeed(
+      "spillway triangulate -q far.txt -o far.ply && spillway triangulate -q far.txt -o far.spm");
+}
+
+TEST(DemFaults, ManyPixelsForFewPointsAreAskedForFirst) {
+  const Workspace work;
+  write_far_vertex(work, 410039);
+  const auto before = work.names();
+  for (const char* const input : {"far.txt", "far.ply", "far.spm", "- < far.spm", "- < far.txt"}) {
+    const Result result =
+        work.run(fmt::format("spillway dem -q -o out.tif --resolution 1 {}", input));
+    EXPECT_EQ(result.exit_code, 1) << input;
+    EXPECT_THAT(result.err, HasSubstr("from 0, 0 to 38, 410039"));
+    EXPECT_THAT(result.err, HasSubstr("38 x 410039 pixels"));
+    EXPECT_THAT(result.err, HasSubstr("--bounds"));
+    EXPECT_THAT(result.err, HasSubstr("--resolution"));
+    EXPECT_THAT(result.err, HasSubstr("--force-size"));
+    EXPECT_EQ(work.names(), before) << input;
+  }
+}
+
+TEST(Dem, ManyPixelsForFewPointsAreMadeOnDemand) {
+  const Workspace work;
+  write_far_vertex(work, 300000);
+  for (const char* const how :
+       {"--resolution 1 --force-size", "--resolution 1 --bounds 0,0,38,38", "--resolution 2"}) {
+    work.succeed(fmt::format("spillway dem -q far.txt -o out.tif {}", how));
+  }
+  work.succeed("spillway dem -q far.txt -o like.tif --like out.tif");
+  EXPECT_EQ(
+      work.run("spillway dem -q far.txt -o a.tif --resolution 1 --bounds 0,0,9,9 --force-size")
+          .exit_code,
+      2);
+  EXPECT_EQ(work.run("spillway dem -q far.txt -o a.tif --like out.tif --force-size").exit_code, 2);
+}
+
 TEST(DemFaults, AFailedRunKeepsTheFileThatWasThere) {
   const Workspace work;
   work.write("dem.tif", "old");

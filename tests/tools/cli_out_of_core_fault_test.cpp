@@ -253,5 +253,22 @@ TEST_P(OutOfCoreInterrupted, WhileItWritesWhatIsFinal) {
 INSTANTIATE_TEST_SUITE_P(BySignal, OutOfCoreInterrupted, testing::Values(SIGINT, SIGTERM, SIGHUP),
                          [](const auto& test) { return std::string(sigabbrev_np(test.param)); });
 
+TEST_F(OutOfCoreFault, PointsThatSpanNothingAreToldByTheirOwnNameNotByTheMemoryTheyWouldTake) {
+  work_.succeed(
+      "spillway generate -q collinear -n 2000000 -o line.spp\n"
+      "spillway generate -q coplanar --dim 3 -n 2000000 -o plane.spp\n"
+      "yes '3 4 5' | head -n 3000000 > equal.txt");
+  expect_failure("spillway triangulate -q line.spp --memory 32M -o out.ply --tmpdir tmp",
+                 HasSubstr("all 2000000 points lie on one line: there is no triangle to make"));
+  expect_failure("spillway triangulate -q line.spp --memory 2G -o out.ply --tmpdir tmp",
+                 HasSubstr("all 2000000 points lie on one line: there is no triangle to make"));
+  expect_failure("spillway triangulate -q plane.spp --dim 3 --memory 96M -o out.ply --tmpdir tmp",
+                 HasSubstr("all 2000000 points lie in one plane: there is no tetrahedron to make"));
+  for (const char* const how : {"--memory 32M", "--memory 2G", "--memory 96M --dim 3"}) {
+    expect_failure(fmt::format("spillway triangulate -q equal.txt {} -o out.ply --tmpdir tmp", how),
+                   HasSubstr("the input has only 1 distinct point"));
+  }
+}
+
 }  // namespace
 }  // namespace spillway::test

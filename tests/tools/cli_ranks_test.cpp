@@ -256,6 +256,14 @@ TEST_F(RanksThatFail, RefuseDegenerateInputsInBothDimensions) {
   expect_failure(ranks(8, "triangulate -q equal.txt -o b.ply"), "only 1 distinct point");
   expect_failure(ranks(5, "triangulate -q equal.txt --dim 3 -o b.ply"), "only 1 distinct point");
   expect_failure(ranks(8, "triangulate -q one.txt -o b.ply"), "only 1 distinct point");
+  // Much more than the borders of such points could have.
+  work_.succeed(
+      "spillway generate -q collinear -n 400000 -o line.spp && "
+      "spillway generate -q coplanar --dim 3 -n 400000 -o plane.spp");
+  expect_failure(ranks(3, "triangulate -q line.spp --memory 32M -o b.ply"),
+                 "all 400000 points lie on one line");
+  expect_failure(ranks(3, "triangulate -q plane.spp --dim 3 --memory 96M -o b.ply"),
+                 "all 400000 points lie in one plane");
 }
 
 TEST_F(RanksThatFail, SayWhatIsWrongWithOneOfThem) {
@@ -271,6 +279,31 @@ TEST_F(RanksThatFail, SayWhatIsWrongWithOneOfThem) {
     expect_failure(both("", different), "other options", 2);
   }
   EXPECT_TRUE(fs::is_empty(work_.folder() / "one"));
+}
+
+TEST_F(RanksThatFail, TellWhichOfThemSeesAnotherFileOfTheSameName) {
+  work_.succeed(
+      "mkdir one two && spillway generate -q terrain -n 300000 -o one/in.las && "
+      "spillway generate -q terrain -n 300000 --seed 2 -o two/in.las");
+  const auto job = [&] {
+    return fmt::format("{0} -n 1 -wdir one {1} {2} : -n 1 -wdir two {1} {2}", kMpirun,
+                       SPILLWAY_COMMAND, "triangulate -q in.las -o ../b.spm");
+  };
+  expect_failure(job(), "in.las: rank 1 reads another file of this name");
+  // Another scale of z alone.
+  work_.succeed(
+      "cp one/in.las two/in.las && printf '\\001' |"
+      " dd of=two/in.las bs=1 seek=147 conv=notrunc status=none");
+  expect_failure(job(), "of the same size, but with other contents");
+  work_.succeed("head -c 6000000 one/in.las > two/in.las");
+  expect_failure(job(), "rank 1 reads another file of this name");
+  work_.succeed("cp one/in.las two/in.las && " + job());
+  EXPECT_EQ(work_.info("b.spm").at("points"), 300'000);
+}
+
+TEST_F(RanksThatFail, AskBeforeARasterOfManyPixelsForFewPoints) {
+  work_.write("far.txt", "0 0 1\n1 0 2\n0 1 3\n5000 5000 4\n");
+  expect_failure(ranks(2, "dem -q far.txt --resolution 1 -o b.tif"), "5000 x 5000 pixels");
 }
 
 TEST_F(RanksThatFail, RefuseMeshesForRasters) {

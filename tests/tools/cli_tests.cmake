@@ -27,7 +27,8 @@ spillway_command_test(cli_out_of_core_tests cli
 spillway_command_test(cli_out_of_core_fault_tests fault
   tools/cli_out_of_core_fault_test.cpp)
 spillway_command_test(cli_input_tests cli
-  tools/cli_filter_test.cpp tools/cli_inputs_test.cpp)
+  tools/cli_crs_test.cpp tools/cli_filter_test.cpp tools/cli_inputs_test.cpp
+  tools/cli_lattice_test.cpp)
 
 spillway_command_test(cli_progress_tests cli
   tools/cli_progress_test.cpp tools/progress_lines.cpp)

@@ -1,0 +1,39 @@
+#pragma once
+// The coordinate system as GeoTIFF keys tell it, which is how LAS files before 1.4 do. Source: OGC,
+// "GeoTIFF Standard" 1.1 (19-008r4); docs/formats-points.md ("LAS") says what is made of them.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/gdal/gdal.h"
+
+namespace spillway {
+
+/// Codes of EPSG are below it; as a value it means that other keys define the system.
+inline constexpr std::uint16_t kGeotiffUserDefined = 32767;
+
+/// What keys say of the coordinate system.
+struct GeotiffCrs {
+  std::string crs;   ///< "EPSG:n"; empty if the keys tell none for certain
+  std::string note;  ///< why they do not, or what is left out of what they tell; empty: nothing
+};
+
+/// Reads a directory of keys and the text that they refer to. Only what is certain is a system:
+/// codes that contradict the model, as EPSG knows them, or the unit are none. Asks GDAL where the
+/// codes alone do not tell, and believes the keys of a projected or geographic system without.
+GeotiffCrs read_geotiff_keys(std::span<const std::byte> directory, std::string_view text);
+
+/// What kind of system a code of EPSG is: known for some ranges, else GDAL is asked; nothing if it
+/// does not know or is not there.
+std::optional<CrsKind> kind_of_epsg(std::uint16_t code);
+
+/// A directory that says no more than what kind of system an EPSG code is, and the code. `kind` is
+/// not CrsKind::kOther.
+std::vector<std::byte> geotiff_keys_of(std::uint16_t code, CrsKind kind);
+
+}  // namespace spillway
