@@ -372,6 +372,7 @@ PointHeader las_point_header(const LasHeader& las, const std::string& path) {
   if (!las.extent.empty()) header.extent = las.extent;
   header.crs = las.crs;
   header.software = las.software;
+  header.extra_bytes = las.record_length - kLasRecordLengths.at(las.point_format);
   return header;
 }
 

@@ -31,6 +31,7 @@ void pack_header(Packer& message, const PointHeader& header) {
   pack_optional(message, header.extent);
   message.put_list(header.crs);
   message.put_list(header.software);
+  message.put(static_cast<std::uint64_t>(header.extra_bytes));
 }
 
 PointHeader unpack_header(Unpacker& message) {
@@ -45,6 +46,7 @@ PointHeader unpack_header(Unpacker& message) {
   header.extent = unpack_optional<Box<3>>(message);
   header.crs = message.take_list<std::string>();
   header.software = message.take_list<std::string>();
+  header.extra_bytes = message.take<std::uint64_t>();
   return header;
 }
 
