@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 #include <zstd.h>
+#include <zstd_errors.h>
 
 #include <boost/iostreams/categories.hpp>
 #include <boost/iostreams/filter/bzip2.hpp>
 #include <boost/iostreams/filter/gzip.hpp>
 #include <boost/iostreams/filtering_streambuf.hpp>
 #include <ios>
+#include <new>
 #include <string_view>
 #include <vector>
 
@@ -19,6 +21,9 @@ namespace spillway {
 namespace {
 
 constexpr std::size_t kCompressedBuffer = std::size_t{128} << 10;
+
+// The largest window that zstd writes (--long=31), and that its library can read.
+constexpr int kZstdWindowLog = 31;
 
 [[noreturn]] void fail(const InputSource& source, std::string_view format) {
   throw Error(
@@ -47,15 +52,13 @@ class SourceDevice {
 /// Gzip, bzip2 and LZ4, through Boost.Iostreams.
 class BoostInput : public InputFile {
  public:
-  BoostInput(InputSource& source, Compression compression) : source_(source) {
+  BoostInput(InputSource& source, Compression compression)
+      : source_(source), format_(name_of(compression)) {
     if (compression == Compression::kGzip) {
-      format_ = "gzip";
       stream_.push(boost::iostreams::gzip_decompressor(), kCompressedBuffer);
     } else if (compression == Compression::kBzip2) {
-      format_ = "bzip2";
       stream_.push(boost::iostreams::bzip2_decompressor(), kCompressedBuffer);
     } else {
-      format_ = "LZ4";
       stream_.push(Lz4Decompressor(), kCompressedBuffer);
     }
     stream_.push(SourceDevice(source), kCompressedBuffer);
@@ -84,7 +87,10 @@ class BoostInput : public InputFile {
 class ZstdInput : public InputFile {
  public:
   explicit ZstdInput(InputSource& source)
-      : source_(source), context_(ZSTD_createDCtx()), compressed_(kCompressedBuffer) {}
+      : source_(source), context_(ZSTD_createDCtx()), compressed_(kCompressedBuffer) {
+    if (!context_) throw std::bad_alloc();
+    ZSTD_DCtx_setParameter(context_.get(), ZSTD_d_windowLogMax, kZstdWindowLog);
+  }
 
   std::size_t read(std::span<std::byte> buffer) override {
     ZSTD_outBuffer out{buffer.data(), buffer.size(), 0};
@@ -92,7 +98,7 @@ class ZstdInput : public InputFile {
       if (in_.pos == in_.size && !output_pending_ && !refill()) break;
       const std::size_t full = out.pos;
       frame_left_ = ZSTD_decompressStream(context_.get(), &out, &in_);
-      if (ZSTD_isError(frame_left_) != 0) fail(source_, "zstd");
+      if (ZSTD_isError(frame_left_) != 0) fail_for(ZSTD_getErrorCode(frame_left_));
       output_pending_ = frame_left_ != 0 && out.pos == out.size && out.pos > full;
     }
     return out.pos;
@@ -105,6 +111,17 @@ class ZstdInput : public InputFile {
   struct Free {
     void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
   };
+
+  [[noreturn]] void fail_for(ZSTD_ErrorCode code) const {
+    if (code == ZSTD_error_memory_allocation || code == ZSTD_error_frameParameter_windowTooLarge) {
+      throw Error(
+          fmt::format("{}: there is not enough memory for the window of this zstd data, which may "
+                      "take up to 2 GiB (--long=31); decompress it first, or compress it again "
+                      "without --long",
+                      source_.name()));
+    }
+    fail(source_, "zstd");
+  }
 
   /// False at the end of the data, which must be the end of a frame.
   bool refill() {
@@ -130,6 +147,22 @@ Compression compression_of_name(const std::string& path) {
   if (path.ends_with(".zst")) return Compression::kZstd;
   if (path.ends_with(".lz4")) return Compression::kLz4;
   return Compression::kNone;
+}
+
+std::string_view name_of(Compression compression) {
+  switch (compression) {
+    case Compression::kGzip:
+      return "gzip";
+    case Compression::kBzip2:
+      return "bzip2";
+    case Compression::kZstd:
+      return "zstd";
+    case Compression::kLz4:
+      return "LZ4";
+    case Compression::kNone:
+      break;
+  }
+  return "nothing";
 }
 
 Compression compression_of_content(std::span<const std::byte> first_bytes) {

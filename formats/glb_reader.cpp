@@ -115,7 +115,7 @@ class GlbReader {
       }
     }
     const bool by_spillway = asset.value("generator", std::string()) == glb::kGenerator;
-    if (mesh_.corners.empty() && !by_spillway) fail_for_point_cloud(source_.name());
+    if (mesh_.corners.empty() && !by_spillway) fail_for_point_cloud(source_.name(), "glTF");
   }
 
   [[nodiscard]] std::vector<glb::PlacedMesh> meshes_of_scene() const {

@@ -6,6 +6,7 @@
 #include "formats/bytes.h"
 #include "formats/mesh_reader.h"
 #include "formats/point_format.h"
+#include "formats/point_reader.h"
 #include "formats/sma_reader.h"
 #include "formats/spm_format.h"
 
@@ -29,12 +30,17 @@ std::unique_ptr<InputFile> ProbedInput::open(const std::string& path) {
 InputKind kind_of_input(ProbedInput& input) {
   const bool is_pipe = input.path() == "-";
   const std::string extension = extension_of(input.path());
-  if (extension == "spm" || extension == "sma") return InputKind::kMeshStream;
-  if (!is_pipe && !input.exists(input.path())) {  // an npy mesh may go by a name that no file has
+  const bool is_named_stream = extension == "spm" || extension == "sma";
+  if (!is_pipe && !input.exists(input.path()) && !is_named_stream) {
+    // An npy mesh may go by a name that no file has.
     return is_mesh(input.beneath(), input.path()) ? InputKind::kMesh : InputKind::kPoints;
   }
-  const std::string_view text = as_text(input.source().peek(kProbe));
+  InputSource& source = input.source();
+  const std::string_view text = as_text(source.peek(kProbe));
   if (text.starts_with(kSpmMagic) || text.starts_with(kSmaNote)) return InputKind::kMeshStream;
+  if (is_named_stream && !begins_as_points(source.peek(kProbe))) {
+    return mesh_format_of_content(source) ? InputKind::kMesh : InputKind::kMeshStream;
+  }
   if (!is_pipe && is_mesh(input.beneath(), input.path())) return InputKind::kMesh;
   return looks_like_sma(text) ? InputKind::kMeshStream : InputKind::kPoints;
 }

@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
 
-#include "formats/bytes.h"
 #include "formats/fields.h"
 #include "formats/landxml_names.h"
 #include "formats/line_reader.h"
 #include "formats/mesh_notes.h"
-#include "formats/whole_file.h"
 #include "formats/xml_scanner.h"
 #include "src/error.h"
 
@@ -37,15 +37,72 @@ std::string unescaped(std::string_view text) {
   return result;
 }
 
+/// Goes through the tags of a file of any size, a window of which is in memory.
+class XmlTags {
+ public:
+  explicit XmlTags(InputSource& source) : source_(source) {}
+
+  /// Goes to the next tag; false at the end. Throws Error for what is no XML.
+  bool next(XmlTag& tag) {
+    while (true) {
+      const std::size_t before = scanner_.position();
+      const XmlScanner::Result result = scanner_.next(tag);
+      const bool whole = result == XmlScanner::Result::kTag && scanner_.has_content_end();
+      if (whole || (ended_ && result == XmlScanner::Result::kTag)) return true;
+      if (ended_ && result == XmlScanner::Result::kEnd) return false;
+      if (ended_) fail("here is no XML tag");
+      read_on(before);
+    }
+  }
+
+  /// What stands between the tag that next() gave last and the one behind it.
+  [[nodiscard]] std::string_view content() const { return scanner_.content(); }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    const std::string_view passed = std::string_view(window_).substr(0, scanner_.position());
+    throw Error(fmt::format("{}: line {}: {}", source_.name(),
+                            lines_before_ + std::count(passed.begin(), passed.end(), '\n'), what));
+  }
+
+ private:
+  static constexpr std::size_t kStep = std::size_t{1} << 20;
+  static constexpr std::size_t kLongestElement = std::size_t{16} << 20;
+
+  /// Drops what is before that place in the window and reads more behind it.
+  void read_on(std::size_t begin) {
+    const auto first = window_.begin();
+    lines_before_ += std::count(first, first + static_cast<std::ptrdiff_t>(begin), '\n');
+    window_.erase(0, begin);
+    scanner_ = XmlScanner(window_);
+    if (window_.size() >= kLongestElement) {
+      fail(fmt::format("no XML tag begins and ends within {} bytes from here", kLongestElement));
+    }
+    const std::size_t had = window_.size();
+    window_.resize(had + kStep);
+    const std::size_t got = source_.read(std::as_writable_bytes(std::span(window_).subspan(had)));
+    window_.resize(had + got);
+    ended_ = got < kStep;
+    scanner_ = XmlScanner(window_);
+    if (!looks_like_text(std::string_view(window_).substr(had))) {
+      fail(
+          "behind here is a control character, which is in no XML; the file is corrupt or has "
+          "another format");
+    }
+  }
+
+  InputSource& source_;
+  std::string window_;
+  XmlScanner scanner_{std::string_view()};
+  bool ended_ = false;               // the window reaches to the end of the file
+  std::ptrdiff_t lines_before_ = 1;  // number of the line in which the window begins
+};
+
 class LandXmlReader {
  public:
-  LandXmlReader(std::string file, std::string_view text)
-      : file_(std::move(file)), text_(text), scanner_(text) {}
+  explicit LandXmlReader(InputSource& source) : tags_(source) {}
 
   Mesh read() {
-    for (XmlScanner::Result result = scanner_.next(tag_); result != XmlScanner::Result::kEnd;
-         result = scanner_.next(tag_)) {
-      if (result == XmlScanner::Result::kMalformed) fail("here is no XML tag");
+    while (tags_.next(tag_)) {
       if (tag_.closing) {
         if (tag_.name == "Definition") within_tin_ = false;
         if (tag_.name == "LandXML") is_complete_ = true;
@@ -91,7 +148,7 @@ class LandXmlReader {
 
   /// What stands in the element, in one line.
   std::string_view content() {
-    line_ = scanner_.content();
+    line_ = tags_.content();
     std::replace_if(
         line_.begin(), line_.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
     return line_;
@@ -128,15 +185,9 @@ class LandXmlReader {
     if (!fields.at_end()) fail("a face has more than three points; only triangles are read");
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    const auto end = text_.begin() + static_cast<std::ptrdiff_t>(scanner_.position());
-    throw Error(
-        fmt::format("{}: line {}: {}", file_, 1 + std::count(text_.begin(), end, '\n'), what));
-  }
+  [[noreturn]] void fail(const std::string& what) const { tags_.fail(what); }
 
-  std::string file_;
-  std::string_view text_;
-  XmlScanner scanner_;
+  XmlTags tags_;
   XmlTag tag_;
   Mesh mesh_;
   std::unordered_map<std::uint64_t, std::uint64_t> numbers_;  // of vertices, by id
@@ -148,9 +199,6 @@ class LandXmlReader {
 
 }  // namespace
 
-Mesh read_landxml(InputSource& source) {
-  const std::vector<std::byte> bytes = read_whole(source);
-  return LandXmlReader(source.name(), as_text(bytes)).read();
-}
+Mesh read_landxml(InputSource& source) { return LandXmlReader(source).read(); }
 
 }  // namespace spillway

@@ -367,6 +367,7 @@ PointHeader las_point_header(const LasHeader& las, const std::string& path) {
   header.crs = las.crs;
   header.crs_note = las.crs_note;
   header.software = las.software;
+  header.extra_bytes = las.record_length - kLasRecordLengths.at(las.point_format);
   return header;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <span>
 
@@ -32,6 +33,17 @@ bool LineReader::next(std::string_view& line) {
   return true;
 }
 
+void LineReader::pass_over() {
+  if (line_begin_ != gap_end_) gap_begin_ = line_begin_;
+  gap_end_ = position();
+  if (gap_end_ - gap_begin_ > kLongestGap) {
+    throw Error(
+        fmt::format("{}: before {} are more than {} bytes of lines with nothing to read; "
+                    "see what writes this",
+                    file_.name(), name_of_line(number_, line_begin_), kLongestGap));
+  }
+}
+
 void LineReader::seek(std::uint64_t byte) {
   // A line begins behind the end of another one, so the byte before tells.
   const std::uint64_t from = byte - (byte > 0 ? 1 : 0);
@@ -54,12 +66,18 @@ bool LineReader::refill() {
   begin_ = 0;
   const std::span<char> space = std::span(buffer_).subspan(end_);
   if (space.empty()) {
-    throw Error(fmt::format("{}: {} is longer than {} bytes; this is no text file of points",
-                            file_.name(), name_of_line(number_ + 1, position()), kLongestLine));
+    throw Error(fmt::format("{}: {} is longer than {} bytes; this is no text", file_.name(),
+                            name_of_line(number_ + 1, position()), kLongestLine));
   }
   const std::size_t got = file_.read(std::as_writable_bytes(space));
   end_ += got;
   return got > 0;
+}
+
+bool looks_like_text(std::string_view bytes) {
+  return std::none_of(bytes.begin(), bytes.end(), [](unsigned char c) {
+    return c == 0x7f || (c < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\f');
+  });
 }
 
 std::string quoted(std::string_view text) {

@@ -16,12 +16,22 @@ namespace spillway {
 class LineReader {
  public:
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
+  static constexpr std::uint64_t kLongestGap = std::uint64_t{16} << 20;
 
   /// `file` must outlive the reader.
   explicit LineReader(InputFile& file) : file_(file), buffer_(kLongestLine + 2) {}
 
   /// Sets `line` to the next one without its end, valid until the next call; false at the end.
   bool next(std::string_view& line);
+
+  /// What has been read of the file behind that line: most of the first MiB once next() has given
+  /// the first line. Valid until the next call.
+  [[nodiscard]] std::string_view unread() const { return {buffer_.data() + begin_, end_ - begin_}; }
+
+  /// Says that the line which next() gave last holds nothing, so that input of nothing else comes
+  /// to an end: throws Error if more than kLongestGap bytes of such lines have followed one
+  /// another.
+  void pass_over();
 
   /// Makes next() go on with the first line that begins at that byte or behind it. Lines have no
   /// numbers from then on. Only for a file that can seek.
@@ -51,9 +61,14 @@ class LineReader {
   std::size_t end_ = 0;
   std::uint64_t buffer_begin_ = 0;  // byte of the file where the buffer begins
   std::uint64_t line_begin_ = 0;
+  std::uint64_t gap_begin_ = 0;  // the last lines that were passed over are [gap_begin_, gap_end_)
+  std::uint64_t gap_end_ = 0;
   std::uint64_t number_ = 0;
   bool numbered_ = true;
 };
+
+/// Whether these bytes may be of a text: no control characters but white space.
+bool looks_like_text(std::string_view bytes);
 
 /// Text for messages: at most some 60 characters, nothing that is not printable, in quotes.
 std::string quoted(std::string_view text);

@@ -9,7 +9,7 @@ namespace spillway {
 /// simplices.
 bool is_spillway_note(std::string_view comment);
 
-/// Throws Error that says that the file has no faces or tetrahedra.
-[[noreturn]] void fail_for_point_cloud(const std::string& file);
+/// Throws Error that says that the file of that format has no faces or tetrahedra, and what to do.
+[[noreturn]] void fail_for_point_cloud(const std::string& file, std::string_view format);
 
 }  // namespace spillway

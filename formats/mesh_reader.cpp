@@ -23,6 +23,7 @@
 #include "formats/ply_header.h"
 #include "formats/ply_reader.h"
 #include "formats/point_format.h"
+#include "formats/point_reader.h"
 #include "formats/sma_reader.h"
 #include "formats/spm_format.h"
 #include "formats/spm_reader.h"
@@ -46,23 +47,6 @@ bool begins_with_word(std::string_view text, std::string_view word) {
   return text.starts_with(word) &&
          (text.size() == word.size() ||
           std::isspace(static_cast<unsigned char>(text[word.size()])) != 0);
-}
-
-/// OBJ has no magic number: only Spillway's own is recognised.
-std::optional<MeshFormat> format_of_content(InputSource& source) {
-  const std::string_view text = as_text(source.peek(kProbe));
-  if (begins_with_word(text, "ply")) return MeshFormat::kPly;
-  if (begins_with_word(text, "OFF")) return MeshFormat::kOff;
-  if (begins_with_word(text, "# spillway dimension")) return MeshFormat::kObj;
-  if (begins_with_word(text, kSmaNote)) return MeshFormat::kSma;
-  if (text.starts_with(kSpmMagic)) return MeshFormat::kSpm;
-  if (text.starts_with('<') && text.find("<VTKFile") != text.npos) return MeshFormat::kVtu;
-  if (text.find("<LandXML") != text.npos) return MeshFormat::kLandXml;
-  if (text.starts_with(glb::kMagic)) return MeshFormat::kGlb;
-  if (text.starts_with(kStlOrigin) || looks_like_ascii_stl(text)) return MeshFormat::kStl;
-  if (text.starts_with(kSqliteMagic)) return MeshFormat::kGpkg;
-  if (text.starts_with(kShapefileMagic)) return MeshFormat::kShp;
-  return std::nullopt;
 }
 
 /// The format that a name alone tells; npy is not among them, as points have it too.
@@ -98,6 +82,16 @@ void refuse_index_of_parts(InputSource& source) {
         "or, to check the whole, write it to one file (without --parts)",
         source.name()));
   }
+}
+
+/// Throws Error if the file begins as points do, whatever its name says.
+void refuse_points(InputSource& source) {
+  const std::string_view text = as_text(source.peek(kProbe));
+  const bool is_npy = text.starts_with(kNpyMagic);  // which fail_for_unknown() tells about
+  if (is_npy || !begins_as_points(source.peek(kProbe))) return;
+  throw Error(
+      fmt::format("{}: this begins as {}, not as a mesh; triangulate it first", source.name(),
+                  text.starts_with("LASF") ? "points in LAS" : "points or compressed data"));
 }
 
 [[noreturn]] void fail_for_unknown(InputSource& source, const std::string& path) {
@@ -157,9 +151,13 @@ Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string
   if (format == MeshFormat::kNpy || (!format && is_npy_mesh(files, path))) {
     return read_npy(files, path);
   }
+  if (path == "-" && (format == MeshFormat::kGpkg || format == MeshFormat::kShp)) {
+    throw Error("standard input: a GeoPackage or Shapefile is not read from a pipe; name the file");
+  }
   auto source = std::make_unique<InputSource>(files.open(path));
   refuse_index_of_parts(*source);
-  if (!format) format = format_of_content(*source);
+  if (!format) format = mesh_format_of_content(*source);
+  if (!format) refuse_points(*source);
   if (!format) format = format_of_name(path);
   if (!format) fail_for_unknown(*source, path);
   switch (*format) {
@@ -189,12 +187,29 @@ Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string
 
 }  // namespace
 
+std::optional<MeshFormat> mesh_format_of_content(InputSource& source) {
+  const std::string_view text = as_text(source.peek(kProbe));
+  if (begins_with_word(text, "ply")) return MeshFormat::kPly;
+  if (begins_with_word(text, "OFF")) return MeshFormat::kOff;
+  // Of OBJ, which has no magic number, only Spillway's own is recognised.
+  if (begins_with_word(text, "# spillway dimension")) return MeshFormat::kObj;
+  if (begins_with_word(text, kSmaNote)) return MeshFormat::kSma;
+  if (text.starts_with(kSpmMagic)) return MeshFormat::kSpm;
+  if (text.starts_with('<') && text.find("<VTKFile") != text.npos) return MeshFormat::kVtu;
+  if (text.find("<LandXML") != text.npos) return MeshFormat::kLandXml;
+  if (text.starts_with(glb::kMagic)) return MeshFormat::kGlb;
+  if (text.starts_with(kStlOrigin) || looks_like_ascii_stl(text)) return MeshFormat::kStl;
+  if (text.starts_with(kSqliteMagic)) return MeshFormat::kGpkg;
+  if (text.starts_with(kShapefileMagic)) return MeshFormat::kShp;
+  return std::nullopt;
+}
+
 bool is_mesh(FileSystem& files, const std::string& path) {
   if (path == "-") return false;
   if (is_npy_mesh(files, path)) return true;
   InputSource source(files.open(path));
-  std::optional<MeshFormat> format = format_of_content(source);
-  if (!format) format = format_of_name(path);
+  std::optional<MeshFormat> format = mesh_format_of_content(source);
+  if (!format && !begins_as_points(source.peek(kProbe))) format = format_of_name(path);
   return format == MeshFormat::kPly ? is_ply_mesh(source) : format.has_value();
 }
 

@@ -1,11 +1,17 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "formats/file_system.h"
+#include "formats/input_source.h"
 #include "formats/mesh.h"
+#include "formats/mesh_writer.h"
 
 namespace spillway {
+
+/// The format of meshes that the first bytes tell of; nothing if they are not those of a mesh.
+std::optional<MeshFormat> mesh_format_of_content(InputSource& source);
 
 /// True if the file holds a mesh rather than points, judged by its first bytes ("-" is never
 /// probed) and, for formats that begin with nothing of their own, by its name.

@@ -23,11 +23,12 @@ class ObjReader {
     while (lines_.next(line)) {
       if (line.starts_with("# ")) {
         read_comment(line.substr(2));
+        lines_.pass_over();
       } else {
         read_statement(line.substr(0, line.find('#')));
       }
     }
-    if (mesh_.corners.empty() && !by_spillway_) fail_for_point_cloud(file_);
+    if (mesh_.corners.empty() && !by_spillway_) fail_for_point_cloud(file_, "OBJ");
     if (!mesh_.corners.empty() && largest_ >= mesh_.vertices.size()) {
       throw Error(fmt::format("{}: line {}: a face has vertex {}, but there are only {}", file_,
                               largest_line_, largest_ + 1, mesh_.vertices.size()));
@@ -45,7 +46,8 @@ class ObjReader {
     by_spillway_ |= is_spillway_note(comment);
   }
 
-  /// Statements other than of vertices and faces are passed over.
+  /// Statements other than of vertices and faces are passed over: those of texture and normals by
+  /// the million, others as long as they come to an end.
   void read_statement(std::string_view statement) {
     Fields fields(statement);
     const std::string_view keyword = fields.word();
@@ -53,6 +55,8 @@ class ObjReader {
       read_vertex(fields);
     } else if (keyword == "f") {
       read_face(fields);
+    } else if (keyword != "vt" && keyword != "vn") {
+      lines_.pass_over();
     }
   }
 

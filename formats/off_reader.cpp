@@ -30,7 +30,7 @@ class OffReader {
     for (std::uint64_t i = 0; i < mesh_.header.vertices; ++i) read_vertex(i);
     for (std::uint64_t i = 0; i < mesh_.header.simplices; ++i) read_face(i);
     if (next_line()) fail("the file goes on after its last face; its counts are wrong");
-    if (mesh_.corners.empty() && !by_spillway_) fail_for_point_cloud(source_.name());
+    if (mesh_.corners.empty() && !by_spillway_) fail_for_point_cloud(source_.name(), "OFF");
     return std::move(mesh_);
   }
 
@@ -101,6 +101,7 @@ class OffReader {
       }
       fields_ = Fields(line.substr(0, line.find('#')));
       if (!fields_.at_end()) return true;
+      lines_.pass_over();
     }
     return false;
   }

@@ -34,7 +34,7 @@ class PlyReader {
         simplices_(header_.simplices()),
         size_known_(source.size().has_value()) {
     if (vertices_ == nullptr) fail("the header names no vertices");
-    if (simplices_ == nullptr) fail_for_point_cloud(source.name());
+    if (simplices_ == nullptr) fail_for_point_cloud(source.name(), "PLY");
     mesh_.header = header_.notes;
     mesh_.header.dimension = simplices_->name == kPlyTetrahedron ? 3 : 2;
     mesh_.header.vertices = vertices_->count;

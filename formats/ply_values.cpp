@@ -76,6 +76,7 @@ bool PlyTextValues::next_line() {
   while (lines_.next(line)) {
     fields_ = Fields(line);
     if (!fields_.at_end()) return true;
+    lines_.pass_over();
   }
   return false;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,8 @@ struct PointHeader {
   std::string crs_note;                ///< why there is none, though the source tells of one; or
                                        ///< what is not read of it; empty: neither
   std::string software;                ///< generating software, LAS only
+  std::size_t extra_bytes = 0;         ///< of each record, behind what the LAS point format has
+  std::vector<std::string> notices;    ///< what was taken where the source leaves some doubt
 };
 
 struct PointReaderOptions {
@@ -136,9 +139,13 @@ class PointReader {
   virtual void go_to_piece(std::uint64_t /*piece*/) {}
 };
 
+/// Whether a file that begins with these bytes holds points, or something compressed, which only
+/// points may be; false where the first bytes do not tell, as those of text.
+bool begins_as_points(std::span<const std::byte> first_bytes);
+
 /// Opens a source ("-": standard input) and checks its header. The format is that of the options,
-/// else of the extension (.las, .laz, .txt, .xyz, .csv, .asc, .npy, .spp, each text format also
-/// with .gz, .bz2, .zst, .lz4), else of the first bytes.
+/// else what the first bytes say, else that of the extension (.las, .laz, .txt, .xyz, .csv, .asc,
+/// .npy, .spp, each text format also with .gz, .bz2, .zst, .lz4), else text if it looks like text.
 std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::string& path,
                                                const PointReaderOptions& options);
 

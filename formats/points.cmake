@@ -2,6 +2,7 @@
 # Zstandard is used directly: Boost's filter takes truncated data for complete.
 pkg_check_modules(libzstd REQUIRED IMPORTED_TARGET libzstd)
 target_sources(spillway_formats PRIVATE
+  column_names.cpp
   decompress.cpp
   file_digest.cpp
   file_system.cpp
@@ -21,6 +22,7 @@ target_sources(spillway_formats PRIVATE
   point_writer.cpp
   spooled_output.cpp
   text_columns.cpp
+  text_opening.cpp
   text_reader.cpp
   text_writer.cpp)
 target_link_libraries(spillway_formats PRIVATE PkgConfig::libzstd)

@@ -46,7 +46,10 @@ class SmaReader : public MeshStreamReader {
   explicit SmaReader(std::unique_ptr<InputSource> source)
       : source_(std::move(source)), lines_(*source_) {
     MeshHeader notes;
-    while ((has_line_ = lines_.next(line_)) && !is_element(line_)) read_header_line(notes);
+    while ((has_line_ = lines_.next(line_)) && !is_element(line_)) {
+      read_header_line(notes);
+      lines_.pass_over();
+    }
     header_.lattice = notes.lattice;
     header_.crs = notes.crs;
     if (!extent_.empty() && extent_.contains(extent_.hi)) header_.extent = extent_;
@@ -146,8 +149,10 @@ class SmaReader : public MeshStreamReader {
       block.finalized.push_back(use(read_number(fields), true, block));
     } else if (const std::optional<std::string_view> comment = comment_of(line_)) {
       read_counts(*comment);
+      lines_.pass_over();
     } else {
       check_blank();
+      lines_.pass_over();
     }
   }
 
@@ -262,7 +267,8 @@ class SmaReader : public MeshStreamReader {
     };
     check(totals_.vertices, expected_vertices_, "vertices");
     check(totals_.simplices, expected_triangles_, "triangles");
-    if (totals_.simplices == 0 && !expected_triangles_) fail_for_point_cloud(source_->name());
+    if (totals_.simplices == 0 && !expected_triangles_)
+      fail_for_point_cloud(source_->name(), "sma");
   }
 
   struct Imported {

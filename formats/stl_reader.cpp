@@ -144,6 +144,7 @@ class AsciiStlReader {
       fields_ = Fields(line);
       word = fields_.word();
       if (!word.empty()) return true;
+      lines_.pass_over();
     }
     return false;
   }
@@ -176,7 +177,12 @@ bool looks_like_ascii_stl(std::string_view text) {
 }
 
 Mesh read_stl(InputSource& source) {
-  if (looks_like_ascii_stl(as_text(source.peek(kProbe)))) return AsciiStlReader(source).read();
+  const std::string_view text = as_text(source.peek(kProbe));
+  if (looks_like_ascii_stl(text)) return AsciiStlReader(source).read();
+  // The count and the floats of a binary file are no text.
+  if (text.size() == kProbe && looks_like_text(text)) {
+    throw Error(fmt::format("{}: this is text, and none of STL; name its format", source.name()));
+  }
   return BinaryStlReader(source).read();
 }
 

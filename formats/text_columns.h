@@ -1,7 +1,9 @@
 #pragma once
 // The grammar of one line of a text point file, as docs/formats-points.md ("Text") describes it.
 
-#include <optional>
+#include <array>
+#include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -9,39 +11,58 @@
 
 namespace spillway {
 
-/// Which columns of a line hold x, y and z.
-class TextColumns {
- public:
-  /// The first two or three columns.
-  static TextColumns first(int coordinates);
+/// What separates the columns of a text, in all lines the same. Blanks may stand around the other
+/// signs, too; kBlanks are any blanks and tabs.
+enum class Separator : char { kBlanks = ' ', kTab = '\t', kComma = ',', kSemicolon = ';' };
 
-  /// The columns that a header line names; nothing if it does not name both x and y.
-  static std::optional<TextColumns> named(std::string_view header_line);
+/// "commas" and so on, for messages.
+std::string_view name_of(Separator separator);
 
-  /// 2 or 3.
-  [[nodiscard]] int coordinates() const { return coordinates_; }
+/// The fields of a line, without quotes and the blanks around them. A comment at the end is left
+/// out, and so is an empty field behind the last separator.
+std::vector<std::string_view> text_fields(std::string_view line, Separator separator);
 
-  /// Reads the coordinates; false if one of the columns is missing or no number. Numbers are read
-  /// to the nearest double; "inf" and "nan" are numbers.
-  [[nodiscard]] bool parse(std::string_view line, Point<3>& point) const;
-
-  /// Whether blanks, commas and semicolons are mixed between the columns that are read, as they are
-  /// where a comma is meant as a decimal point. Only for a line that parse() takes.
-  [[nodiscard]] bool mixes_separators(std::string_view line) const;
-
- private:
-  std::vector<int> axes_;  // for each column up to the last that is read: its axis, or -1
-  int coordinates_ = 0;
-};
-
-/// Number of columns of a line, comments at its end not counted.
-int column_count(std::string_view line);
+/// The same for a line of names, in which # and the like begin no comment unless blanks separate.
+std::vector<std::string_view> text_names(std::string_view line, Separator separator);
 
 /// True for a line without data: blank, or beginning with #, // or %.
 bool is_comment(std::string_view line);
 
-/// True if none of the line's first three columns is a number, so that it can only name the
-/// columns.
-bool is_header(std::string_view line);
+/// All of `field` as a number, rounded to the nearest double ("inf" and "nan" are numbers); false
+/// if it is none, or has a comma where a point is meant to be, or a point where a comma is.
+bool read_decimal(std::string_view field, bool decimal_commas, double& value);
+
+/// Which columns of a line hold x, y and z, and how they are written.
+class TextColumns {
+ public:
+  /// Columns are counted from 0; that of z is -1 if there is none. `count` is how many columns the
+  /// file has by its header or first row. Commas that separate are not decimal commas, too.
+  TextColumns(Separator separator, bool decimal_commas, const std::array<int, 3>& column,
+              std::size_t count);
+
+  /// 2 or 3.
+  [[nodiscard]] int coordinates() const { return coordinates_; }
+
+  /// Reads the coordinates; false if one of the columns is missing or no number, and if what
+  /// follows does not go with the file's separator and decimal sign.
+  [[nodiscard]] bool parse(std::string_view line, Point<3>& point) const;
+
+  /// Why parse() does not take this line, beginning with the column, and what to do.
+  [[nodiscard]] std::string fault(std::string_view line) const;
+
+ private:
+  template <Separator S>
+  [[nodiscard]] bool parse_as(std::string_view line, Point<3>& point) const;
+
+  /// Whether what stands behind the columns that are read may stand there.
+  [[nodiscard]] bool rest_fits(std::string_view rest) const;
+  [[nodiscard]] std::string fault_of_field(std::string_view field) const;
+
+  Separator separator_;
+  bool decimal_commas_;
+  int coordinates_;
+  std::size_t count_;
+  std::vector<int> axes_;  // for each column up to the last that is read: its axis, or -1
+};
 
 }  // namespace spillway

@@ -10,6 +10,7 @@
 
 #include "formats/line_reader.h"
 #include "formats/text_columns.h"
+#include "formats/text_opening.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -19,15 +20,20 @@ constexpr std::size_t kBlockPoints = 65536;
 
 class TextReader : public PointReader {
  public:
-  TextReader(std::unique_ptr<InputSource> source, const std::string& path, Compression compression,
-             std::uint64_t piece_bytes)
+  TextReader(std::unique_ptr<InputSource> source, const std::string& path,
+             std::unique_ptr<InputFile> content, std::uint64_t piece_bytes)
       : source_(std::move(source)),
-        content_(compression == Compression::kNone ? nullptr : decompressed(*source_, compression)),
+        content_(std::move(content)),
         lines_(content_ ? *content_ : *source_),
+        opening_(read_text_opening(lines_, source_->name())),
+        columns_(opening_.columns),
         piece_bytes_(piece_bytes) {
-    read_first_point();
+    has_first_ = opening_.first_row.has_value();
+    if (has_first_) line_ = *opening_.first_row;
     begin_ = has_first_ ? lines_.line_begin() : lines_.position();
-    in_pieces_ = path != "-" && !content_ && source_->seekable();
+    // Where one scan of a PTS ends and the next one's count stands only what is before tells.
+    in_pieces_ = path != "-" && !content_ && !opening_.scan_points && source_->seekable();
+    header_.notices = std::move(opening_.notices);
     header_.name = path;
     header_.format = "text";
     header_.coordinates = columns_.coordinates();
@@ -38,17 +44,20 @@ class TextReader : public PointReader {
   bool fetch(RawPoints& raw) override {
     PointBlock& block = raw.decoded;
     block.clear();
-    if (has_first_) append(first_, block);
-    has_first_ = false;
     Point<3> point;
+    if (has_first_ && columns_.parse(line_, point)) append(point, block);
+    has_first_ = false;
     while (block.size() < kBlockPoints && lines_.position() < end_ && lines_.next(line_)) {
       // Comments are rare: they are looked for only where there is no point.
       if (columns_.parse(line_, point)) {
         append(point, block);
-      } else if (!is_comment(line_)) {
-        fail_for_line();
+      } else if (is_comment(line_)) {
+        lines_.pass_over();
+      } else {
+        begin_scan();
       }
     }
+    if (block.size() == 0) check_scan();
     return block.size() > 0;
   }
 
@@ -71,39 +80,25 @@ class TextReader : public PointReader {
     has_first_ = false;
   }
 
-  /// Reads up to the first point, which settles the columns: those that a header line names, or the
-  /// first two or three.
-  void read_first_point() {
-    if (!next_data_line()) return;
-    bool named = false;
-    if (is_header(line_)) {
-      const std::optional<TextColumns> columns = TextColumns::named(line_);
-      named = columns.has_value();
-      if (named) columns_ = *columns;
-      const std::string header = quoted(line_);
-      if (!next_data_line()) {
-        if (named) return;
-        fail(fmt::format("there is no point after line {}: {}; is this a file of points?",
-                         lines_.number(), header));
-      }
-    }
-    if (!named && column_count(line_) == 2) columns_ = TextColumns::first(2);
-    if (!columns_.parse(line_, first_)) fail_for_line();
-    has_first_ = true;
-    if (columns_.mixes_separators(line_) || line_.find('\r') != std::string_view::npos) {
-      fail(
-          fmt::format("line {} mixes separators: {}; write decimal points instead of commas, and "
-                      "one kind of separator and line end",
-                      lines_.number(), quoted(line_)));
-    }
+  /// Takes a line that holds no point: the count of the next scan in a PTS, or an error.
+  void begin_scan() {
+    const std::optional<std::uint64_t> count =
+        opening_.scan_points ? point_count_of_line(line_) : std::nullopt;
+    if (!count) fail(fmt::format("{}, {}", lines_.line_name(), columns_.fault(line_)));
+    check_scan();
+    opening_.scan_points = count;
+    opening_.scan_line = lines_.number();
+    scan_begin_ = next_;
   }
 
-  /// Sets line_ to the next one that is no comment; false at the end.
-  bool next_data_line() {
-    while (lines_.next(line_)) {
-      if (!is_comment(line_)) return true;
-    }
-    return false;
+  /// Throws Error if a scan of a PTS has not as many points as the line before it says.
+  void check_scan() const {
+    const std::uint64_t came = next_ - scan_begin_;
+    if (!opening_.scan_points || *opening_.scan_points == came) return;
+    fail(
+        fmt::format("line {} says {} points, but {} follow; get a complete copy, or correct the "
+                    "line",
+                    opening_.scan_line, *opening_.scan_points, came));
   }
 
   void append(const Point<3>& point, PointBlock& block) {
@@ -120,11 +115,6 @@ class TextReader : public PointReader {
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
   }
 
-  [[noreturn]] void fail_for_line() const {
-    fail(fmt::format("{} does not hold {} numbers: {}; correct or remove it", lines_.line_name(),
-                     columns_.coordinates(), quoted(line_)));
-  }
-
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(fmt::format("{}: {}", source_->name(), what));
   }
@@ -132,12 +122,13 @@ class TextReader : public PointReader {
   std::unique_ptr<InputSource> source_;
   std::unique_ptr<InputFile> content_;  // decompressed, or nothing
   LineReader lines_;
+  TextOpening opening_;  // of a PTS: what the last count line says
+  TextColumns columns_;
   std::string_view line_;
-  TextColumns columns_ = TextColumns::first(3);
-  Point<3> first_{};
-  bool has_first_ = false;  // first_ is still to be given out
+  bool has_first_ = false;  // line_ is the first row, still to be given out
   PointHeader header_;
-  std::uint64_t next_ = 0;  // number of the next point, in its piece if that was asked for
+  std::uint64_t next_ = 0;        // number of the next point, in its piece if that was asked for
+  std::uint64_t scan_begin_ = 0;  // number of the first point behind the last count line
 
   std::uint64_t piece_bytes_;
   bool in_pieces_ = false;
@@ -148,9 +139,10 @@ class TextReader : public PointReader {
 }  // namespace
 
 std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputSource> source,
-                                              const std::string& path, Compression compression,
+                                              const std::string& path,
+                                              std::unique_ptr<InputFile> content,
                                               std::uint64_t piece_bytes) {
-  return std::make_unique<TextReader>(std::move(source), path, compression, piece_bytes);
+  return std::make_unique<TextReader>(std::move(source), path, std::move(content), piece_bytes);
 }
 
 }  // namespace spillway

@@ -149,7 +149,7 @@ class VtuReader {
   /// Cells decide the dimension; without any, what the file says.
   void settle_dimension() {
     const bool empty = mesh_.header.simplices == 0;
-    if (empty && mesh_.header.dimension == 0) fail_for_point_cloud(input_.name());
+    if (empty && mesh_.header.dimension == 0) fail_for_point_cloud(input_.name(), "VTU");
     if (!empty) mesh_.header.dimension = cell_type_ == vtu::kTriangle ? 2 : 3;
     const std::size_t corners = mesh_.corners_per_simplex();
     if (mesh_.corners.size() % corners != 0 ||

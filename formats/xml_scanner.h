@@ -35,6 +35,9 @@ class XmlScanner {
   /// What stands between the tag that next() gave last and the one behind it.
   [[nodiscard]] std::string_view content() const;
 
+  /// Whether that content comes to its end in the text.
+  [[nodiscard]] bool has_content_end() const { return text_.find('<', position_) != text_.npos; }
+
   /// Where the scanner is in the text: behind the last tag.
   [[nodiscard]] std::size_t position() const { return position_; }
 

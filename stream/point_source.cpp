@@ -87,6 +87,7 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
     throw Error(fmt::format("{} of {} inputs cannot be read:\n  {}", faults.size(), paths.size(),
                             fmt::join(faults, "\n  ")));
   }
+  tell_notices();
   check_coordinate_systems();
   relate_inputs();
 }
@@ -156,6 +157,33 @@ void PointSource::inspect(const std::string& path) {
     inputs_.back().facts.digest = digest_of(*files_.open(path));
   }
   if (!opens_again) inputs_.back().reader = std::move(reader);
+}
+
+/// Says once what holds for many inputs.
+void PointSource::tell_notices() const {
+  struct Notice {
+    const std::string* text;
+    const std::string* first;
+    std::size_t count;
+  };
+  std::vector<Notice> notices;
+  for (const Input& input : inputs_) {
+    const PointHeader& header = input.facts.header;
+    for (const std::string& text : header.notices) {
+      const auto known =
+          std::ranges::find_if(notices, [&](const Notice& notice) { return *notice.text == text; });
+      if (known == notices.end()) {
+        notices.push_back({&text, &header.name, 1});
+      } else {
+        ++known->count;
+      }
+    }
+  }
+  for (const Notice& notice : notices) {
+    const std::string more =
+        notice.count > 1 ? fmt::format(" (and {} more)", notice.count - 1) : std::string();
+    options_.warn(fmt::format("{}{}: {}", *notice.first, more, *notice.text));
+  }
 }
 
 void PointSource::add_input(const std::string& path, SourceFacts::Input facts) {

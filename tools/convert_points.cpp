@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,16 +23,37 @@ constexpr std::size_t kSlots = 6;
 
 bool is_las(const PointHeader& header) { return header.point_format >= 0; }
 
-/// What the output does not keep of the inputs, in words.
+/// Appends what records of this LAS file have besides what LAS that is written keeps.
+void append_las_fields(const PointHeader& header, std::vector<std::string_view>& fields) {
+  const int format = header.point_format;
+  const auto is_one_of = [format](std::initializer_list<int> formats) {
+    return std::ranges::find(formats, format) != formats.end();
+  };
+  fields.insert(fields.end(),
+                {"intensity", "scan flags", "scan angle", "user data", "point source"});
+  if (is_one_of({6, 7, 8, 9, 10})) fields.emplace_back("scanner channel");
+  if (!is_one_of({0, 2})) fields.emplace_back("GPS time");
+  if (is_one_of({2, 3, 5, 7, 8, 10})) fields.emplace_back("colour");
+  if (is_one_of({8, 10})) fields.emplace_back("near infrared");
+  if (is_one_of({4, 5, 9, 10})) fields.emplace_back("waveforms");
+  if (header.extra_bytes > 0) fields.emplace_back("extra bytes");
+}
+
+/// What the inputs have and the output does not keep, in words.
 std::vector<std::string_view> losses(const std::vector<PointHeader>& headers, PointFormat format,
                                      bool keeps_attributes, bool has_crs) {
-  std::vector<std::string_view> lost;
-  if (std::ranges::any_of(headers, is_las)) {
-    if (!keeps_attributes) lost.insert(lost.end(), {"classes", "returns", "flags"});
-    lost.insert(lost.end(), {"intensity", "time", "colour"});
+  std::vector<std::string_view> all;
+  for (const PointHeader& header : headers) {
+    if (!is_las(header)) continue;
+    if (!keeps_attributes) all.insert(all.end(), {"classes", "returns", "flags"});
+    append_las_fields(header, all);
   }
   const bool holds_crs = format == PointFormat::kLas || format == PointFormat::kSpp;
-  if (has_crs && !holds_crs) lost.emplace_back("coordinate system");
+  if (has_crs && !holds_crs) all.emplace_back("coordinate system");
+  std::vector<std::string_view> lost;
+  for (const std::string_view field : all) {
+    if (std::ranges::find(lost, field) == lost.end()) lost.push_back(field);
+  }
   return lost;
 }
 

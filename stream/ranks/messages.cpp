@@ -32,6 +32,7 @@ void pack_header(Packer& message, const PointHeader& header) {
   message.put_list(header.crs);
   message.put_list(header.crs_note);
   message.put_list(header.software);
+  message.put(static_cast<std::uint64_t>(header.extra_bytes));
 }
 
 PointHeader unpack_header(Unpacker& message) {
@@ -47,6 +48,7 @@ PointHeader unpack_header(Unpacker& message) {
   header.crs = message.take_list<std::string>();
   header.crs_note = message.take_list<std::string>();
   header.software = message.take_list<std::string>();
+  header.extra_bytes = message.take<std::uint64_t>();
   return header;
 }
 

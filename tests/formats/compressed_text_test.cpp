@@ -12,6 +12,7 @@
 #include <boost/iostreams/filtering_stream.hpp>
 #include <sstream>
 
+#include "formats/spp_format.h"
 #include "tests/formats/point_test_helpers.h"
 
 namespace spillway::testing {
@@ -112,8 +113,29 @@ TEST_P(CompressedText, Empty) {
 }
 
 TEST_P(CompressedText, NotCompressed) {
-  EXPECT_THAT(error_of_content(name_, "1 2 3\n"),
+  EXPECT_EQ(read_content(name_, "1 2 3\n").points.size(), 1U);
+  EXPECT_THAT(error_of_content(name_, std::string("1 2\0 3\n", 7)),
               HasSubstr("does not begin as its extension says"));
+}
+
+TEST_P(CompressedText, NamedAsAnotherCompression) {
+  for (const char* name : {"a.xyz.gz", "a.xyz.bz2", "a.xyz.zst", "a.xyz.lz4", "a.xyz"}) {
+    EXPECT_EQ(read_content(name, compressed("1 2 3\n", extension_)).points.size(), 1U) << name;
+  }
+}
+
+TEST_P(CompressedText, ContentThatIsNoTextOfPoints) {
+  for (const std::string& content :
+       {std::string("LASF"), std::string("\x93NUMPY"), std::string(kSppMagic)}) {
+    EXPECT_THAT(error_of_content(name_, compressed(content, extension_)),
+                HasSubstr("only text is read compressed"));
+  }
+  EXPECT_THAT(error_of_content(name_, compressed(compressed("1 2 3\n", extension_), extension_)),
+              HasSubstr("only text is read compressed"));
+  EXPECT_THAT(error_of_content(name_, compressed("OFF\n1 2 3\n", extension_)),
+              HasSubstr("this is a mesh (OFF)"));
+  EXPECT_THAT(error_of_content(name_, compressed(std::string("a\0b", 3), extension_)),
+              HasSubstr("this is no text"));
 }
 
 TEST_P(CompressedText, OtherFormatsCompressed) {
@@ -131,6 +153,15 @@ TEST(CompressedZstd, WithoutChecksumTruncationIsSeen) {
   const std::string whole = compressed("1 2 3\n4 5 6\n", ".zst");
   EXPECT_THAT(error_of_content("a.zst", whole.substr(0, whole.size() - 2)),
               HasSubstr("corrupt or ends early"));
+}
+
+/// Data from a pipe tells no size, so the window is what --long=31 asks for.
+TEST(CompressedZstd, LargestWindow) {
+  constexpr std::size_t kWindowDescriptor = 5;
+  std::string whole = compressed(numbered_lines(2000), ".zst");
+  ASSERT_EQ(whole[4] & 0x20, 0) << "a frame that tells its size has no window";
+  whole[kWindowDescriptor] = static_cast<char>((31 - 10) << 3);
+  EXPECT_EQ(read_content("a.zst", whole).points.size(), 2000U);
 }
 
 TEST(CompressedLz4, WithoutChecksumTruncationIsSeen) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats/bytes.h"
+#include "formats/mesh_reader.h"
 #include "formats/sma_reader.h"
 #include "formats/spm_format.h"
 #include "src/error.h"
@@ -49,6 +50,29 @@ TEST(InputKindTest, OtherMeshesAreToldFromStreams) {
   EXPECT_EQ(kind_of("noname", "OFF\n0 0 0\n"), InputKind::kMesh);
   EXPECT_EQ(kind_of("noname", "# spillway dimension 2\nv 1 2 3\n"), InputKind::kMesh);
   EXPECT_EQ(kind_of("noname", std::string(kSmaNote) + "\nv 1 2 3\n"), InputKind::kMeshStream);
+}
+
+TEST(InputKindTest, FirstBytesGoBeforeNames) {
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 0\nelement face 1\nend_header\n";
+  for (const std::string name : {"a.ply", "a.spm", "a.sma", "a.obj", "a.txt", "a.las"}) {
+    EXPECT_EQ(kind_of(name, "LASF and so on"), InputKind::kPoints) << name;
+    EXPECT_EQ(kind_of(name, "\x1f\x8b and so on"), InputKind::kPoints) << name;
+    EXPECT_EQ(kind_of(name, kSpm), InputKind::kMeshStream) << name;
+    EXPECT_EQ(kind_of(name, ply), InputKind::kMesh) << name;
+    EXPECT_EQ(kind_of(name, std::string(kSmaNote) + "\nv 1 2 3\n"), InputKind::kMeshStream) << name;
+  }
+}
+
+TEST(InputKindTest, PointsNamedAsAMeshAreNoMesh) {
+  FaultyFileSystem files;
+  files.files["a.ply"] = "LASF and so on";
+  EXPECT_FALSE(is_mesh(files, "a.ply"));
+  try {
+    read_mesh(files, "a.ply");
+    ADD_FAILURE() << "no Error was thrown";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("a.ply: this begins as points in LAS"));
+  }
 }
 
 TEST(InputKindTest, LookingLosesNothing) {

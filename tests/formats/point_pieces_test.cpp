@@ -219,8 +219,8 @@ TEST(PointPieces, SharedFiles) {
 /// Text in pieces of that many bytes.
 Open open_text(FaultyFileSystem& files, std::uint64_t piece_bytes) {
   return [&files, piece_bytes] {
-    return open_text_reader(std::make_unique<InputSource>(files.open("a.txt")), "a.txt",
-                            Compression::kNone, piece_bytes);
+    return open_text_reader(std::make_unique<InputSource>(files.open("a.txt")), "a.txt", nullptr,
+                            piece_bytes);
   };
 }
 
@@ -232,7 +232,8 @@ TEST(PointPieces, TextOfEveryKindInPiecesOfEverySize) {
       "1,2,3\n4 , 5 , 6\n\n7,8,9\n",
       "1;2\n3;4\n5;6\n7;8\n",
       "id,Y,X,class,Z\na1,-2,1.5,2,3e2\nb2,5,4,2,6\nc3,7,8,9,10\n",
-      "Survey of the dunes\n1 2 3\n4 5 6\n",
+      "# Survey of the dunes\n# y x z\n1 2 3\n4 5 6\n",
+      "x;y;z\n1;2;3\n4,5;6;7,25\n8;9,5;10\n",
       "# a comment that is longer than any piece is\n\n1 2 3\n# b\n  \r\n4 5 6 # c\n// d\n7 8 "
       "9\n\n#",
       "\xef\xbb\xbfx y z\n1 2 3\n4 5 6\n",
@@ -340,7 +341,7 @@ TEST(PointPieceErrors, TextNamesTheByteWhereTheLineBegins) {
   FaultyFileSystem files;
   files.files["a.txt"] = "# c\n1 2 3\n4 x 6\n7 8 nan\n9 9 9\n";
   EXPECT_THAT(error_of_piece(open_text(files, 7), 0),
-              HasSubstr("a.txt: the line at byte 10 does not hold 3 numbers: \"4 x 6\""));
+              HasSubstr("a.txt: the line at byte 10, column 2 is no number: \"x\""));
   EXPECT_THAT(error_of_piece(open_text(files, 7), 1),
               HasSubstr("a.txt: the point in the line at byte 16 is not finite: \"7 8 nan\""));
   EXPECT_THAT(error_of_piece(open_text(files, 100), 0), HasSubstr("line at byte 10"));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/tools/command_runner.h"
+#include "tests/tools/las_samples.h"
 
 namespace spillway::test {
 namespace {
@@ -94,15 +95,67 @@ TEST(ConvertPoints, KeepsAttributesAndTellsWhatItDrops) {
       "--las-version 1.4");
   EXPECT_EQ(there.exit_code, 0) << there.err;
   EXPECT_THAT(there.err,
-              AllOf(HasSubstr("not kept: intensity, time, colour\n"), Not(HasSubstr("rounded"))));
+              AllOf(HasSubstr("not kept: intensity, scan flags, scan angle, user data, point "
+                              "source\n"),
+                    Not(HasSubstr("rounded"))));
   EXPECT_EQ(work.info("there.las")["version"], "1.4");
   EXPECT_EQ(work.read("there.las").substr(375 + 14, 3), "\x32\x04\x02");
   work.succeed("spillway convert -q there.las -o back.las --keep-withheld --las-version 1.2");
   EXPECT_EQ(work.read("back.las").substr(227 + 14, 2), "\x1a\x82");
-  EXPECT_THAT(work.run("spillway convert in.las -o out.xyz --keep-withheld").err,
-              HasSubstr("not kept: classes, returns, flags, intensity, time, colour\n"));
+  EXPECT_THAT(
+      work.run("spillway convert in.las -o out.xyz --keep-withheld").err,
+      HasSubstr("not kept: classes, returns, flags, intensity, scan flags, scan angle, user "
+                "data, point source\n"));
   EXPECT_THAT(work.run("spillway convert -q in.las -o out.xyz --keep-withheld").err, "");
   EXPECT_THAT(work.run("spillway convert in.las -o out.xyz").err, HasSubstr("1 withheld"));
+}
+
+/// A LAS 1.4 file of that point format, with extra bytes in its records.
+std::string las_of_format(int point_format, std::size_t extra_bytes) {
+  testing::LasFile las = scattered_las(0, 5);
+  las.minor = 4;
+  las.point_format = point_format;
+  las.extra_bytes = extra_bytes;
+  return las.bytes();
+}
+
+TEST(ConvertPoints, TellsWhatTheInputAtHandHas) {
+  const Workspace work;
+  const std::string all = "intensity, scan flags, scan angle, user data, point source";
+  const std::vector<std::string> more = {
+      "",
+      ", GPS time",
+      ", colour",
+      ", GPS time, colour",
+      ", GPS time, waveforms",
+      ", GPS time, colour, waveforms",
+      ", scanner channel, GPS time",
+      ", scanner channel, GPS time, colour",
+      ", scanner channel, GPS time, colour, near infrared",
+      ", scanner channel, GPS time, waveforms",
+      ", scanner channel, GPS time, colour, near infrared, waveforms"};
+  for (int format = 0; format <= 10; ++format) {
+    work.write("in.las", las_of_format(format, 0));
+    EXPECT_THAT(work.run("spillway convert in.las -o out.las").err,
+                HasSubstr("not kept: " + all + more[format] + "\n"));
+    work.write("in.las", las_of_format(format, 3));
+    EXPECT_THAT(work.run("spillway convert in.las -o out.las").err,
+                HasSubstr(more[format] + ", extra bytes\n"));
+  }
+  work.write("a.las", las_of_format(1, 0));
+  work.write("b.las", las_of_format(2, 0));
+  EXPECT_THAT(work.run("spillway convert a.las b.las -o out.las").err,
+              HasSubstr("not kept: " + all + ", GPS time, colour\n"));
+}
+
+TEST(ConvertPoints, TextNpyAndSppHaveNothingToLose) {
+  const Workspace work;
+  work.write("in.txt", "1 2 3\n4 5 6\n7 9 9\n");
+  work.succeed("spillway convert -q in.txt -o in.npy; spillway convert -q in.txt -o in.spp");
+  for (const char* const input : {"in.txt", "in.npy", "in.spp"}) {
+    EXPECT_THAT(work.run(std::string("spillway convert ") + input + " -o out.las").err,
+                Not(HasSubstr("not kept")));
+  }
 }
 
 TEST(ConvertPoints, ChoosesVersion14ForItsPointFormats) {

@@ -1,14 +1,18 @@
 // What the command writes is the same mesh in every format, and `check` proves it.
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "tests/tools/command_runner.h"
 
 namespace spillway::test {
 namespace {
+
+using ::testing::HasSubstr;
 
 struct FormatCase {
   std::string name;
@@ -101,6 +105,117 @@ TEST_P(EveryPointFormat, GivesTheSameTriangulation) {
   EXPECT_EQ(work.info(name)["points"], 5000);
   EXPECT_EQ(work.info(name)["extent"], work.info("in.las")["extent"]);
   work.succeed("spillway check -q mesh.ply --points " + name);
+}
+
+TEST(FirstBytes, GoBeforeNames) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 2000 -o in.las\n"
+      "spillway triangulate -q in.las -o truth.spm\n"
+      "cp in.las in.txt; cp in.las in.ply; cp in.las in.spm; cp truth.spm truth.txt\n"
+      "gzip -c in.las > in.xyz.gz");
+  const auto truth = work.info("truth.spm")["canonical_hash"];
+  for (const char* const name : {"in.txt", "in.ply", "in.spm"}) {
+    EXPECT_EQ(work.info(name)["format"], "las") << name;
+    work.succeed(fmt::format("spillway triangulate -q {} -o mesh.spm", name));
+    EXPECT_EQ(work.info("mesh.spm")["canonical_hash"], truth) << name;
+  }
+  EXPECT_EQ(work.info("truth.txt")["canonical_hash"], truth);
+  work.succeed("spillway check -q truth.txt --points in.ply");
+  EXPECT_THAT(work.run("spillway info in.xyz.gz").err, HasSubstr("only text is read compressed"));
+  EXPECT_THAT(work.run("spillway check in.ply").err, HasSubstr("this begins as points in LAS"));
+}
+
+TEST(FirstBytes, ALazFileNamedAsText) {
+  const std::filesystem::path laz = shared_file("autzen_trim.laz");
+  if (laz.empty()) GTEST_SKIP() << "the shared sample files are not there";
+  const Workspace work;
+  work.succeed("cp '" + laz.string() + "' in.txt");
+  EXPECT_EQ(work.info("in.txt")["format"], "laz");
+  EXPECT_EQ(work.info("in.txt")["points"], 110000);
+}
+
+TEST(TextColumns, WhatIsNotPlainIsTold) {
+  const Workspace work;
+  work.write("a.csv", "pid,X_UTM,Y_UTM,Elev_m\n1,10,20,30\n2,11,20,31\n3,10,21,32\n");
+  work.succeed("cp a.csv b.csv");
+  const Result result = work.run("spillway convert a.csv b.csv -o out.csv");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err,
+              HasSubstr("a.csv (and 1 more): column 2 (\"X_UTM\") is taken for x, column 3 "
+                        "(\"Y_UTM\") is taken for y, column 4 (\"Elev_m\") is taken for z\n"));
+  EXPECT_THAT(work.read("out.csv"), ::testing::StartsWith("10,20,30\n11,20,31\n10,21,32\n10,20,"));
+  EXPECT_EQ(work.run("spillway convert -q a.csv -o out.csv").err, "");
+}
+
+TEST(TextColumns, WhatCannotBeToldLeavesNothing) {
+  const Workspace work;
+  work.write("a.csv", "1,5,2,5\n");
+  work.write("b.csv", "pid,foo,bar\n1,2,3\n");
+  for (const std::string name : {"a.csv", "b.csv"}) {
+    const Result result = work.run("spillway triangulate " + name + " -o mesh.ply");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, HasSubstr("error: " + name + ": line 1 "));
+  }
+  EXPECT_EQ(work.names(), (std::vector<std::string>{"a.csv", "b.csv"}));
+}
+
+TEST(PlyPoints, AreNoMesh) {
+  const Workspace work;
+  work.write("cloud.ply",
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
+             "property double z\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
+  for (const std::string command :
+       {"triangulate cloud.ply -o x.spm", "info cloud.ply", "check cloud.ply",
+        "convert cloud.ply -o x.las", "info - <cloud.ply"}) {
+    const Result result = work.run("spillway " + command);
+    EXPECT_EQ(result.exit_code, 1) << command;
+    EXPECT_THAT(result.err,
+                ::testing::AllOf(
+                    HasSubstr("this is a cloud of points, and Spillway does not read points from "
+                              "PLY; convert it to LAS, text or npy"),
+                    ::testing::Not(HasSubstr("mesh"))))
+        << command;
+  }
+}
+
+/// The layer is called after the file, whose name may be anything.
+TEST(VectorNames, MayBeginWithAnySign) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 200 -o in.las");
+  for (const char* const name :
+       {"a%b", "-x", "%s%n", "a-b", ".x", "--", "a b", "a'b", "a\"b", "?"}) {
+    for (const char* const extension : {"gpkg", "shp"}) {
+      const std::string file = fmt::format("./{}.{}", name, extension);
+      work.write("file", file);
+      work.succeed("spillway triangulate -q in.las -o \"$(cat file)\"");
+      EXPECT_THAT(work.succeed("spillway info -q --json \"$(cat file)\""),
+                  HasSubstr("\"simplices\":382"))
+          << file;
+      work.succeed("spillway contour -q in.las --interval 5 -o \"$(cat file)\"");
+    }
+  }
+  work.succeed(
+      "spillway triangulate -q in.las -o -y.gpkg; spillway convert -q -o z.spm -- -y.gpkg");
+}
+
+TEST(VectorNames, AShapefileWithABackslashIsRefused) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 200 -o in.las");
+  const Result result = work.run("spillway triangulate -q in.las -o 'a\\b.shp'");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("its path has a backslash"));
+  EXPECT_EQ(work.names(), std::vector<std::string>{"in.las"});
+}
+
+TEST(EndlessPipes, EndWithAnError) {
+  const Workspace work;
+  for (const char* const format : {"landxml", "obj", "off", "ply", "vtu", "sma", "stl"}) {
+    const Result result =
+        work.run(fmt::format("ulimit -t 60; spillway check - --mesh-format {} </dev/zero", format));
+    EXPECT_EQ(result.exit_code, 1) << format << result.err;
+    EXPECT_THAT(result.err, ::testing::StartsWith("spillway: error: standard input: ")) << format;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Cli, EveryPointFormat, testing::Values("txt", "csv", "npy"));
