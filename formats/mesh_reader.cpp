@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <memory>
 #include <optional>
@@ -185,6 +186,25 @@ Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string
   }
 }
 
+/// Whether all vertices are on the header's lattice, z of the plane apart.
+bool is_on_lattice(const Mesh& mesh) {
+  return std::ranges::all_of(mesh.vertices, [&](const Point<3>& vertex) {
+    for (int k = 0; k < mesh.header.dimension; ++k) {
+      if (!mesh.header.lattice->to_integer(k, vertex[k])) return false;
+    }
+    return true;
+  });
+}
+
+/// A lattice that vertices are not on says nothing of them.
+void check_lattice_of(const Mesh& mesh, const std::string& path) {
+  if (!mesh.header.lattice) return;
+  const Lattice& lattice = *mesh.header.lattice;
+  const Box<3> integers = integers_of(lattice, box_around(mesh.vertices));
+  if (is_exact(lattice, integers, mesh.header.dimension) || !is_on_lattice(mesh)) return;
+  check_lattice(path, lattice, integers, mesh.header.dimension);
+}
+
 }  // namespace
 
 std::optional<MeshFormat> mesh_format_of_content(InputSource& source) {
@@ -215,11 +235,7 @@ bool is_mesh(FileSystem& files, const std::string& path) {
 
 Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name) {
   Mesh mesh = read_any_mesh(files, path, format_name);
-  if (mesh.header.lattice) {
-    check_lattice(path, *mesh.header.lattice,
-                  integers_of(*mesh.header.lattice, box_around(mesh.vertices)),
-                  mesh.header.dimension);
-  }
+  check_lattice_of(mesh, path);
   return mesh;
 }
 
