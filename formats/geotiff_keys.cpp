@@ -51,6 +51,7 @@ const char* name_of(CrsKind kind) {
     case CrsKind::kGeocentric:
       return "geocentric";
     case CrsKind::kOther:
+    case CrsKind::kUnknown:
       break;
   }
   return "other";
@@ -137,26 +138,70 @@ class Directory {
 
 GeotiffCrs none(std::string why) { return {"", std::move(why)}; }
 
-/// A system that the keys name, if EPSG has one of that kind under the code.
-GeotiffCrs named(std::uint16_t code, CrsKind kind) {
-  const std::optional<CrsKind> known = kind_of_epsg(code);
+/// What kind of system GDAL says a code of EPSG is; nothing if its module is not installed.
+std::optional<CrsKind> kind_by_gdal(std::uint16_t code) {
+  try {
+    return gdal().crs_kind(epsg(code));
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+/// A system that the keys name, if the `known` kind of system that EPSG has under the code is this.
+GeotiffCrs named(std::uint16_t code, CrsKind kind, std::optional<CrsKind> known) {
   if (known == kind) return {epsg(code), ""};
-  // What GDAL cannot tell is believed, as nothing contradicts it. But codes of geographic systems
-  // are what is mostly found where geocentric ones should be.
+  // Where GDAL is not there, keys are believed, as nothing contradicts them. But codes of
+  // geographic systems are what is mostly found where geocentric ones should be.
   if (!known && kind != CrsKind::kGeocentric) return {epsg(code), ""};
   return none(fmt::format(
       "its GeoTIFF keys say that coordinates are {}, but {} is {}", name_of(kind), epsg(code),
-      !known                      ? "not known as such a system"
-      : *known == CrsKind::kOther ? "no such system"
-                                  : fmt::format("a {} system", name_of(*known))));
+      !known                       ? "not known as such a system"
+      : known == CrsKind::kUnknown ? "no system that GDAL knows"
+      : known == CrsKind::kOther   ? "no such system"
+                                   : fmt::format("a {} system", name_of(*known))));
 }
 
-/// Metres in a projected system's unit of lengths; nothing if that is not known.
-std::optional<double> unit_of(const std::string& crs) {
+struct Range {
+  std::uint16_t first;
+  std::uint16_t last;
+};
+
+/// Codes of projected systems in metres, which most files have: loading GDAL for them takes longer
+/// than reading a small file.
+constexpr std::array kMetric = {
+    Range{2000, 2065},   Range{2154, 2154},   Range{2315, 2866},   Range{2995, 3079},
+    Range{3168, 3354},   Range{3857, 3857},   Range{5514, 5514},   Range{6328, 6348},
+    Range{6669, 6692},   Range{7846, 7859},   Range{21781, 21781}, Range{25828, 25838},
+    Range{26901, 26923}, Range{26929, 26946}, Range{26948, 26998}, Range{27700, 27700},
+    Range{28348, 28358}, Range{28991, 28992}, Range{31254, 31259}, Range{31466, 31469},
+    Range{32601, 32660}, Range{32701, 32760}};
+
+bool is_metric(std::uint16_t code) {
+  return std::ranges::any_of(
+      kMetric, [&](Range range) { return code >= range.first && code <= range.last; });
+}
+
+/// Metres in a projected system's unit of lengths; nothing if GDAL's module is not installed.
+std::optional<double> unit_of(std::uint16_t code) {
+  if (is_metric(code)) return 1;
   try {
-    return gdal().crs_unit(crs);
+    return gdal().crs_unit(epsg(code));
   } catch (const Error&) {
     return std::nullopt;
+  }
+}
+
+/// Metres in a unit of EPSG; 0 for those that files of points do not have.
+double length_of(std::uint16_t unit) {
+  switch (unit) {
+    case kMetre:
+      return 1;
+    case kFoot:
+      return 0.3048;
+    case kSurveyFoot:
+      return 1200.0 / 3937.0;
+    default:
+      return 0;
   }
 }
 
@@ -169,14 +214,16 @@ GeotiffCrs projected(const Directory& keys) {
                                 : "tell of a projected system without a code",
                             keys.citation(kProjectedCitation)));
   }
-  GeotiffCrs crs = named(code, CrsKind::kProjected);
-  const std::uint16_t unit = keys.number(kProjectedUnit).value_or(kMetre);
-  if (unit == kMetre || unit == 0 || crs.crs.empty()) return crs;
-  constexpr double kFootLength = 0.3048;
-  constexpr double kSurveyFootLength = 1200.0 / 3937.0;
+  const std::uint16_t unit = keys.number(kProjectedUnit).value_or(0);
+  std::optional<CrsKind> known_kind = kind_of_epsg(code);
+  if (unit != 0 && !is_metric(code)) {  // GDAL is asked for the unit, so also whether there is one
+    if (const auto by_gdal = kind_by_gdal(code)) known_kind = by_gdal;
+  }
+  GeotiffCrs crs = named(code, CrsKind::kProjected, known_kind);
+  if (unit == 0 || crs.crs.empty()) return crs;
   constexpr double kRounding = 1e-9;  // the two feet differ by 2e-6
-  const double length = unit == kFoot ? kFootLength : unit == kSurveyFoot ? kSurveyFootLength : 0;
-  const std::optional<double> known = unit_of(crs.crs);
+  const double length = length_of(unit);
+  const std::optional<double> known = unit_of(code);
   if (!known || std::abs(*known - length) <= kRounding * length) return crs;
   return none(
       fmt::format("its GeoTIFF keys say {}, but lengths in another unit (EPSG:{})", crs.crs, unit));
@@ -190,7 +237,7 @@ GeotiffCrs geodetic(const Directory& keys, CrsKind kind) {
                     "system {}",
                     name_of(kind), epsg(keys.code(kProjectedCrs))));
   }
-  if (code != 0) return named(code, kind);
+  if (code != 0) return named(code, kind, kind_of_epsg(code));
   return none(fmt::format("its GeoTIFF keys {} a {} system{}, which is not read",
                           keys.user_defined(kGeodeticCrs) ? "define" : "tell without a code of",
                           name_of(kind), keys.citation(kGeodeticCitation)));
@@ -250,23 +297,26 @@ GeotiffCrs read_geotiff_keys(std::span<const std::byte> directory, std::string_v
 }
 
 std::optional<CrsKind> kind_of_epsg(std::uint16_t code) {
-  struct Range {
-    std::uint16_t first;
-    std::uint16_t last;
+  struct Kind {
+    Range codes;
     CrsKind kind;
   };
   // In these there is nothing else; most files have codes of these.
-  constexpr std::array kRanges = {Range{2000, 3799, CrsKind::kProjected},
-                                  Range{4230, 4326, CrsKind::kGeographic},
-                                  Range{20200, 32766, CrsKind::kProjected}};
-  for (const Range& range : kRanges) {
-    if (code >= range.first && code <= range.last) return range.kind;
+  constexpr std::array kKinds = {
+      Kind{{2000, 3799}, CrsKind::kProjected},  Kind{{3857, 3857}, CrsKind::kProjected},
+      Kind{{4120, 4216}, CrsKind::kGeographic}, Kind{{4218, 4326}, CrsKind::kGeographic},
+      Kind{{4490, 4490}, CrsKind::kGeographic}, Kind{{4600, 4646}, CrsKind::kGeographic},
+      Kind{{4657, 4765}, CrsKind::kGeographic}, Kind{{4978, 4978}, CrsKind::kGeocentric},
+      Kind{{4979, 4979}, CrsKind::kGeographic}, Kind{{5514, 5514}, CrsKind::kProjected},
+      Kind{{6318, 6319}, CrsKind::kGeographic}, Kind{{6328, 6348}, CrsKind::kProjected},
+      Kind{{6350, 6356}, CrsKind::kProjected},  Kind{{6393, 6637}, CrsKind::kProjected},
+      Kind{{6668, 6668}, CrsKind::kGeographic}, Kind{{6669, 6692}, CrsKind::kProjected},
+      Kind{{7844, 7844}, CrsKind::kGeographic}, Kind{{7846, 7859}, CrsKind::kProjected},
+      Kind{{20200, 32766}, CrsKind::kProjected}};
+  for (const auto& [codes, kind] : kKinds) {
+    if (code >= codes.first && code <= codes.last) return kind;
   }
-  try {
-    return gdal().crs_kind(epsg(code));
-  } catch (const Error&) {  // not installed
-    return std::nullopt;
-  }
+  return kind_by_gdal(code);
 }
 
 std::vector<std::byte> geotiff_keys_of(std::uint16_t code, CrsKind kind) {

@@ -24,12 +24,13 @@ struct GeotiffCrs {
 };
 
 /// Reads a directory of keys and the text that they refer to. Only what is certain is a system:
-/// codes that contradict the model, as EPSG knows them, or the unit are none. Asks GDAL where the
-/// codes alone do not tell, and believes the keys of a projected or geographic system without.
+/// codes that contradict the model, as EPSG knows them, or the unit are none, and so are codes that
+/// GDAL does not know. It is asked where the codes alone do not tell; where its module is not
+/// installed, the keys of a projected or geographic system are believed.
 GeotiffCrs read_geotiff_keys(std::span<const std::byte> directory, std::string_view text);
 
-/// What kind of system a code of EPSG is: known for some ranges, else GDAL is asked; nothing if it
-/// does not know or is not there.
+/// What kind of system a code of EPSG is: known for some ranges, else GDAL is asked; nothing if its
+/// module is not installed.
 std::optional<CrsKind> kind_of_epsg(std::uint16_t code);
 
 /// A directory that says no more than what kind of system an EPSG code is, and the code. `kind` is

@@ -100,7 +100,7 @@ std::optional<Code> code_of(const std::string& crs, const std::string& wkt) {
   if (!number) return std::nullopt;
   if (!wkt.empty()) return code_of_wkt(wkt);
   const std::optional<CrsKind> kind = kind_of_epsg(*number);
-  if (!kind || *kind == CrsKind::kOther) {
+  if (!kind || kind == CrsKind::kOther || kind == CrsKind::kUnknown) {
     throw Error(
         fmt::format("whether {} is projected or geographic, which LAS has to say, GDAL does not "
                     "tell: its module is not installed or does not know the code; write spp",

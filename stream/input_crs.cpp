@@ -36,8 +36,9 @@ std::string and_more(std::size_t inputs) {
   return inputs > 1 ? fmt::format(" (and {} more)", inputs - 1) : "";
 }
 
-/// Says, once for each reason, why inputs that tell of a coordinate system have none.
-void tell_notes(std::span<const InputCrs> inputs,
+/// Says, once for each reason, why inputs that tell of a coordinate system have none, and what they
+/// are `taken` for.
+void tell_notes(std::span<const InputCrs> inputs, std::string_view taken,
                 const std::function<void(std::string_view)>& warn) {
   std::map<std::string_view, std::size_t> count;
   for (const InputCrs& input : inputs) {
@@ -46,8 +47,8 @@ void tell_notes(std::span<const InputCrs> inputs,
   for (const InputCrs& input : inputs) {
     const auto found = count.find(input.note);
     if (!input.crs.empty() || found == count.end()) continue;
-    warn(fmt::format("warning: {}{}: taken to have no coordinate system: {}", input.name,
-                     and_more(found->second), input.note));
+    warn(fmt::format("warning: {}{}: taken to {}: {}", input.name, and_more(found->second), taken,
+                     input.note));
     count.erase(found);
   }
 }
@@ -56,15 +57,20 @@ void tell_notes(std::span<const InputCrs> inputs,
 
 std::string common_crs(std::span<const InputCrs> inputs, bool force,
                        const std::function<void(std::string_view)>& warn) {
-  tell_notes(inputs, warn);
   const auto first = std::find_if(inputs.begin(), inputs.end(),
                                   [](const InputCrs& input) { return !input.crs.empty(); });
-  if (first == inputs.end()) return "";
+  const bool none = first == inputs.end();
+  tell_notes(inputs,
+             none ? "have no coordinate system"
+                  : fmt::format("have the coordinate system of {}", first->name),
+             warn);
+  if (none) return "";
   std::set<std::string> equal = {first->crs};
   const InputCrs* unknown = nullptr;
   std::size_t unknown_count = 0;
   for (const InputCrs& input : inputs) {
     if (input.crs.empty()) {
+      if (!input.note.empty()) continue;  // said already
       if (unknown == nullptr) unknown = &input;
       ++unknown_count;
     } else if (!equal.contains(input.crs)) {

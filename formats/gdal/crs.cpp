@@ -177,15 +177,15 @@ double crs_unit(const std::string& crs) {
   return parsed.IsGeographic() != 0 ? 0 : parsed.GetLinearUnits();
 }
 
-std::optional<CrsKind> crs_kind(const std::string& crs) {
+CrsKind crs_kind(const std::string& crs) {
   try {
     const OGRSpatialReference parsed = parse_crs(crs);
     if (parsed.IsCompound() != 0) return CrsKind::kOther;
     if (parsed.IsProjected() != 0) return CrsKind::kProjected;
     if (parsed.IsGeographic() != 0) return CrsKind::kGeographic;
     return parsed.IsGeocentric() != 0 ? CrsKind::kGeocentric : CrsKind::kOther;
-  } catch (const Error&) {  // none that is known
-    return std::nullopt;
+  } catch (const Error&) {
+    return CrsKind::kUnknown;
   }
 }
 

@@ -3,7 +3,6 @@
 
 #include <ogr_spatialref.h>
 
-#include <optional>
 #include <string>
 
 #include "formats/gdal/gdal.h"
@@ -18,7 +17,7 @@ bool same_crs(const std::string& a, const std::string& b);
 std::string crs_to_wkt(const std::string& crs);
 std::string crs_name(const std::string& crs);
 double crs_unit(const std::string& crs);
-std::optional<CrsKind> crs_kind(const std::string& crs);
+CrsKind crs_kind(const std::string& crs);
 
 /// The coordinate system as Gdal::crs_to_wkt() gives it; empty if there is none.
 std::string wkt_of(const OGRSpatialReference* crs);

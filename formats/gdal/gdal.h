@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "formats/gdal/raster.h"
@@ -19,6 +18,7 @@ enum class CrsKind : std::uint8_t {
   kGeographic,  ///< angles, perhaps with a height
   kGeocentric,  ///< x, y, z from the centre of the earth
   kOther,       ///< heights alone, several systems together, a site's own
+  kUnknown,     ///< none that GDAL knows
 };
 
 /// What the module offers. A coordinate system is given as WKT (1 or 2), as "EPSG:n" or as PROJ
@@ -45,8 +45,8 @@ class Gdal {
   /// Metres in a unit of x and y; 0 if these are angles.
   [[nodiscard]] virtual double crs_unit(const std::string& crs) const = 0;
 
-  /// What kind of system it is; nothing if GDAL does not know it.
-  [[nodiscard]] virtual std::optional<CrsKind> crs_kind(const std::string& crs) const = 0;
+  /// What kind of system it is.
+  [[nodiscard]] virtual CrsKind crs_kind(const std::string& crs) const = 0;
 
   /// Begins a vector file of one layer.
   [[nodiscard]] virtual std::unique_ptr<VectorLayer> create_layer(

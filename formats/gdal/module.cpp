@@ -34,7 +34,7 @@ class LoadedGdal : public Gdal {
   [[nodiscard]] double crs_unit(const std::string& crs) const override {
     return spillway::crs_unit(crs);
   }
-  [[nodiscard]] std::optional<CrsKind> crs_kind(const std::string& crs) const override {
+  [[nodiscard]] CrsKind crs_kind(const std::string& crs) const override {
     return spillway::crs_kind(crs);
   }
   [[nodiscard]] std::unique_ptr<VectorLayer> create_layer(

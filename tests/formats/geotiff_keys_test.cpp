@@ -101,6 +101,36 @@ TEST(GeotiffKeys, LengthsInAnotherUnitAreAnotherSystem) {
               HasSubstr("another unit"));
 }
 
+TEST(GeotiffKeys, LengthsInMetresAreNotThoseOfASystemInFeet) {
+  const GeotiffCrs crs = crs_of({{1024, 0, 1, 1}, {3072, 0, 1, 2903}, {3076, 0, 1, 9001}});
+  EXPECT_EQ(crs.crs, "");
+  EXPECT_THAT(crs.note, HasSubstr("EPSG:2903, but lengths in another unit (EPSG:9001)"));
+  EXPECT_EQ(crs_of({{1024, 0, 1, 1}, {3072, 0, 1, 2903}, {3076, 0, 1, 0}}).crs, "EPSG:2903");
+  EXPECT_EQ(crs_of({{1024, 0, 1, 1}, {3072, 0, 1, 2903}}).crs, "EPSG:2903");
+}
+
+TEST(GeotiffKeys, MetricSystemsAreThoseOfGdal) {
+  for (int code = 2000; code < 32767; ++code) {
+    const std::string name = "EPSG:" + std::to_string(code);
+    if (gdal().crs_kind(name) != CrsKind::kProjected) continue;
+    const bool metric = gdal().crs_unit(name) == 1;
+    const auto number = static_cast<std::uint16_t>(code);
+    EXPECT_EQ(crs_of({{1024, 0, 1, 1}, {3072, 0, 1, number}, {3076, 0, 1, 9001}}).crs.empty(),
+              !metric)
+        << code;
+  }
+}
+
+TEST(GeotiffKeys, CodesThatEpsgDoesNotHaveAreNoSystem) {
+  EXPECT_THAT(reason({{1024, 0, 1, 1}, {3072, 0, 1, 1234}}),
+              HasSubstr("projected, but EPSG:1234 is no system that GDAL knows"));
+  EXPECT_THAT(reason({{1024, 0, 1, 2}, {2048, 0, 1, 1234}}),
+              HasSubstr("geographic, but EPSG:1234 is no system that GDAL knows"));
+  // In a range of projected systems, where GDAL is asked for the unit only.
+  EXPECT_THAT(reason({{1024, 0, 1, 1}, {3072, 0, 1, 31000}, {3076, 0, 1, 9001}}),
+              HasSubstr("EPSG:31000 is no system that GDAL knows"));
+}
+
 TEST(GeotiffKeys, HeightsAreNotedAndDoNotCount) {
   const GeotiffCrs crs = crs_of({{1024, 0, 1, 1}, {3072, 0, 1, 25832}, {4096, 0, 1, 5783}});
   EXPECT_EQ(crs.crs, "EPSG:25832");
@@ -128,15 +158,13 @@ TEST(GeotiffKeys, WrittenOnesAreReadAsTheSameSystem) {
 }
 
 TEST(GeotiffKeys, KindsOfCodesThatAreNotAskedForAreThoseOfGdal) {
-  for (int code = 2000; code < 32767; code += 7) {
-    if (code == 3800) code = 4230;
-    if (code > 4326 && code < 20200) code = 20200;
-    const auto kind = gdal().crs_kind("EPSG:" + std::to_string(code));
-    if (!kind) continue;
+  for (int code = 2000; code < 32767; code += code < 8000 ? 1 : 7) {
+    const CrsKind kind = gdal().crs_kind("EPSG:" + std::to_string(code));
+    if (kind == CrsKind::kUnknown) continue;
     EXPECT_EQ(kind_of_epsg(static_cast<std::uint16_t>(code)), kind) << code;
   }
   EXPECT_EQ(kind_of_epsg(7405), CrsKind::kOther);
-  EXPECT_EQ(kind_of_epsg(1), std::nullopt);
+  EXPECT_EQ(kind_of_epsg(1), CrsKind::kUnknown);
 }
 
 }  // namespace

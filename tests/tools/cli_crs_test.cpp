@@ -147,7 +147,33 @@ TEST(CoordinateSystems, OfAFileWithGeocentricKeysFitItsCopcVersion) {
     const Result result = work.run(fmt::format("spillway triangulate {} -o a.ply", inputs));
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(work.info("a.ply")["crs"], wkt);
+    EXPECT_THAT(result.err, HasSubstr("warning: keys.las: taken to have the coordinate system of "
+                                      "wkt.las: its GeoTIFF keys say"));
+    EXPECT_THAT(result.err, Not(HasSubstr("no coordinate system")));
   }
+}
+
+TEST(CoordinateSystems, OfCommonCodesAreWrittenWithoutTheModule) {
+  const Workspace work;
+  work.succeed("cp '" SPILLWAY_COMMAND "' alone");
+  const std::vector<std::pair<int, int>> codes = {{1, 3857}, {1, 6339}, {1, 6350}, {2, 6318},
+                                                  {2, 4167}, {2, 4617}, {3, 4978}, {1, 32633}};
+  for (const auto& [model, code] : codes) {
+    const std::uint16_t key = model == 1 ? 3072 : 2048;
+    work.write("in.las", las_with({{1024, 0, 1, static_cast<std::uint16_t>(model)},
+                                   {key, 0, 1, static_cast<std::uint16_t>(code)}}));
+    const Result result = work.run("./alone convert -q in.las -o out.las --las-version 1.2");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    const std::string las = work.read("out.las");
+    EXPECT_EQ(key_of(las, 1024), model) << code;
+    EXPECT_EQ(key_of(las, key), code);
+  }
+  // Of others nothing is guessed.
+  work.write("in.las", las_with({{1024, 0, 1, 1}, {3072, 0, 1, 9141}}));
+  const Result result = work.run("./alone convert -q in.las -o other.las --las-version 1.2");
+  EXPECT_NE(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("write spp"));
 }
 
 TEST(CoordinateSystems, OfRealFiles) {
