@@ -14,9 +14,9 @@
 namespace spillway {
 namespace {
 
-/// Kinds of coordinates, those that are chosen first standing first. Heights are of the first kind
-/// if they are called z, of the second if not.
-constexpr int kKinds = 4;
+/// Kinds of coordinates, those that are chosen first standing first. x and y have four; each name
+/// of a height is a kind of its own.
+constexpr int kKinds = 8;
 
 /// What a name stands for.
 struct Meaning {
@@ -38,9 +38,9 @@ constexpr std::array kBaseNames = {
     BaseName{"rw", {0, 2}},        BaseName{"hoch", {1, 2}},      BaseName{"hochwert", {1, 2}},
     BaseName{"hw", {1, 2}},        BaseName{"lon", {0, 3}},       BaseName{"long", {0, 3}},
     BaseName{"lng", {0, 3}},       BaseName{"longitude", {0, 3}}, BaseName{"lat", {1, 3}},
-    BaseName{"latitude", {1, 3}},  BaseName{"h", {2, 1}},         BaseName{"height", {2, 1}},
-    BaseName{"elevation", {2, 1}}, BaseName{"elev", {2, 1}},      BaseName{"alt", {2, 1}},
-    BaseName{"altitude", {2, 1}},  BaseName{"hoehe", {2, 1}}};
+    BaseName{"latitude", {1, 3}},  BaseName{"h", {2, 7}},         BaseName{"height", {2, 5}},
+    BaseName{"elevation", {2, 1}}, BaseName{"elev", {2, 2}},      BaseName{"alt", {2, 4}},
+    BaseName{"altitude", {2, 3}},  BaseName{"hoehe", {2, 6}}};
 
 constexpr std::array<std::string_view, 23> kUnits = {
     "m",       "meter", "meters",  "metre", "metres",   "cm",     "mm",  "km",
@@ -48,19 +48,62 @@ constexpr std::array<std::string_view, 23> kUnits = {
     "degrees", "dd",    "decimal", "grad",  "\xc2\xb0", "\xb0",   "ftus"};
 
 /// What may stand beside a base name and changes nothing of it.
-constexpr std::array<std::string_view, 56> kDecorations = {
-    "utm",        "gk",          "point",    "pt",         "pnt",     "coord",    "coords",
-    "coordinate", "coordinates", "koord",    "koordinate", "pos",     "position", "location",
-    "gps",        "gnss",        "wgs",      "wgs84",      "etrs89",  "nad83",    "epsg",
-    "osgb",       "bng",         "lv95",     "mga",        "map",     "world",    "geo",
-    "global",     "local",       "proj",     "projected",  "grid",    "zone",     "vertex",
-    "survey",     "field",       "value",    "val",        "wert",    "axis",     "ellipsoidal",
-    "ellipsoid",  "orthometric", "ortho",    "msl",        "amsl",    "nn",       "nhn",
-    "nap",        "navd88",      "dhhn2016", "ground",     "terrain", "surface",  "dec"};
+constexpr std::array<std::string_view, 55> kDecorations = {
+    "utm",         "gk",          "point",  "pt",         "pnt",     "coord",       "coords",
+    "coordinate",  "coordinates", "koord",  "koordinate", "pos",     "position",    "location",
+    "gps",         "gnss",        "wgs",    "wgs84",      "etrs89",  "nad83",       "epsg",
+    "osgb",        "bng",         "lv95",   "mga",        "map",     "world",       "geo",
+    "global",      "local",       "proj",   "projected",  "grid",    "zone",        "vertex",
+    "field",       "value",       "val",    "wert",       "axis",    "ellipsoidal", "ellipsoid",
+    "orthometric", "ortho",       "msl",    "amsl",       "nn",      "nhn",         "nap",
+    "navd88",      "dhhn2016",    "ground", "terrain",    "surface", "dec"};
 
 /// Those that also stand before or behind a base name with nothing between, as in "xcoord".
 constexpr std::array<std::string_view, 10> kJoined = {
     "utm", "point", "coord", "coords", "coordinate", "koord", "pos", "gps", "map", "world"};
+
+/// Other columns that are found beside coordinates.
+constexpr std::array<std::string_view, 41> kAttributes = {"id",
+                                                          "fid",
+                                                          "pid",
+                                                          "nr",
+                                                          "no",
+                                                          "num",
+                                                          "number",
+                                                          "name",
+                                                          "code",
+                                                          "label",
+                                                          "point",
+                                                          "pt",
+                                                          "index",
+                                                          "intensity",
+                                                          "i",
+                                                          "r",
+                                                          "g",
+                                                          "b",
+                                                          "a",
+                                                          "red",
+                                                          "green",
+                                                          "blue",
+                                                          "rgb",
+                                                          "alpha",
+                                                          "time",
+                                                          "gpstime",
+                                                          "t",
+                                                          "class",
+                                                          "classification",
+                                                          "return",
+                                                          "returns",
+                                                          "returnnumber",
+                                                          "numberofreturns",
+                                                          "nx",
+                                                          "ny",
+                                                          "nz",
+                                                          "pointid",
+                                                          "amplitude",
+                                                          "reflectance",
+                                                          "scanangle",
+                                                          "source"};
 
 template <std::size_t N>
 bool contains(const std::array<std::string_view, N>& words, std::string_view word) {
@@ -178,10 +221,19 @@ std::optional<NameMeaning> meaning_of_name(std::string_view name) {
   return base ? std::optional(NameMeaning{*base, false}) : std::nullopt;
 }
 
+bool is_attribute(std::string_view name) {
+  std::string joined;
+  for (const Word& word : words_of(name)) joined += word.text;
+  return contains(kAttributes, joined);
+}
+
 class Chooser {
  public:
   explicit Chooser(std::span<const std::string_view> names) : names_(names) {
-    for (const std::string_view name : names) meanings_.push_back(meaning_of_name(name));
+    for (const std::string_view name : names) {
+      meanings_.push_back(meaning_of_name(name));
+      if (meanings_.back() || is_attribute(name)) ++choice_.known;
+    }
   }
 
   ColumnChoice choose() {

@@ -19,6 +19,9 @@ constexpr std::size_t kSample = std::size_t{1} << 16;
 /// Rows of so many numbers without a single decimal point may be fewer numbers with decimal commas.
 constexpr std::size_t kFewestAmbiguous = 4;
 
+/// Comments that name x and y, of which the last ones are kept.
+constexpr std::size_t kMostComments = 16;
+
 constexpr std::array kSeparators = {Separator::kSemicolon, Separator::kTab, Separator::kComma,
                                     Separator::kBlanks};
 
@@ -97,6 +100,80 @@ std::string_view text_of_comment(std::string_view line) {
   return line;
 }
 
+/// Without words in brackets, as the units in "x [m] y [m]".
+std::string without_brackets(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t blank = std::min(text.find_first_of(" \t"), text.size());
+    const std::string_view word = text.substr(0, blank);
+    const bool bracketed = (word.starts_with('(') && word.ends_with(')')) ||
+                           (word.starts_with('[') && word.ends_with(']'));
+    if (!bracketed) result += word;
+    result += text.substr(blank, 1);
+    text.remove_prefix(std::min(blank + 1, text.size()));
+  }
+  return std::string(trimmed(result));
+}
+
+/// Whether one of the names is a word that sentences have.
+bool is_prose(const std::vector<std::string_view>& names) {
+  constexpr std::array<std::string_view, 16> kWords = {"the", "of",   "and", "in", "is", "are",
+                                                       "for", "by",   "to",  "as", "at", "with",
+                                                       "or",  "from", "und", "von"};
+  return std::any_of(names.begin(), names.end(), [&](std::string_view name) {
+    return std::find(kWords.begin(), kWords.end(), name) != kWords.end();
+  });
+}
+
+/// A comment that names x and y.
+class CommentHeader {
+ public:
+  /// Nothing, if the comment names no x or no y. A label before a colon is left out, if the names
+  /// stand behind it.
+  static std::optional<CommentHeader> read(std::string_view comment, std::uint64_t line) {
+    if (const std::size_t colon = comment.find(':'); colon != comment.npos) {
+      CommentHeader header(comment.substr(colon + 1), line);
+      if (header.names_plane()) return header;
+    }
+    CommentHeader header(comment, line);  // of all its text
+    return header.names_plane() ? std::optional(std::move(header)) : std::nullopt;
+  }
+
+  [[nodiscard]] std::uint64_t line() const { return line_; }
+  [[nodiscard]] NamesLine names() const { return read_names(text_); }
+
+  /// Whether most words are names of columns, and not those of a sentence. Where x and y may be
+  /// words of one, and no z is named, all have to be.
+  static bool is_list(const NamesLine& names) {
+    const std::size_t count = names.names.size();
+    return names.choice.plain ? 2 * names.choice.known > count : names.choice.known == count;
+  }
+
+  /// Whether it names the columns of a row that has as many.
+  static bool is_header(const NamesLine& names) {
+    return names.choice.fault.empty() &&
+           (is_list(names) || (names.choice.plain && !is_prose(names.names)));
+  }
+
+  /// Whether x, y and z, if it is named, are columns 1 to 3.
+  static bool in_order(const NamesLine& names) {
+    const std::array<int, 3>& column = names.choice.column;
+    return column[0] == 0 && column[1] == 1 && (column[2] == 2 || column[2] < 0);
+  }
+
+ private:
+  CommentHeader(std::string_view text, std::uint64_t line)
+      : text_(without_brackets(trimmed(text))), line_(line) {}
+
+  /// Whether x and y are named, and not given, as in "E: 500000, N: 5400000".
+  [[nodiscard]] bool names_plane() const {
+    return text_.find_first_of(":=") == text_.npos && names().choice.column[0] >= 0;
+  }
+
+  std::string text_;
+  std::uint64_t line_;
+};
+
 /// What the first row alone tells of the layout.
 struct RowLayout {
   Separator separator = Separator::kBlanks;
@@ -120,14 +197,14 @@ class Opening {
   }
 
  private:
-  /// Sets line_ to the next one that is no comment; false at the end. Of comments the last one
-  /// before it is kept.
+  /// Sets line_ to the next one that is no comment; false at the end. Of comments before it the
+  /// last ones that name x and y are kept.
   bool next_data_line() {
     while (lines_.next(line_)) {
       if (!is_comment(line_)) return true;
-      if (!trimmed(line_).empty()) {
-        comment_ = text_of_comment(line_);
-        comment_line_ = lines_.number();
+      if (auto header = CommentHeader::read(text_of_comment(line_), lines_.number())) {
+        if (comments_.size() == kMostComments) comments_.erase(comments_.begin());
+        comments_.push_back(std::move(*header));
       }
       lines_.pass_over();
     }
@@ -184,46 +261,63 @@ class Opening {
                                 column, names.names.size()));
   }
 
-  /// The columns by the comment before the first row if that names them, else by the row itself.
+  /// The columns by the last comment that names those of the first row, else by the row itself.
+  /// Throws Error if a comment names x, y or z in other columns than that reads, but not all
+  /// columns.
   TextColumns columns_of_row() {
-    if (!comment_.empty()) {
-      if (std::optional<TextColumns> columns = columns_of_comment()) return *columns;
+    for (auto comment = comments_.rbegin(); comment != comments_.rend(); ++comment) {
+      if (std::optional<TextColumns> columns = columns_of_comment(*comment)) return *columns;
     }
-    return first_columns(layout_of_row());
+    const RowLayout layout = layout_of_row();
+    check_comments(layout.count);
+    return first_columns(layout);
   }
 
-  /// A comment is a header if it has as many words as the row has columns, and plain names among
-  /// them.
-  std::optional<TextColumns> columns_of_comment() {
-    const NamesLine names = read_names(comment_);
+  std::optional<TextColumns> columns_of_comment(const CommentHeader& comment) {
+    const NamesLine names = comment.names();
+    if (!CommentHeader::is_header(names)) return std::nullopt;
     const std::array<int, 3>& column = names.choice.column;
-    const bool in_order = column[0] == 0 && column[1] == 1 && (column[2] == 2 || column[2] < 0);
-    if (column[0] < 0) return std::nullopt;  // prose
-    std::string fault = names.choice.fault;
-    if (fault.empty() && !names.choice.plain) fault = "it names no z";
-    if (fault.empty()) {
-      for (const bool any : {false, true}) {
-        for (const Separator separator : kSeparators) {
-          const std::vector<std::string_view> fields = text_fields(line_, separator);
-          if (fields.size() != names.names.size()) continue;
-          const bool commas = has_decimal_commas(separator, column);
-          if (!any && !are_numbers(fields, column, commas)) continue;
-          if (!in_order || !names.choice.notice.empty()) {
-            notices_.push_back(fmt::format("the comment in line {} is a header: {}", comment_line_,
-                                           taken_columns(names.names, column)));
-          }
-          return TextColumns(separator, commas, column, fields.size());
+    for (const bool any : {false, true}) {
+      for (const Separator separator : kSeparators) {
+        const std::vector<std::string_view> fields = text_fields(line_, separator);
+        if (fields.size() != names.names.size()) continue;
+        const bool commas = has_decimal_commas(separator, column);
+        if (!any && !are_numbers(fields, column, commas)) continue;
+        if (!CommentHeader::in_order(names) || !names.choice.notice.empty()) {
+          notices_.push_back(fmt::format("the comment in line {} is a header: {}", comment.line(),
+                                         taken_columns(names.names, column)));
         }
+        return TextColumns(separator, commas, column, fields.size());
       }
-      fault = "its words are not as many as the columns of the first row";
-    }
-    if (!in_order) {
-      notices_.push_back(
-          fmt::format("the comment in line {} is not taken for a header, as {}: columns 1 to 3 are "
-                      "read",
-                      comment_line_, fault));
     }
     return std::nullopt;
+  }
+
+  /// Throws Error if the last comment that lists columns has others than 1 to 3, which are to be
+  /// read as it does not fit a row of so many columns. Of sentences a notice will do.
+  void check_comments(std::size_t columns) {
+    if (comments_.empty()) return;
+    const auto list = std::find_if(
+        comments_.rbegin(), comments_.rend(),
+        [](const CommentHeader& comment) { return CommentHeader::is_list(comment.names()); });
+    const bool is_list = list != comments_.rend();
+    const CommentHeader& comment = is_list ? *list : comments_.back();
+    const NamesLine names = comment.names();
+    if (CommentHeader::in_order(names)) return;
+    if (!is_list) {
+      notices_.push_back(
+          fmt::format("the comment in line {} is not taken for a header: columns 1 to 3 are read",
+                      comment.line()));
+      return;
+    }
+    const std::string fault =
+        names.choice.fault.empty()
+            ? fmt::format("the first row, {}, has {} columns", lines_.line_name(), columns)
+            : names.choice.fault;
+    throw Error(fmt::format(
+        "{}: line {} is a comment that names the columns {}, but {}; name each column once, or "
+        "remove that line",
+        name_, comment.line(), listed(names.names), fault));
   }
 
   static TextColumns first_columns(const RowLayout& layout) {
@@ -360,8 +454,7 @@ class Opening {
   LineReader& lines_;
   const std::string& name_;
   std::string_view line_;
-  std::string comment_;  // the last one, without its sign
-  std::uint64_t comment_line_ = 0;
+  std::vector<CommentHeader> comments_;
   std::optional<std::uint64_t> scan_points_;
   std::uint64_t scan_line_ = 0;
   std::vector<std::string> notices_;

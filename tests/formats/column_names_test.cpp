@@ -90,9 +90,26 @@ TEST(ColumnNames, ExactNamesGoFirst) {
 
 TEST(ColumnNames, TwoOfAKindAreAFault) {
   EXPECT_EQ(fault({"x", "y", "z", "X"}), "the columns 1 (\"x\") and 4 (\"X\") may both be x");
-  EXPECT_EQ(fault({"x", "y", "elev", "alt"}),
-            "the columns 3 (\"elev\") and 4 (\"alt\") may both be z");
+  EXPECT_EQ(fault({"x", "y", "elev", "Elev"}),
+            "the columns 3 (\"elev\") and 4 (\"Elev\") may both be z");
+  EXPECT_THAT(fault({"x", "y", "ellipsoidal height", "orthometric height"}),
+              HasSubstr("may both be z"));
   EXPECT_THAT(fault({"utm_x", "gps_x", "utm_y", "gps_y"}), HasSubstr("may both be x"));
+}
+
+TEST(ColumnNames, OfDifferentNamesOfHeightsTheFirstOfAFixedOrderIsTaken) {
+  const Names order = {"z", "elevation", "elev", "altitude", "alt", "height", "hoehe", "h"};
+  for (std::size_t i = 0; i + 1 < order.size(); ++i) {
+    EXPECT_EQ(noted({"x", "y", order[i], order[i + 1]}), (Columns{0, 1, 2})) << order[i];
+    EXPECT_EQ(noted({"x", "y", order[i + 1], order[i]}), (Columns{0, 1, 3})) << order[i];
+  }
+  EXPECT_THAT(choose_columns(Names{"x", "y", "height", "elevation"}).notice,
+              HasSubstr("column 4 (\"elevation\") is taken for z"));
+}
+
+TEST(ColumnNames, KnownOnesAreCounted) {
+  EXPECT_EQ(choose_columns(Names{"id", "x", "y", "z", "GPS Time", "foo"}).known, 5);
+  EXPECT_EQ(choose_columns(Names{"x", "and", "y", "of", "the", "survey"}).known, 2);
 }
 
 TEST(ColumnNames, MissingAxes) {

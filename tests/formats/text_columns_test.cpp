@@ -104,11 +104,61 @@ TEST(TextHeader, ProseInACommentIsNone) {
   EXPECT_THAT(notices_of("# x y z in metres\n10 20 30\n"), IsEmpty());
   EXPECT_THAT(notices_of("# survey of 2024\n10 20 30\n"), IsEmpty());
   EXPECT_THAT(points_of("# north east corner\n10 20 30\n"), ElementsAre(kPoint));
-  EXPECT_THAT(points_of("# y x z\n# by hand\n10 20 30\n"), ElementsAre(kPoint));
+  EXPECT_THAT(points_of("# x and y of the survey in metres\n10 20 30\n"), ElementsAre(kPoint));
+  EXPECT_THAT(points_of("# y and x of the survey in metres\n10 20 30 4 5 6 7 8\n"),
+              ElementsAre(kPoint));
+  EXPECT_THAT(points_of("# N: 5400000, E: 500000\n10 20 30\n"), ElementsAre(kPoint));
+  EXPECT_THAT(points_of("# N=5400000, E=500000\n10,20\n"), ElementsAre(Point<3>{10, 20, 0}));
 }
 
-TEST(TextHeader, ACommentThatSaysOtherThanItsPlaceIsTold) {
-  EXPECT_THAT(notices_of("# y x z in metres\n10 20 30\n"),
+TEST(TextHeader, InACommentBeforeOtherComments) {
+  for (const char* const other : {"#", "#-----", "# units: m", "# by hand", "% x is east",
+                                  "# the x and y of this survey", "#\n\n#----\n# N: 1, E: 2"}) {
+    EXPECT_THAT(points_of(fmt::format("# id x y z\n{}\n7 10 20 30\n", other)), ElementsAre(kPoint))
+        << other;
+    EXPECT_THAT(points_of(fmt::format("# y x z\n{}\n20 10 30\n", other)), ElementsAre(kPoint))
+        << other;
+  }
+  EXPECT_THAT(points_of("# id x y z\n# y x z\n20 10 30\n"), ElementsAre(kPoint));
+  EXPECT_THAT(points_of("# id x y z\n# y x z\n7 10 20 30\n"), ElementsAre(kPoint));
+  std::string many = "# id x y z\n";
+  for (int i = 0; i < 1000; ++i) many += "# line\n";
+  EXPECT_THAT(points_of(many + "7 10 20 30\n"), ElementsAre(kPoint));
+}
+
+TEST(TextHeader, InACommentOverTwoColumnsNeedsNoZ) {
+  for (const char* const names : {"lat lon", "N,E", "Hoch Rechts", "y x"}) {
+    const std::string text = fmt::format("# {}\n20 10\n", names);
+    EXPECT_THAT(points_of(text), ElementsAre(Point<3>{10, 20, 0})) << names;
+    EXPECT_THAT(notices_of(text), ElementsAre(HasSubstr("is taken for y"))) << names;
+  }
+  EXPECT_THAT(points_of("# id lat lon\n7 20 10\n"), ElementsAre(Point<3>{10, 20, 0}));
+}
+
+TEST(TextHeader, InACommentWithUnitsOrALabel) {
+  for (const char* const names :
+       {"id x y z (m)", "id X [m] Y [m] Z [m]", "Columns: id x y z", "fields: id, x, y, z"}) {
+    EXPECT_THAT(points_of(fmt::format("# {}\n7 10 20 30\n", names)), ElementsAre(kPoint)) << names;
+  }
+  EXPECT_THAT(points_of("# X [m] Y [m] Z [m]\n10 20 30\n"), ElementsAre(kPoint));
+  EXPECT_THAT(points_of("# Format: X Y Z\n10 20 30\n"), ElementsAre(kPoint));
+}
+
+TEST(TextHeader, InACommentThatDoesNotFitIsAnError) {
+  EXPECT_THAT(text_error("# made by hand\n# id x y z\n7 10 20 30 5\n"),
+              AllOf(HasSubstr("a.txt: line 2 is a comment that names the columns \"id\", \"x\", "
+                              "\"y\", \"z\", but the first row, line 3, has 5 columns"),
+                    HasSubstr("name each column once, or remove that line")));
+  EXPECT_THAT(text_error("# y x z in metres\n10 20 30\n"), HasSubstr("line 1 is a comment"));
+  EXPECT_THAT(text_error("# lat lon\n1 2 3\n"), HasSubstr("line 2, has 3 columns"));
+  EXPECT_THAT(text_error("# id x y z\n# the y and x of it\n7 10 20 30 5\n"),
+              HasSubstr("line 1 is a comment"));
+  EXPECT_THAT(text_error("# id x x y\n7 10 20 30\n"), HasSubstr("may both be x"));
+  EXPECT_THAT(points_of("# x y z r g b\n10 20 30\n"), ElementsAre(kPoint));
+}
+
+TEST(TextHeader, ASentenceThatSaysOtherThanItsPlaceIsTold) {
+  EXPECT_THAT(notices_of("# y and x in metres\n10 20 30\n"),
               ElementsAre(HasSubstr("the comment in line 1 is not taken for a header")));
 }
 
