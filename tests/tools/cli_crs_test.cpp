@@ -163,7 +163,7 @@ TEST(CoordinateSystems, OfCommonCodesAreWrittenWithoutTheModule) {
     work.write("in.las", las_with({{1024, 0, 1, static_cast<std::uint16_t>(model)},
                                    {key, 0, 1, static_cast<std::uint16_t>(code)}}));
     const Result result = work.run("./alone convert -q in.las -o out.las --las-version 1.2");
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.err, "");
     const std::string las = work.read("out.las");
     EXPECT_EQ(key_of(las, 1024), model) << code;
