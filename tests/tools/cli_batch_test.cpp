@@ -157,14 +157,14 @@ TEST_F(Batch, EndsItsJobsWhenItIsInterrupted) {
   const std::string folder = space.folder().string();
   const pid_t process = space.start({"batch", folder + "/large.spp", "--output-dir",
                                      folder + "/out", "--to", "ply", "--tmpdir", folder + "/tmp"});
-  while (!space.has("out/large.ply.part"))
+  while (!space.has_unfinished("out/large.ply"))
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   kill(process, SIGTERM);
   EXPECT_EQ(wait_for_exit(process), 128 + SIGTERM);
-  for (int i = 0; i < 2000 && space.has("out/large.ply.part"); ++i) {
+  for (int i = 0; i < 2000 && space.has_unfinished("out/large.ply"); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  EXPECT_FALSE(space.has("out/large.ply.part"));
+  EXPECT_FALSE(space.has_unfinished("out/large.ply"));
   EXPECT_FALSE(space.has("out/large.ply"));
 }
 
