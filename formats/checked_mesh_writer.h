@@ -30,6 +30,7 @@ class CheckedMeshWriter : public MeshWriter {
   virtual void complete() = 0;
 
   [[nodiscard]] const MeshHeader& header() const { return header_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::size_t corners_per_simplex() const { return header_.dimension + 1; }
   [[noreturn]] void fail(const std::string& what) const;
 

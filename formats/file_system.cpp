@@ -7,14 +7,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
-#include <filesystem>
-#include <mutex>
-#include <set>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "formats/output_target.h"
+#include "formats/unfinished_files.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -26,45 +24,6 @@ constexpr std::size_t kOutputBuffer = std::size_t{1} << 20;
 constexpr std::size_t kLargestTransfer = std::size_t{1} << 28;
 
 std::string reason(int error) { return std::generic_category().message(error); }
-
-std::string folder_of(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  return folder.empty() ? "." : folder;
-}
-
-/// What the user can do about a failure to write or create.
-std::string output_hint(int error, const std::string& path) {
-  const std::string folder = folder_of(path);
-  switch (error) {
-    case ENOENT:
-    case ENOTDIR:
-      return fmt::format("; create the folder {} first", folder);
-    case EACCES:
-    case EPERM:
-    case EROFS:
-      return fmt::format("; choose a folder other than {}, or change its permissions", folder);
-    case ENOSPC:
-    case EDQUOT:
-      return "; free some space or write to another disk";
-    case EFBIG:
-      return "; raise the file size limit (ulimit -f) or write to another file system";
-    default:
-      return "";
-  }
-}
-
-/// The temporary names that exist now. Locked for each change on disk, so that a file is either
-/// registered under its temporary name, or in a registered folder, or complete under its final one.
-struct UnfinishedFiles {
-  std::mutex mutex;
-  std::set<std::string> paths;    // guarded by mutex
-  std::set<std::string> folders;  // guarded by mutex
-};
-
-UnfinishedFiles& unfinished_files() {
-  static UnfinishedFiles files;
-  return files;
-}
 
 /// Owns a file descriptor.
 class Descriptor {
@@ -139,27 +98,13 @@ class DiskInput : public InputFile {
   std::optional<std::uint64_t> size_;
 };
 
-/// A file being written through one buffer. `temporary` is empty for what has no temporary name.
+/// A file being written through one buffer. `temporary` is null for what has no temporary name.
 class DiskOutput : public OutputFile {
  public:
-  DiskOutput(int fd, std::string name, std::string final_path, std::string temporary)
-      : file_(fd),
-        name_(std::move(name)),
-        final_path_(std::move(final_path)),
-        temporary_(std::move(temporary)) {
+  DiskOutput(int fd, std::string name, std::unique_ptr<UnfinishedFile> temporary)
+      : file_(fd), name_(std::move(name)), temporary_(std::move(temporary)) {
     buffer_.reserve(kOutputBuffer);
   }
-
-  ~DiskOutput() override {
-    if (committed_ || temporary_.empty()) return;
-    UnfinishedFiles& unfinished = unfinished_files();
-    const std::lock_guard lock(unfinished.mutex);
-    ::unlink(temporary_.c_str());
-    unfinished.paths.erase(temporary_);
-  }
-
-  DiskOutput(const DiskOutput&) = delete;
-  DiskOutput& operator=(const DiskOutput&) = delete;
 
   void write(std::span<const std::byte> bytes) override {
     if (buffer_.size() + bytes.size() > kOutputBuffer) flush();
@@ -171,7 +116,7 @@ class DiskOutput : public OutputFile {
   }
 
   bool rewrite(std::uint64_t offset, std::span<const std::byte> bytes) override {
-    if (temporary_.empty()) return false;
+    if (!temporary_) return false;
     flush();
     while (!bytes.empty()) {
       const ssize_t put =
@@ -189,17 +134,14 @@ class DiskOutput : public OutputFile {
   void commit() override {
     flush();
     if (const int error = file_.close()) fail(error);
-    if (!temporary_.empty()) {
-      UnfinishedFiles& unfinished = unfinished_files();
-      const std::lock_guard lock(unfinished.mutex);
-      if (::rename(temporary_.c_str(), final_path_.c_str()) != 0) fail(errno);
-      unfinished.paths.erase(temporary_);
-    }
-    committed_ = true;
+    if (!temporary_) return;
+    if (const int error = temporary_->rename()) fail(error);
   }
 
   [[nodiscard]] const std::string& name() const override { return name_; }
-  [[nodiscard]] std::string temporary_path() const override { return temporary_; }
+  [[nodiscard]] std::string temporary_path() const override {
+    return temporary_ ? temporary_->path() : "";
+  }
 
  private:
   void flush() {
@@ -227,75 +169,60 @@ class DiskOutput : public OutputFile {
 
   Descriptor file_;
   std::string name_;
-  std::string final_path_;
-  std::string temporary_;
+  std::unique_ptr<UnfinishedFile> temporary_;
   std::vector<std::byte> buffer_;
-  bool committed_ = false;
 };
 
-[[noreturn]] void fail_to_create(const std::string& path, int error, const std::string& hint) {
-  throw Error(fmt::format("cannot create {}: {}{}", path, reason(error), hint));
+/// A copy of standard input or output. Throws Error that begins with `what` if it is closed, or
+/// open for the wrong direction only, as what main puts in place of what is closed.
+int copy_of_standard(int descriptor, int wrong_direction, const std::string& what) {
+  const int flags = ::fcntl(descriptor, F_GETFL);
+  if (flags < 0 || (flags & O_ACCMODE) == wrong_direction) {
+    throw Error(fmt::format("{}: it is closed; name a file, or connect a pipe", what));
+  }
+  const int copy = ::fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  if (copy < 0) throw Error(fmt::format("{}: {}", what, reason(errno)));
+  return copy;
 }
 
 class Disk : public FileSystem {
  public:
   std::unique_ptr<InputFile> open(const std::string& path) override {
-    const bool standard = path == "-";
-    const int fd = standard ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
-                            : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    const std::string name = standard ? "standard input" : path;
+    if (path == "-") {
+      const int fd = copy_of_standard(STDIN_FILENO, O_WRONLY, "cannot read standard input");
+      return std::make_unique<DiskInput>(fd, "standard input");
+    }
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (fd < 0) {
       const int error = errno;
-      throw Error(fmt::format("cannot open {}: {}{}", name, reason(error),
+      throw Error(fmt::format("cannot open {}: {}{}", path, reason(error),
                               error == ENOENT ? "; check the name" : ""));
     }
-    return std::make_unique<DiskInput>(fd, name);
+    return std::make_unique<DiskInput>(fd, path);
   }
 
   std::unique_ptr<OutputFile> create(const std::string& path) override {
     if (path == "-") {
-      const int fd = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
-      if (fd < 0) fail_to_create("standard output", errno, "");
-      return std::make_unique<DiskOutput>(fd, "standard output", "", "");
+      const int fd = copy_of_standard(STDOUT_FILENO, O_RDONLY, "cannot write standard output");
+      return std::make_unique<DiskOutput>(fd, "standard output", nullptr);
     }
-    if (path.empty()) throw UsageError("cannot create a file without a name; name the output");
-    struct stat status {};
-    const bool present = ::stat(path.c_str(), &status) == 0;
-    if (present && S_ISDIR(status.st_mode)) {
-      fail_to_create(path, EISDIR, "; name a file in it");
-    }
-    if (present && !S_ISREG(status.st_mode)) {
+    const OutputTarget target = output_target(path);
+    if (!target.regular) {
       const int fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-      if (fd < 0) fail_to_create(path, errno, "");
-      return std::make_unique<DiskOutput>(fd, path, path, "");
+      if (fd < 0) fail_to_create(path, errno);
+      return std::make_unique<DiskOutput>(fd, path, nullptr);
     }
-    if (present && ::access(path.c_str(), W_OK) != 0) {
-      fail_to_create(path, errno, "; the file is there and write-protected, choose another name");
-    }
-    return create_temporary(path, present);
+    auto temporary = std::make_unique<UnfinishedFile>(target.path, path);
+    const int fd = temporary->create();
+    if (fd < 0) fail_to_create(path, errno);
+    // Failing that, as on file systems without permissions, it has those of a new file.
+    if (target.mode) static_cast<void>(::fchmod(fd, *target.mode));
+    return std::make_unique<DiskOutput>(fd, path, std::move(temporary));
   }
 
   [[nodiscard]] bool exists(const std::string& path) const override {
     struct stat status {};
     return ::stat(path.c_str(), &status) == 0;
-  }
-
- private:
-  static std::unique_ptr<OutputFile> create_temporary(const std::string& path, bool present) {
-    std::error_code unresolved;
-    std::string final_path = path;
-    if (present) final_path = std::filesystem::canonical(path, unresolved).string();
-    if (unresolved) final_path = path;
-    const std::string temporary = final_path + ".part";
-    UnfinishedFiles& unfinished = unfinished_files();
-    const std::lock_guard lock(unfinished.mutex);
-    const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (fd < 0) {
-      const int error = errno;
-      fail_to_create(path, error, output_hint(error, path));
-    }
-    unfinished.paths.insert(temporary);
-    return std::make_unique<DiskOutput>(fd, path, final_path, temporary);
   }
 };
 
@@ -304,61 +231,6 @@ class Disk : public FileSystem {
 FileSystem& disk() {
   static Disk instance;
   return instance;
-}
-
-OthersUnfinishedFile::OthersUnfinishedFile(std::string path) : path_(std::move(path)) {
-  UnfinishedFiles& unfinished = unfinished_files();
-  const std::lock_guard lock(unfinished.mutex);
-  unfinished.paths.insert(path_);
-}
-
-OthersUnfinishedFile::~OthersUnfinishedFile() {
-  UnfinishedFiles& unfinished = unfinished_files();
-  const std::lock_guard lock(unfinished.mutex);
-  unfinished.paths.erase(path_);
-}
-
-std::string make_temporary_folder(const std::string& parent, const std::string& prefix) {
-  std::string path = (std::filesystem::path(parent) / (prefix + "XXXXXX")).string();
-  UnfinishedFiles& unfinished = unfinished_files();
-  const std::lock_guard lock(unfinished.mutex);
-  if (::mkdtemp(path.data()) == nullptr) {
-    throw Error(fmt::format("cannot create a temporary folder in {}: {}", parent, reason(errno)));
-  }
-  unfinished.folders.insert(path);
-  return path;
-}
-
-void create_in_temporary_folder(const std::string& folder, const std::string& name) {
-  const std::string path = (std::filesystem::path(folder) / name).string();
-  UnfinishedFiles& unfinished = unfinished_files();
-  const std::lock_guard lock(unfinished.mutex);
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (fd < 0) fail_to_create(path, errno, "");
-  ::close(fd);
-}
-
-bool is_temporary_folder(const std::string& folder) {
-  UnfinishedFiles& unfinished = unfinished_files();
-  const std::lock_guard lock(unfinished.mutex);
-  return unfinished.folders.contains(folder);
-}
-
-void remove_temporary_folder(const std::string& folder) {
-  UnfinishedFiles& unfinished = unfinished_files();
-  const std::lock_guard lock(unfinished.mutex);
-  std::error_code ignored;  // what cannot be removed is left to whoever cleans the parent
-  if (unfinished.folders.erase(folder) > 0) std::filesystem::remove_all(folder, ignored);
-}
-
-void remove_unfinished_files() {
-  UnfinishedFiles& unfinished = unfinished_files();
-  const std::lock_guard lock(unfinished.mutex);
-  for (const std::string& path : unfinished.paths) ::unlink(path.c_str());
-  unfinished.paths.clear();
-  std::error_code ignored;  // the next folder is to be tried all the same
-  for (const std::string& path : unfinished.folders) std::filesystem::remove_all(path, ignored);
-  unfinished.folders.clear();
 }
 
 }  // namespace spillway

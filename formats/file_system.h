@@ -42,8 +42,7 @@ class OutputFile {
   /// end. False, and nothing done, if the file cannot go back: a pipe, a terminal, a device.
   virtual bool rewrite(std::uint64_t offset, std::span<const std::byte> bytes) = 0;
 
-  /// Writes what is buffered, closes the file and renames it from NAME.part to NAME. Throws as
-  /// write() does.
+  /// Writes what is buffered, closes the file and gives it its name. Throws as write() does.
   virtual void commit() = 0;
 
   [[nodiscard]] virtual const std::string& name() const = 0;
@@ -53,30 +52,18 @@ class OutputFile {
   [[nodiscard]] virtual std::string temporary_path() const { return ""; }
 };
 
-/// While it exists, remove_unfinished_files() also removes this file, which another process has
-/// created and is going to rename.
-class OthersUnfinishedFile {
- public:
-  explicit OthersUnfinishedFile(std::string path);
-  ~OthersUnfinishedFile();
-  OthersUnfinishedFile(const OthersUnfinishedFile&) = delete;
-  OthersUnfinishedFile& operator=(const OthersUnfinishedFile&) = delete;
-
- private:
-  std::string path_;
-};
-
 class FileSystem {
  public:
   virtual ~FileSystem() = default;
 
   /// Opens for reading; "-" is standard input. Throws Error for what is missing, not readable or a
-  /// folder.
+  /// folder, and for a standard input that is closed.
   virtual std::unique_ptr<InputFile> open(const std::string& path) = 0;
 
-  /// Creates NAME.part; "-" is standard output, which has no temporary name, and neither has what
+  /// Creates NAME.XXXXXX.part (unfinished_files.h), with the permissions of the file that it is
+  /// going to replace; "-" is standard output, which has no temporary name, and neither has what
   /// exists and is no regular file (/dev/null, a named pipe): such are written straight to. Where
-  /// NAME is a symbolic link, what it points to is replaced, not the link.
+  /// NAME is a symbolic link, what it points to is replaced or created, not the link.
   virtual std::unique_ptr<OutputFile> create(const std::string& path) = 0;
 
   [[nodiscard]] virtual bool exists(const std::string& path) const = 0;
@@ -85,22 +72,5 @@ class FileSystem {
 /// The machine's own files. A closed pipe is seen as ClosedPipe only where SIGPIPE is ignored,
 /// which is main's business.
 FileSystem& disk();
-
-/// Makes a private folder in `parent` whose name is `prefix` and six characters, and returns its
-/// path. Throws Error with the system's reason, without a hint.
-std::string make_temporary_folder(const std::string& parent, const std::string& prefix);
-
-/// Creates an empty file in such a folder. Throws Error likewise.
-void create_in_temporary_folder(const std::string& folder, const std::string& name);
-
-/// Whether the folder is there; false also once remove_unfinished_files() has removed it.
-bool is_temporary_folder(const std::string& folder);
-
-/// Removes such a folder with all that is in it.
-void remove_temporary_folder(const std::string& folder);
-
-/// Removes every file that is still under its temporary name, and the temporary folders with all
-/// that is in them. For signal handling: the files' owners must not run on afterwards.
-void remove_unfinished_files();
 
 }  // namespace spillway

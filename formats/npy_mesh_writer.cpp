@@ -5,8 +5,10 @@
 #include "formats/block_output.h"
 #include "formats/bytes.h"
 #include "formats/checked_mesh_writer.h"
+#include "formats/naming_turn.h"
 #include "formats/npy_header.h"
 #include "formats/npy_mesh.h"
+#include "formats/unfinished_files.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -66,10 +68,10 @@ class NpyMeshWriter : public CheckedMeshWriter {
   void complete() override {
     vertices_.settle();
     simplices_.settle();
-    if (input_index_) {
-      input_index_->settle();
-      input_index_->commit();
-    }
+    if (input_index_) input_index_->settle();
+    const NamingTurn turn(name());
+    const auto undisturbed = hold_off_end_of_run();
+    if (input_index_) input_index_->commit();
     vertices_.commit();
     simplices_.commit();
   }

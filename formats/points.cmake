@@ -14,9 +14,11 @@ target_sources(spillway_formats PRIVATE
   las_writer.cpp
   lattice_check.cpp
   line_reader.cpp
+  naming_turn.cpp
   npy_header.cpp
   npy_reader.cpp
   npy_writer.cpp
+  output_target.cpp
   point_format.cpp
   point_reader.cpp
   point_writer.cpp
@@ -24,5 +26,6 @@ target_sources(spillway_formats PRIVATE
   text_columns.cpp
   text_opening.cpp
   text_reader.cpp
-  text_writer.cpp)
+  text_writer.cpp
+  unfinished_files.cpp)
 target_link_libraries(spillway_formats PRIVATE PkgConfig::libzstd)

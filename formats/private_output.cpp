@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "formats/file_system.h"
+#include "formats/naming_turn.h"
+#include "formats/unfinished_files.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -15,36 +17,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the file goes: through symbolic links, to a regular file or none.
-fs::path target_of(const std::string& name) {
+OutputTarget target_of(const std::string& name) {
   if (name == "-") {
     throw Error("standard output cannot take what is not written in one go; name a file");
   }
-  std::error_code error;
-  const fs::file_status status = fs::status(name, error);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
+  OutputTarget target = output_target(name);
+  if (!target.regular) {
     throw Error(fmt::format(
         "cannot create {}: it is there and is no regular file; choose another name", name));
-  }
-  const fs::path target =
-      fs::exists(status) ? fs::canonical(name, error) : fs::absolute(name, error);
-  if (error && target.empty()) {
-    throw Error(fmt::format("cannot create {}: {}", name, error.message()));
-  }
-  if (!fs::is_directory(target.parent_path(), error)) {
-    throw Error(fmt::format("cannot create {}: there is no folder {}; create it first", name,
-                            target.parent_path().string()));
   }
   return target;
 }
 
 }  // namespace
 
-PrivateOutput::PrivateOutput(std::string name)
-    : name_(std::move(name)),
-      target_(target_of(name_)),
-      folder_(make_temporary_folder(target_.parent_path().string(),
-                                    target_.filename().string() + ".part-")) {}
+PrivateOutput::PrivateOutput(std::string name) : name_(std::move(name)) {
+  const OutputTarget target = target_of(name_);
+  std::error_code error;
+  target_ = fs::absolute(target.path, error);
+  if (error) fail_to_create(name_, error.value());
+  mode_ = target.mode;
+  folder_ = make_folder_beside(target_.string(), name_);
+  if (folder_.empty()) fail_to_create(name_, errno);
+}
 
 PrivateOutput::~PrivateOutput() { remove_temporary_folder(folder_); }
 
@@ -71,7 +66,12 @@ std::uint64_t PrivateOutput::finish(std::span<const std::string_view> stale_ends
     return std::pair(a.filename() == target_.filename(), a) <
            std::pair(b.filename() == target_.filename(), b);
   });
-  std::error_code ignored;  // mostly there is nothing to remove
+  std::error_code ignored;  // mostly there is nothing to remove; permissions are not everywhere
+  for (const fs::path& file : files) {
+    if (mode_) fs::permissions(file, static_cast<fs::perms>(*mode_), ignored);
+  }
+  const NamingTurn turn(target_.string());
+  const auto undisturbed = hold_off_end_of_run();
   for (const std::string_view end : stale_ends) fs::remove(fs::path(target_).concat(end), ignored);
   for (const std::string_view extension : stale_extensions) {
     fs::remove(fs::path(target_).replace_extension(extension), ignored);

@@ -2,9 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "formats/output_target.h"
 
 namespace spillway {
 
@@ -13,7 +16,7 @@ namespace spillway {
 class PrivateOutput {
  public:
   /// `name` is the target's. Throws Error for standard output, for what is there and is no regular
-  /// file, and if its folder is missing or cannot be written to.
+  /// file or is write-protected, and if its folder is missing or cannot be written to.
   explicit PrivateOutput(std::string name);
   ~PrivateOutput();
   PrivateOutput(const PrivateOutput&) = delete;
@@ -27,6 +30,8 @@ class PrivateOutput {
   [[nodiscard]] std::string path() const;
 
   /// Moves all files of the folder beside the target and replaces what was there, the target last.
+  /// They get the permissions of the target that they replace, if any. No other run that writes to
+  /// the same folder gives its files their names meanwhile (NamingTurn).
   /// Before, removes what an older target has beside itself: files of its name with one of these
   /// ends, or extensions in place of its own. Returns the bytes of all files. Throws Error with the
   /// system's reason, and takes back what was moved.
@@ -38,6 +43,7 @@ class PrivateOutput {
 
   std::string name_;
   std::filesystem::path target_;
+  std::optional<mode_t> mode_;
   std::string folder_;
 };
 

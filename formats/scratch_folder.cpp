@@ -6,16 +6,14 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
 #include <string_view>
 #include <system_error>
-#include <thread>
 #include <utility>
 
-#include "formats/file_system.h"
+#include "formats/unfinished_files.h"
 #include "src/error.h"
 
 namespace spillway {
@@ -75,19 +73,11 @@ class Opened {
   int fd_;
 };
 
-/// After a signal its thread removes the folder and ends the run: it tells why, not the error that
-/// comes of the removal.
-void leave_it_to_a_signal(const std::string& folder) {
-  if (!is_temporary_folder(folder)) std::this_thread::sleep_for(std::chrono::seconds(5));
-}
-
 class DiskScratchFile : public ScratchFile {
  public:
-  DiskScratchFile(std::string folder, const std::string& name, std::shared_ptr<Usage> usage)
-      : folder_(std::move(folder)),
-        path_((std::filesystem::path(folder_) / name).string()),
-        usage_(std::move(usage)) {
-    create_in_temporary_folder(folder_, name);
+  DiskScratchFile(const std::string& folder, const std::string& name, std::shared_ptr<Usage> usage)
+      : path_((std::filesystem::path(folder) / name).string()), usage_(std::move(usage)) {
+    create_in_temporary_folder(folder, name);
   }
   ~DiskScratchFile() override {
     ::unlink(path_.c_str());  // gone already if the folder is
@@ -142,7 +132,7 @@ class DiskScratchFile : public ScratchFile {
 
  private:
   [[noreturn]] void fail(std::string_view action, int error) const {
-    leave_it_to_a_signal(folder_);
+    stop_if_run_is_ending();
     throw Error(fmt::format("cannot {} {}: {}{}", action, path_,
                             std::generic_category().message(error), hint(error)));
   }
@@ -164,7 +154,6 @@ class DiskScratchFile : public ScratchFile {
     }
   }
 
-  std::string folder_;
   std::string path_;
   std::shared_ptr<Usage> usage_;
   std::uint64_t size_ = 0;
@@ -187,7 +176,6 @@ class DiskScratchFolder : public ScratchFolder {
       return std::make_unique<DiskScratchFile>(path_, fmt::format("{}-{}", label, ++files_),
                                                usage_);
     } catch (const Error& error) {
-      if (!path_.empty()) leave_it_to_a_signal(path_);
       throw Error(fmt::format("{}; choose another folder with --tmpdir", error.what()));
     }
   }
@@ -205,14 +193,15 @@ class DiskScratchFolder : public ScratchFolder {
 
 }  // namespace
 
+std::string scratch_parent(const std::string& parent) {
+  if (!parent.empty()) return parent;
+  const char* const temporary = std::getenv("TMPDIR");
+  return temporary != nullptr && *temporary != '\0' ? temporary : "/tmp";
+}
+
 std::unique_ptr<ScratchFolder> make_scratch_folder(const std::string& parent,
                                                    std::optional<std::uint64_t> cap) {
-  std::string folder = parent;
-  if (folder.empty()) {
-    const char* const temporary = std::getenv("TMPDIR");
-    folder = temporary != nullptr && *temporary != '\0' ? temporary : "/tmp";
-  }
-  return std::make_unique<DiskScratchFolder>(std::move(folder), cap);
+  return std::make_unique<DiskScratchFolder>(scratch_parent(parent), cap);
 }
 
 }  // namespace spillway

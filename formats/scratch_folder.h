@@ -44,7 +44,10 @@ class ScratchFolder {
   [[nodiscard]] virtual std::uint64_t peak_bytes() const = 0;
 };
 
-/// A folder of its own in `parent` on the machine's disk ("": $TMPDIR, else /tmp), holding at most
+/// Where scratch folders are made: `parent`, or, if that is "", $TMPDIR, else /tmp.
+std::string scratch_parent(const std::string& parent);
+
+/// A folder of its own in scratch_parent(parent) on the machine's disk, holding at most
 /// `cap` bytes at a time.
 std::unique_ptr<ScratchFolder> make_scratch_folder(const std::string& parent,
                                                    std::optional<std::uint64_t> cap);

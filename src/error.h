@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace spillway {
 
@@ -12,6 +14,27 @@ namespace spillway {
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// Several faults at once, each with a line of its own.
+class ErrorList : public Error {
+ public:
+  /// `heading` is a message, too: it says how many there are.
+  ErrorList(const std::string& heading, std::vector<std::string> faults)
+      : Error(joined(heading, faults)), heading_(heading), faults_(std::move(faults)) {}
+
+  [[nodiscard]] const std::string& heading() const { return heading_; }
+  [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
+
+ private:
+  static std::string joined(std::string text, const std::vector<std::string>& faults) {
+    text += ':';
+    for (const std::string& fault : faults) text += "\n  " + fault;
+    return text;
+  }
+
+  std::string heading_;
+  std::vector<std::string> faults_;
 };
 
 /// The command was called wrongly; ends the run with exit code 2.

@@ -84,8 +84,9 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
   }
   if (faults.size() == 1) throw Error(faults.front());
   if (!faults.empty()) {
-    throw Error(fmt::format("{} of {} inputs cannot be read:\n  {}", faults.size(), paths.size(),
-                            fmt::join(faults, "\n  ")));
+    const std::size_t count = faults.size();
+    throw ErrorList(fmt::format("{} of {} inputs cannot be read", count, paths.size()),
+                    std::move(faults));
   }
   tell_notices();
   check_coordinate_systems();

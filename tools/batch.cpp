@@ -1,19 +1,21 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/App.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <deque>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <string>
 #include <system_error>
 #include <vector>
 
-#include "formats/file_system.h"
+#include "formats/scratch_folder.h"
+#include "formats/unfinished_files.h"
 #include "src/distributed/ranks.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
@@ -21,6 +23,7 @@
 #include "tools/command.h"
 #include "tools/command_options.h"
 #include "tools/input_list.h"
+#include "tools/job_log.h"
 #include "tools/job_record.h"
 #include "tools/job_steps.h"
 #include "tools/json_text.h"
@@ -89,6 +92,31 @@ void add_options_of_subcommands(const CLI::App& root, CLI::App& app, BatchOption
   }
 }
 
+/// A folder for what only serves the jobs, below that of `options`.
+std::string make_scratch(const MemoryOptions& options) {
+  try {
+    return make_temporary_folder(scratch_parent(options.scratch_parent), "spillway-batch-");
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}; choose another folder with --tmpdir", error.what()));
+  }
+}
+
+/// Makes the folder of the outputs. Throws Error if that cannot be done, or nothing can be written
+/// there.
+void make_output_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw Error(fmt::format("--output-dir: cannot create the folder {}: {}; choose another one",
+                            folder, error.message()));
+  }
+  if (::access((folder + "/.").c_str(), W_OK | X_OK) != 0) {
+    throw Error(fmt::format(
+        "--output-dir: cannot write to {}: {}; choose another folder, or change its permissions",
+        folder, std::generic_category().message(errno)));
+  }
+}
+
 class Batch {
  public:
   Batch(const CLI::App& root, const BatchOptions& options)
@@ -98,7 +126,7 @@ class Batch {
         free_threads_(
             static_cast<int>(options.threads == 0 ? available_threads() : options.threads)),
         free_memory_(memory_limit(options.memory)),
-        temporary_(make_temporary_folder(scratch_parent(), "spillway-batch-")) {}
+        temporary_(make_scratch(options.memory)) {}
 
   ~Batch() { remove_temporary_folder(temporary_); }
   Batch(const Batch&) = delete;
@@ -124,16 +152,12 @@ class Batch {
   /// A job whose steps are being done, and what it holds of the common budget.
   struct Running {
     JobRun* run = nullptr;
+    std::shared_ptr<JobLog> log;  ///< null if it could not be made
     std::size_t step = 0;
     int threads = 1;
     std::uint64_t memory = 0;
     Clock::time_point start;
   };
-
-  [[nodiscard]] std::string scratch_parent() const {
-    return options_.memory.scratch_parent.empty() ? std::filesystem::temp_directory_path().string()
-                                                  : options_.memory.scratch_parent;
-  }
 
   /// Plans all jobs, so that a wrong word anywhere is told before any work.
   void prepare() {
@@ -148,7 +172,7 @@ class Batch {
       run.job = std::move(job);
       runs_.push_back(std::move(run));
     }
-    std::filesystem::create_directories(base);
+    make_output_folder(options_.folder);
     for (JobRun& run : runs_) {
       if (options_.resume && is_complete_and_unchanged(run)) {
         run.status = "unchanged";
@@ -191,7 +215,7 @@ class Batch {
     job.run->status = "running";
     try {
       job.run->inputs = input_fingerprints(job.run->job);
-      std::filesystem::remove(job.run->log);
+      job.log = std::make_shared<JobLog>(job.run->log);
       start_step(job);
     } catch (const std::exception& error) {
       finish_job(job, error.what());
@@ -208,9 +232,9 @@ class Batch {
     };
     add("threads", std::to_string(job.threads));
     add("memory", std::to_string(job.memory));
-    add("tmpdir", scratch_parent());
+    add("tmpdir", scratch_parent(options_.memory.scratch_parent));
     add("progress", "none");
-    running_[start_child(arguments, job.run->log).id] = job;
+    running_[start_child(arguments, job.log->descriptor()).id] = job;
   }
 
   void finish_step(const ChildEnd& end) {
@@ -219,7 +243,7 @@ class Batch {
     Running job = found->second;
     running_.erase(found);
     if (end.exit_code != kExitDone) {
-      finish_job(job, last_line(job.run->log, end.exit_code));
+      finish_job(job, reason_of(*job.log, end.exit_code));
     } else if (++job.step == job.run->steps.size()) {
       finish_job(job, "");
     } else {
@@ -254,16 +278,10 @@ class Batch {
                               run.status, run.seconds, run.error.empty() ? "" : ": " + run.error));
   }
 
-  static std::string last_line(const std::string& log, int exit_code) {
-    std::ifstream file(log);
-    std::string last;
-    for (std::string line; std::getline(file, line);) {
-      if (!line.empty()) last = line;
-    }
+  static std::string reason_of(const JobLog& log, int exit_code) {
     if (exit_code > 128) return fmt::format("ended by signal {}", exit_code - 128);
-    if (last.empty()) return fmt::format("ended with exit code {}", exit_code);
-    constexpr std::string_view kPrefix = "spillway: error: ";
-    return last.starts_with(kPrefix) ? last.substr(kPrefix.size()) : last;
+    const std::string last = log.last_line();
+    return last.empty() ? fmt::format("ended with exit code {}", exit_code) : last;
   }
 
   [[nodiscard]] std::size_t count(std::string_view status) const {

@@ -17,6 +17,7 @@
 #include "tools/input_options.h"
 #include "tools/json_text.h"
 #include "tools/point_comparison.h"
+#include "tools/printable_text.h"
 #include "tools/text_output.h"
 
 namespace spillway {
@@ -152,7 +153,7 @@ std::string text_report(const Outcome& outcome, const CheckCommandOptions& optio
   const CheckReport& report = outcome.report;
   std::string text;
   for (const std::string& line : report.proved) text += "proved: " + line + "\n";
-  for (const std::string& line : report.faults) text += "fault: " + line + "\n";
+  for (const std::string& line : report.faults) text += "fault: " + printable(line) + "\n";
   if (report.fault_count > report.faults.size()) {
     text += fmt::format("fault: {} more\n", report.fault_count - report.faults.size());
   }
@@ -164,7 +165,7 @@ std::string text_report(const Outcome& outcome, const CheckCommandOptions& optio
   text += fmt::format("{} vertices, {} {}, {} hull facets, hash {}\n", report.vertices,
                       report.simplices, outcome.dimension == 2 ? "triangles" : "tetrahedra",
                       report.hull_facets, hash_to_hex(report.canonical_hash));
-  return text + fmt::format("{}: {} Delaunay triangulation of {}\n", options.mesh,
+  return text + fmt::format("{}: {} Delaunay triangulation of {}\n", printable(options.mesh),
                             report.fault_count > 0 ? "NOT the"
                             : options.any_delaunay ? "proved to be a"
                                                    : "proved to be the",

@@ -31,21 +31,22 @@ constexpr int kCannotStart = 127;
 
 }  // namespace
 
-ChildProcess start_child(const std::vector<std::string>& arguments, const std::string& log) {
+ChildProcess start_child(const std::vector<std::string>& arguments, int log) {
   std::string name = "spillway";
   std::vector<std::string> copies = arguments;
   std::vector<char*> pointers = {name.data()};
   for (std::string& copy : copies) pointers.push_back(copy.data());
   pointers.push_back(nullptr);
 
-  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (file < 0) throw Error(fmt::format("cannot write {}: {}", log, std::strerror(errno)));
   const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child == 0) become(pointers.data(), file, parent);
-  const int reason = errno;
-  close(file);
-  if (child < 0) throw Error(fmt::format("cannot start a process: {}", std::strerror(reason)));
+  if (child == 0) become(pointers.data(), log, parent);
+  if (child < 0) {
+    throw Error(fmt::format(
+        "cannot start a process: {}; raise the limit of processes (ulimit -u), or ask for fewer "
+        "jobs at a time (-j)",
+        std::strerror(errno)));
+  }
   return {child};
 }
 

@@ -13,9 +13,9 @@ struct ChildProcess {
   pid_t id = -1;
 };
 
-/// Starts this program with these arguments, without standard input and output, its messages
-/// appended to the file `log`. Throws Error with the system's reason.
-ChildProcess start_child(const std::vector<std::string>& arguments, const std::string& log);
+/// Starts this program with these arguments, without standard input and output; its messages go to
+/// the descriptor `log`. Throws Error with the system's reason.
+ChildProcess start_child(const std::vector<std::string>& arguments, int log);
 
 /// How a child ended.
 struct ChildEnd {

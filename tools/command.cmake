@@ -14,12 +14,14 @@ add_library(spillway_command STATIC
   dem.cpp
   dem_options.cpp
   facet_count.cpp
+  failure.cpp
   generate.cpp
   info.cpp
   input_list.cpp
   input_options.cpp
   interrupts.cpp
   job_list.cpp
+  job_log.cpp
   job_record.cpp
   job_steps.cpp
   json_text.cpp
@@ -29,11 +31,14 @@ add_library(spillway_command STATIC
   output_check.cpp
   point_comparison.cpp
   point_output.cpp
+  printable_text.cpp
   progress.cpp
   progress_line.cpp
   relief_scene.cpp
   render.cpp
   space_scene.cpp
+  standard_descriptors.cpp
+  standard_error.cpp
   terrain_input.cpp
   text_output.cpp
   rank_job.cpp

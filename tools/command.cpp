@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -14,6 +13,7 @@
 #include "tools/command_options.h"
 #include "tools/option_tree.h"
 #include "tools/rank_job.h"
+#include "tools/standard_error.h"
 #include "tools/suggestion.h"
 #include "tools/text_output.h"
 
@@ -146,15 +146,19 @@ int run_command(int argc, const char* const* argv) {
   if (argc > 1 && words.back() == "version") words.back() = "--version";
   if (argc > 1 && words.back() == "help") {
     words.pop_back();
+    const bool of_itself = !words.empty() && (words.back() == "help" || words.back() == "version");
+    if (of_itself) words.pop_back();
     words.insert(words.begin(), "--help");
   }
   if (argc < 2) {
-    fmt::print(stderr, "{}", root.help());
+    write_to_standard_error(root.help());
     return kExitUsage;
   }
   try {
     root.parse(words);
-  } catch (const CLI::CallForHelp&) {
+  } catch (const CLI::CallForHelp& call) {
+    // `spillway nothing --help`: what is not there has no help.
+    if (root.get_subcommands().empty() && !root.remaining().empty()) throw usage_error(root, call);
     if (is_first_rank()) write_text("-", root.help());
     return kExitDone;
   } catch (const CLI::CallForVersion&) {

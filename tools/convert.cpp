@@ -71,19 +71,21 @@ bool is_mesh_output(const PointOutput& output) {
   }
 }
 
-/// Throws if the output is of no point format.
+/// Throws if the output is of no point format, or bytes would go to a terminal.
 void check_points_output(const ConvertOptions& options) {
   const PointOutput& output = options.output;
+  const bool piped = output.path == "-" && output.format.empty();
+  PointFormat format = PointFormat::kSpp;
   try {
-    point_format_to_write(output.path, format_name_of(output));
+    if (!piped) format = point_format_to_write(output.path, output.format);
   } catch (const UsageError&) {
     if (!is_mesh_output(output)) throw;
     throw Error(
         fmt::format("{}: these are points, and {} would be a mesh: use spillway triangulate",
                     options.inputs.front(), output.name()));
   }
-  const PointFormat format = point_format_to_write(output.path, format_name_of(output));
   check_las_version(output, format == PointFormat::kLas);
+  static_cast<void>(format_name_of(output));
 }
 
 void run_points(const ConvertOptions& options, FileSystem& files, ScratchFolder& scratch,

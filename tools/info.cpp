@@ -20,6 +20,7 @@
 #include "tools/input_list.h"
 #include "tools/input_options.h"
 #include "tools/json_text.h"
+#include "tools/printable_text.h"
 #include "tools/rank_job.h"
 #include "tools/statistics.h"
 #include "tools/text_output.h"
@@ -202,7 +203,7 @@ Json describe_input(ProbedInput& input, const InfoOptions& options, Progress& pr
 
 std::string value_text(const Json& value) {
   if (value.is_null()) return "-";
-  if (value.is_string()) return value.get<std::string>();
+  if (value.is_string()) return printable(value.get<std::string>());
   if (value.is_number_float()) return fmt::format("{:.15g}", value.get<double>());
   if (!value.is_array()) return json_text(value);
   std::string text;
@@ -215,7 +216,7 @@ std::string value_text(const Json& value) {
 
 /// The same keys and values as the JSON, laid out for people: no more digits than mean something.
 std::string describe(const Json& json) {
-  std::string text = json["name"].get<std::string>() + "\n";
+  std::string text = printable(json["name"].get<std::string>()) + "\n";
   for (const auto& [key, value] : json.items()) {
     if (key == "name") continue;
     if (value.is_object()) {
@@ -300,7 +301,7 @@ int run(const InfoOptions& options) {
       // What else there is to tell is not held up by one file.
       progress.give_up();
       if (paths.size() == 1) throw;
-      exit_code = report_error(error.what(), kExitFailed);
+      exit_code = report_error(error, kExitFailed);
     }
   }
   return exit_code;

@@ -85,6 +85,12 @@ std::string products_of(const OutputKind& kind, const Job& job) {
   return given == job.options.end() ? "height" : fmt::format("{}", fmt::join(given->second, ","));
 }
 
+/// A path as the parser takes it for one: not for an option or a list, whatever it begins with.
+std::string path_argument(const std::string& path) {
+  const bool misleading = path.find_first_of("-[{") == 0;
+  return misleading ? "./" + path : path;
+}
+
 bool is_mesh_stream(const std::string& kind) { return kind == "spm"; }
 
 }  // namespace
@@ -99,6 +105,7 @@ JobPlanner::JobPlanner(const CLI::App& root, std::string folder, std::string scr
 
 const CLI::Option* JobPlanner::option(const std::string& subcommand,
                                       const std::string& name) const {
+  if (name == "help") return nullptr;  // no output comes of it
   return root_.get_subcommand(subcommand)->get_option_no_throw("--" + name);
 }
 
@@ -118,7 +125,8 @@ std::vector<JobStep> JobPlanner::plan(const Job& job) const {
       kinds.erase(stream);
     } else {
       first.temporary = true;
-      first.output = (std::filesystem::path(scratch_) / (job.name + ".spm")).string();
+      first.output =
+          path_argument((std::filesystem::path(scratch_) / (job.name + ".spm")).string());
       first.arguments[first.arguments.size() - 1] = first.output;
     }
     steps.push_back(first);
@@ -137,7 +145,7 @@ JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
   if (!of_points && kind.subcommand == "triangulate") kind.subcommand = "convert";
   JobStep step;
   step.arguments = {kind.subcommand};
-  step.arguments.insert(step.arguments.end(), inputs.begin(), inputs.end());
+  for (const std::string& input : inputs) step.arguments.push_back(path_argument(input));
   step.arguments.insert(step.arguments.end(), kind.arguments.begin(), kind.arguments.end());
   for (const auto& [name, values] : job.options) {
     if (!takes_option(job, kind, of_points, name)) continue;
@@ -147,7 +155,8 @@ JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
       step.arguments.push_back(fmt::format("--{}={}", name, value));
     }
   }
-  step.output = (std::filesystem::path(folder_) / (job.name + "." + kind_name)).string();
+  step.output =
+      path_argument((std::filesystem::path(folder_) / (job.name + "." + kind_name)).string());
   step.arguments.insert(step.arguments.end(), {"-o", step.output});
   return step;
 }
@@ -193,12 +202,22 @@ void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps
       throw UsageError(fmt::format("{}: --{} is for all jobs together: give it to batch itself",
                                    job.name, name));
     }
-    const bool used = std::any_of(steps.begin(), steps.end(), [&](const JobStep& step) {
-      return std::find(step.options.begin(), step.options.end(), name) != step.options.end();
-    });
-    if (!used) {
+    const CLI::Option* known = nullptr;
+    for (const JobStep& step : steps) {
+      const bool used =
+          std::find(step.options.begin(), step.options.end(), name) != step.options.end();
+      if (used && known == nullptr) known = option(step.arguments.front(), name);
+    }
+    if (known == nullptr) {
       throw UsageError(
           fmt::format("{}: none of its outputs has a use for the option --{}", job.name, name));
+    }
+    // The parser would take the next argument for it.
+    const bool wants_value = known->get_expected_min() > 0;
+    const bool empty = std::find(values.begin(), values.end(), "") != values.end();
+    if (empty || (wants_value && values.empty())) {
+      throw UsageError(
+          fmt::format("{}: --{} has no value: give one, or leave it away", job.name, name));
     }
   }
 }

@@ -1,9 +1,14 @@
 #include "tools/json_text.h"
 
+#include "tools/printable_text.h"
+
 namespace spillway {
 
 std::string json_text(const nlohmann::ordered_json& json, int indent) {
-  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  const std::string text =
+      json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  // Of control characters JSON escapes those of ASCII itself; the others are escaped as it does.
+  return indent < 0 ? printable(text) : text;
 }
 
 }  // namespace spillway

@@ -29,7 +29,16 @@ std::string roff(const std::string& text) {
 }
 
 std::string bold(const std::string& text) { return "\\fB" + roff(text) + "\\fR"; }
-std::string italic(const std::string& text) { return "\\fI" + roff(text) + "\\fR"; }
+
+/// Where it lists words, it may be broken behind each.
+std::string italic(const std::string& text) {
+  std::string out = "\\fI";
+  for (const char c : roff(text)) {
+    out += c;
+    if (c == '|') out += "\\:";
+  }
+  return out + "\\fR";
+}
 
 std::string synopsis(const CLI::App& app) {
   std::string text = ".br\n" + bold("spillway " + app.get_name());
@@ -70,6 +79,7 @@ std::string examples(const std::string& footer) {
 std::string manual(const CLI::App& root) {
   std::string text = ".TH SPILLWAY 1 \"\" \"spillway " SPILLWAY_VERSION
                      "\" \"User Commands\"\n"
+                     ".ad l\n"
                      ".SH NAME\nspillway \\- exact, parallel Delaunay triangulation of points\n"
                      ".SH SYNOPSIS\n" +
                      bold("spillway") + " " + italic("subcommand") + " ...\n";

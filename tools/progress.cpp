@@ -1,17 +1,24 @@
 #include "tools/progress.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <system_error>
 
 #include "tools/json_text.h"
+#include "tools/printable_text.h"
+#include "tools/standard_error.h"
 
 namespace spillway {
 namespace {
 
-/// Progress is not worth failing for: if standard error is gone, it goes unseen.
-void write_to_standard_error(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stderr);
-  std::fflush(stderr);
+MessageStyle message_style(ProgressStyle style) {
+  switch (style) {
+    case ProgressStyle::kTerminal:
+      return MessageStyle::kTerminal;
+    case ProgressStyle::kJson:
+      return MessageStyle::kJson;
+    default:
+      return MessageStyle::kText;
+  }
 }
 
 std::chrono::milliseconds period(ProgressStyle style) {
@@ -28,7 +35,9 @@ std::chrono::milliseconds period(ProgressStyle style) {
 }  // namespace
 
 Progress::Progress(ProgressStyle style, bool quiet, bool verbose)
-    : style_(style), quiet_(quiet), verbose_(verbose) {}
+    : style_(style), quiet_(quiet), verbose_(verbose) {
+  set_message_style(message_style(style));
+}
 
 Progress::~Progress() { give_up(); }
 
@@ -38,8 +47,11 @@ void Progress::begin(const std::string& phase, const std::string& unit) {
     const std::lock_guard lock(mutex_);
     state_ = {.phase = phase, .unit = unit, .fraction = {}};
   }
-  if (style_ != ProgressStyle::kNone) {
+  if (style_ == ProgressStyle::kNone) return;
+  try {
     ticker_ = std::jthread([this](const std::stop_token& stop) { tick_until_stopped(stop); });
+  } catch (const std::system_error&) {
+    // No more threads to be had: the phase goes on without lines about it, but for the last one.
   }
 }
 
@@ -79,7 +91,7 @@ void Progress::insist(std::string_view message) {
   if (style_ == ProgressStyle::kJson) {
     write_to_standard_error(json_text({{"message", message}}) + "\n");
   } else {
-    write_to_standard_error("spillway: " + std::string(message) + "\n");
+    write_to_standard_error("spillway: " + printable(message) + "\n");
   }
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -13,8 +12,10 @@
 #include <thread>
 
 #include "formats/bytes.h"
-#include "formats/file_system.h"
+#include "formats/unfinished_files.h"
 #include "src/error.h"
+#include "tools/printable_text.h"
+#include "tools/standard_error.h"
 
 namespace spillway {
 namespace {
@@ -70,19 +71,21 @@ void leave_ranks() { joined().reset(); }
 
 bool is_first_rank() { return (joined() ? joined()->rank() : launch().rank) == 0; }
 
-int report_error(const char* message, int exit_code) {
-  if (!joined()) {
-    // The first process to end with an error ends them all, but not as fast.
-    if (launch().rank > 0) std::this_thread::sleep_for(kFirstTurn);
-    std::this_thread::sleep_for(kTurn * std::min(launch().rank, kMostTurns));
-    fmt::print(stderr, "spillway: error: {}\n", message);
-    return exit_code;
-  }
-  std::this_thread::sleep_for(kTurn * std::min(joined()->rank(), kMostTurns));
-  if (joined()->size() == 1) {
-    fmt::print(stderr, "spillway: error: {}\n", message);
+int report_error(const Error& error, int exit_code) {
+  stop_if_run_is_ending();
+  const std::string rank =
+      joined() && joined()->size() > 1 ? fmt::format("rank {}: ", joined()->rank()) : "";
+  // The first process to end with an error ends them all, but not as fast.
+  if (!joined() && launch().rank > 0) std::this_thread::sleep_for(kFirstTurn);
+  std::this_thread::sleep_for(kTurn *
+                              std::min(joined() ? joined()->rank() : launch().rank, kMostTurns));
+  if (const auto* const list = dynamic_cast<const ErrorList*>(&error)) {
+    write_error(rank + list->heading() + ":");
+    for (const std::string& fault : list->faults()) {
+      write_to_standard_error("  " + printable(fault) + "\n");
+    }
   } else {
-    fmt::print(stderr, "spillway: error: rank {}: {}\n", joined()->rank(), message);
+    write_error(rank + error.what());
   }
   return end_quietly(exit_code);
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "src/distributed/ranks.h"
+#include "src/error.h"
 
 namespace spillway {
 
@@ -22,9 +23,9 @@ void leave_ranks();
 bool is_first_rank();
 
 /// Reports an error on standard error, once for the job if all ranks have it, and ends all ranks.
-/// Returns only if this process was started alone, or if the ranks have not been joined yet; the
-/// exit code is for main.
-int report_error(const char* message, int exit_code);
+/// Says nothing, and stops this thread, where a signal is ending the run. Returns only if this
+/// process was started alone, or if the ranks have not been joined yet; the exit code is for main.
+int report_error(const Error& error, int exit_code);
 
 /// Ends all ranks without a message, where report_error() would end them.
 int end_quietly(int exit_code);

@@ -4,12 +4,16 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <limits>
 #include <string_view>
 #include <system_error>
+#include <thread>
+#include <vector>
 
 #include "formats/gdal/crs.h"
 #include "formats/gdal/gdal_errors.h"
@@ -51,11 +55,26 @@ GDALDriver& driver_for(const RasterOptions& options, const char* name) {
   return *driver;
 }
 
+/// How many of so many threads can be started now, at least 1. GDAL would wait forever for work
+/// that it has no thread for; with 1 it does all in the calling thread.
+unsigned threads_to_be_had(unsigned wanted) {
+  std::promise<void> all_here;
+  const std::shared_future<void> go_on = all_here.get_future().share();
+  std::vector<std::jthread> threads;
+  try {
+    while (threads.size() < wanted) threads.emplace_back([go_on] { go_on.wait(); });
+  } catch (const std::system_error&) {  // as many as there are
+  }
+  all_here.set_value();
+  return std::max(1U, static_cast<unsigned>(threads.size()));
+}
+
 class GeoTiff : public Raster {
  public:
   explicit GeoTiff(const RasterOptions& options)
       : options_(options),
-        plain_path_(options.cloud_optimized ? options.path + ".plain" : options.path) {
+        plain_path_(options.cloud_optimized ? options.path + ".plain" : options.path),
+        threads_(threads_to_be_had(options.threads)) {
     forget_gdal_errors();
     GDALSetCacheMax64(static_cast<GIntBig>(options_.memory));
     GDALDriver& driver = driver_for(options_, "GTiff");
@@ -107,7 +126,7 @@ class GeoTiff : public Raster {
     creation.SetNameValue("BLOCKYSIZE", fmt::format("{}", kRasterTile).c_str());
     creation.SetNameValue("INTERLEAVE", "BAND");
     creation.SetNameValue("BIGTIFF", "IF_SAFER");
-    creation.SetNameValue("NUM_THREADS", fmt::format("{}", options_.threads).c_str());
+    creation.SetNameValue("NUM_THREADS", fmt::format("{}", threads_).c_str());
     if (options_.compression == "none") return creation;
     creation.SetNameValue("COMPRESS", upper(options_.compression).c_str());
     creation.SetNameValue("PREDICTOR", "3");
@@ -128,7 +147,7 @@ class GeoTiff : public Raster {
       creation.SetNameValue("LEVEL", options_.compression == "zstd" ? kZstdLevel : kDeflateLevel);
     }
     creation.SetNameValue("BIGTIFF", "IF_SAFER");
-    creation.SetNameValue("NUM_THREADS", fmt::format("{}", options_.threads).c_str());
+    creation.SetNameValue("NUM_THREADS", fmt::format("{}", threads_).c_str());
     creation.SetNameValue("OVERVIEW_RESAMPLING",
                           options_.averaged_overviews ? "AVERAGE" : "NEAREST");
     GDALDatasetUniquePtr optimized(driver.CreateCopy(options_.path.c_str(), plain.get(), 0,
@@ -145,6 +164,7 @@ class GeoTiff : public Raster {
 
   const RasterOptions options_;
   const std::string plain_path_;
+  const unsigned threads_;
   GDALDatasetUniquePtr file_;
 };
 

@@ -44,8 +44,12 @@ const Gdal& load() {
   void* const module = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
   void* const factory = module == nullptr ? nullptr : ::dlsym(module, kGdalFactory);
   if (factory == nullptr) {
-    throw Error(fmt::format("cannot load the module {}: {}; install GDAL (libgdal)", path.string(),
-                            ::dlerror()));
+    const std::string reason = ::dlerror();
+    const bool no_memory = reason.find("failed to map segment") != std::string::npos ||
+                           reason.find("annot allocate memory") != std::string::npos;
+    throw Error(fmt::format(
+        "cannot load the module {}: {}; {}", path.string(), reason,
+        no_memory ? "raise the limit of memory (ulimit -v)" : "install GDAL (libgdal)"));
   }
   return *reinterpret_cast<GdalFactory>(factory)();
 }

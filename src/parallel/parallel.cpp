@@ -10,7 +10,10 @@
 #endif
 
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <exception>
+#include <mutex>
 
 namespace spillway {
 namespace {
@@ -81,6 +84,46 @@ class HandedOver {
   void* group_;
 };
 
+/// Makes the library start this many threads now, one of which is the caller's. It would do so when
+/// it first has work for them; and if that failed in the midst of other work, it might wait for
+/// that forever.
+void start_threads(unsigned threads) {
+  constexpr std::chrono::seconds kLongestWait{1};  // the library may have its reasons to give fewer
+  static std::atomic<unsigned> started = 1;
+  if (threads <= started) return;
+  struct {
+    std::mutex mutex;
+    std::condition_variable changed;
+    unsigned here = 1;   // guarded by mutex
+    bool go_on = false;  // guarded by mutex
+  } meeting;
+  const auto arrive = [&meeting] {
+    std::unique_lock lock(meeting.mutex);
+    ++meeting.here;
+    meeting.changed.notify_all();
+    meeting.changed.wait(lock, [&] { return meeting.go_on; });
+  };
+  const auto let_go = [&meeting] {
+    const std::lock_guard lock(meeting.mutex);
+    meeting.go_on = true;
+    meeting.changed.notify_all();
+  };
+  TaskGroup group;
+  try {
+    for (unsigned i = 1; i < threads; ++i) group.run(arrive);
+  } catch (...) {
+    let_go();
+    throw;
+  }
+  {
+    std::unique_lock lock(meeting.mutex);
+    meeting.changed.wait_for(lock, kLongestWait, [&] { return meeting.here == threads; });
+  }
+  let_go();
+  group.wait();
+  started = threads;
+}
+
 bool single_threaded() { return tbb::this_task_arena::max_concurrency() == 1; }
 
 }  // namespace
@@ -91,7 +134,10 @@ void with_threads(unsigned threads, const std::function<void()>& work) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   std::max(threads, available_threads()));
   tbb::task_arena arena(static_cast<int>(threads));
-  arena.execute(work);
+  arena.execute([&] {
+    start_threads(threads);
+    work();
+  });
 }
 
 struct TaskGroup::Tasks {

@@ -18,6 +18,7 @@
 #include "formats/spm_block.h"
 #include "formats/spm_reader.h"
 #include "formats/spooled_mesh_writer.h"
+#include "formats/unfinished_files.h"
 #include "src/error.h"
 #include "stream/ranks/part_files.h"
 #include "stream/ranks/stream_parts.h"

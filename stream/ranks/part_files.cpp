@@ -1,12 +1,14 @@
 #include "stream/ranks/part_files.h"
 
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "formats/bytes.h"
 #include "formats/mesh_block.h"
 #include "formats/mesh_parts.h"
+#include "formats/naming_turn.h"
 #include "formats/spm_part.h"
 #include "stream/open_facets.h"
 #include "stream/ranks/part_numbers.h"
@@ -80,6 +82,10 @@ class PartFiles : public MeshOutput {
 
   std::uint64_t finish(RankMesh& mesh) override {
     do_together(ranks_, [&] { write(mesh); });
+    std::optional<NamingTurn> turn;  // of all ranks together
+    do_together(ranks_, [&] {
+      if (ranks_.rank() == 0) turn.emplace(file_->name());
+    });
     do_together(ranks_, [&] { file_->commit(); });
     do_together(ranks_, [&] {
       if (!index_) return;

@@ -19,7 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 class Disk : public ::testing::Test {
  protected:
@@ -46,10 +48,13 @@ class Disk : public ::testing::Test {
 TEST_F(Disk, WritesBesideAndRenamesOnCommit) {
   const auto file = disk().create(path("a.ply"));
   file->write(as_bytes_of("hello"));
-  EXPECT_TRUE(fs::exists(path("a.ply.part")));
+  const std::string temporary = file->temporary_path();
+  EXPECT_THAT(temporary, AllOf(StartsWith(path("a.ply.")), EndsWith(".part")));
+  EXPECT_TRUE(fs::exists(temporary));
   EXPECT_FALSE(disk().exists(path("a.ply")));
   file->commit();
-  EXPECT_FALSE(fs::exists(path("a.ply.part")));
+  EXPECT_FALSE(fs::exists(temporary));
+  EXPECT_EQ(file->temporary_path(), "");
   EXPECT_TRUE(disk().exists(path("a.ply")));
   EXPECT_EQ(content(path("a.ply")), "hello");
 }
@@ -61,7 +66,7 @@ TEST_F(Disk, KeepsTheOldFileWithoutCommit) {
     file->write(as_bytes_of("new"));
   }
   EXPECT_EQ(content(path("a")), "old");
-  EXPECT_FALSE(fs::exists(path("a.part")));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
 TEST_F(Disk, PiecesOfAllSizesArriveInOrder) {
@@ -85,38 +90,6 @@ TEST_F(Disk, RewritesWhatWasWritten) {
   EXPECT_EQ(content(path("a")), "01ab456789end");
 }
 
-TEST_F(Disk, RemovesUnfinishedFiles) {
-  const auto first = disk().create(path("a"));
-  const auto second = disk().create(path("b"));
-  first->write(as_bytes_of("x"));
-  remove_unfinished_files();
-  EXPECT_TRUE(fs::is_empty(folder_));
-  EXPECT_THAT(error_of([&] { first->commit(); }), HasSubstr("cannot write"));
-}
-
-TEST_F(Disk, RemovesWhatOtherProcessesHaveNotFinished) {
-  put_content(path("a.part"), "x");
-  put_content(path("b.part"), "x");
-  const OthersUnfinishedFile others(path("a.part"));
-  OthersUnfinishedFile(path("b.part"));
-  remove_unfinished_files();
-  EXPECT_FALSE(fs::exists(path("a.part")));
-  EXPECT_TRUE(fs::exists(path("b.part"))) << "its owner has gone on";
-}
-
-TEST_F(Disk, TellsTheTemporaryPathToThoseWhoWriteThere) {
-  const auto file = disk().create(path("a"));
-  EXPECT_EQ(file->temporary_path(), path("a") + ".part");
-  EXPECT_EQ(disk().create("/dev/null")->temporary_path(), "");
-}
-
-TEST_F(Disk, DoesNotRemoveFinishedFiles) {
-  const auto file = disk().create(path("a"));
-  file->commit();
-  remove_unfinished_files();
-  EXPECT_TRUE(fs::exists(path("a")));
-}
-
 TEST_F(Disk, WritesThroughASymbolicLink) {
   put_content(path("target"), "old");
   fs::create_symlink("target", path("link"));
@@ -129,7 +102,7 @@ TEST_F(Disk, WritesThroughASymbolicLink) {
 
 TEST_F(Disk, WritesStraightToADevice) {
   const auto file = disk().create("/dev/null");
-  EXPECT_FALSE(fs::exists("/dev/null.part"));
+  EXPECT_EQ(file->temporary_path(), "");
   file->write(as_bytes_of("gone"));
   EXPECT_FALSE(file->rewrite(0, as_bytes_of("gone")));
   file->commit();
@@ -272,6 +245,37 @@ TEST_F(Disk, StandardInputIsADash) {
   EXPECT_EQ(as_text(std::span(buffer).first(file->read(buffer))), "elsewhere");
   ASSERT_TRUE(file->seek(4));
   EXPECT_EQ(as_text(std::span(buffer).first(file->read(buffer))), "where");
+}
+
+/// Exchanges a standard descriptor for one opened in that way; back at the end of the scope.
+class Exchanged {
+ public:
+  Exchanged(int descriptor, const char* path, int flags)
+      : descriptor_(descriptor), saved_(::dup(descriptor)) {
+    const int opened = ::open(path, flags);
+    ::dup2(opened, descriptor_);
+    ::close(opened);
+  }
+  ~Exchanged() {
+    ::dup2(saved_, descriptor_);
+    ::close(saved_);
+  }
+  Exchanged(const Exchanged&) = delete;
+  Exchanged& operator=(const Exchanged&) = delete;
+
+ private:
+  int descriptor_;
+  int saved_;
+};
+
+TEST_F(Disk, AClosedStandardInputOrOutputIsAnError) {
+  // What stands for a closed one goes into the other direction only.
+  const Exchanged input(STDIN_FILENO, "/dev/null", O_WRONLY);
+  EXPECT_THAT(error_of([&] { disk().open("-"); }),
+              HasSubstr("cannot read standard input: it is closed"));
+  const Exchanged output(STDOUT_FILENO, "/dev/null", O_RDONLY);
+  EXPECT_THAT(error_of([&] { disk().create("-"); }),
+              HasSubstr("cannot write standard output: it is closed"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 spillway_test(file_system_test unit
-  SOURCES formats/file_system_test.cpp
+  SOURCES formats/file_system_test.cpp formats/unfinished_files_test.cpp
   LIBS spillway_formats)
 spillway_test(points_test unit
   SOURCES

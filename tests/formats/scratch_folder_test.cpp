@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "formats/bytes.h"
-#include "formats/file_system.h"
+#include "formats/unfinished_files.h"
 #include "tests/formats/point_test_helpers.h"
 
 namespace spillway::testing {
@@ -83,7 +83,12 @@ TEST_F(Scratch, ASignalRemovesTheFolder) {
   const auto scratch = folder();
   const auto file = scratch->create("tile");
   file->append(as_bytes_of("x"));
-  remove_unfinished_files();
+  EXPECT_EXIT(
+      {
+        remove_unfinished_files();
+        _exit(0);
+      },
+      ::testing::ExitedWithCode(0), "");
   EXPECT_TRUE(fs::is_empty(parent_));
 }
 

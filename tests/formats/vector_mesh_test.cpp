@@ -9,6 +9,7 @@
 #include <string>
 
 #include "formats/gdal/gdal.h"
+#include "formats/unfinished_files.h"
 #include "tests/formats/export_test_helpers.h"
 
 namespace spillway::testing {
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
+using ::testing::MatchesRegex;
 
 /// A folder of the test's own, gone with all that is in it.
 class TestFolder {
@@ -124,7 +125,7 @@ TEST(VectorMesh, FailuresLeaveNothing) {
                 HasSubstr("is no coordinate system"));
     EXPECT_THAT(
         error_of([&] { write_stream(disk(), folder.file(std::string("no/") + name), mesh); }),
-        HasSubstr("create it first"));
+        HasSubstr("no first"));
   }
   EXPECT_THAT(folder.names(), ElementsAre());
 }
@@ -136,9 +137,35 @@ TEST(VectorMesh, UnfinishedFoldersAreRemovedAfterASignal) {
   const auto writer = open_mesh_stream_writer(disk(), folder.file("tin.shp"), MeshFormat::kShp,
                                               mesh.header, *scratch);
   writer->write(std::move(mesh.blocks[0]));
-  EXPECT_THAT(folder.names(), ElementsAre(StartsWith("tin.shp.part-")));
-  remove_unfinished_files();
+  EXPECT_THAT(folder.names(), ElementsAre(MatchesRegex("tin.shp.*.part")));
+  EXPECT_EXIT(
+      {
+        remove_unfinished_files();
+        _exit(0);
+      },
+      ::testing::ExitedWithCode(0), "");
   EXPECT_THAT(folder.names(), ElementsAre());
+}
+
+TEST(VectorMesh, AReplacedFileKeepsItsPermissions) {
+  TestFolder folder;
+  for (const std::string name : {"tin.gpkg", "tin.shp"}) {
+    write_stream(disk(), folder.file(name), strip(2, 20, 8));
+    fs::permissions(folder.file(name), fs::perms::owner_read | fs::perms::owner_write);
+    write_stream(disk(), folder.file(name), strip(2, 20, 8));
+  }
+  for (const std::string name : {"tin.gpkg", "tin.shp", "tin.shx", "tin.dbf"}) {
+    EXPECT_EQ(static_cast<unsigned>(fs::status(folder.file(name)).permissions()), 0600U) << name;
+  }
+}
+
+TEST(VectorMesh, NamesMayBeLong) {
+  TestFolder folder;
+  const std::string stem(240, 'n');
+  for (const std::string extension : {".gpkg", ".shp"}) {
+    write_stream(disk(), folder.file(stem + extension), strip(2, 20, 8));
+    EXPECT_TRUE(fs::exists(folder.file(stem + extension)));
+  }
 }
 
 TEST(VectorMesh, BadFilesAreErrorsThatNameThem) {

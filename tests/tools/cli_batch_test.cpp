@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <thread>
@@ -27,6 +28,11 @@ class Batch : public ::testing::Test {
 
   [[nodiscard]] nlohmann::json record(const std::string& job) const {
     return nlohmann::json::parse(space.read("out/" + job + ".status.json"));
+  }
+
+  [[nodiscard]] std::string mesh_hash(const std::string& points) const {
+    space.succeed("spillway triangulate -q " + points + " -o hash.spm");
+    return space.info("hash.spm")["canonical_hash"];
   }
 
   Workspace space;
@@ -127,6 +133,66 @@ TEST_F(Batch, RefusesAListWithMistakesBeforeAnyWork) {
       HasSubstr("the output ply is there twice"));
 }
 
+TEST_F(Batch, TakesNoNameForAnOption) {
+  space.succeed("cp in/north.las ./--help; cp in/north.las -- -x.las; cp in/north.las '[ab]'");
+  space.write("jobs.json", R"({"to": ["ply", "obj"], "jobs": [
+      {"in": ["--help"]}, {"in": "-*.las", "name": "--quiet"}, {"in": "[ab]"}]})");
+  space.succeed("spillway batch jobs.json --output-dir=-o");
+  const std::string hash = mesh_hash("in/north.las");
+  for (const std::string name : {"--help", "--quiet", "[ab]"}) {
+    EXPECT_EQ(space.info("./-o/" + name + ".ply")["canonical_hash"], hash) << name;
+    EXPECT_TRUE(space.has("-o/" + name + ".obj")) << name;
+  }
+  space.succeed("spillway batch --output-dir out --to ply -- --help");
+  EXPECT_TRUE(space.has("out/--help.ply"));
+}
+
+TEST_F(Batch, TakesNoValueForAnOptionAndNoOptionForAValue) {
+  const auto error_of = [&](const std::string& options) {
+    space.write("jobs.json",
+                R"({"to": "ply", "jobs": [{"in": "in/north.las", "options": )" + options + "}]}");
+    const Result result = space.run("spillway batch -q jobs.json --output-dir out");
+    EXPECT_NE(result.exit_code, 0) << options;
+    return result.err + (space.has("out") ? space.read("out/north.log") : "");
+  };
+  EXPECT_THAT(error_of(R"({"keep-class": "--help"})"),
+              HasSubstr("--keep-class: \"--help\" is no list of classes"));
+  EXPECT_THAT(error_of(R"({"max-edge": "-q"})"), HasSubstr("\"-q\" is no length"));
+  for (const char* const nothing : {"\"\"", "true", "[]", "[\"1\", \"\"]"}) {
+    EXPECT_THAT(error_of(std::string(R"({"bounds": )") + nothing + "}"),
+                HasSubstr("north: --bounds has no value: give one, or leave it away"));
+  }
+  EXPECT_THAT(error_of(R"({"help": true})"), HasSubstr("knows the option --help"));
+}
+
+TEST_F(Batch, SaysThatAFolderCannotBeWritten) {
+  space.write("file", "");
+  const Result no_folder = space.run("spillway batch in --output-dir file/out --to ply");
+  EXPECT_EQ(no_folder.exit_code, 1);
+  EXPECT_EQ(no_folder.err,
+            "spillway: error: --output-dir: cannot create the folder file/out: Not a directory; "
+            "choose another one\n");
+  const Result no_scratch = space.run("TMPDIR=none spillway batch in --output-dir out --to ply");
+  EXPECT_EQ(no_scratch.exit_code, 1);
+  EXPECT_THAT(no_scratch.err, HasSubstr("cannot create a temporary folder in none: No such file or "
+                                        "directory; choose another folder with --tmpdir"));
+  EXPECT_FALSE(space.has("out"));
+}
+
+TEST_F(Batch, SaysThatAFolderIsProtected) {
+  const std::string other = "setpriv --reuid 54321 --regid 54321 --clear-groups ";
+  space.succeed("mkdir locked; chmod 755 . .. locked");
+  if (geteuid() != 0 || space.run(other + "test -x " SPILLWAY_COMMAND " -a -r in").exit_code != 0) {
+    GTEST_SKIP() << "cannot run as another user";
+  }
+  const Result result =
+      space.run(other + SPILLWAY_COMMAND " batch in --output-dir locked --to ply");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.err,
+            "spillway: error: --output-dir: cannot write to locked: Permission denied; choose "
+            "another folder, or change its permissions\n");
+}
+
 TEST_F(Batch, ResumeLeavesOutWhatIsCompleteAndUnchanged) {
   space.succeed("rm in/bad.las");
   const std::string command = "spillway batch in --output-dir out --to ply --resume";
@@ -157,14 +223,14 @@ TEST_F(Batch, EndsItsJobsWhenItIsInterrupted) {
   const std::string folder = space.folder().string();
   const pid_t process = space.start({"batch", folder + "/large.spp", "--output-dir",
                                      folder + "/out", "--to", "ply", "--tmpdir", folder + "/tmp"});
-  while (!space.has("out/large.ply.part"))
+  while (!space.has_unfinished("out/large.ply"))
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   kill(process, SIGTERM);
   EXPECT_EQ(wait_for_exit(process), 128 + SIGTERM);
-  for (int i = 0; i < 2000 && space.has("out/large.ply.part"); ++i) {
+  for (int i = 0; i < 2000 && space.has_unfinished("out/large.ply"); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  EXPECT_FALSE(space.has("out/large.ply.part"));
+  EXPECT_FALSE(space.has_unfinished("out/large.ply"));
   EXPECT_FALSE(space.has("out/large.ply"));
 }
 

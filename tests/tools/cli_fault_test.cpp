@@ -1,17 +1,13 @@
-// Bad input, bad output, interruptions: one line that says what and where, the right exit code, and
+// Bad input, bad output: one line that says what and where, the right exit code, and
 // nothing left behind.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sys/mount.h>
 
-#include <chrono>
 #include <filesystem>
-#include <functional>
 #include <string>
-#include <thread>
 
 #include "tests/tools/command_runner.h"
 
@@ -206,41 +202,6 @@ TEST(ClosedPipe, EndsTheRunQuietly) {
   EXPECT_EQ(work.read("code"), "141\n");
   EXPECT_EQ(result.err, "");
 }
-
-/// Starts a command, waits until `ready`, sends the signal and returns the exit code.
-int interrupt(const Workspace& work, const std::vector<std::string>& arguments, int signal_number,
-              const std::function<bool()>& ready) {
-  const pid_t process = work.start(arguments);
-  for (int i = 0; i < 2000 && !ready(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  EXPECT_TRUE(ready());
-  kill(process, signal_number);
-  return wait_for_exit(process);
-}
-
-class Interrupted : public testing::TestWithParam<int> {};
-
-TEST_P(Interrupted, LongGenerateLeavesNothingBehind) {
-  const Workspace work;
-  const int exit_code =
-      interrupt(work, {"generate", "terrain", "-n", "1e9", "-o", "long.las", "-q"}, GetParam(),
-                [&] { return work.has("long.las.part"); });
-  EXPECT_EQ(exit_code, 128 + GetParam());
-  EXPECT_TRUE(work.names().empty());
-}
-
-TEST_P(Interrupted, WaitingForInputEnds) {
-  const Workspace work;
-  const auto start = std::chrono::steady_clock::now();
-  const auto a_while = [&] {
-    return std::chrono::steady_clock::now() - start > std::chrono::milliseconds(300);
-  };
-  EXPECT_EQ(interrupt(work, {"info", "-", "-q"}, GetParam(), a_while), 128 + GetParam());
-}
-
-INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, testing::Values(SIGINT, SIGTERM, SIGHUP),
-                         [](const auto& test) { return std::string(sigabbrev_np(test.param)); });
 
 }  // namespace
 }  // namespace spillway::test

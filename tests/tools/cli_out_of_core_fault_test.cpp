@@ -228,7 +228,7 @@ TEST_P(OutOfCoreInterrupted, WhileItSpills) {
   const std::string text = work_.read("in.txt");
   EXPECT_EQ(write(pipe, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   wait_for_spill();
-  EXPECT_TRUE(work_.has("mesh.spm.part"));
+  EXPECT_TRUE(work_.has_unfinished("mesh.spm"));
   interrupt(process, before);
   close(pipe);
 }

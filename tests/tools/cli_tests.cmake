@@ -21,7 +21,11 @@ spillway_command_test(cli_tests cli
   tools/cli_unused_options_test.cpp
   tools/cli_usage_test.cpp)
 spillway_command_test(cli_fault_tests fault
-  tools/cli_fault_test.cpp)
+  tools/cli_descriptor_test.cpp
+  tools/cli_fault_test.cpp
+  tools/cli_limit_test.cpp
+  tools/cli_same_output_test.cpp
+  tools/cli_signal_test.cpp)
 spillway_command_test(cli_out_of_core_tests cli
   tools/cli_out_of_core_test.cpp)
 spillway_command_test(cli_out_of_core_fault_tests fault

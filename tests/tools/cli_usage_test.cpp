@@ -36,6 +36,68 @@ TEST(Usage, HelpAndVersionAreWordsToo) {
   EXPECT_EQ(work.succeed("spillway version"), work.succeed("spillway --version"));
 }
 
+TEST(Usage, WhatIsNotThereHasNoHelp) {
+  const Workspace work;
+  for (const std::string words : {"help triangle", "triangle --help", "help triangle --help"}) {
+    const Result result = work.run("spillway " + words);
+    EXPECT_EQ(result.exit_code, 2) << words;
+    EXPECT_EQ(result.out, "") << words;
+    EXPECT_THAT(result.err, HasSubstr("'triangle' is neither a subcommand nor an option (did you "
+                                      "mean triangulate?)"))
+        << words;
+  }
+  EXPECT_EQ(work.run("spillway help nothing").exit_code, 2);
+  EXPECT_EQ(work.succeed("spillway help help"), work.succeed("spillway --help"));
+  EXPECT_EQ(work.succeed("spillway help version"), work.succeed("spillway --help"));
+}
+
+TEST(Usage, ControlCharactersOfNamesAreEscaped) {
+  const Workspace work;
+  const std::string name = "a\x1b[31m\nb\xc2\x9b\xff.txt";
+  const std::string shown = "a\\x1b[31m\\nb\\u009b\\xff.txt";
+  const auto expect_escaped = [&](const std::string& arguments, const std::string& what) {
+    const Result result = work.run("spillway " + arguments);
+    const std::string text = result.out + result.err;
+    EXPECT_THAT(text, HasSubstr(what)) << arguments;
+    for (const char control : {'\x1b', '\xff', '\x9b'}) {
+      EXPECT_EQ(text.find(control), std::string::npos) << arguments << "\n" << text;
+    }
+  };
+  const std::string argument = "'" + name + "'";
+  expect_escaped("info " + argument, "error: " + shown);
+  work.write(name, "0 0 0\n1 0 0\n0 1 0\n");
+  expect_escaped("info -q " + argument, shown + "\n");
+  expect_escaped("info -q --json " + argument, "\\u001b[31m");
+  expect_escaped("triangulate -v " + argument + " -o mesh.ply", shown);
+  expect_escaped("triangulate -v --progress json " + argument + " -o mesh.ply", "\\u001b[31m");
+  expect_escaped("triangulate -q " + argument + " -o 'm\x1b.ply'", "");
+  expect_escaped("check -q 'm\x1b.ply'", "m\\x1b.ply: proved");
+  work.write(name, "nonsense\n");
+  work.write("other.txt", "nonsense\n");
+  expect_escaped("triangulate -q " + argument + " other.txt -o x.ply",
+                 "2 of 2 inputs cannot be read:\n  " + shown);
+  expect_escaped("batch " + argument + " --output-dir out --to ply", "failed: a\\x1b[31m\\nb");
+  expect_escaped("'no\x1bthing'", "'no\\x1bthing'");
+}
+
+TEST(Usage, ATerminalGetsTheRightRemedy) {
+  const Workspace work;
+  if (work.run("command -v script").exit_code != 0) GTEST_SKIP() << "no script";
+  work.succeed("spillway generate -q terrain -n 500 -o in.las");
+  const auto on_terminal = [&](const std::string& command) {
+    const Result result = work.run("script -qec \"" + command + "\" /dev/null");
+    EXPECT_EQ(result.exit_code, 2) << command;
+    return result.out;
+  };
+  const std::string spillway = SPILLWAY_COMMAND;
+  const auto of_points = HasSubstr("the points are no text; name a file with -o");
+  EXPECT_THAT(on_terminal(spillway + " convert in.las -o -"), of_points);
+  EXPECT_THAT(on_terminal("cat in.las | " + spillway + " convert - -o -"), of_points);
+  EXPECT_THAT(on_terminal(spillway + " triangulate -q in.las -o - --output-format spm | " +
+                          spillway + " convert - -o -"),
+              HasSubstr("a mesh stream is nothing for a terminal: name a file"));
+}
+
 TEST(Usage, AnOptionWithAListLeavesTheInputAlone) {
   const Workspace work;
   work.succeed("spillway generate -q terrain -n 500 -o in.las");
@@ -235,6 +297,12 @@ TEST(Manual, HasEverySubcommandAndOption) {
        {"triangulate", "generate", "\\-\\-duplicates", "\\-\\-any\\-delaunay", ".SH EXIT STATUS"}) {
     EXPECT_THAT(manual, HasSubstr(text));
   }
+}
+
+TEST(Manual, GivesNoWarningsOfGroff) {
+  const Workspace work;
+  if (work.run("command -v groff").exit_code != 0) GTEST_SKIP() << "no groff";
+  EXPECT_EQ(work.run("spillway manual | groff -man -Tutf8 -ww -z 2>&1").out, "");
 }
 
 }  // namespace

@@ -111,6 +111,8 @@ pid_t Workspace::start(const std::vector<std::string>& arguments) const {
   return process;
 }
 
+std::string Workspace::messages() const { return content_of(outputs_ / "stderr"); }
+
 void Workspace::write(const std::string& name, const std::string& content) const {
   std::ofstream(folder_ / name, std::ios::binary) << content;
 }
@@ -118,6 +120,17 @@ void Workspace::write(const std::string& name, const std::string& content) const
 std::string Workspace::read(const std::string& name) const { return content_of(folder_ / name); }
 
 bool Workspace::has(const std::string& name) const { return fs::exists(folder_ / name); }
+
+bool Workspace::has_unfinished(const std::string& name) const {
+  const fs::path path = folder_ / name;
+  std::error_code missing;
+  for (fs::directory_iterator entry(path.parent_path(), missing), end; !missing && entry != end;
+       entry.increment(missing)) {
+    const std::string found = entry->path().filename();
+    if (found.starts_with(path.filename().string() + ".") && found.ends_with(".part")) return true;
+  }
+  return false;
+}
 
 std::vector<std::string> Workspace::names() const {
   std::vector<std::string> names;

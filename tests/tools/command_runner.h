@@ -36,9 +36,15 @@ class Workspace {
   /// Starts the command itself, standard input a pipe that never ends, and returns its process id.
   [[nodiscard]] pid_t start(const std::vector<std::string>& arguments) const;
 
+  /// What the command that was started last has written to standard error so far.
+  [[nodiscard]] std::string messages() const;
+
   void write(const std::string& name, const std::string& content) const;
   [[nodiscard]] std::string read(const std::string& name) const;
   [[nodiscard]] bool has(const std::string& name) const;
+
+  /// Whether a file of that name is being written, under a temporary one.
+  [[nodiscard]] bool has_unfinished(const std::string& name) const;
 
   /// Names of all files, sorted.
   [[nodiscard]] std::vector<std::string> names() const;

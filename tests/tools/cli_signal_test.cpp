@@ -1,0 +1,151 @@
+// Signals: the exit code, a line that tells, and nothing left behind, at whatever moment they come.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "tests/tools/command_runner.h"
+
+namespace spillway::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// Starts a command, waits until `ready`, sends the signal and returns the exit code.
+int interrupt(const Workspace& work, const std::vector<std::string>& arguments, int signal_number,
+              const std::function<bool()>& ready) {
+  const pid_t process = work.start(arguments);
+  for (int i = 0; i < 2000 && !ready(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_TRUE(ready());
+  kill(process, signal_number);
+  return wait_for_exit(process);
+}
+
+class Interrupted : public testing::TestWithParam<int> {};
+
+TEST_P(Interrupted, LongGenerateLeavesNothingBehind) {
+  const Workspace work;
+  const int exit_code =
+      interrupt(work, {"generate", "terrain", "-n", "1e9", "-o", "long.las", "-q"}, GetParam(),
+                [&] { return work.has_unfinished("long.las"); });
+  EXPECT_EQ(exit_code, 128 + GetParam());
+  EXPECT_TRUE(work.names().empty());
+  EXPECT_EQ(work.messages(),
+            fmt::format("spillway: interrupted by SIG{}; nothing was written to long.las\n",
+                        sigabbrev_np(GetParam())))
+      << "with -q, too";
+}
+
+TEST_P(Interrupted, ProgramsReadThatAsJson) {
+  const Workspace work;
+  interrupt(work, {"generate", "terrain", "-n", "1e9", "-o", "long.las", "--progress", "json"},
+            GetParam(), [&] { return work.has_unfinished("long.las"); });
+  std::istringstream lines(work.messages());
+  std::string last;
+  for (std::string line; std::getline(lines, line);) last = line;
+  const auto json = nlohmann::json::parse(last, nullptr, false);
+  ASSERT_TRUE(json.contains("message")) << last;
+  EXPECT_THAT(json["message"].get<std::string>(), HasSubstr("nothing was written to long.las"));
+}
+
+TEST_P(Interrupted, WaitingForInputEnds) {
+  const Workspace work;
+  const auto start = std::chrono::steady_clock::now();
+  const auto a_while = [&] {
+    return std::chrono::steady_clock::now() - start > std::chrono::milliseconds(300);
+  };
+  EXPECT_EQ(interrupt(work, {"info", "-", "-q"}, GetParam(), a_while), 128 + GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, testing::Values(SIGINT, SIGTERM, SIGHUP),
+                         [](const auto& test) { return std::string(sigabbrev_np(test.param)); });
+
+TEST(Signals, WhileScratchFilesComeAndGoLeaveNothing) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 1e6 -o in.las; mkdir tmp");
+  const auto before = work.names();
+  std::mt19937 random(20);
+  constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
+  int interrupted = 0;
+  for (int run = 0; run < 14; ++run) {
+    const pid_t process = work.start({"triangulate", "-q", "in.las", "-o", "mesh.ply", "--tile",
+                                      "4000", "--memory", "32M", "--tmpdir", "tmp"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(100 + random() % 700));
+    const int number = kSignals[run % kSignals.size()];
+    kill(process, number);
+    const int exit_code = wait_for_exit(process);
+    if (exit_code == 0) {
+      std::filesystem::remove(work.folder() / "mesh.ply");
+    } else if (exit_code == 128 + number) {
+      ++interrupted;
+      // Before its handler is there, a signal ends the process at once.
+      EXPECT_THAT(work.messages(), testing::AnyOf("", StartsWith("spillway: interrupted by SIG")));
+    } else {
+      ADD_FAILURE() << exit_code << ": " << work.messages();
+    }
+    ASSERT_EQ(work.names(), before) << "run " << run;
+    ASSERT_TRUE(std::filesystem::is_empty(work.folder() / "tmp")) << "run " << run;
+  }
+  EXPECT_GT(interrupted, 0);
+}
+
+TEST(Signals, WhileGdalWritesLeaveNothing) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 1e5 -o in.las; mkdir tmp");
+  const auto before = work.names();
+  std::mt19937 random(21);
+  for (int run = 0; run < 8; ++run) {
+    const std::string output = run % 2 == 0 ? "lines.shp" : "lines.gpkg";
+    const pid_t process =
+        work.start({"contour", "-q", "in.las", "-o", output, "--interval", "1", "--tmpdir", "tmp"});
+    for (int i = 0; i < 2000 && !work.has_unfinished(output); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 50));
+    kill(process, SIGTERM);
+    EXPECT_EQ(wait_for_exit(process), 128 + SIGTERM);
+    EXPECT_THAT(work.messages(), HasSubstr("nothing was written to " + output));
+    ASSERT_EQ(work.names(), before) << "run " << run;
+    ASSERT_TRUE(std::filesystem::is_empty(work.folder() / "tmp")) << "run " << run;
+  }
+}
+
+TEST(Signals, EndARunWhoseMessagesNobodyTakes) {
+  const Workspace work;
+  // The pipe is full, and its reader takes nothing.
+  const Result result = work.run(
+      "mkfifo pipe; sleep 20 < pipe & reader=$!\n"
+      "{ " SPILLWAY_COMMAND
+      " generate uniform -n 1e9 -o long.npy -q & run=$!\n"
+      "head -c 65536 /dev/zero >&2; sleep 0.3; kill -TERM $run; wait $run; echo $? > code; } 2> "
+      "pipe\n"
+      "kill $reader");
+  EXPECT_EQ(work.read("code"), "143\n") << result.err;
+  EXPECT_FALSE(work.has_unfinished("long.npy"));
+}
+
+TEST(Signals, ATerminalsProgressLineIsWipedFirst) {
+  const Workspace work;
+  if (work.run("command -v script").exit_code != 0) GTEST_SKIP() << "no script";
+  const Result result = work.run("TERM=xterm script -qec 'timeout -s INT 0.5 " SPILLWAY_COMMAND
+                                 " generate terrain -n 1e9 -o long.las' /dev/null");
+  EXPECT_THAT(result.out, HasSubstr("\r\x1b[Kspillway: interrupted by SIGINT; nothing was written "
+                                    "to long.las\r\n"));
+}
+
+}  // namespace
+}  // namespace spillway::test

@@ -1,0 +1,18 @@
+#pragma once
+// How a run ends that went wrong: one line on standard error, and an exit code.
+
+#include <exception>
+
+namespace spillway {
+
+/// Reports what was thrown and ends the ranks, if there are any (rank_job.h). Returns the exit code
+/// for main; in a second thread that fails, not at all: one line is enough. A thread that cannot be
+/// started, and memory that cannot be had, are told as such, with the limits of this process that
+/// are in the way.
+int report_failure(const std::exception_ptr& failure) noexcept;
+
+/// Makes an exception that nobody catches, as in a thread of a library, end the run as
+/// report_failure() would, with nothing left behind.
+void handle_uncaught_exceptions();
+
+}  // namespace spillway
