@@ -22,13 +22,19 @@ InputSource& ProbedInput::source() {
   return *source_;
 }
 
+bool ProbedInput::is_pipe() { return path_ == "-" || (exists(path_) && !source().size()); }
+
+void ProbedInput::release() {
+  if (source_ && !is_pipe()) source_.reset();
+}
+
 std::unique_ptr<InputFile> ProbedInput::open(const std::string& path) {
   if (path == path_ && source_) return std::move(source_);
   return files_.open(path);
 }
 
 InputKind kind_of_input(ProbedInput& input) {
-  const bool is_pipe = input.path() == "-";
+  const bool is_pipe = input.is_pipe();
   const std::string extension = extension_of(input.path());
   const bool is_named_stream = extension == "spm" || extension == "sma";
   if (!is_pipe && !input.exists(input.path()) && !is_named_stream) {

@@ -21,6 +21,14 @@ class ProbedInput final : public FileSystem {
   /// Opens the input, unless that is done, to look at its first bytes.
   InputSource& source();
 
+  /// Whether the input's bytes come only once: standard input, and what exists and is no regular
+  /// file, as a named pipe or /dev/fd/N. To be asked before open(). Throws Error if the input is
+  /// there and cannot be opened.
+  bool is_pipe();
+
+  /// Closes what source() has opened, if it can be opened again.
+  void release();
+
   /// Gives out the input that source() has opened, the first time.
   std::unique_ptr<InputFile> open(const std::string& path) override;
 
@@ -42,7 +50,7 @@ enum class InputKind {
 };
 
 /// What an input holds, by its name and its first bytes; points if neither tells of a mesh. A pipe
-/// ("-") holds points or a mesh stream. Throws Error if it cannot be opened.
+/// holds points or a mesh stream. Throws Error if it cannot be opened.
 InputKind kind_of_input(ProbedInput& input);
 
 }  // namespace spillway

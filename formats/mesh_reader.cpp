@@ -95,6 +95,15 @@ void refuse_points(InputSource& source) {
                   text.starts_with("LASF") ? "points in LAS" : "points or compressed data"));
 }
 
+/// Throws Error for a GeoPackage or Shapefile in a pipe, which nobody could open by its name again.
+void refuse_pipe_of_tables(const InputSource& source, const std::string& path,
+                           std::optional<MeshFormat> format) {
+  if (format != MeshFormat::kGpkg && format != MeshFormat::kShp) return;
+  if (path != "-" && source.size()) return;
+  throw Error(fmt::format("{}: a GeoPackage or Shapefile is not read from a pipe; name the file",
+                          source.name()));
+}
+
 [[noreturn]] void fail_for_unknown(InputSource& source, const std::string& path) {
   if (as_text(source.peek(kProbe)).starts_with(kNpyMagic)) {
     const NpyMeshNames names = npy_mesh_names(path);
@@ -152,15 +161,14 @@ Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string
   if (format == MeshFormat::kNpy || (!format && is_npy_mesh(files, path))) {
     return read_npy(files, path);
   }
-  if (path == "-" && (format == MeshFormat::kGpkg || format == MeshFormat::kShp)) {
-    throw Error("standard input: a GeoPackage or Shapefile is not read from a pipe; name the file");
-  }
   auto source = std::make_unique<InputSource>(files.open(path));
+  refuse_pipe_of_tables(*source, path, format);
   refuse_index_of_parts(*source);
   if (!format) format = mesh_format_of_content(*source);
   if (!format) refuse_points(*source);
   if (!format) format = format_of_name(path);
   if (!format) fail_for_unknown(*source, path);
+  refuse_pipe_of_tables(*source, path, format);
   switch (*format) {
     case MeshFormat::kObj:
       return read_obj(*source);

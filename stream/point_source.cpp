@@ -126,7 +126,8 @@ void PointSource::relate_inputs() {
                                       .choice = thinning->choice,
                                       .dimension = options_.dimension,
                                       .lattice = lattice_,
-                                      .memory = thinning->memory},
+                                      .memory = thinning->memory,
+                                      .progress = thinning->progress},
                       *thinning->scratch);
   }
 }
@@ -208,23 +209,26 @@ void PointSource::check_coordinate_systems() {
 }
 
 /// Throws Error if an input's lattice does not keep its points apart, by the extent that its header
-/// tells. Where only the points can show it, each block is looked at when it comes.
+/// tells of those that may be kept. Where only the points can show it, each block is looked at when
+/// it comes.
 void PointSource::check_own_lattices() {
+  const PointFilter& filter = options_.filter;
+  const bool extent_tells = filter.every == 1 && !filter.needs_attributes();
   for (Input& input : inputs_) {
     const PointHeader& header = input.facts.header;
     if (!header.lattice) continue;
     const Box<3> possible = possible_integers(header);
     if (is_exact(*header.lattice, possible, options_.dimension)) continue;
     input.exact_up_to = exact_up_to(*header.lattice, options_.dimension);
-    if (!header.extent) continue;
+    if (!header.extent || !extent_tells) continue;
+    const Box<3> kept =
+        filter.bounds ? common_part(*header.extent, *options_.reader.bounds) : *header.extent;
     check_lattice(header.name, *header.lattice,
-                  common_part(integers_of(*header.lattice, *header.extent), possible),
-                  options_.dimension);
+                  common_part(integers_of(*header.lattice, kept), possible), options_.dimension);
   }
 }
 
-/// A lattice for all inputs that keeps the points of each apart from those of all others.
-std::optional<CommonLattice> PointSource::exact_common_lattice() const {
+std::optional<CommonLattice> PointSource::common_lattice() const {
   std::vector<Lattice> lattices;
   std::vector<double> largest;
   for (const Input& input : inputs_) {
@@ -232,17 +236,30 @@ std::optional<CommonLattice> PointSource::exact_common_lattice() const {
     lattices.push_back(*input.facts.header.lattice);
     largest.push_back(largest_integer(input.facts.header));
   }
-  std::optional<CommonLattice> common = find_common_lattice(lattices, options_.dimension, largest);
-  for (std::size_t i = 0; common && i < inputs_.size(); ++i) {
-    if (common->maps[i].is_identity()) continue;  // as its own lattice does
-    const Box<3> integers = mapped(integers_up_to(largest[i]), common->maps[i]);
-    if (!is_exact(common->lattice, integers, options_.dimension)) return std::nullopt;
+  return find_common_lattice(lattices, options_.dimension, largest);
+}
+
+/// The first input whose points a common lattice does not keep apart; null if there is none.
+const PointSource::Input* PointSource::first_not_apart(const CommonLattice& common) const {
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    if (common.maps[i].is_identity()) continue;  // as its own lattice does
+    const Box<3> integers =
+        mapped(integers_up_to(largest_integer(inputs_[i].facts.header)), common.maps[i]);
+    if (!is_exact(common.lattice, integers, options_.dimension)) return &inputs_[i];
   }
-  return common;
+  return nullptr;
 }
 
 void PointSource::find_lattice() {
-  if (const auto common = exact_common_lattice()) {
+  const auto common = common_lattice();
+  if (const Input* mixed = common ? first_not_apart(*common) : nullptr) {
+    options_.detail(
+        fmt::format("{}: the common lattice of all inputs, of step {}, does not keep its points "
+                    "apart, so points come in output coordinates",
+                    mixed->facts.header.name, common->lattice.scale[0]));
+    return;
+  }
+  if (common) {
     lattice_ = common->lattice;
     heights_on_lattice_ = common->heights;
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
@@ -263,7 +280,7 @@ void PointSource::find_lattice() {
 
 /// Says on which lattice the points come, if it is not that of the only input; without one, which
 /// input is the first that does not fit to the first of all.
-void PointSource::explain_lattice() {
+void PointSource::explain_lattice() const {
   const PointHeader& first = inputs_.front().facts.header;
   if (lattice_) {
     if (inputs_.size() == 1 && lattice_ == first.lattice) return;
@@ -435,16 +452,27 @@ bool PointSource::fetch_input(SourcePiece& piece) {
   return false;
 }
 
+/// Throws Error if the lattices do not keep those points of a block apart that the filter keeps.
+void PointSource::check_points(const Input& input, PointBlock block) const {
+  const PointHeader& header = input.facts.header;
+  if (options_.filter.active()) {
+    PointFilter filter = options_.filter;
+    filter.bounds = options_.reader.bounds;  // nothing that may be kept is left out
+    PointCounts not_counted;
+    apply_filter(filter, header.lattice, block, not_counted);
+  }
+  const Box<3> box = box_around(block.points);
+  check_lattice(header.name, *header.lattice, box, options_.dimension);
+  if (lattice_) {
+    check_lattice(header.name, *lattice_, mapped(box, input.map), options_.dimension);
+  }
+}
+
 void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   piece.reader->decode(piece.raw, block);
   const Input& input = inputs_[piece.input];
   if (input.exact_up_to && any_beyond(block.points, *input.exact_up_to)) {
-    const PointHeader& header = input.facts.header;
-    const Box<3> box = box_around(block.points);
-    check_lattice(header.name, *header.lattice, box, options_.dimension);
-    if (lattice_) {
-      check_lattice(header.name, *lattice_, mapped(box, input.map), options_.dimension);
-    }
+    check_points(input, block);
   }
   if (!input.as_it_is) {
     for (Point<3>& point : block.points) point = placed(input, point);

@@ -27,6 +27,7 @@ struct ThinningRequest {
   ThinChoice choice = ThinChoice::kFirst;
   std::uint64_t memory = 0;          ///< bytes to keep to
   ScratchFolder* scratch = nullptr;  ///< outlives the source
+  ThinningProgress progress{};
 };
 
 struct PointSourceOptions {
@@ -154,14 +155,16 @@ class PointSource {
   void check_coordinate_systems();
   void check_own_lattices();
   void find_lattice();
-  [[nodiscard]] std::optional<CommonLattice> exact_common_lattice() const;
-  void explain_lattice();
+  [[nodiscard]] std::optional<CommonLattice> common_lattice() const;
+  [[nodiscard]] const Input* first_not_apart(const CommonLattice& common) const;
+  void explain_lattice() const;
   void find_extent();
   void find_expected();
   void check_same_file(Input& input) const;
   bool fetch_input(SourcePiece& piece);
   bool fetch_piece(SourcePiece& piece);
   void decode_input(SourcePiece& piece, PointBlock& block);
+  void check_points(const Input& input, PointBlock block) const;
   void thin_inputs();
   void finish_input();
   [[nodiscard]] Point<3> placed(const Input& input, const Point<3>& point) const;

@@ -77,8 +77,8 @@ float combined(float old, float value, PixelRule rule) {
       return value;
     case PixelRule::kPreferred:
       if (!is_provisional(value)) return value;
-      return is_provisional(old) ? std::max(old, value)
-                                 : old;  // the smaller one: marks are minuses
+      // Of two provisional values the smaller one: their marks are minuses.
+      return is_provisional(old) ? std::max(old, value) : old;
     case PixelRule::kSum:
       return std::min(old + value, kLargestSum);
   }

@@ -153,6 +153,11 @@ void Thinning::grow() {
 
 /// Cells that share a file in one pass are spread over all files in the next.
 void Thinning::put_aside(const Candidate& candidate, std::uint64_t hash) {
+  if (level_ == 0) {
+    ++put_aside_;
+  } else {
+    --done_;
+  }
   Part& part = parts_[mix64(hash + level_) % parts_.size()];
   part.buffer.append(std::span(&candidate.point, 1), std::span(&candidate.key, 1));
   if (part.buffer.size() == PointBuffer::kPiece) write(part);
@@ -195,7 +200,9 @@ void Thinning::run_pass(Part part) {
     bytes.resize(block.size);
     part.file->read(block.offset, bytes);
     decode_points(bytes, fmt::format("{}, byte {}", part.file->name(), block.offset), points);
+    done_ += points.size();  // but for those that are put aside again
     for (std::size_t i = 0; i < points.size(); ++i) offer({points.points[i], points.index[i]});
+    options_.progress.update(done_, put_aside_);
   }
 }
 
@@ -227,8 +234,14 @@ bool Thinning::has_more() {
   if (given_ < candidates_.size()) return true;
   given_ = 0;
   candidates_.clear();
-  if (!waiting_.empty()) work_off_files();
-  if (kept_ && kept_->next(sorted_, PointBuffer::kPiece)) {
+  const bool has_files = !waiting_.empty();
+  if (has_files) {
+    options_.progress.begin();
+    work_off_files();
+  }
+  const bool more = kept_ && kept_->next(sorted_, PointBuffer::kPiece);
+  if (has_files) options_.progress.end(put_aside_);
+  if (more) {
     for (const RunPoint& p : sorted_) candidates_.push_back({p.point, p.key});
     return true;
   }

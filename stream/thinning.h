@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -20,6 +21,14 @@ namespace spillway {
 /// Which point of a cell is kept; among equals the one of the lowest index.
 enum class ThinChoice { kFirst, kLowest, kHighest, kCenter };
 
+/// Is told how far the points have come that found no room in memory.
+struct ThinningProgress {
+  std::function<void()> begin = [] {};
+  std::function<void(std::uint64_t done, std::uint64_t points)> update = [](std::uint64_t,
+                                                                            std::uint64_t) {};
+  std::function<void(std::uint64_t points)> end = [](std::uint64_t) {};
+};
+
 struct ThinningOptions {
   double cell = 1;  ///< side, in output units; the grid has a corner at the origin
   ThinChoice choice = ThinChoice::kFirst;
@@ -27,6 +36,7 @@ struct ThinningOptions {
   int dimension = 2;
   std::optional<Lattice> lattice{};  ///< the points come as integers of it
   std::uint64_t memory = 0;          ///< bytes to keep to, a few MiB at least
+  ThinningProgress progress{};
 };
 
 /// Keeps one point of each cell of a grid, in bounded memory. Cells are met in the order of the
@@ -45,7 +55,8 @@ class Thinning {
   void add(const PointBlock& block);
 
   /// After the last add(): replaces `block` by the next kept points, in the order in which their
-  /// cells were met; false at the end. Blocks are full but for the last.
+  /// cells were met; false at the end. Blocks are full but for the last. The call that needs points
+  /// from files thins all of these.
   bool next(PointBlock& block);
 
   /// Points that lost against another one of their cell so far.
@@ -98,6 +109,8 @@ class Thinning {
   bool passing_ = true;      ///< candidates_ may still get better
   std::size_t given_ = 0;    ///< of candidates_
   std::uint64_t dropped_ = 0;
+  std::uint64_t put_aside_ = 0;  ///< points, in the first pass
+  std::uint64_t done_ = 0;       ///< of these
 };
 
 }  // namespace spillway

@@ -7,13 +7,14 @@
 #   tests/digests.sh --keep /tmp/after build/release/bin/spillway > after.txt     # what the digests are of
 #   tests/digests.sh --twice build/release/bin/spillway [NAMES]                   # are two runs of one build the same?
 #
+# Real LiDAR is looked for in ../shared/data beside the project, or in the folder that SPILLWAY_SHARED_DATA names.
 # NAMES is a regular expression for the names of the commands that are to run. The exit code is 1 if something was left
 # in a temporary folder, or if two runs differ. docs/testing.md tells more.
 set -u -o pipefail
 export LC_ALL=C
 
 usage() {
-  sed -n '2,12s/^# \{0,1\}//p' "$0" >&2
+  sed -n '2,13s/^# \{0,1\}//p' "$0" >&2
   exit 2
 }
 
@@ -110,7 +111,7 @@ spillway=$(realpath "$1")
 names=${2:-.}
 [ -x "$spillway" ] || { echo "$1: no program" >&2; exit 2; }
 here=$(cd "$(dirname "$0")" && pwd)
-shared=$(realpath -m "$here/../../shared/data")
+shared=$(realpath -m "${SPILLWAY_SHARED_DATA:-$here/../../shared/data}")
 
 # What the list's commands find: `spillway`, and `ranks N ...` for a run over ranks. What mpirun says itself names
 # processes and machines, so only spillway's own lines are kept of it.

@@ -127,7 +127,7 @@ bool is_stream(ProbedInput& input, const CheckCommandOptions& options) {
     const MeshFormat format = mesh_format(options.mesh, options.mesh_format);
     return format == MeshFormat::kSpm || format == MeshFormat::kSma;
   }
-  return options.mesh == "-" || kind_of_input(input) == InputKind::kMeshStream;
+  return input.is_pipe() || kind_of_input(input) == InputKind::kMeshStream;
 }
 
 std::string json_report(const Outcome& outcome, const CheckCommandOptions& options) {

@@ -96,7 +96,7 @@ class Run : public TerrainUse {
   }
   void extent_known(const Box<2>& extent, std::uint64_t vertices) override {
     if (!wants_extent()) return;
-    if (!options_.force_size) check_size(extent, vertices);
+    check_size(extent, vertices);
     dem_->begin(extent);
   }
   void add_merged(const MergedPart& part) override { paint_merged(*dem_, part); }
@@ -112,22 +112,30 @@ class Run : public TerrainUse {
                             gdal().crs_name(like_.crs)));
   }
 
-  /// Refuses a raster that is large because of points far away: it has many pixels, and thousands
-  /// for each vertex.
-  void check_size(const Box<2>& extent, std::uint64_t vertices) const {
+  /// Refuses a raster that is large because of points far away, unless that is wanted: it has many
+  /// pixels, and thousands for each vertex. Says how large it is if there are hundreds.
+  void check_size(const Box<2>& extent, std::uint64_t vertices) {
     constexpr double kManyPixels = 1e7;
-    constexpr double kManyForAVertex = 2000;
+    constexpr double kManyForAVertex = 100;
+    constexpr double kTooManyForAVertex = 2000;
     const Box<2> box = dem_->in_output(extent);
     const PixelGrid grid = choose_grid(dem_options_.grid, box);
     const double pixels = static_cast<double>(grid.columns) * grid.rows;
-    if (pixels <= kManyPixels || pixels <= kManyForAVertex * static_cast<double>(vertices)) return;
+    const double for_each = pixels / static_cast<double>(vertices);
+    if (pixels <= kManyPixels || for_each <= kManyForAVertex) return;
+    if (options_.force_size || for_each <= kTooManyForAVertex) {
+      progress_.say(fmt::format(
+          "the raster has {} x {} pixels, for {} vertices; some of them may lie far away (--bounds "
+          "says what to cover)",
+          grid.columns, grid.rows, vertices));
+      return;
+    }
     throw Error(fmt::format(
         "the points, {} of them, reach from {:.15g}, {:.15g} to {:.15g}, {:.15g}: that is a raster "
         "of {} x {} pixels, {:.2g} for each of them, as if some lay far away; say what to cover "
         "with --bounds xmin,ymin,xmax,ymax, give a larger --resolution, or make it as it is with "
         "--force-size",
-        vertices, box.lo[0], box.lo[1], box.hi[0], box.hi[1], grid.columns, grid.rows,
-        pixels / static_cast<double>(vertices)));
+        vertices, box.lo[0], box.lo[1], box.hi[0], box.hi[1], grid.columns, grid.rows, for_each));
   }
 
   void write() {

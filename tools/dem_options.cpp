@@ -130,8 +130,8 @@ void add_dem_options(CLI::App& app, DemCommandOptions& options) {
 
 DemOptions dem_options(const DemCommandOptions& options, RasterGrid& like) {
   DemOptions dem;
-  if (options.force_size && !options.bounds.empty()) {
-    throw UsageError("--bounds tells what to cover: leave --force-size away");
+  if (!options.bounds.empty()) {
+    refuse_given(*options.app, {"--force-size"}, "with --bounds, which tells what to cover");
   }
   if (options.like.empty()) {
     if (options.resolution.empty()) {

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/input_kind.h"
+#include "formats/lattice_check.h"
 #include "formats/mesh_reader.h"
 #include "formats/mesh_stream.h"
 #include "src/error.h"
@@ -140,8 +142,6 @@ Json describe_mesh(ProbedInput& input, Progress& progress) {
   progress.begin("read", "vertices");
   const Mesh mesh = read_mesh(input, input.path());
   progress.end(mesh.vertices.size());
-  Box<3> box;
-  for (const Point<3>& vertex : mesh.vertices) box.expand(vertex);
   const std::string extension = std::filesystem::path(input.path()).extension().string();
   return mesh_json(input.path(), mesh.header,
                    {.format = extension.empty() ? extension : extension.substr(1),
@@ -149,7 +149,7 @@ Json describe_mesh(ProbedInput& input, Progress& progress) {
                     .simplices = mesh.corners.size() / mesh.corners_per_simplex(),
                     .hull_facets = count_boundary_facets(mesh),
                     .hash = canonical_hash(mesh),
-                    .extent = box});
+                    .extent = box_around(mesh.vertices)});
 }
 
 /// Holds no more of the stream than its open border. Throws Error if its end says otherwise than
@@ -185,7 +185,7 @@ Json describe_mesh_stream(ProbedInput& input, Progress& progress) {
 }
 
 InputKind kind_of(ProbedInput& input, const InfoOptions& options) {
-  const bool told = input.path() == "-" && !options.input.format.empty();
+  const bool told = !options.input.format.empty() && input.is_pipe();
   return told ? InputKind::kPoints : kind_of_input(input);
 }
 
@@ -264,14 +264,22 @@ bool may_be_points(ProbedInput& input, const InfoOptions& options) {
   }
 }
 
-/// Throws UsageError if there are options for points, and no points. What is read of a pipe for
-/// that stays with `pipe`.
+/// One for each path that has been looked at.
+using Inputs = std::map<std::string, ProbedInput>;
+
+ProbedInput& input_of(const std::string& path, Inputs& inputs) {
+  return inputs.try_emplace(path, disk(), path).first->second;
+}
+
+/// Throws UsageError if there are options for points, and no points. What is read of pipes for that
+/// stays with `inputs`.
 void check_point_options(const std::vector<std::string>& paths, const InfoOptions& options,
-                         ProbedInput& pipe) {
+                         Inputs& inputs) {
   const bool points = std::ranges::any_of(paths, [&](const std::string& path) {
-    if (path == pipe.path()) return may_be_points(pipe, options);
-    ProbedInput input(disk(), path);
-    return may_be_points(input, options);
+    ProbedInput& input = input_of(path, inputs);
+    const bool found = may_be_points(input, options);
+    input.release();
+    return found;
   });
   if (points) return;
   refuse_given(*options.app, kInputOptionNames,
@@ -284,15 +292,14 @@ int run(const InfoOptions& options) {
       options.report, std::count(options.files.begin(), options.files.end(), "-") > 0);
   const auto paths =
       expand_inputs(options.files, [&](std::string_view text) { progress.say(text); });
-  ProbedInput pipe(disk(), "-");
+  Inputs inputs;
   if (!given_options(*options.app, kInputOptionNames).empty()) {
-    check_point_options(paths, options, pipe);
+    check_point_options(paths, options, inputs);
   }
   int exit_code = kExitDone;
   for (const std::string& path : paths) {
     try {
-      ProbedInput file(disk(), path);
-      tell(path == pipe.path() ? pipe : file, options, progress);
+      tell(input_of(path, inputs), options, progress);
     } catch (const UsageError&) {
       throw;
     } catch (const ClosedPipe&) {
@@ -303,6 +310,7 @@ int run(const InfoOptions& options) {
       if (paths.size() == 1) throw;
       exit_code = report_error(error, kExitFailed);
     }
+    inputs.erase(path);
   }
   return exit_code;
 }

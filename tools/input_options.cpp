@@ -220,6 +220,13 @@ std::unique_ptr<PointSource> make_point_source(FileSystem& files,
         how.thinning->choice == ThinChoice::kLowest || how.thinning->choice == ThinChoice::kHighest;
     how.thinning->memory = use.memory / kThinningShare;
     how.thinning->scratch = &scratch;
+    how.thinning->progress = {
+        .begin = [&progress] { progress.begin_inner("thin", "points"); },
+        .update =
+            [&progress](std::uint64_t done, std::uint64_t points) {
+              progress.update_inner(done, static_cast<double>(done) / static_cast<double>(points));
+            },
+        .end = [&progress](std::uint64_t points) { progress.end_inner(points); }};
   }
   how.force_crs = options.force_crs;
   how.warn = [&progress](std::string_view text) { progress.say(text); };

@@ -41,11 +41,21 @@ Progress::Progress(ProgressStyle style, bool quiet, bool verbose)
 
 Progress::~Progress() { give_up(); }
 
+void Progress::Phase::update(std::uint64_t done, std::optional<double> fraction) {
+  state.done = std::max(state.done, done);
+  state.fraction = fraction ? std::max(state.fraction, fraction) : std::nullopt;
+}
+
+void Progress::Phase::finish(std::uint64_t done) {
+  state.done = done;
+  state.finished = true;
+  state.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+}
+
 void Progress::begin(const std::string& phase, const std::string& unit) {
-  start_ = Clock::now();
   {
     const std::lock_guard lock(mutex_);
-    state_ = {.phase = phase, .unit = unit, .fraction = {}};
+    phase_ = {Clock::now(), {.phase = phase, .unit = unit, .fraction = {}}};
   }
   if (style_ == ProgressStyle::kNone) return;
   try {
@@ -57,27 +67,39 @@ void Progress::begin(const std::string& phase, const std::string& unit) {
 
 void Progress::update(std::uint64_t done, std::optional<double> fraction) {
   const std::lock_guard lock(mutex_);
-  state_.done = std::max(state_.done, done);
-  state_.fraction = fraction ? std::max(state_.fraction, fraction) : std::nullopt;
+  phase_.update(done, fraction);
 }
 
 double Progress::end(std::uint64_t done) {
   ticker_ = {};
   const std::lock_guard lock(mutex_);
-  state_.done = done;
-  state_.finished = true;
-  state_.seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-  if (style_ == ProgressStyle::kTerminal) {
-    wipe(lock);
-  } else {
-    show(lock);
-  }
-  return state_.seconds;
+  phase_.finish(done);
+  show_end(phase_.state, lock);
+  return phase_.state.seconds;
+}
+
+void Progress::begin_inner(const std::string& phase, const std::string& unit) {
+  const std::lock_guard lock(mutex_);
+  inner_ = {Clock::now(), {.phase = phase, .unit = unit, .fraction = {}}};
+}
+
+void Progress::update_inner(std::uint64_t done, std::optional<double> fraction) {
+  const std::lock_guard lock(mutex_);
+  if (inner_) inner_->update(done, fraction);
+}
+
+void Progress::end_inner(std::uint64_t done) {
+  const std::lock_guard lock(mutex_);
+  if (!inner_) return;
+  inner_->finish(done);
+  show_end(inner_->state, lock);
+  inner_.reset();
 }
 
 void Progress::give_up() {
   ticker_ = {};
   const std::lock_guard lock(mutex_);
+  inner_.reset();
   wipe(lock);
 }
 
@@ -106,24 +128,33 @@ void Progress::tick_until_stopped(const std::stop_token& stop) {
     stopped_.wait_for(sleep, stop, period(style_), never);
     if (stop.stop_requested()) return;
     const std::lock_guard lock(mutex_);
-    state_.seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    show(lock);
+    Phase& shown = inner_ ? *inner_ : phase_;
+    shown.state.seconds = std::chrono::duration<double>(Clock::now() - shown.start).count();
+    show(shown.state, lock);
   }
 }
 
-void Progress::show(const std::lock_guard<std::mutex>& lock) const {
+void Progress::show_end(const PhaseState& state, const std::lock_guard<std::mutex>& lock) const {
+  if (style_ == ProgressStyle::kTerminal) {
+    wipe(lock);
+  } else {
+    show(state, lock);
+  }
+}
+
+void Progress::show(const PhaseState& state, const std::lock_guard<std::mutex>& lock) const {
   switch (style_) {
     case ProgressStyle::kNone:
       break;
     case ProgressStyle::kPlain:
-      write_to_standard_error("spillway: " + progress_line(state_) + "\n");
+      write_to_standard_error("spillway: " + progress_line(state) + "\n");
       break;
     case ProgressStyle::kTerminal:
       wipe(lock);
-      write_to_standard_error(progress_line(state_));
+      write_to_standard_error(progress_line(state));
       break;
     case ProgressStyle::kJson:
-      write_to_standard_error(progress_json(state_) + "\n");
+      write_to_standard_error(progress_json(state) + "\n");
       break;
   }
 }

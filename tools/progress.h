@@ -39,6 +39,11 @@ class Progress {
   void update(std::uint64_t done, std::optional<double> fraction);
   /// Ends the phase, in which so many units were done, and returns how many seconds it took.
   double end(std::uint64_t done);
+  /// The same for a phase within the one that goes on, which is shown in its place. Meanwhile
+  /// update() is still about the outer one.
+  void begin_inner(const std::string& phase, const std::string& unit);
+  void update_inner(std::uint64_t done, std::optional<double> fraction);
+  void end_inner(std::uint64_t done);
   /// Ends a phase that failed, or none, without a line about it.
   void give_up();
 
@@ -52,16 +57,25 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
 
+  struct Phase {
+    Clock::time_point start;
+    PhaseState state;
+
+    void update(std::uint64_t done, std::optional<double> fraction);
+    void finish(std::uint64_t done);
+  };
+
   void tick_until_stopped(const std::stop_token& stop);
-  void show(const std::lock_guard<std::mutex>& lock) const;
+  void show_end(const PhaseState& state, const std::lock_guard<std::mutex>& lock) const;
+  void show(const PhaseState& state, const std::lock_guard<std::mutex>& lock) const;
   void wipe(const std::lock_guard<std::mutex>& lock) const;
 
   const ProgressStyle style_;
   const bool quiet_;
   const bool verbose_;
-  Clock::time_point start_;
-  std::mutex mutex_;  // guards state_ and what stands on standard error
-  PhaseState state_;
+  std::mutex mutex_;  // guards the next two and what stands on standard error
+  Phase phase_;
+  std::optional<Phase> inner_;
   std::mutex sleep_mutex_;
   std::condition_variable_any stopped_;
   std::jthread ticker_;

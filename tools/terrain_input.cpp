@@ -80,13 +80,7 @@ class TerrainFeed {
       return false;
     }
     if (several) return false;
-    if (path != "-" && !std::filesystem::is_regular_file(path)) {
-      if (std::filesystem::exists(path)) {
-        refuse_given(*options_.app, {"--mesh-format"},
-                     fmt::format("on {}: meshes are read from files and standard input", path));
-      }
-      return false;
-    }
+    if (path != "-" && !std::filesystem::exists(path)) return false;
     ProbedInput input(disk(), path);
     const InputKind kind = options_.mesh_format.empty() ? kind_of_input(input) : kind_by_format();
     if (kind == InputKind::kPoints) {
@@ -170,7 +164,7 @@ class TerrainFeed {
     std::string path = input.path();
     std::unique_ptr<ScratchFile> copy;
     FileSystem* files = &input;
-    if (use_.wants_extent() && path == "-") {
+    if (use_.wants_extent() && input.is_pipe()) {
       copy = copy_to_scratch(*input.open(path));
       path = copy->name();
       files = &disk();

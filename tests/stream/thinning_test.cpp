@@ -162,6 +162,34 @@ TEST(Thinning, WhatIsKeptComesInTheSameBlocksFromMemoryAndFromTheDisk) {
   EXPECT_EQ(sizes[0], sizes[1]);
 }
 
+TEST(Thinning, TellsHowManyOfThePointsPutAsideAreDone) {
+  constexpr std::uint64_t kPoints = 60'000;
+  std::uint64_t most = 0;
+  std::uint64_t of = 0;
+  std::uint64_t ended = 0;
+  int begun = 0;
+  // Every point has a cell of its own, and 1024 cells have room: files are put aside again.
+  ThinningOptions options{.cell = 0.5, .choice = ThinChoice::kFirst};
+  options.progress = {.begin = [&] { ++begun; },
+                      .update =
+                          [&](std::uint64_t done, std::uint64_t points) {
+                            EXPECT_GE(done, most);
+                            EXPECT_LE(done, points);
+                            most = done;
+                            of = points;
+                          },
+                      .end = [&](std::uint64_t points) { ended = points; }};
+  Cloud points;
+  for (std::uint64_t i = 0; i < kPoints; ++i) {
+    points.push_back({{static_cast<double>(i), 0, 0}, i});
+  }
+  EXPECT_EQ(thinned(points, options), points);
+  EXPECT_EQ(begun, 1);
+  EXPECT_EQ(most, kPoints - 1024);
+  EXPECT_EQ(of, kPoints - 1024);
+  EXPECT_EQ(ended, kPoints - 1024);
+}
+
 TEST(Thinning, AttributesComeThrough) {
   for (const std::uint64_t memory : {std::uint64_t{64} << 20, std::uint64_t{0}}) {
     const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);

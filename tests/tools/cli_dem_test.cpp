@@ -468,11 +468,25 @@ TEST(Dem, ManyPixelsForFewPointsAreMadeOnDemand) {
     work.succeed(fmt::format("spillway dem -q far.txt -o out.tif {}", how));
   }
   work.succeed("spillway dem -q far.txt -o like.tif --like out.tif");
-  EXPECT_EQ(
-      work.run("spillway dem -q far.txt -o a.tif --resolution 1 --bounds 0,0,9,9 --force-size")
-          .exit_code,
-      2);
+  const Result bounded =
+      work.run("spillway dem -q far.txt -o a.tif --resolution 1 --bounds 0,0,9,9 --force-size");
+  EXPECT_EQ(bounded.exit_code, 2);
+  EXPECT_THAT(bounded.err,
+              HasSubstr("--force-size has no effect with --bounds, which tells what to cover"));
   EXPECT_EQ(work.run("spillway dem -q far.txt -o a.tif --like out.tif --force-size").exit_code, 2);
+}
+
+TEST(Dem, ManyPixelsForManyPointsAreANotice) {
+  const Workspace work;
+  work.write("far.txt", surface(100, 2) + "20 60000 7\n");
+  work.succeed("spillway triangulate -q far.txt -o far.spm");
+  for (const std::string input : {"far.txt", "far.spm"}) {
+    const std::string dem = "spillway dem -o out.tif --resolution 1 " + input;
+    EXPECT_THAT(work.run(dem).err,
+                HasSubstr("the raster has 198 x 60000 pixels, for 10001 vertices; some of them may "
+                          "lie far away (--bounds says what to cover)"));
+    EXPECT_THAT(work.run(dem + " --bounds 0,0,198,198").err, Not(HasSubstr("far away")));
+  }
 }
 
 TEST(DemFaults, AFailedRunKeepsTheFileThatWasThere) {

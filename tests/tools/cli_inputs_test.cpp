@@ -97,6 +97,31 @@ TEST_F(Inputs, MeshesAreToldFromPoints) {
               HasSubstr("tin.ply: this is a mesh, and x.las would be points"));
 }
 
+TEST_F(Inputs, NamedPipesAreReadOnceFromTheirFirstByteOn) {
+  work_.succeed(
+      "mkfifo pipe\n"
+      "spillway generate -q uniform -n 30000 -o many.txt\n"
+      "spillway triangulate -q many.txt -o many.spm\n"
+      "cat many.txt > pipe & spillway convert -q pipe -o copy.txt; wait\n"
+      "spillway convert -q many.txt -o direct.txt && cmp copy.txt direct.txt\n"
+      "cat many.spm > pipe & spillway convert -q pipe -o copy.ply; wait\n"
+      "spillway convert -q many.spm -o direct.ply && cmp copy.ply direct.ply\n"
+      "cat many.spm > pipe & spillway check -q pipe; wait\n"
+      "cat many.spm > pipe & spillway dem -q pipe --resolution 0.1 -o copy.tif; wait\n"
+      "spillway dem -q many.spm --resolution 0.1 -o direct.tif && cmp copy.tif direct.tif\n"
+      "cat many.txt > pipe & spillway dem -q pipe --resolution 0.1 -o copy.tif; wait\n"
+      "cmp copy.tif direct.tif\n");
+  const auto points = [&](const std::string& arguments) {
+    const auto json = nlohmann::json::parse(
+        work_.succeed("cat many.txt > pipe & spillway info -q --json " + arguments + "; wait"));
+    return json["points"].get<int>();
+  };
+  EXPECT_EQ(points("pipe"), 30000);
+  EXPECT_EQ(points("pipe --every 2"), 15000);
+  EXPECT_EQ(points("pipe --bounds -9,-9,9,9"), 30000);
+  EXPECT_EQ(points("/dev/fd/3 --every 3 3< pipe"), 10000);
+}
+
 TEST_F(Inputs, AnEmptyPipeIsAnErrorAndAnEmptyTextIsNone) {
   work_.write("empty.txt", "");
   work_.write("empty.las", "");

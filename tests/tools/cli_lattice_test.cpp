@@ -19,25 +19,21 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
-/// Points in a square of 10 units, with the bounds that belong to them.
-std::string las_at(const std::array<double, 3>& scale, const std::array<double, 3>& offset) {
-  testing::LasFile las = scattered_las(0, 500);
-  las.scale = scale;
-  las.offset = offset;
+/// The bytes of a LAS file with the bounds that belong to its points.
+std::string bytes_with_bounds(const testing::LasFile& las) {
   std::array<double, 6> bounds{};
   for (std::size_t k = 0; k < 3; ++k) {
     bounds[2 * k] = -std::numeric_limits<double>::infinity();
     bounds[2 * k + 1] = std::numeric_limits<double>::infinity();
   }
-  for (testing::LasFile::Record& record : las.records) {
-    record.x %= 1000;
-    record.y %= 1000;
+  for (const testing::LasFile::Record& record : las.records) {
     const std::array<double, 3> integers = {static_cast<double>(record.x),
                                             static_cast<double>(record.y),
                                             static_cast<double>(record.z)};
     for (std::size_t k = 0; k < 3; ++k) {
-      const double world = integers[k] * scale[k] + offset[k];
+      const double world = integers[k] * las.scale[k] + las.offset[k];
       bounds[2 * k] = std::max(bounds[2 * k], world);
       bounds[2 * k + 1] = std::min(bounds[2 * k + 1], world);
     }
@@ -45,6 +41,18 @@ std::string las_at(const std::array<double, 3>& scale, const std::array<double, 
   std::string bytes = las.bytes();
   std::memcpy(bytes.data() + 179, bounds.data(), sizeof(bounds));
   return bytes;
+}
+
+/// Points in a square of 10 units, with the bounds that belong to them.
+std::string las_at(const std::array<double, 3>& scale, const std::array<double, 3>& offset) {
+  testing::LasFile las = scattered_las(0, 500);
+  las.scale = scale;
+  las.offset = offset;
+  for (testing::LasFile::Record& record : las.records) {
+    record.x %= 1000;
+    record.y %= 1000;
+  }
+  return bytes_with_bounds(las);
 }
 
 void expect_error(const Workspace& work, const std::string& command,
@@ -116,6 +124,37 @@ TEST(Lattices, OfStreamsAreLookedAtPointByPoint) {
                HasSubstr("x is an integer times 0.01"));
 }
 
+TEST(Lattices, OfPointsThatAFilterDropsDoNotMatter) {
+  // Up to 2^46 the step of numbers is below the scale, and beyond it is above: only the last record
+  // lies there, of a class of its own.
+  const Workspace work;
+  testing::LasFile las = scattered_las(0, 500);
+  for (testing::LasFile::Record& record : las.records) {
+    record.x %= 1000;
+    record.y %= 1000;
+  }
+  las.offset = {0x1p46 - 1e6, 0, 0};
+  PointAttributes corrupt;
+  corrupt.classification = 7;
+  las.records.push_back({2'000'000'000, 5, 5, false, corrupt});
+  work.write("told.las", bytes_with_bounds(las));
+  las.records.back().y = 6;  // and the header has other bounds
+  work.write("untold.las", las.bytes());
+  for (const std::string name : {"told", "untold"}) {
+    expect_error(work, "spillway triangulate -q " + name + ".las -o out.spm",
+                 HasSubstr("x is an integer times 0.01"));
+    for (const std::string filter : {"--drop-class 7", "--bounds 0,0,70368743177764,10"}) {
+      const std::string options = name + ".las " + filter;
+      work.succeed("spillway triangulate -q -o out.spm " + options +
+                   "\nspillway check -q out.spm --points " + options +
+                   "\nspillway triangulate -q -o out.spm told.las " + options +
+                   "\nspillway convert -q -o out.txt --thin 1 " + options + "\nrm out.*");
+    }
+    expect_error(work, "spillway triangulate -q --drop-class 3 -o out.spm " + name + ".las",
+                 HasSubstr("x is an integer times 0.01"));
+  }
+}
+
 TEST(Lattices, OfSeveralInputsFallBackToOutputCoordinates) {
   const Workspace work;
   // Each keeps its own points apart, and their common lattice would not.
@@ -125,6 +164,19 @@ TEST(Lattices, OfSeveralInputsFallBackToOutputCoordinates) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("output coordinates"));
   work.succeed("spillway check -q out.spm --points fine.las far.las");
+}
+
+TEST(Lattices, InCommonThatDoNotKeepPointsApartAreToldSo) {
+  // Numbers are 0.00195 apart there, which is below both scales but above their common step.
+  const Workspace work;
+  work.write("a.las", las_at({.003, .003, .003}, {1e13, 0, 0}));
+  work.write("b.las", las_at({.004, .004, .004}, {1e13, 0, 0}));
+  const Result result = work.run("spillway triangulate -v a.las b.las -o out.spm");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("a.las: the common lattice of all inputs, of step 0.001, does "
+                                    "not keep its points apart, so points come in output "
+                                    "coordinates"));
+  EXPECT_THAT(result.err, Not(HasSubstr("no lattice has all inputs")));
 }
 
 TEST(Lattices, ThatConvertIsToWriteAreChecked) {

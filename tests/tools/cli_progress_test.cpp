@@ -82,6 +82,23 @@ TEST_F(ProgressOfTheCommand, TilesThatAreDividedAgainAreAPhase) {
   EXPECT_GT(stats()["phases"]["divide"], 0);
 }
 
+TEST_F(ProgressOfTheCommand, ThinningOutOfCoreIsAPhaseWithinTheOneThatReads) {
+  // Each point has a cell of its own, so what found no room is put aside.
+  work_.succeed("spillway generate -q utm -n 400000 -o in.spp");
+  const auto expect_thin = [](const Phases& all, const std::string& outer) {
+    ASSERT_GE(all.size(), 2U);
+    EXPECT_EQ(all[0].name, "thin");
+    EXPECT_EQ(all[0].unit, "points");
+    EXPECT_GT(all[0].done, 100000U);
+    EXPECT_LT(all[0].done, 400000U);
+    EXPECT_EQ(all[1], (EndedPhase{outer, 400000, "points"}));
+  };
+  const std::string thin = " in.spp --thin 1e-5 --memory 32M";
+  expect_thin(phases("triangulate -o a.spm" + thin), "read");
+  expect_thin(phases("info" + thin), "read");
+  expect_thin(phases("convert -o a.txt" + thin), "convert");
+}
+
 TEST_F(ProgressOfTheCommand, TerrainIsReadAndDrawnInPhases) {
   work_.succeed(
       "spillway generate -q terrain -n 5000 -o in.las\n"
@@ -158,10 +175,12 @@ TEST_F(ProgressOfTheCommand, CheckComparesVerticesAndPointsThatAreKept) {
   EXPECT_EQ(phases("check in.ply --points in.las --thin 1"),
             (Phases{{"read mesh", simplices, "simplices"}, check, read, compare}));
   const Phases little = phases("check in.spm --points in.las --thin 1 --memory 200K");
-  ASSERT_EQ(little.size(), 4U);
-  EXPECT_EQ(little[2].name, "divide");
-  EXPECT_GT(little[2].done, 0U);
-  EXPECT_EQ(little[3], compare);
+  ASSERT_EQ(little.size(), 5U);
+  EXPECT_EQ(little[1].name, "thin");
+  EXPECT_EQ(little[2], read);
+  EXPECT_EQ(little[3].name, "divide");
+  EXPECT_GT(little[3].done, 0U);
+  EXPECT_EQ(little[4], compare);
 }
 
 TEST_F(ProgressOfTheCommand, ConvertCountsWhatIsRead) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <sstream>
@@ -14,8 +15,11 @@ std::ostream& operator<<(std::ostream& stream, const EndedPhase& phase) {
 
 std::vector<EndedPhase> ended_phases(const std::string& standard_error) {
   std::vector<EndedPhase> phases;
-  EndedPhase now;
-  double fraction = 0;
+  struct Open {
+    EndedPhase phase;
+    double fraction = 0;
+  };
+  std::map<std::string, Open> open;
   std::istringstream lines(standard_error);
   for (std::string line; std::getline(lines, line);) {
     SCOPED_TRACE(line);
@@ -25,12 +29,12 @@ std::vector<EndedPhase> ended_phases(const std::string& standard_error) {
       continue;
     }
     if (!json.contains("phase")) continue;
+    const std::string name = json["phase"];
+    auto& [now, fraction] = open[name];
     if (now.lines == 0) {
-      now.name = json["phase"];
+      now.name = name;
       now.unit = json["unit"];
-      fraction = 0;
     }
-    EXPECT_EQ(json["phase"], now.name);
     EXPECT_EQ(json["unit"], now.unit);
     EXPECT_GE(json["done"], now.done);
     if (!json["fraction"].is_null()) {
@@ -43,9 +47,10 @@ std::vector<EndedPhase> ended_phases(const std::string& standard_error) {
     if (json["finished"] == false) continue;
     EXPECT_EQ(json["fraction"], 1);
     EXPECT_EQ(json["seconds_left"], 0);
-    phases.push_back(std::exchange(now, {}));
+    phases.push_back(now);
+    open.erase(name);
   }
-  EXPECT_EQ(now.lines, 0U) << "no last line of the phase " << now.name;
+  for (const auto& [name, left] : open) ADD_FAILURE() << "no last line of the phase " << name;
   return phases;
 }
 

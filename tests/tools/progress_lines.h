@@ -22,9 +22,9 @@ struct EndedPhase {
 /// For messages of gtest.
 std::ostream& operator<<(std::ostream& stream, const EndedPhase& phase);
 
-/// The phases of a run's standard error, in their order. Fails the test unless each line is one
-/// object, `done` and `fraction` only grow within a phase, fractions lie between 0 and 1, and each
-/// phase has one last line, with the fraction 1.
+/// The phases of a run's standard error, in the order in which they ended; one may lie within
+/// another. Fails the test unless each line is one object, `done` and `fraction` only grow within a
+/// phase, fractions lie between 0 and 1, and each phase has one last line, with the fraction 1.
 std::vector<EndedPhase> ended_phases(const std::string& standard_error);
 
 }  // namespace spillway::test
