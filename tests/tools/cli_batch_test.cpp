@@ -157,12 +157,13 @@ TEST_F(Batch, TakesNoValueForAnOptionAndNoOptionForAValue) {
   };
   EXPECT_THAT(error_of(R"({"keep-class": "--help"})"),
               HasSubstr("--keep-class: \"--help\" is no list of classes"));
-  EXPECT_THAT(error_of(R"({"max-edge": "-q"})"), HasSubstr("\"-q\" is no length"));
+  EXPECT_THAT(error_of(R"({"max-edge": "-q"})"),
+              HasSubstr("--max-edge: \"-q\" is no number above 0"));
   for (const char* const nothing : {"\"\"", "true", "[]", "[\"1\", \"\"]"}) {
     EXPECT_THAT(error_of(std::string(R"({"bounds": )") + nothing + "}"),
                 HasSubstr("north: --bounds has no value: give one, or leave it away"));
   }
-  EXPECT_THAT(error_of(R"({"help": true})"), HasSubstr("knows the option --help"));
+  EXPECT_THAT(error_of(R"({"help": true})"), HasSubstr("has a use for the option --help"));
 }
 
 TEST_F(Batch, SaysThatAFolderCannotBeWritten) {
