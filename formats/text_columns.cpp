@@ -34,6 +34,18 @@ std::size_t count_commas(std::string_view text) {
   return count;
 }
 
+/// How many fields there are where blanks separate.
+std::size_t count_fields(std::string_view text) {
+  if (text.find('"') != text.npos) return text_fields(text, Separator::kBlanks).size();
+  std::size_t count = 0;
+  while (!is_comment(text)) {
+    text.remove_prefix(text.find_first_not_of(" \t"));
+    text.remove_prefix(std::min(text.find_first_of(" \t"), text.size()));
+    ++count;
+  }
+  return count;
+}
+
 // Powers of ten by which a whole number below 2^53 can be divided with one rounding.
 constexpr std::array kPowersOfTen = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                      1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
@@ -224,11 +236,12 @@ bool read_decimal(std::string_view field, bool decimal_commas, double& value) {
 }
 
 TextColumns::TextColumns(Separator separator, bool decimal_commas, const std::array<int, 3>& column,
-                         std::size_t count)
+                         std::size_t count, bool named)
     : separator_(separator),
       decimal_commas_(decimal_commas),
       coordinates_(column[2] < 0 ? 2 : 3),
       count_(count),
+      exact_count_(named && separator == Separator::kBlanks),
       axes_(*std::max_element(column.begin(), column.end()) + 1, -1) {
   for (int axis = 0; axis < coordinates_; ++axis) axes_[column[axis]] = axis;
 }
@@ -260,7 +273,8 @@ bool TextColumns::parse_as(std::string_view line, Point<3>& point) const {
       if (axis >= 0 && !read_decimal(field, true, point[axis])) return false;
     }
   }
-  return fields.at_end() || rest_fits(fields.rest());
+  if (fields.at_end()) return !exact_count_ || axes_.size() == count_;
+  return rest_fits(fields.rest());
 }
 
 bool TextColumns::rest_fits(std::string_view rest) const {
@@ -270,6 +284,7 @@ bool TextColumns::rest_fits(std::string_view rest) const {
     while (!fields.empty() && fields.back().empty()) fields.pop_back();
     return axes_.size() + fields.size() <= count_;
   }
+  if (exact_count_ && axes_.size() + count_fields(rest) != count_) return false;
   if (separator_ != Separator::kBlanks || decimal_commas_ || rest.find(',') == rest.npos) {
     return true;
   }
@@ -302,6 +317,13 @@ std::string TextColumns::fault(std::string_view line) const {
         "column {} is one more than the {} of the header or the first row: {}; write decimal "
         "points instead of decimal commas, or separate columns by semicolons",
         count_ + 1, count_, quoted(line));
+  }
+  if (exact_count_ && fields.size() != count_) {
+    return fmt::format(
+        "column {} {}, where the header names {}: {}; write names and fields without blanks, or "
+        "separate columns by tabs or semicolons",
+        std::min(fields.size(), count_) + 1, fields.size() < count_ ? "is missing" : "is one more",
+        count_, quoted(line));
   }
   return fmt::format(
       "what stands there does not go with columns separated by {}: {}; correct or "

@@ -36,9 +36,11 @@ bool read_decimal(std::string_view field, bool decimal_commas, double& value);
 class TextColumns {
  public:
   /// Columns are counted from 0; that of z is -1 if there is none. `count` is how many columns the
-  /// file has by its header or first row. Commas that separate are not decimal commas, too.
+  /// file has by its header or first row. Commas that separate are not decimal commas, too. Where
+  /// blanks separate and the columns are `named`, every row must have that many: a blank in a field
+  /// would shift those behind it.
   TextColumns(Separator separator, bool decimal_commas, const std::array<int, 3>& column,
-              std::size_t count);
+              std::size_t count, bool named);
 
   /// 2 or 3.
   [[nodiscard]] int coordinates() const { return coordinates_; }
@@ -62,6 +64,7 @@ class TextColumns {
   bool decimal_commas_;
   int coordinates_;
   std::size_t count_;
+  bool exact_count_;
   std::vector<int> axes_;  // for each column up to the last that is read: its axis, or -1
 };
 

@@ -249,16 +249,23 @@ class Opening {
     if (!names.choice.notice.empty()) notices_.push_back(names.choice.notice);
     const std::array<int, 3>& column = names.choice.column;
     if (!next_data_line()) {
-      return without_rows(TextColumns(names.separator, false, column, names.names.size()));
+      return without_rows(TextColumns(names.separator, false, column, names.names.size(), true));
     }
     std::vector<std::string_view> fields = text_fields(line_, names.separator);
+    const std::size_t all_fields = fields.size();
     while (!fields.empty() && fields.back().empty()) fields.pop_back();
+    if (all_fields > 1 && all_fields < names.names.size()) {
+      fail(fmt::format(
+          "has {} columns, but the header names {}: {}; write names without blanks, or fill in the "
+          "missing column",
+          all_fields, names.names.size(), listed(names.names)));
+    }
     if (fields.size() > names.names.size()) {
       fail(fmt::format("has {} columns, but the header names {}: {}; name all of them, or none",
                        fields.size(), names.names.size(), listed(names.names)));
     }
     return with_row(TextColumns(names.separator, has_decimal_commas(names.separator, column),
-                                column, names.names.size()));
+                                column, names.names.size(), true));
   }
 
   /// The columns by the last comment that names those of the first row, else by the row itself.
@@ -287,7 +294,7 @@ class Opening {
           notices_.push_back(fmt::format("the comment in line {} is a header: {}", comment.line(),
                                          taken_columns(names.names, column)));
         }
-        return TextColumns(separator, commas, column, fields.size());
+        return TextColumns(separator, commas, column, fields.size(), true);
       }
     }
     return std::nullopt;
@@ -321,7 +328,8 @@ class Opening {
   }
 
   static TextColumns first_columns(const RowLayout& layout) {
-    return {layout.separator, layout.decimal_commas, first_three(layout.count), layout.count};
+    return {layout.separator, layout.decimal_commas, first_three(layout.count), layout.count,
+            false};
   }
 
   /// The first separator with which the columns that are read are numbers.

@@ -89,6 +89,7 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
                     std::move(faults));
   }
   tell_notices();
+  tell_missing_heights();
   check_coordinate_systems();
   relate_inputs();
 }
@@ -159,6 +160,18 @@ void PointSource::inspect(const std::string& path) {
     inputs_.back().facts.digest = digest_of(*files_.open(path));
   }
   if (!opens_again) inputs_.back().reader = std::move(reader);
+}
+
+/// Says which input has no z beside others that have.
+void PointSource::tell_missing_heights() const {
+  if (!has_heights()) return;
+  const auto flat = [](const Input& input) { return input.facts.header.coordinates == 2; };
+  const auto first = std::ranges::find_if(inputs_, flat);
+  if (first == inputs_.end()) return;
+  const auto all = std::ranges::count_if(inputs_, flat);
+  options_.warn(fmt::format("{}{}: the points have no z, beside others that have: it is 0 there",
+                            first->facts.header.name,
+                            all > 1 ? fmt::format(" (and {} more)", all - 1) : std::string()));
 }
 
 /// Says once what holds for many inputs.

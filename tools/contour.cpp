@@ -93,6 +93,7 @@ class ContourUse : public TerrainUse {
   }
 
   [[nodiscard]] bool wants_extent() const override { return false; }
+  [[nodiscard]] bool needs_heights() const override { return true; }
   void extent_known(const Box<2>& /*extent*/, std::uint64_t /*vertices*/) override {}
 
   [[nodiscard]] const ContourWriter& writer() const { return *writer_; }

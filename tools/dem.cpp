@@ -94,6 +94,10 @@ class Run : public TerrainUse {
   [[nodiscard]] bool wants_extent() const override {
     return !dem_options_.grid.bounds && !dem_options_.grid.given;
   }
+  [[nodiscard]] bool needs_heights() const override {
+    return std::ranges::any_of(dem_options_.products,
+                               [](DemProduct product) { return product != DemProduct::kDensity; });
+  }
   void extent_known(const Box<2>& extent, std::uint64_t vertices) override {
     if (!wants_extent()) return;
     check_size(extent, vertices);

@@ -34,6 +34,7 @@ void append_folder(const std::string& folder, Found& found) {
        entry.increment(fault)) {
     std::error_code unknown;
     const std::string name = entry->path().string();
+    if (entry->path().filename().string().starts_with('.')) continue;  // hidden
     if (!point_format_of_path(name) || entry->is_directory(unknown)) continue;
     if (is_part_of_npy_mesh(disk(), name)) {
       ++found.of_meshes;

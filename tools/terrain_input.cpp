@@ -140,6 +140,12 @@ class TerrainFeed {
                           {.dimension = D, .memory = tools_.budget.limit(), .ranks = tools_.ranks},
                           tools_.scratch, tools_.progress);
     check_heights(options_, *source);
+    if (use_.needs_heights() && !source->has_heights()) {
+      throw Error(
+          fmt::format("{}: the points have no z: name the column of heights z, or give "
+                      "points that have heights",
+                      options_.inputs.front()));
+    }
     MeshStreamWriter& writer = use_.begin({D, source->lattice(), source->crs(), std::nullopt});
     stream.extent_known = [this](const Box<2>& extent, std::uint64_t points) {
       use_.extent_known(extent, points);

@@ -54,6 +54,9 @@ class TerrainUse {
   /// Whether extent_known() is needed: a mesh stream has to be read twice then.
   [[nodiscard]] virtual bool wants_extent() const = 0;
 
+  /// Whether points without z are of no use.
+  [[nodiscard]] virtual bool needs_heights() const { return false; }
+
   /// The box around all vertices, in the coordinates in which they come, and how many these are
   /// (of points: how many points), before the first triangle. It may be empty where it is not
   /// wanted, or where tetrahedra come.

@@ -1,5 +1,7 @@
 #include "src/terrain/grid_choice.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,7 +47,9 @@ PixelGrid choose_grid(const GridRequest& request, const Box<2>& extent) {
   const double columns = pixels_for(box.hi[0] - box.lo[0], resolution);
   const double rows = pixels_for(box.hi[1] - box.lo[1], resolution);
   if (!(columns <= kMostPixels && rows <= kMostPixels)) {
-    const auto count = [](double pixels) { return std::to_string(pixels).substr(0, 18); };
+    const auto count = [](double pixels) {
+      return pixels < 1e15 ? fmt::format("{:.0f}", pixels) : fmt::format("{:.3g}", pixels);
+    };
     throw UsageError("a raster of " + count(columns) + " x " + count(rows) +
                      " pixels is more than GeoTIFF can hold (2147483647 each way); give a coarser "
                      "--resolution or smaller --bounds");

@@ -162,6 +162,23 @@ TEST(TextHeader, ASentenceThatSaysOtherThanItsPlaceIsTold) {
               ElementsAre(HasSubstr("the comment in line 1 is not taken for a header")));
 }
 
+TEST(TextHeader, WithBlanksInNamesWhereBlanksSeparateIsAnError) {
+  EXPECT_THAT(text_error("GPS Time X Y Z Intensity\n1000.5 10 20 30 7\n"),
+              HasSubstr("line 2 has 5 columns, but the header names 6"));
+  EXPECT_THAT(text_error("X (m) Y (m) Z (m) Intensity Class\n10.5 20.5 30.5 40 2\n"),
+              HasSubstr("line 2 has 5 columns, but the header names 8"));
+  EXPECT_THAT(text_error("id,x,y,z,i\n10,20,30,5\n"),
+              HasSubstr("line 2 has 4 columns, but the header names 5"));
+}
+
+TEST(TextHeader, WhereBlanksSeparateEveryRowHasAsManyColumns) {
+  EXPECT_THAT(text_error("pt x y z\nA1 10 20 30\nA 2 11 20 4\n"),
+              HasSubstr("line 3, column 5 is one more, where the header names 4"));
+  EXPECT_THAT(text_error("id x y z code\n1 10 20 30 7\n11 21 31 8\n"),
+              HasSubstr("line 3, column 5 is missing, where the header names 5"));
+  EXPECT_THAT(points_of("id x y z code\n1 10 20 30 \"a b\" # a note\n"), ElementsAre(kPoint));
+}
+
 TEST(TextHeader, FixesTheSeparator) {
   EXPECT_THAT(points_of("x;y;z\n1,5;2,5;3,5\n"), ElementsAre(Point<3>{1.5, 2.5, 3.5}));
   EXPECT_THAT(text_error("x;y;z\n1,2,3\n"), HasSubstr("line 2, column 1 is no number: \"1,2,3\""));

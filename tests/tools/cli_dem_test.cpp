@@ -498,5 +498,18 @@ TEST(DemFaults, AFailedRunKeepsTheFileThatWasThere) {
   EXPECT_EQ(work.read("dem.tif"), "old");
 }
 
+TEST(DemFaults, PointsWithoutHeightsHaveNone) {
+  Workspace space;
+  space.write("flat.csv", "x,y\n0,0\n5,0\n0,5\n5,5\n");
+  for (const std::string what :
+       {"dem flat.csv -o a.tif --resolution 1", "contour flat.csv -o a.geojson --interval 1"}) {
+    const Result result = space.run("spillway " + what);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, HasSubstr("flat.csv: the points have no z"));
+  }
+  space.succeed("spillway dem flat.csv -o a.tif --resolution 1 --product density");
+  EXPECT_EQ(space.names(), (std::vector<std::string>{"a.tif", "flat.csv"}));
+}
+
 }  // namespace
 }  // namespace spillway::test

@@ -79,6 +79,19 @@ TEST_F(Inputs, AFolderIsNotSearchedFurtherDown) {
   EXPECT_EQ(hash("tiles"), hash("all.las"));
 }
 
+TEST_F(Inputs, HiddenFilesOfAFolderAreLeftOut) {
+  work_.write("tiles/._0.las", "what some systems put beside a file");
+  work_.write("tiles/.6.las", scattered_las(3000, 10).bytes());
+  EXPECT_EQ(hash("tiles"), hash("all.las"));
+}
+
+TEST_F(Inputs, WithoutHeightsBesideOthersAreToldSo) {
+  work_.write("flat.csv", "x,y\n0,0\n5,0\n0,5\n");
+  work_.write("high.csv", "x,y,z\n7,7,7\n");
+  EXPECT_THAT(work_.run("spillway triangulate flat.csv high.csv -o mesh.ply").err,
+              HasSubstr("flat.csv: the points have no z, beside others that have: it is 0 there"));
+}
+
 TEST_F(Inputs, NpyMeshesOfAFolderAreNoPoints) {
   work_.succeed("spillway triangulate -q --id all.las -o tiles/mesh.npy");
   EXPECT_EQ(hash("tiles"), hash("all.las"));
@@ -100,7 +113,7 @@ TEST_F(Inputs, MeshesAreToldFromPoints) {
 TEST_F(Inputs, NamedPipesAreReadOnceFromTheirFirstByteOn) {
   work_.succeed(
       "mkfifo pipe\n"
-      "spillway generate -q uniform -n 30000 -o many.txt\n"
+      "spillway generate -q uniform --dim 3 -n 30000 -o many.txt\n"
       "spillway triangulate -q many.txt -o many.spm\n"
       "cat many.txt > pipe & spillway convert -q pipe -o copy.txt; wait\n"
       "spillway convert -q many.txt -o direct.txt && cmp copy.txt direct.txt\n"
