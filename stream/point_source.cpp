@@ -89,7 +89,6 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
                     std::move(faults));
   }
   tell_notices();
-  tell_missing_heights();
   check_coordinate_systems();
   relate_inputs();
 }
@@ -162,18 +161,6 @@ void PointSource::inspect(const std::string& path) {
   if (!opens_again) inputs_.back().reader = std::move(reader);
 }
 
-/// Says which input has no z beside others that have.
-void PointSource::tell_missing_heights() const {
-  if (!has_heights()) return;
-  const auto flat = [](const Input& input) { return input.facts.header.coordinates == 2; };
-  const auto first = std::ranges::find_if(inputs_, flat);
-  if (first == inputs_.end()) return;
-  const auto all = std::ranges::count_if(inputs_, flat);
-  options_.warn(fmt::format("{}{}: the points have no z, beside others that have: it is 0 there",
-                            first->facts.header.name,
-                            all > 1 ? fmt::format(" (and {} more)", all - 1) : std::string()));
-}
-
 /// Says once what holds for many inputs.
 void PointSource::tell_notices() const {
   struct Notice {
@@ -181,23 +168,29 @@ void PointSource::tell_notices() const {
     const std::string* first;
     std::size_t count;
   };
+  static const std::string no_heights =
+      "the points have no z, beside others that have: it is 0 there";
   std::vector<Notice> notices;
+  const auto add = [&](const PointHeader& header, const std::string& text) {
+    const auto known =
+        std::ranges::find_if(notices, [&](const Notice& notice) { return *notice.text == text; });
+    if (known == notices.end()) {
+      notices.push_back({&text, &header.name, 1});
+    } else {
+      ++known->count;
+    }
+  };
+  const bool heights = has_heights();
   for (const Input& input : inputs_) {
     const PointHeader& header = input.facts.header;
-    for (const std::string& text : header.notices) {
-      const auto known =
-          std::ranges::find_if(notices, [&](const Notice& notice) { return *notice.text == text; });
-      if (known == notices.end()) {
-        notices.push_back({&text, &header.name, 1});
-      } else {
-        ++known->count;
-      }
-    }
+    for (const std::string& text : header.notices) add(header, text);
+    if (heights && header.coordinates == 2) add(header, no_heights);
   }
   for (const Notice& notice : notices) {
     const std::string more =
         notice.count > 1 ? fmt::format(" (and {} more)", notice.count - 1) : std::string();
-    options_.warn(fmt::format("{}{}: {}", *notice.first, more, *notice.text));
+    options_.warn(fmt::format("{}{}: {}", *notice.first == "-" ? "standard input" : *notice.first,
+                              more, *notice.text));
   }
 }
 

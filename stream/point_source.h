@@ -150,7 +150,6 @@ class PointSource {
   void set_reader_options();
   void inspect(const std::string& path);
   void tell_notices() const;
-  void tell_missing_heights() const;
   void add_input(const std::string& path, SourceFacts::Input facts);
   void relate_inputs();
   void check_coordinate_systems();
