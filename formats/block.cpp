@@ -9,7 +9,7 @@
 #include "formats/lz4.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // Where the head's fields are.
@@ -103,4 +103,4 @@ void decode_block(const BlockHead& head, std::span<const std::byte> stored,
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

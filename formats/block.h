@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What stands before a block's content.
 struct BlockHead {
@@ -38,4 +38,4 @@ BlockHead decode_block_head(std::span<const std::byte, kBlockHeadSize> bytes,
 void decode_block(const BlockHead& head, std::span<const std::byte> stored,
                   std::vector<std::byte>& content, const std::string& where);
 
-}  // namespace spillway
+}  // namespace spillway::detail

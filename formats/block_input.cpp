@@ -4,7 +4,7 @@
 #include <cstring>
 #include <span>
 
-namespace spillway {
+namespace spillway::detail {
 
 BlockInput::BlockInput(InputSource& source)
     : source_(source),
@@ -24,4 +24,4 @@ bool BlockInput::refill(std::size_t size) {
   return end_ >= size;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

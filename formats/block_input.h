@@ -6,7 +6,7 @@
 
 #include "formats/input_source.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Hands out small pieces of a file that is read in blocks. `source` must outlive it.
 class BlockInput {
@@ -45,4 +45,4 @@ class BlockInput {
   std::size_t end_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 
 #include "formats/bytes.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 void BlockOutput::append(std::string_view text) {
   while (!text.empty()) {
@@ -32,4 +32,4 @@ void BlockOutput::flush() {
   used_ = 0;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 
 #include "formats/file_system.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Collects small pieces and hands them to a file in blocks of some megabytes, which the file
 /// passes on without copying.
@@ -48,4 +48,4 @@ class BlockOutput {
   std::size_t used_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

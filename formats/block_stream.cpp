@@ -9,7 +9,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 BlockStream::BlockStream(std::unique_ptr<InputSource> source, const BlockStreamFormat& format,
                          std::function<std::string()> so_far)
@@ -87,4 +87,4 @@ void BlockStream::read_bytes(std::span<std::byte> bytes) {
       source_->name(), format_.contents, source_->position(), so_far_()));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -15,7 +15,7 @@
 #include "formats/input_source.h"
 #include "src/geometry/box.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What streams of Spillway's own have in common.
 struct BlockStreamFormat {
@@ -78,4 +78,4 @@ class BlockStream {
   std::span<const std::byte> left_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

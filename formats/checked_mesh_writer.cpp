@@ -7,7 +7,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 CheckedMeshWriter::CheckedMeshWriter(MeshHeader header, std::string name)
     : header_(std::move(header)), name_(std::move(name)) {
@@ -64,4 +64,4 @@ void CheckedMeshWriter::fail(const std::string& what) const {
   throw Error(fmt::format("cannot write {}: {}", name_, what));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

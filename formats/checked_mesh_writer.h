@@ -4,7 +4,7 @@
 
 #include "formats/mesh_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What all mesh writers have in common: that numbers add up to the header's and that vertex
 /// numbers are valid is checked here; a format only puts values down.
@@ -41,4 +41,4 @@ class CheckedMeshWriter : public MeshWriter {
   std::uint64_t simplices_ = 0;  // written so far
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 
 #include "formats/line_reader.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Kinds of coordinates, those that are chosen first standing first. x and y have four; each name
@@ -363,4 +363,4 @@ std::string listed(std::span<const std::string_view> names) {
   return list + (names.size() > kMost ? ", ..." : "");
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

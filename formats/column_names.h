@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What the names of columns say of x, y and z.
 struct ColumnChoice {
@@ -36,4 +36,4 @@ std::string taken_columns(std::span<const std::string_view> names,
 /// The names in quotes, separated by commas; of many the first ones.
 std::string listed(std::span<const std::string_view> names);
 
-}  // namespace spillway
+}  // namespace spillway::detail

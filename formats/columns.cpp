@@ -17,7 +17,7 @@
 // out the conversion between doubles and 64-bit integers: an integer of up to 51 bits is instead
 // added to 1.5 * 2^52, where neighbouring doubles differ by 1, and read off the lowest bits.
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::uint8_t kIntegers = 0;
@@ -311,4 +311,4 @@ void ColumnReader::expect_end() const {
   if (!left_.empty()) fail(where_, "bytes are left over behind the last column");
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Appends a column. Values are restored to the bit, negative zero included.
 void append_column(std::vector<std::byte>& out, std::span<const double> values);
@@ -36,4 +36,4 @@ class ColumnReader {
   std::string where_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -17,7 +17,7 @@
 #include "formats/lz4_filter.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kCompressedBuffer = std::size_t{128} << 10;
@@ -179,4 +179,4 @@ std::unique_ptr<InputFile> decompressed(InputSource& source, Compression compres
   return std::make_unique<BoostInput>(source, compression);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 
 #include "formats/input_source.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 enum class Compression { kNone, kGzip, kBzip2, kZstd, kLz4 };
 
@@ -27,4 +27,4 @@ Compression compression_of_content(std::span<const std::byte> first_bytes);
 /// as much as that window, 2 GiB at most. `source` must outlive the result.
 std::unique_ptr<InputFile> decompressed(InputSource& source, Compression compression);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -43,4 +43,4 @@ std::optional<std::uint64_t> parse_count(std::string_view text) {
   return parse<std::uint64_t>(text);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

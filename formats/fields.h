@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The fields of one line of a text mesh, separated by blanks and tabs.
 class Fields {
@@ -32,4 +32,4 @@ class Fields {
 /// All of `text` as an unsigned integer, or nothing.
 std::optional<std::uint64_t> parse_count(std::string_view text);
 
-}  // namespace spillway
+}  // namespace spillway::detail

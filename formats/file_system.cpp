@@ -15,7 +15,7 @@
 #include "formats/unfinished_files.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kOutputBuffer = std::size_t{1} << 20;
@@ -233,4 +233,4 @@ FileSystem& disk() {
   return instance;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A byte stream that is read forwards, and from any byte on where it is a file.
 class InputFile {
@@ -73,4 +73,4 @@ class FileSystem {
 /// which is main's business.
 FileSystem& disk();
 
-}  // namespace spillway
+}  // namespace spillway::detail

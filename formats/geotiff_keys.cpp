@@ -11,7 +11,7 @@
 #include "formats/bytes.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Keys, by their names in the standard.
@@ -328,4 +328,4 @@ std::vector<std::byte> geotiff_keys_of(std::uint16_t code, CrsKind kind) {
   return {bytes.begin(), bytes.end()};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

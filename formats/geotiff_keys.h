@@ -12,7 +12,7 @@
 
 #include "formats/gdal/gdal.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Codes of EPSG are below it; as a value it means that other keys define the system.
 inline constexpr std::uint16_t kGeotiffUserDefined = 32767;
@@ -37,4 +37,4 @@ std::optional<CrsKind> kind_of_epsg(std::uint16_t code);
 /// not CrsKind::kOther.
 std::vector<std::byte> geotiff_keys_of(std::uint16_t code, CrsKind kind);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace spillway::glb {
+namespace spillway::detail::glb {
 
 inline constexpr std::string_view kMagic = "glTF";
 inline constexpr std::uint32_t kVersion = 2;
@@ -26,4 +26,4 @@ inline constexpr int kTriangles = 4;
 
 inline constexpr const char* kGenerator = "Spillway";
 
-}  // namespace spillway::glb
+}  // namespace spillway::detail::glb

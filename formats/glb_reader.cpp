@@ -13,7 +13,7 @@
 #include "formats/whole_file.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Json = nlohmann::json;
@@ -232,4 +232,4 @@ class GlbReader {
 
 Mesh read_glb(InputSource& source) { return GlbReader(source).read(); }
 
-}  // namespace spillway
+}  // namespace spillway::detail

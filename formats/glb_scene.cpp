@@ -6,7 +6,7 @@
 
 #include "src/error.h"
 
-namespace spillway::glb {
+namespace spillway::detail::glb {
 namespace {
 
 using Json = nlohmann::json;
@@ -100,4 +100,4 @@ std::vector<PlacedMesh> placed_meshes(const Json& gltf) {
   return result;
 }
 
-}  // namespace spillway::glb
+}  // namespace spillway::detail::glb

@@ -8,7 +8,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::glb {
+namespace spillway::detail::glb {
 
 /// An affine map: three rows of four.
 using Transform = std::array<std::array<double, 4>, 3>;
@@ -26,4 +26,4 @@ struct PlacedMesh {
 /// if the nodes make no tree, and nlohmann::json::exception for what is not as glTF has it.
 std::vector<PlacedMesh> placed_meshes(const nlohmann::json& gltf);
 
-}  // namespace spillway::glb
+}  // namespace spillway::detail::glb

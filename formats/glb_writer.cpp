@@ -15,7 +15,7 @@
 #include "formats/glb_format.h"
 #include "formats/local_origin.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -183,4 +183,4 @@ std::unique_ptr<MeshWriter> open_glb_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<GlbWriter>(std::move(file), header);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 #include "formats/file_system.h"
 #include "formats/mesh_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Begins a binary glTF file: float32 positions from an origin near the first vertex, which a node
 /// adds, within a node that turns z up to glTF's y up. Throws Error if the mesh is too large for
@@ -13,4 +13,4 @@ namespace spillway {
 std::unique_ptr<MeshWriter> open_glb_writer(std::unique_ptr<OutputFile> file,
                                             const MeshHeader& header);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The numbers of IdRuns, one after another.
 class GlobalIds {
@@ -37,4 +37,4 @@ inline void append_id(std::vector<IdRun>& runs, std::uint64_t id, std::uint64_t 
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "formats/sma_reader.h"
 #include "formats/spm_format.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kProbe = 4096;
@@ -51,4 +51,4 @@ InputKind kind_of_input(ProbedInput& input) {
   return looks_like_sma(text) ? InputKind::kMeshStream : InputKind::kPoints;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

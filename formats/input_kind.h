@@ -6,7 +6,7 @@
 #include "formats/file_system.h"
 #include "formats/input_source.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A file system in which one input can be looked at before somebody opens it: what the look has
 /// read of a pipe is not lost. Everything else is as in the file system beneath.
@@ -53,4 +53,4 @@ enum class InputKind {
 /// holds points or a mesh stream. Throws Error if it cannot be opened.
 InputKind kind_of_input(ProbedInput& input);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -7,7 +7,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 std::span<const std::byte> InputSource::peek(std::size_t count) {
   peeked_.erase(peeked_.begin(), peeked_.begin() + static_cast<std::ptrdiff_t>(peeked_read_));
@@ -61,4 +61,4 @@ std::optional<double> InputSource::fraction_read() const {
   return std::min(1.0, static_cast<double>(position_) / static_cast<double>(*total));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

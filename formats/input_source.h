@@ -10,7 +10,7 @@
 
 #include "formats/file_system.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// An input file whose next bytes can be looked at before they are read, so that a pipe's format
 /// can be recognised, and that knows how far it has been read.
@@ -50,4 +50,4 @@ class InputSource : public InputFile {
   std::uint64_t position_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -1,7 +1,7 @@
 #pragma once
 // What writer and reader of LandXML agree on: see docs/formats-meshes.md ("LandXML").
 
-namespace spillway::landxml {
+namespace spillway::detail::landxml {
 
 inline constexpr const char* kEpsgCode = "epsgCode";
 inline constexpr const char* kWkt = "ogcWktCode";
@@ -9,4 +9,4 @@ inline constexpr const char* kWkt = "ogcWktCode";
 inline constexpr const char* kNotes = "Spillway";
 inline constexpr const char* kNote = "note";
 
-}  // namespace spillway::landxml
+}  // namespace spillway::detail::landxml

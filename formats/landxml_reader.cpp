@@ -18,7 +18,7 @@
 #include "formats/xml_scanner.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Text with its entities replaced.
@@ -201,4 +201,4 @@ class LandXmlReader {
 
 Mesh read_landxml(InputSource& source) { return LandXmlReader(source).read(); }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,10 +3,10 @@
 #include "formats/input_source.h"
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Reads the one TIN surface of a LandXML file. The text is held in memory as a whole. Throws Error
 /// that names the file and the line.
 Mesh read_landxml(InputSource& source);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -16,7 +16,7 @@
 #include "formats/mesh_text.h"
 #include "formats/xml_scanner.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr double kFoot = 0.3048;
@@ -120,4 +120,4 @@ std::unique_ptr<MeshWriter> open_landxml_writer(std::unique_ptr<OutputFile> file
   return std::make_unique<LandXmlWriter>(std::move(file), header);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,11 +5,11 @@
 #include "formats/file_system.h"
 #include "formats/mesh_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Begins a LandXML 1.2 file of one TIN surface, with all digits of the coordinates. Throws Error
 /// if the header's coordinate system is none.
 std::unique_ptr<MeshWriter> open_landxml_writer(std::unique_ptr<OutputFile> file,
                                                 const MeshHeader& header);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -15,7 +15,7 @@
 #include "formats/las_header.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// A coordinate system as GeoTIFF keys tell it.
@@ -149,4 +149,4 @@ LasCrs las_crs(const std::string& crs, const std::string& wkt, bool version14) {
   return result;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

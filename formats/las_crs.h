@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Bit of the global encoding: the coordinate system is WKT.
 inline constexpr std::uint16_t kLasWktBit = 0x10;
@@ -23,4 +23,4 @@ struct LasCrs {
 /// WKT beside it if that is what `crs` is. Throws Error if LAS cannot hold it.
 LasCrs las_crs(const std::string& crs, const std::string& wkt, bool version14);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -14,7 +14,7 @@
 #include "formats/geotiff_keys.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// The fields that only reading needs.
@@ -371,4 +371,4 @@ PointHeader las_point_header(const LasHeader& las, const std::string& path) {
   return header;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -16,7 +16,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Where the fields of the public header block lie.
 namespace las_field {
@@ -92,4 +92,4 @@ LasHeader read_las_header(InputSource& source);
 /// The same as any point source has it, for a source of that name.
 PointHeader las_point_header(const LasHeader& las, const std::string& path);
 
-}  // namespace spillway
+}  // namespace spillway::detail

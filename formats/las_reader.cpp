@@ -10,7 +10,7 @@
 #include "formats/laz/laz_reader.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // A block of records stays within the processor's caches whatever the record length.
@@ -127,4 +127,4 @@ std::unique_ptr<PointReader> open_las_reader(std::unique_ptr<InputSource> source
   return std::make_unique<LasReader>(std::move(source), las, path, options);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 #include "formats/input_source.h"
 #include "formats/point_reader.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Opens LAS 1.0 to 1.5, point formats 0 to 10, compressed (LAZ, COPC) or not. `path` is the
 /// source's name as the user gave it.
@@ -14,4 +14,4 @@ std::unique_ptr<PointReader> open_las_reader(std::unique_ptr<InputSource> source
                                              const std::string& path,
                                              const PointReaderOptions& options);
 
-}  // namespace spillway
+}  // namespace spillway::detail

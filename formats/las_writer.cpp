@@ -17,7 +17,7 @@
 #include "src/error.h"
 #include "src/geometry/box.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kBlockPoints = 8192;
@@ -239,4 +239,4 @@ std::unique_ptr<PointWriter> open_las_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<LasWriter>(std::move(file), options);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

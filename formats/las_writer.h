@@ -5,7 +5,7 @@
 #include "formats/file_system.h"
 #include "formats/point_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Writes LAS: version 1.2 with point format 0, or 1.4 with point format 6, which counts more than
 /// 2^32 - 1 points and holds more classes, more returns and the overlap flag. Counts and bounds are
@@ -15,4 +15,4 @@ namespace spillway {
 std::unique_ptr<PointWriter> open_las_writer(std::unique_ptr<OutputFile> file,
                                              const PointWriterOptions& options);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 bool is_exact_on(int axis, const Lattice& lattice, const Box<3>& integers, int dimension) {
@@ -93,4 +93,4 @@ Box<3> integers_of(const Lattice& lattice, const Box<3>& world) {
   return integers;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Whether a lattice keeps all integers of a box apart on the first `dimension` axes, and gives
 /// finite numbers on the others; so for an empty box.
@@ -36,4 +36,4 @@ Box<3> box_around(std::span<const Point<3>> points);
 /// Integers that are mapped into a box of output coordinates, and perhaps a few more.
 Box<3> integers_of(const Lattice& lattice, const Box<3>& world);
 
-}  // namespace spillway
+}  // namespace spillway::detail

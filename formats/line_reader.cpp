@@ -8,7 +8,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 bool LineReader::next(std::string_view& line) {
   std::size_t searched = 0;
@@ -87,4 +87,4 @@ std::string quoted(std::string_view text) {
   return result + (text.size() > kLongest ? "...\"" : "\"");
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

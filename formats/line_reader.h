@@ -8,7 +8,7 @@
 
 #include "formats/file_system.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Lines of a text file, read in big chunks. A line ends with LF or CR LF or the end of the file; a
 /// UTF-8 byte order mark before the first one is dropped. Memory is constant: a line longer than
@@ -73,4 +73,4 @@ bool looks_like_text(std::string_view bytes);
 /// Text for messages: at most some 60 characters, nothing that is not printable, in quotes.
 std::string quoted(std::string_view text);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The vertices of a mesh stream that are announced and may still be used: as few as the border, as
 /// those that come and go within one block are never entered.
@@ -33,4 +33,4 @@ class LiveVertices {
   std::uint64_t block_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr int kDigits = 9;
@@ -32,4 +32,4 @@ std::optional<std::array<float, 3>> to_local(const Point<3>& vertex, const Point
   return local;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

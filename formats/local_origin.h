@@ -5,7 +5,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// An origin for a mesh with this vertex: its coordinates rounded to whole numbers, and to nine
 /// digits, so that it can be said in few characters.
@@ -14,4 +14,4 @@ Point<3> local_origin(const Point<3>& vertex);
 /// `vertex` as seen from `origin`, rounded to float; nothing if that is beyond float's range.
 std::optional<std::array<float, 3>> to_local(const Point<3>& vertex, const Point<3>& origin);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Vertices one after another whose numbers in a larger mesh count up by one.
 struct IdRun {
@@ -41,4 +41,4 @@ struct Mesh {
   [[nodiscard]] std::size_t corners_per_simplex() const { return header.dimension + 1; }
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -1,6 +1,6 @@
 #include "formats/mesh_block.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 void append_stream_numbers(const MeshBlock& block, std::uint64_t first,
                            std::vector<std::uint64_t>& corners) {
@@ -29,4 +29,4 @@ void move_to_world(const MeshStreamHeader& header, MeshBlock& block) {
   for (Point<3>& vertex : block.vertices) vertex = header.lattice->to_world(vertex);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

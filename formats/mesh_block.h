@@ -7,7 +7,7 @@
 #include "formats/mesh.h"
 #include "formats/mesh_stream.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Appends the corners of a block's simplices as stream numbers, where the block's vertices are
 /// numbered from `first` on.
@@ -20,4 +20,4 @@ MeshHeader header_of_mesh(const MeshStreamHeader& header, const MeshTotals& tota
 /// Maps the vertices of a block to output coordinates.
 void move_to_world(const MeshStreamHeader& header, MeshBlock& block);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 bool is_spillway_note(std::string_view comment) { return comment.starts_with("spillway "); }
 
@@ -15,4 +15,4 @@ void fail_for_point_cloud(const std::string& file, std::string_view format) {
       file, format));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Whether a comment is one of Spillway's own notes: then the file is a mesh even if it has no
 /// simplices.
@@ -12,4 +12,4 @@ bool is_spillway_note(std::string_view comment);
 /// Throws Error that says that the file of that format has no faces or tetrahedra, and what to do.
 [[noreturn]] void fail_for_point_cloud(const std::string& file, std::string_view format);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 
 #include "formats/fields.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::string_view kLatticeNote = "spillway lattice ";
@@ -67,4 +67,4 @@ std::string one_line(std::string text) {
   return text;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

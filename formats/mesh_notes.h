@@ -9,7 +9,7 @@
 
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The notes that describe a mesh, one a comment line, without the comment sign:
 /// "spillway dimension 2", "spillway lattice sx sy sz ox oy oz", "crs ..." (several of these if the
@@ -28,4 +28,4 @@ std::optional<Lattice> lattice_of(std::span<const double> numbers);
 /// A coordinate system in one line: each line break or control character becomes a blank.
 std::string one_line(std::string text);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "formats/vtu_names.h"
 #include "formats/xml_scanner.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 std::string extension_of_format(MeshFormat format) {
@@ -59,4 +59,4 @@ std::string pvtu_text(const std::string& path, int parts, bool has_input_index) 
   return text + "  </PUnstructuredGrid>\n</VTKFile>\n";
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

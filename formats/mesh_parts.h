@@ -6,7 +6,7 @@
 
 #include "formats/mesh_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The extension of VTK's index.
 inline constexpr const char* kPvtu = "pvtu";
@@ -22,4 +22,4 @@ std::string pvtu_name(const std::string& path);
 /// The index of the mesh `path` in so many parts.
 std::string pvtu_text(const std::string& path, int parts, bool has_input_index);
 
-}  // namespace spillway
+}  // namespace spillway::detail

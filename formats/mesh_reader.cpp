@@ -34,7 +34,7 @@
 #include "formats/vtu_reader.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kProbe = 1024;
@@ -247,4 +247,4 @@ Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& fo
   return mesh;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "formats/mesh.h"
 #include "formats/mesh_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The format of meshes that the first bytes tell of; nothing if they are not those of a mesh.
 std::optional<MeshFormat> mesh_format_of_content(InputSource& source);
@@ -27,4 +27,4 @@ bool is_mesh(FileSystem& files, const std::string& path);
 /// Throws Error that names the file and the byte or line.
 Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name = "");
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include "formats/spm_reader.h"
 #include "formats/spm_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Bytes that are appended, then read; those that came last are in memory.
 class ByteSpool {
@@ -135,4 +135,4 @@ std::size_t MeshSpool::read(std::uint64_t offset, std::span<std::byte> bytes) co
   return store_->read(offset, bytes);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "formats/mesh_writer.h"
 #include "formats/scratch_folder.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 class ByteSpool;
 
@@ -50,4 +50,4 @@ class MeshSpool : public MeshStreamWriter {
   std::unique_ptr<MeshStreamWriter> encoder_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -14,7 +14,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What a mesh stream says before its first block.
 struct MeshStreamHeader {
@@ -118,4 +118,4 @@ std::unique_ptr<MeshStreamReader> open_mesh_stream_reader(FileSystem& files,
                                                           const std::string& path,
                                                           const std::string& format_name = "");
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 #include "formats/spm_reader.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kProbe = 4096;
@@ -48,4 +48,4 @@ std::unique_ptr<MeshStreamReader> open_mesh_stream_reader(FileSystem& files,
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

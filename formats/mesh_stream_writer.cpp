@@ -8,7 +8,7 @@
 #include "formats/stl_writer.h"
 #include "formats/vector_mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 std::unique_ptr<MeshStreamWriter> open_mesh_stream_writer(FileSystem& files,
                                                           const std::string& path,
@@ -32,4 +32,4 @@ std::unique_ptr<MeshStreamWriter> open_mesh_stream_writer(FileSystem& files,
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

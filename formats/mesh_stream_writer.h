@@ -7,7 +7,7 @@
 #include "formats/mesh_writer.h"
 #include "formats/scratch_folder.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Opens `path` ("-": standard output) for a mesh that comes block by block, in any format: those
 /// whose headers come first are spooled in `scratch`, which must outlive the writer. The output's
@@ -18,4 +18,4 @@ std::unique_ptr<MeshStreamWriter> open_mesh_stream_writer(FileSystem& files,
                                                           const MeshStreamHeader& header,
                                                           ScratchFolder& scratch);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,7 +3,7 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // No line is longer: four numbers of at most 24 characters, and a short keyword.
@@ -38,4 +38,4 @@ void append_simplex(BlockOutput& output, std::string_view keyword,
 
 void append_line_end(BlockOutput& output) { output.append("\n"); }
 
-}  // namespace spillway
+}  // namespace spillway::detail

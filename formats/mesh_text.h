@@ -8,7 +8,7 @@
 #include "formats/block_output.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Appends `before` and x, y, z with the fewest digits that give the same doubles again, separated
 /// by blanks.
@@ -23,4 +23,4 @@ void append_simplex(BlockOutput& output, std::string_view keyword,
 
 void append_line_end(BlockOutput& output);
 
-}  // namespace spillway
+}  // namespace spillway::detail

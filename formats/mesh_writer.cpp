@@ -17,7 +17,7 @@
 #include "formats/vtu_writer.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 struct NamedFormat {
@@ -161,4 +161,4 @@ std::unique_ptr<MeshWriter> open_mesh_writer(FileSystem& files, const std::strin
       create_mesh_files(files, path, format, header.dimension, header.has_input_index), header);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

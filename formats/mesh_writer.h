@@ -9,7 +9,7 @@
 #include "formats/file_system.h"
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Writes one mesh: first all vertices, in blocks of any size, then all simplices, then finish().
 /// Numbers must add up to the header's counts. Nothing appears under the final name before
@@ -82,4 +82,4 @@ std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshHeader& 
 std::unique_ptr<MeshWriter> open_mesh_writer(FileSystem& files, const std::string& path,
                                              MeshFormat format, const MeshHeader& header);
 
-}  // namespace spillway
+}  // namespace spillway::detail

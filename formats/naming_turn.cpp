@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <thread>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// A turn takes some renames long.
@@ -33,4 +33,4 @@ NamingTurn::~NamingTurn() {
   if (folder_ >= 0) ::close(folder_);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

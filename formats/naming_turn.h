@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// While it exists, no other run has one for the same folder. An output of several files takes one
 /// while these get their names, so that two runs which write to one name don't mix theirs. Where
@@ -19,4 +19,4 @@ class NamingTurn {
   int folder_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include "formats/bytes.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kLongestDictionary = 65536;
@@ -157,4 +157,4 @@ std::string npy_header_bytes(const NpyHeader& header) {
   return bytes + dictionary;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 
 #include "formats/input_source.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 inline constexpr std::string_view kNpyMagic = "\x93NUMPY";
 
@@ -29,4 +29,4 @@ NpyHeader read_npy_header(InputSource& source);
 /// A header of version 1.0, padded as NumPy does, so that elements begin at a multiple of 64 bytes.
 std::string npy_header_bytes(const NpyHeader& header);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 #include "formats/number_type.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::string_view kExtension = ".npy";
@@ -248,4 +248,4 @@ Mesh read_npy_mesh(FileSystem& files, const NpyMeshNames& names) {
   return mesh;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

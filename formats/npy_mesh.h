@@ -11,7 +11,7 @@
 #include "formats/mesh.h"
 #include "formats/mesh_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// How the name of the file with a mesh's simplices ends.
 inline constexpr std::string_view kNpySimplices = "_simplices.npy";
@@ -44,4 +44,4 @@ std::unique_ptr<MeshWriter> open_npy_mesh_writer(MeshFiles files, const MeshHead
 /// Reads the mesh. Throws Error that names the file and the byte.
 Mesh read_npy_mesh(FileSystem& files, const NpyMeshNames& names);
 
-}  // namespace spillway
+}  // namespace spillway::detail

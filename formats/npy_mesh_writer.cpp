@@ -11,7 +11,7 @@
 #include "formats/unfinished_files.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// One array being written.
@@ -103,4 +103,4 @@ std::unique_ptr<MeshWriter> open_npy_mesh_writer(MeshFiles files, const MeshHead
   return std::make_unique<NpyMeshWriter>(std::move(files), header);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

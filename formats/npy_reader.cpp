@@ -11,7 +11,7 @@
 #include "formats/npy_header.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kBlockPoints = 65536;
@@ -194,4 +194,4 @@ std::unique_ptr<PointReader> open_npy_reader(std::unique_ptr<InputSource> source
   return std::make_unique<NpyReader>(std::move(source), path);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,11 +6,11 @@
 #include "formats/input_source.h"
 #include "formats/point_reader.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Opens an npy array of n x 2 or n x 3 elements of float64, float32, int32 or int64,
 /// little-endian, rows one after another. `path` is the source's name as the user gave it.
 std::unique_ptr<PointReader> open_npy_reader(std::unique_ptr<InputSource> source,
                                              const std::string& path);
 
-}  // namespace spillway
+}  // namespace spillway::detail

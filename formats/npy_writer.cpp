@@ -8,7 +8,7 @@
 #include "formats/bytes.h"
 #include "formats/npy_header.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 class NpyWriter : public PointWriter {
@@ -67,4 +67,4 @@ std::unique_ptr<PointWriter> open_npy_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<NpyWriter>(std::move(file), options);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 #include <concepts>
 #include <cstring>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 template <typename T>
@@ -86,4 +86,4 @@ std::optional<std::uint64_t> to_index(double value) {
   return static_cast<std::uint64_t>(value);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The types of numbers in binary mesh files.
 enum class NumberType : std::uint8_t {
@@ -38,4 +38,4 @@ std::optional<std::uint64_t> load_index(NumberType type, const std::byte* bytes,
 /// integer is a double.
 std::optional<std::uint64_t> to_index(double value);
 
-}  // namespace spillway
+}  // namespace spillway::detail

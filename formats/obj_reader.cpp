@@ -11,7 +11,7 @@
 #include "formats/mesh_notes.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 class ObjReader {
@@ -122,4 +122,4 @@ class ObjReader {
 
 Mesh read_obj(InputSource& source) { return ObjReader(source).read(); }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,10 +3,10 @@
 #include "formats/input_source.h"
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Reads the vertices and triangles of a Wavefront OBJ file; normals, texture, groups, materials,
 /// points and lines are passed over. Throws Error that names the line.
 Mesh read_obj(InputSource& source);
 
-}  // namespace spillway
+}  // namespace spillway::detail

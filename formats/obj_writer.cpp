@@ -7,7 +7,7 @@
 #include "formats/mesh_notes.h"
 #include "formats/mesh_text.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 class ObjWriter : public CheckedMeshWriter {
@@ -44,4 +44,4 @@ std::unique_ptr<MeshWriter> open_obj_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<ObjWriter>(std::move(file), header);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "formats/mesh_notes.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // "0 0 0" and "3 0 1 2", each with the end of its line.
@@ -126,4 +126,4 @@ class OffReader {
 
 Mesh read_off(InputSource& source) { return OffReader(source).read(); }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,10 +3,10 @@
 #include "formats/input_source.h"
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Reads a text OFF file of triangles; colours of faces are passed over. Throws Error that names
 /// the line.
 Mesh read_off(InputSource& source);
 
-}  // namespace spillway
+}  // namespace spillway::detail

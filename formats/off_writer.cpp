@@ -9,7 +9,7 @@
 #include "formats/mesh_notes.h"
 #include "formats/mesh_text.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 class OffWriter : public CheckedMeshWriter {
@@ -49,4 +49,4 @@ std::unique_ptr<MeshWriter> open_off_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<OffWriter>(std::move(file), header);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

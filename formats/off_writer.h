@@ -5,10 +5,10 @@
 #include "formats/file_system.h"
 #include "formats/mesh_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Writes triangles as OFF, as docs/formats-meshes.md ("OFF") describes it.
 std::unique_ptr<MeshWriter> open_off_writer(std::unique_ptr<OutputFile> file,
                                             const MeshHeader& header);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,4 +87,4 @@ OutputTarget output_target(const std::string& name) {
   return target;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Where an output goes.
 struct OutputTarget {
@@ -24,4 +24,4 @@ OutputTarget output_target(const std::string& name);
 /// What the user can do about an error when `name` is created or written: "; ...", or "".
 std::string output_hint(int error, const std::string& name);
 
-}  // namespace spillway
+}  // namespace spillway::detail

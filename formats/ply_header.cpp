@@ -12,7 +12,7 @@
 #include "formats/mesh_notes.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kFirstPeek = std::size_t{1} << 12;
@@ -203,4 +203,4 @@ PlyHeader read_ply_header(InputSource& source) {
   return header;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

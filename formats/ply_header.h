@@ -12,7 +12,7 @@
 #include "formats/mesh.h"
 #include "formats/number_type.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
 
@@ -56,4 +56,4 @@ inline constexpr std::string_view kPlyTetrahedron = "tetrahedron";
 /// Reads the header, up to the first value. Throws Error that says what is wrong and in which line.
 PlyHeader read_ply_header(InputSource& source);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "formats/ply_values.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::string_view kInputIndex = "input_index";
@@ -228,4 +228,4 @@ class PlyReader {
 
 Mesh read_ply(InputSource& source) { return PlyReader(source).read(); }
 
-}  // namespace spillway
+}  // namespace spillway::detail

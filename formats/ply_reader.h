@@ -3,11 +3,11 @@
 #include "formats/input_source.h"
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Reads a PLY mesh, binary of either byte order or ASCII. Elements and properties that are not the
 /// mesh's are passed over, faces too where there are tetrahedra. Throws Error that names the item
 /// and its byte or line.
 Mesh read_ply(InputSource& source);
 
-}  // namespace spillway
+}  // namespace spillway::detail

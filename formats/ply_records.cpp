@@ -6,7 +6,7 @@
 #include "formats/mesh_notes.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::uint64_t kMostInInt = std::uint64_t{1} << 31;
@@ -67,4 +67,4 @@ std::byte* put_ply_simplex(std::byte* at, std::span<const std::uint64_t> corners
   return at;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The header, up to the first value. Throws Error that names the file `name` for more vertices
 /// than PLY can number.
@@ -30,4 +30,4 @@ constexpr std::size_t ply_simplex_size(int dimension) {
 std::byte* put_ply_vertex(std::byte* at, const Point<3>& vertex, std::span<const double> indices);
 std::byte* put_ply_simplex(std::byte* at, std::span<const std::uint64_t> corners);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 std::string PlyItem::text() const { return fmt::format("{} {}", element_, number_); }
 
@@ -85,4 +85,4 @@ std::string PlyTextValues::place() const {
   return fmt::format("line {}", header_lines_ + lines_.number());
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

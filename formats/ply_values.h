@@ -11,7 +11,7 @@
 #include "formats/line_reader.h"
 #include "formats/number_type.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The item that is being read, for messages: "face 7".
 class PlyItem {
@@ -113,4 +113,4 @@ class PlyTextValues {
   std::uint64_t header_lines_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "formats/mesh_text.h"
 #include "formats/ply_records.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 class PlyWriter : public CheckedMeshWriter {
@@ -73,4 +73,4 @@ std::unique_ptr<MeshWriter> open_ply_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<PlyWriter>(std::move(file), header, ascii);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 
 #include "formats/file_system.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Writes a picture as PNG, "-" to standard output, and returns the file's bytes. `pixels` are red,
 /// green, blue and opacity, a byte each, in rows from the top; without `with_opacity` the last one
@@ -15,4 +15,4 @@ std::uint64_t write_png(FileSystem& files, const std::string& path, std::uint32_
                         std::uint32_t rows, std::span<const std::uint8_t> pixels,
                         bool with_opacity);
 
-}  // namespace spillway
+}  // namespace spillway::detail

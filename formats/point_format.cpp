@@ -8,7 +8,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 PointFormat point_format_by_name(std::string_view name) {
   if (name == "las" || name == "laz" || name == "copc") return PointFormat::kLas;
@@ -38,4 +38,4 @@ std::string extension_of(std::string_view path) {
   return extension;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

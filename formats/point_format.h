@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace spillway {
+namespace spillway::detail {
 
 enum class PointFormat { kLas, kText, kNpy, kSpp };
 
@@ -19,4 +19,4 @@ std::optional<PointFormat> point_format_of_path(std::string_view path);
 /// The extension of the last part of `path`, in lower case, without the dot; empty if it has none.
 std::string extension_of(std::string_view path);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -26,7 +26,7 @@
 #include "formats/text_reader.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kProbe = 512;
@@ -207,4 +207,4 @@ std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::str
   return open_text_reader(std::move(source), path, std::move(content));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What LAS and LAZ say of a point besides its coordinates, and filters look at.
 struct PointAttributes {
@@ -149,4 +149,4 @@ bool begins_as_points(std::span<const std::byte> first_bytes);
 std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::string& path,
                                                const PointReaderOptions& options);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 #include "formats/text_writer.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Whether the header is only right once all points are written.
@@ -82,4 +82,4 @@ void check_written(const OutputFile& file, std::optional<std::uint64_t> promised
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -14,7 +14,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What a point file to be written holds.
 struct PointWriterOptions {
@@ -60,4 +60,4 @@ PointFormat point_format_to_write(const std::string& path, const std::string& fo
 void check_written(const OutputFile& file, std::optional<std::uint64_t> promised,
                    std::uint64_t written);
 
-}  // namespace spillway
+}  // namespace spillway::detail

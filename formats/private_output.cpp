@@ -12,7 +12,7 @@
 #include "formats/unfinished_files.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,4 +88,4 @@ std::uint64_t PrivateOutput::finish(std::span<const std::string_view> stale_ends
   return bytes;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

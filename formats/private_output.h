@@ -9,7 +9,7 @@
 
 #include "formats/output_target.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A private folder beside a target, for a library that writes files by itself. finish() gives what
 /// is in it its place; if destroyed without, or after a signal, nothing is left.
@@ -47,4 +47,4 @@ class PrivateOutput {
   std::string folder_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

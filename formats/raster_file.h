@@ -6,7 +6,7 @@
 #include "formats/gdal/raster.h"
 #include "formats/private_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A GeoTIFF being written. GDAL writes it into a private folder beside the target; finish() gives
 /// it its name. If destroyed without, or after a signal, nothing is left.
@@ -27,4 +27,4 @@ class RasterFile {
   std::unique_ptr<Raster> raster_;  ///< writes to output_, so it goes first
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -16,7 +16,7 @@
 #include "formats/unfinished_files.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// What is now on the disk, and what was.
@@ -204,4 +204,4 @@ std::unique_ptr<ScratchFolder> make_scratch_folder(const std::string& parent,
   return std::make_unique<DiskScratchFolder>(scratch_parent(parent), cap);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

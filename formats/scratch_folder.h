@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A file for one run: appended to, then read. Its bytes are gone from the disk when it is
 /// destroyed. append() is called by one thread at a time; read() by any number, once nothing more
@@ -52,4 +52,4 @@ std::string scratch_parent(const std::string& parent);
 std::unique_ptr<ScratchFolder> make_scratch_folder(const std::string& parent,
                                                    std::optional<std::uint64_t> cap);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -16,7 +16,7 @@
 #include "formats/mesh_notes.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // A block ends when it has as many as this of anything.
@@ -310,4 +310,4 @@ std::unique_ptr<MeshStreamReader> open_sma_reader(std::unique_ptr<InputSource> s
   return std::make_unique<SmaReader>(std::move(source));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -16,7 +16,7 @@
 #include "formats/sma_reader.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // Isenburg's reader takes lines of at most 511 bytes.
@@ -159,4 +159,4 @@ std::unique_ptr<MeshStreamWriter> open_sma_writer(std::unique_ptr<OutputFile> fi
   return std::make_unique<SmaWriter>(std::move(file), header);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

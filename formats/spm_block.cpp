@@ -11,7 +11,7 @@
 #include "formats/spp_format.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kCountsSize = 3 * sizeof(std::uint32_t);
@@ -136,4 +136,4 @@ SpmCounts read_spm_content(std::span<const std::byte> content, const MeshStreamH
   return counts;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 
 #include "formats/mesh_stream.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// How much is in a block.
 struct SpmCounts {
@@ -29,4 +29,4 @@ SpmCounts append_spm_content(std::vector<std::byte>& out, const MeshStreamHeader
 SpmCounts read_spm_content(std::span<const std::byte> content, const MeshStreamHeader& header,
                            const std::string& where, MeshBlock& block);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 #include "formats/bytes.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // How many simplices have a certain first corner, in half a byte; kManyHere and more stand apart.
@@ -460,4 +460,4 @@ std::span<const std::byte> read_corners(std::span<const std::byte> bytes, int di
   return CornerReader(bytes, dimension, numbers, simplices, where).read(corners);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

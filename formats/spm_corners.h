@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Appends simplices of dimension+1 corners each, all of them below `numbers`. They come back
 /// turned (orientation kept) so that the smallest corner is first, and sorted by it.
@@ -22,4 +22,4 @@ std::span<const std::byte> read_corners(std::span<const std::byte> bytes, int di
                                         std::vector<std::uint32_t>& corners,
                                         const std::string& where);
 
-}  // namespace spillway
+}  // namespace spillway::detail

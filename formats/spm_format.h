@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace spillway {
+namespace spillway::detail {
 
 inline constexpr std::string_view kSpmMagic = "SPWMESH\n";
 inline constexpr std::uint32_t kSpmVersion = 1;
@@ -22,4 +22,4 @@ inline constexpr std::uint32_t kSpmHasPoints = 2;
 inline constexpr std::uint32_t kSpmHasExtent = 4;
 inline constexpr std::uint32_t kSpmHasInputIndex = 8;
 
-}  // namespace spillway
+}  // namespace spillway::detail

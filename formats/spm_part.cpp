@@ -9,7 +9,7 @@
 #include "formats/spm_format.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 const char* const kWhere = "the temporary copy of the mesh";
@@ -132,4 +132,4 @@ std::uint64_t SpmPart::size() const {
   return bytes;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

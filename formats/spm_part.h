@@ -10,7 +10,7 @@
 #include "formats/mesh_spool.h"
 #include "formats/mesh_stream.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The begin of a stream: magic and header.
 std::vector<std::byte> spm_head(const MeshStreamHeader& header);
@@ -48,4 +48,4 @@ class SpmPart {
   std::uint64_t offset_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

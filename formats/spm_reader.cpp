@@ -13,7 +13,7 @@
 #include "formats/spm_block.h"
 #include "formats/spm_format.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 class SpmReader : public MeshStreamReader {
@@ -146,4 +146,4 @@ std::unique_ptr<MeshStreamReader> open_spm_reader(std::unique_ptr<InputSource> s
   return std::make_unique<SpmReader>(std::move(source));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,9 +5,9 @@
 #include "formats/input_source.h"
 #include "formats/mesh_stream.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Reads Spillway's own mesh stream.
 std::unique_ptr<MeshStreamReader> open_spm_reader(std::unique_ptr<InputSource> source);
 
-}  // namespace spillway
+}  // namespace spillway::detail

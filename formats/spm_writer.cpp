@@ -12,7 +12,7 @@
 #include "formats/spm_part.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 template <typename T>
@@ -108,4 +108,4 @@ std::unique_ptr<MeshStreamWriter> open_spm_writer(std::unique_ptr<OutputFile> fi
   return std::make_unique<SpmWriter>(std::move(file), header);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

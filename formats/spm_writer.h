@@ -5,10 +5,10 @@
 #include "formats/file_system.h"
 #include "formats/mesh_stream.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Writes Spillway's own mesh stream to `file`, the header at once.
 std::unique_ptr<MeshStreamWriter> open_spm_writer(std::unique_ptr<OutputFile> file,
                                                   const MeshStreamHeader& header);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 #include "formats/mesh_block.h"
 #include "formats/mesh_spool.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Counts what is written to a file.
@@ -68,4 +68,4 @@ std::unique_ptr<MeshStreamWriter> open_spooled_mesh_writer(MeshFiles files,
   return std::make_unique<SpooledMeshWriter>(std::move(files), header, scratch, memory);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

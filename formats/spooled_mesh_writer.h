@@ -8,7 +8,7 @@
 #include "formats/mesh_writer.h"
 #include "formats/scratch_folder.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Writes a mesh in a format whose counts come first: blocks are spooled, encoded as in spm, and
 /// finish() reads the spool twice, for vertices and for simplices. A spool of at most `memory`
@@ -18,4 +18,4 @@ std::unique_ptr<MeshStreamWriter> open_spooled_mesh_writer(MeshFiles files,
                                                            ScratchFolder& scratch,
                                                            std::size_t memory = kSpoolMemory);
 
-}  // namespace spillway
+}  // namespace spillway::detail

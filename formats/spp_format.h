@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-namespace spillway {
+namespace spillway::detail {
 
 inline constexpr std::string_view kSppMagic = "SPWYSPP\n";
 inline constexpr std::uint32_t kSppVersion = 1;
@@ -30,4 +30,4 @@ inline constexpr std::size_t kSppLargestBlock = std::size_t{2} << 20;
 /// integer from -2^53 to 2^53); their number if all are.
 std::size_t first_invalid_coordinate(std::span<const double> values, bool on_lattice);
 
-}  // namespace spillway
+}  // namespace spillway::detail

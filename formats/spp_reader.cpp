@@ -12,7 +12,7 @@
 #include "formats/columns.h"
 #include "formats/spp_format.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 template <typename Values>
@@ -123,4 +123,4 @@ std::unique_ptr<PointReader> open_spp_reader(std::unique_ptr<InputSource> source
   return std::make_unique<SppReader>(std::move(source), path);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

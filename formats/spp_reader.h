@@ -6,11 +6,11 @@
 #include "formats/input_source.h"
 #include "formats/point_reader.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Reads Spillway's own point stream from `source`; `path` is its name as the user gave it. Points
 /// are numbered as they come.
 std::unique_ptr<PointReader> open_spp_reader(std::unique_ptr<InputSource> source,
                                              const std::string& path);
 
-}  // namespace spillway
+}  // namespace spillway::detail

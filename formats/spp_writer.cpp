@@ -13,7 +13,7 @@
 #include "formats/spp_format.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 template <typename T>
@@ -127,4 +127,4 @@ std::unique_ptr<PointWriter> open_spp_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<SppWriter>(std::move(file), options);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

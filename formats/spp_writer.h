@@ -4,11 +4,11 @@
 
 #include "formats/point_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Writes Spillway's own point stream. Throws Error for points that are not finite or, if the
 /// options have a lattice, no integers.
 std::unique_ptr<PointWriter> open_spp_writer(std::unique_ptr<OutputFile> file,
                                              const PointWriterOptions& options);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace spillway {
+namespace spillway::detail {
 
 inline constexpr std::size_t kStlText = 80;              ///< bytes of text that a file begins with
 inline constexpr std::size_t kStlHeader = kStlText + 4;  ///< with the number of triangles
@@ -14,4 +14,4 @@ inline constexpr std::size_t kStlTriangle = 4 * 3 * 4 + 2;  ///< normal, corners
 /// coordinate system if there is room.
 inline constexpr std::string_view kStlOrigin = "spillway origin ";
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 #include "formats/vertex_joiner.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kProbe = 1024;
@@ -186,4 +186,4 @@ Mesh read_stl(InputSource& source) {
   return BinaryStlReader(source).read();
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 #include "formats/input_source.h"
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Whether a file that begins so is an ASCII STL.
 bool looks_like_ascii_stl(std::string_view text);
@@ -14,4 +14,4 @@ bool looks_like_ascii_stl(std::string_view text);
 /// header names is added. Normals and attributes are passed over.
 Mesh read_stl(InputSource& source);
 
-}  // namespace spillway
+}  // namespace spillway::detail

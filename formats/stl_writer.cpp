@@ -15,7 +15,7 @@
 #include "formats/stl_format.h"
 #include "formats/triangle_stream_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -105,4 +105,4 @@ std::unique_ptr<MeshStreamWriter> open_stl_writer(std::unique_ptr<OutputFile> fi
   return std::make_unique<StlWriter>(std::move(file), header);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

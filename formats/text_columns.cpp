@@ -10,7 +10,7 @@
 
 #include "formats/line_reader.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kLongestNumber = 128;
@@ -348,4 +348,4 @@ std::string TextColumns::fault_of_field(std::string_view field) const {
       quoted(field), name_of(separator_), decimal_commas_ ? "commas" : "points");
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "formats/fields.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Bytes of the first rows, which settle the decimal sign.
@@ -478,4 +478,4 @@ std::optional<std::uint64_t> point_count_of_line(std::string_view line) {
   return parse_count(trimmed(line));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include "formats/line_reader.h"
 #include "formats/text_columns.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What the beginning of a text settles for all of it, as docs/formats-points.md ("Text") says.
 struct TextOpening {
@@ -30,4 +30,4 @@ TextOpening read_text_opening(LineReader& lines, const std::string& name);
 /// The number of points that a line of PTS with nothing else tells; nothing for any other line.
 std::optional<std::uint64_t> point_count_of_line(std::string_view line);
 
-}  // namespace spillway
+}  // namespace spillway::detail

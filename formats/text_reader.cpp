@@ -13,7 +13,7 @@
 #include "formats/text_opening.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kBlockPoints = 65536;
@@ -145,4 +145,4 @@ std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputSource> sourc
   return std::make_unique<TextReader>(std::move(source), path, std::move(content), piece_bytes);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -7,7 +7,7 @@
 #include "formats/input_source.h"
 #include "formats/point_reader.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Bytes of the pieces that text is read in: some 65,536 lines.
 inline constexpr std::uint64_t kTextPiece = std::uint64_t{2} << 20;
@@ -21,4 +21,4 @@ std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputSource> sourc
                                               std::unique_ptr<InputFile> content = nullptr,
                                               std::uint64_t piece_bytes = kTextPiece);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 
 #include "formats/bytes.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kFlushAt = std::size_t{256} << 10;
@@ -119,4 +119,4 @@ std::unique_ptr<PointWriter> open_text_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<TextWriter>(std::move(file), options, separator);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 #include "formats/file_system.h"
 #include "formats/point_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Writes text, one point a line, its output coordinates separated by `separator`. Doubles have the
 /// fewest digits that give the same double again; points of a lattice whose scales are powers of
@@ -13,4 +13,4 @@ namespace spillway {
 std::unique_ptr<PointWriter> open_text_writer(std::unique_ptr<OutputFile> file,
                                               const PointWriterOptions& options, char separator);
 
-}  // namespace spillway
+}  // namespace spillway::detail

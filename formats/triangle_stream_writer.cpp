@@ -8,7 +8,7 @@
 #include "formats/mesh_block.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 TriangleStreamWriter::TriangleStreamWriter(MeshStreamHeader header, std::string name)
     : header_(std::move(header)), name_(std::move(name)) {}
@@ -76,4 +76,4 @@ void TriangleStreamWriter::fail(const std::string& what) const {
   throw Error(fmt::format("cannot write {}: {}", name_, what));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 
 #include "formats/mesh_stream.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What the formats have in common that repeat the corners with every triangle and number no
 /// vertices: blocks are checked here and their triangles passed on with coordinates, in the memory
@@ -45,4 +45,4 @@ class TriangleStreamWriter : public MeshStreamWriter {
   std::uint64_t triangles_ = 0;                       // written so far
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -26,7 +26,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 namespace fs = std::filesystem;
@@ -248,4 +248,4 @@ std::unique_lock<std::recursive_mutex> hold_off_end_of_run() { return lock_to_cr
 
 void stop_if_run_is_ending() { lock_to_create(); }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A file that has a temporary name beside its own, NAME.XXXXXX.part, until it is complete. No two
 /// files have the same, so several runs may write to one NAME.
@@ -79,4 +79,4 @@ std::vector<std::string> remove_unfinished_files();
 /// that are gone is not the reason why the run ends.
 void stop_if_run_is_ending();
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// What belongs to a vector file beside itself: parts, indices and journals. Those of an older file
@@ -52,4 +52,4 @@ void VectorFile::finish() {
       output_.finish(kJournalEnds, output_.target().extension() == ".shp" ? parts : parts.first(0));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 #include "formats/gdal/vector_layer.h"
 #include "formats/private_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A vector file (GeoPackage, Shapefile, GeoJSON) being written. GDAL writes it into a private
 /// folder beside the target; finish() gives all its files (a shapefile is five) their names. If
@@ -31,4 +31,4 @@ class VectorFile {
   std::uint64_t bytes_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 #include "formats/vertex_joiner.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kNote = "SPILLWAY_LATTICE";
@@ -73,4 +73,4 @@ Mesh read_vector_mesh(const std::string& path) {
   return mesh;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "formats/mesh_stream.h"
 #include "formats/mesh_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Begins to write triangles to `path` as kGpkg or kShp. The lattice goes into a GeoPackage's
 /// metadata; a shapefile cannot hold it. Throws Error if the file cannot be created.
@@ -20,4 +20,4 @@ std::unique_ptr<MeshStreamWriter> open_vector_mesh_writer(const std::string& pat
 /// Throws Error that names the file and the feature.
 Mesh read_vector_mesh(const std::string& path);
 
-}  // namespace spillway
+}  // namespace spillway::detail

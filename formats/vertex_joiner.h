@@ -6,7 +6,7 @@
 
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Makes a mesh of triangles whose corners are given by their coordinates: equal corners become one
 /// vertex.
@@ -44,4 +44,4 @@ class VertexJoiner {
   std::unordered_map<Point<3>, std::uint64_t, Hash> numbers_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -15,7 +15,7 @@
 #include "formats/xml_scanner.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kFirstPeek = std::size_t{1} << 13;
@@ -236,4 +236,4 @@ VtuHeader read_vtu_header(InputSource& source) {
   return header;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include "formats/mesh.h"
 #include "formats/number_type.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// An array in the appended data.
 struct VtuArray {
@@ -32,4 +32,4 @@ struct VtuHeader {
 /// what is malformed and for kinds of VTU that are not read.
 VtuHeader read_vtu_header(InputSource& source);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace spillway::vtu {
+namespace spillway::detail::vtu {
 
 // Field arrays.
 inline constexpr const char* kDimension = "spillway_dimension";
@@ -19,4 +19,4 @@ inline constexpr const char* kGlobalIds = "GlobalPointIds";  // what VTK calls i
 inline constexpr std::uint8_t kTriangle = 5;
 inline constexpr std::uint8_t kTetrahedron = 10;
 
-}  // namespace spillway::vtu
+}  // namespace spillway::detail::vtu

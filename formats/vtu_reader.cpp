@@ -13,7 +13,7 @@
 #include "formats/vtu_names.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 class VtuReader {
@@ -197,4 +197,4 @@ class VtuReader {
 
 Mesh read_vtu(InputSource& source) { return VtuReader(source).read(); }
 
-}  // namespace spillway
+}  // namespace spillway::detail

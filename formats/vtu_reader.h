@@ -3,10 +3,10 @@
 #include "formats/input_source.h"
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Reads a VTU file of triangles or tetrahedra with appended raw data, UInt64 headers,
 /// little-endian, uncompressed, one piece. Throws Error that names the byte.
 Mesh read_vtu(InputSource& source);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -15,7 +15,7 @@
 #include "formats/mesh_notes.h"
 #include "formats/vtu_names.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Declares the arrays of the appended data one after another: each is its length in bytes as
@@ -199,4 +199,4 @@ std::unique_ptr<MeshWriter> open_vtu_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<VtuWriter>(std::move(file), header);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 #include "formats/file_system.h"
 #include "formats/mesh_writer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Writes VTK's XML format for unstructured grids with appended raw data, as docs/formats-meshes.md
 /// ("VTU") describes it. Holds the input indices, if there are any, in memory until all vertices
@@ -13,4 +13,4 @@ namespace spillway {
 std::unique_ptr<MeshWriter> open_vtu_writer(std::unique_ptr<OutputFile> file,
                                             const MeshHeader& header);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 
 #include "formats/input_source.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// All that is left of a file.
 std::vector<std::byte> read_whole(InputSource& source);
@@ -15,4 +15,4 @@ std::vector<std::byte> read_whole(InputSource& source);
 /// wrong count takes none.
 std::vector<std::byte> read_up_to(InputSource& source, std::uint64_t count);
 
-}  // namespace spillway
+}  // namespace spillway::detail

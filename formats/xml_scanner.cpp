@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -109,4 +109,4 @@ std::string_view XmlScanner::read_name() {
   return name;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// One tag of an XML text.
 struct XmlTag {
@@ -53,4 +53,4 @@ class XmlScanner {
   std::size_t position_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

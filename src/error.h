@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A fault that ends the run with exit code 1. The message is one line that says what is wrong,
 /// where (file, byte, line or point), and what to do about it.
@@ -49,4 +49,4 @@ class ClosedPipe : public Error {
   ClosedPipe() : Error("the reader of the output closed its end of the pipe") {}
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 #include "stream/memory_budget.h"
 #include "stream/tile_tree.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
@@ -228,4 +228,4 @@ template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const Til
 template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const TileNode<3>* const>,
                                        MemoryBudget&, Task&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "src/delaunay/finality.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 class MemoryBudget;
 struct Task;
@@ -86,4 +86,4 @@ template <int D, typename Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
                               MemoryBudget& budget, Task& task);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// The largest integers of a LAS file and of any source, and the largest that a lattice may make of
@@ -118,4 +118,4 @@ std::optional<CommonLattice> find_common_lattice(std::span<const Lattice> lattic
   return common;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

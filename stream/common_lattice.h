@@ -9,7 +9,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// How the integers of one lattice become those of a finer one: integer * factor + shift.
 struct LatticeMap {
@@ -49,4 +49,4 @@ double largest_integer(const PointHeader& header);
 std::optional<CommonLattice> find_common_lattice(std::span<const Lattice> lattices, int dimension,
                                                  std::span<const double> largest = {});
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 
 #include "src/geometry/longest_edge.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 ContourWriter::ContourWriter(ContourOptions options, Sink sink, ScratchFolder& scratch)
     : options_(std::move(options)),
@@ -74,4 +74,4 @@ void ContourWriter::write(MeshBlock&& block) {
 
 void ContourWriter::finish(const MeshTotals& /*totals*/) { joiner_.finish(); }
 
-}  // namespace spillway
+}  // namespace spillway::detail

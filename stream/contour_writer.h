@@ -12,7 +12,7 @@
 #include "src/terrain/isolines.h"
 #include "stream/line_joiner.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 struct ContourOptions {
   Levels levels = Levels::every(1, 0);
@@ -57,4 +57,4 @@ class ContourWriter : public MeshStreamWriter {
   std::uint64_t left_out_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

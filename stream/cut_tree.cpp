@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// The axis on which the points lie farthest apart.
@@ -83,4 +83,4 @@ void CutTree::split_sample(std::uint32_t tile, Point<3>* begin, Point<3>* end, s
   split_sample(other, high, end, parts - low_parts);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

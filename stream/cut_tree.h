@@ -8,7 +8,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Which tile a point belongs to: a k-d tree of cuts whose cells reach to infinity, so that it
 /// knows a tile for points anywhere. Points on a cut go up; equal points always go together.
@@ -60,4 +60,4 @@ class CutTree {
   std::vector<Place> parents_{-1};  ///< by tile: the cut above it, or -1
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -1,6 +1,6 @@
 #include "stream/deal.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 void DealtPoints::deal(const CutTree& cuts, const PointBlock& block) {
   const std::size_t count = block.points.size();
@@ -29,4 +29,4 @@ void DealtPoints::deal(const CutTree& cuts, const PointBlock& block) {
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "src/geometry/box.h"
 #include "stream/cut_tree.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Points of one tile, side by side.
 struct PointRun {
@@ -30,4 +30,4 @@ struct DealtPoints {
   std::vector<std::uint32_t> tile_;  ///< by point of the block
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 #include "src/parallel/parallel.h"
 #include "stream/memory_budget.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 static_assert(RasterStore::kSide == kRasterTile, "tiles are written as they are kept");
@@ -375,4 +375,4 @@ void Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>&
   run_pipeline(slots, source, stages);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -18,7 +18,7 @@
 #include "src/terrain/surface.h"
 #include "stream/raster_store.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What a pixel can tell of the terrain at its centre.
 enum class DemProduct : std::uint8_t {
@@ -125,4 +125,4 @@ class Dem {
   std::atomic<std::uint64_t> left_out_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

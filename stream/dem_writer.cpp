@@ -5,7 +5,7 @@
 
 #include "formats/bytes.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 // A prepared block has only what is still needed: placed vertices that come again or that triangles
 // with imported vertices have, and these triangles. `prepared` holds how many vertices the block
@@ -78,4 +78,4 @@ void DemWriter::write(MeshBlock&& block) {
 
 void DemWriter::finish(const MeshTotals& /*totals*/) {}
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 #include "formats/mesh_stream.h"
 #include "stream/dem.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Paints a mesh of triangles as its blocks come: those whose vertices come in the same block when
 /// the block is prepared, by many threads at once, the others when it is written. Of the mesh only
@@ -27,4 +27,4 @@ class DemWriter : public MeshStreamWriter {
   std::unordered_map<std::uint64_t, Point<3>> live_;  ///< by stream number, placed
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

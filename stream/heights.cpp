@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Height = std::pair<double, std::uint64_t>;  // z and place in the order of the input
@@ -93,4 +93,4 @@ void choose_heights(std::span<const Duplicate> duplicates, HeightChoice choice,
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -7,7 +7,7 @@
 
 #include "src/delaunay/triangulation.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Which z the vertex gets where several points have the same x and y.
 enum class HeightChoice { kFirst, kLowest, kHighest, kMean };
@@ -34,4 +34,4 @@ void choose_heights(std::span<const Duplicate> duplicates, HeightChoice choice,
 void keep_first(std::span<const Duplicate> duplicates, std::span<VertexId> input_index,
                 std::span<const std::uint64_t> order);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// A name for messages; if GDAL knows none, the beginning of the text itself.
@@ -95,4 +95,4 @@ std::string common_crs(std::span<const InputCrs> inputs, bool force,
   return first->crs;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// An input and the coordinate system that it names, or none.
 struct InputCrs {
@@ -20,4 +20,4 @@ struct InputCrs {
 std::string common_crs(std::span<const InputCrs> inputs, bool force,
                        const std::function<void(std::string_view)>& warn);
 
-}  // namespace spillway
+}  // namespace spillway::detail

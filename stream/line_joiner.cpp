@@ -9,7 +9,7 @@
 #include "src/delaunay/hash.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Fewer points of a line than these are not worth a place on the disk.
@@ -229,4 +229,4 @@ void LineJoiner::give_out(Line&& line) {
   sink_(points, level);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

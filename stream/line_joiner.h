@@ -11,7 +11,7 @@
 #include "formats/scratch_folder.h"
 #include "src/terrain/isolines.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 struct CrossingHash {
   std::size_t operator()(const Crossing& crossing) const;
@@ -88,4 +88,4 @@ class LineJoiner {
   std::uint64_t lines_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

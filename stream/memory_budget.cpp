@@ -11,7 +11,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
@@ -80,4 +80,4 @@ void MemoryBudget::take(std::uint64_t bytes, const char* purpose) {
                           memory_size_text(whole_), purpose, advice));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The smaller of 2 GiB and a quarter of the memory that this process may use: the machine's, or
 /// its container's where that has less; of that an equal part where so many processes share it.
@@ -73,4 +73,4 @@ class MemoryLease {
   std::uint64_t bytes_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

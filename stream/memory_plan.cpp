@@ -6,7 +6,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// What memory is needed for, by dimension; measured, see docs/performance.md.
@@ -78,4 +78,4 @@ std::size_t leaf_size_for(std::uint64_t points, int dimension, const MemoryPlan&
                                  std::min(costs.small_leaf, plan.leaf_size), plan.leaf_size);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// How a memory limit is shared out. Nothing here depends on the number of threads, so neither does
 /// the order of the output.
@@ -23,4 +23,4 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
 /// that all threads have something to do.
 std::size_t leaf_size_for(std::uint64_t points, int dimension, const MemoryPlan& plan);
 
-}  // namespace spillway
+}  // namespace spillway::detail

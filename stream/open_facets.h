@@ -8,7 +8,7 @@
 
 #include "src/delaunay/hash.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The facets of one simplex only, of a stream of simplices given by their vertices' numbers.
 template <int D>
@@ -50,4 +50,4 @@ class OpenFacets {
   std::unordered_set<Facet, Hash> open_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 #include "src/parallel/parallel.h"
 #include "stream/tile_engine.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Points of a source as a tree of tiles takes them.
@@ -60,4 +60,4 @@ template StreamFigures triangulate_stream<2>(PointSource&, MeshStreamWriter&, Sc
 template StreamFigures triangulate_stream<3>(PointSource&, MeshStreamWriter&, ScratchFolder&,
                                              MemoryBudget&, const StreamOptions&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 #include "stream/point_source.h"
 #include "stream/stream_options.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The pipeline: reads all points of `source`, deals them into tiles, triangulates tile by tile and
 /// writes what is final to `writer`, which is not finished yet. Throws Error if the points do not
@@ -16,4 +16,4 @@ StreamFigures triangulate_stream(PointSource& source, MeshStreamWriter& writer,
                                  ScratchFolder& scratch, MemoryBudget& budget,
                                  const StreamOptions& options);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Points waiting in memory, in the order in which they came, in pieces of one size: growing never
 /// copies, and what is let go of goes back to the system.
@@ -69,4 +69,4 @@ class PointBuffer {
   std::vector<Piece> pieces_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

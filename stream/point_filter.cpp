@@ -7,7 +7,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 bool ReturnFilter::keeps(const PointAttributes& point) const {
   const bool known = point.return_number > 0 && point.return_count > 0;
@@ -75,4 +75,4 @@ void apply_filter(const PointFilter& filter, const std::optional<Lattice>& latti
   block.attributes.resize(attributes ? kept : 0);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Which returns of a pulse are wanted; any that is named here. A return of unknown number or count
 /// passes for first and last.
@@ -66,4 +66,4 @@ std::string describe(const PointCounts& counts);
 void apply_filter(const PointFilter& filter, const std::optional<Lattice>& lattice,
                   PointBlock& block, PointCounts& counts);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 #include "formats/scratch_folder.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A point, what belongs to it, and its place among others.
 struct RunPoint {
@@ -73,4 +73,4 @@ class PointRuns {
   std::optional<Merge> merge_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -14,7 +14,7 @@
 #include "src/parallel/parallel.h"
 #include "stream/input_crs.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Pieces on their way into the thinning at a time.
@@ -551,4 +551,4 @@ std::optional<double> PointSource::fraction_read() const {
   return (static_cast<double>(current_) + *fraction) / static_cast<double>(inputs_.size());
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

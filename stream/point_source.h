@@ -19,7 +19,7 @@
 #include "stream/point_filter.h"
 #include "stream/thinning.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// One point a cell, as Thinning does it.
 struct ThinningRequest {
@@ -189,4 +189,4 @@ class PointSource {
   PointCounts counts_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

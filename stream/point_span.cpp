@@ -7,7 +7,7 @@
 #include "src/delaunay/affine_basis.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 template <int D>
@@ -78,4 +78,4 @@ template class PointSpan<3>;
 template void refuse_flat_points<2>(const PointSpan<2>&, std::uint64_t);
 template void refuse_flat_points<3>(const PointSpan<3>&, std::uint64_t);
 
-}  // namespace spillway
+}  // namespace spillway::detail

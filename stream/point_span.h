@@ -8,7 +8,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Whether points that come block by block span D dimensions: exact, and over as soon as D + 1 of
 /// them are found that do. Until then each point costs a predicate.
@@ -42,4 +42,4 @@ class PointSpan {
 template <int D>
 void refuse_flat_points(const PointSpan<D>& span, std::uint64_t points);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 #include "formats/block.h"
 #include "formats/bytes.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // A part on the disk is a block (docs/formats-blocks.md) of this kind: the number of runs; of each,
@@ -260,4 +260,4 @@ std::uint64_t RasterStore::spilled_bytes() const {
   return file_ ? file_->size() : 0;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

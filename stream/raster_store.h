@@ -15,7 +15,7 @@
 
 #include "formats/scratch_folder.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What is in a pixel of one band. Nothing is not-a-number. All else is put there by put_pixel(),
 /// and what comes out in the end does not depend on the order.
@@ -127,4 +127,4 @@ class RasterStore {
   std::unique_ptr<ScratchFile> file_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace spillway {
+namespace spillway::detail {
 
 template <int D>
 Sequencer<D>::Sequencer(MeshStreamWriter& writer, const OutputOptions& output, StageTimes& times)
@@ -118,4 +118,4 @@ MeshTotals Sequencer<D>::totals() const {
 template class Sequencer<2>;
 template class Sequencer<3>;
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "stream/settle.h"
 #include "stream/stage_times.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Brings the blocks of leaves and merges, which are ready in any order, into the stream in the
 /// order of their places, and numbers the vertices.
@@ -77,4 +77,4 @@ class Sequencer {
   OpenFacets<D> open_facets_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 
 #include "src/geometry/longest_edge.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // What a vertex is used by, as bits.
@@ -175,4 +175,4 @@ template Settled<3> settle(const MergeToSettle<3>&, const OutputOptions&);
 template Settled<2> settle(const LeafToSettle<2>&, const OutputOptions&);
 template Settled<3> settle(const LeafToSettle<3>&, const OutputOptions&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

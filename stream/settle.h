@@ -14,7 +14,7 @@
 #include "src/geometry/lattice.h"
 #include "stream/border.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What the output looks like.
 struct OutputOptions {
@@ -114,4 +114,4 @@ struct LeafToSettle {
 template <int D, template <int> typename Part>
 Settled<D> settle(const Part<D>& part, const OutputOptions& output);
 
-}  // namespace spillway
+}  // namespace spillway::detail

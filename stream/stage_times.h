@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Where the threads of a run spend their time.
 enum class Stage {
@@ -55,4 +55,4 @@ class StageTimer {
   Clock::time_point start_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

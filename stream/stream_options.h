@@ -13,7 +13,7 @@
 #include "stream/heights.h"
 #include "stream/stage_times.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// How `triangulate_stream` does its work. Of these only max_edge and heights change the mesh; the
 /// order of the stream depends on memory and the sizes, never on threads.
@@ -66,4 +66,4 @@ struct StreamFigures {
   Task tasks;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

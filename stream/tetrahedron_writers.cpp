@@ -6,7 +6,7 @@
 
 #include "src/geometry/longest_edge.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 Point<3> difference(const Point<3>& a, const Point<3>& b) {
@@ -99,4 +99,4 @@ void SliceWriter::add(const std::array<std::uint64_t, 4>& /*numbers*/,
   if (found.count > 0) cuts_.push_back({found, static_cast<float>(std::cbrt(volume(corners)))});
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 #include "src/picture/tetrahedron_cut.h"
 #include "stream/open_facets.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Hands out the tetrahedra of a mesh stream with their corners in output coordinates. Of the mesh
 /// only vertices that are still to come again stay in memory.
@@ -90,4 +90,4 @@ class SliceWriter : public TetrahedronWriter {
   std::vector<CellCut> cuts_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

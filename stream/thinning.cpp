@@ -10,7 +10,7 @@
 #include "src/delaunay/hash.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Most files that the points of a pass are put aside to.
@@ -264,4 +264,4 @@ bool Thinning::next(PointBlock& block) {
   return block.size() > 0;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -16,7 +16,7 @@
 #include "stream/point_runs.h"
 #include "stream/tile_block.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Which point of a cell is kept; among equals the one of the lowest index.
 enum class ThinChoice { kFirst, kLowest, kHighest, kCenter };
@@ -113,4 +113,4 @@ class Thinning {
   std::uint64_t done_ = 0;       ///< of these
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include "formats/columns.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::uint32_t kPointsKind = 1;
@@ -87,4 +87,4 @@ void decode_all_points(std::span<const std::byte> blocks, const std::string& whe
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

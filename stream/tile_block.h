@@ -13,7 +13,7 @@
 #include "src/geometry/point.h"
 #include "stream/point_buffer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The points of a tile, ready to be triangulated, in the order in which they were read.
 template <int D>
@@ -78,4 +78,4 @@ void decode_points(std::span<const std::byte> block, const std::string& where, P
 void decode_all_points(std::span<const std::byte> blocks, const std::string& where,
                        PointBlock& points);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Tiles that are triangulated beside each other. Two, so that there is something to do while the
@@ -235,4 +235,4 @@ StreamFigures TileEngine<D>::figures() {
 template class TileEngine<2>;
 template class TileEngine<3>;
 
-}  // namespace spillway
+}  // namespace spillway::detail

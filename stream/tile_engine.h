@@ -20,7 +20,7 @@
 #include "stream/tile_tree.h"
 #include "stream/tile_triangulation.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What is known of the points to come.
 struct ExpectedPoints {
@@ -130,4 +130,4 @@ class TileEngine {
   StreamFigures figures_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

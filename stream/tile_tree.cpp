@@ -11,7 +11,7 @@
 #include "src/delaunay/hash.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Batches under way at a time.
@@ -412,4 +412,4 @@ template StoredTile TileTree::read<3>(const TileNode<3>&);
 template TilePoints<2> TileTree::decode<2>(StoredTile) const;
 template TilePoints<3> TileTree::decode<3>(StoredTile) const;
 
-}  // namespace spillway
+}  // namespace spillway::detail

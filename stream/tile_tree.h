@@ -19,7 +19,7 @@
 #include "stream/stage_times.h"
 #include "stream/tile_block.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 struct TileTreeOptions {
   int dimension = 2;
@@ -169,4 +169,4 @@ class TileTree {
   bool divided_ = false;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "src/delaunay/finality.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
@@ -400,4 +400,4 @@ template Border<3> merge_tiles(std::span<Border<3>>, const TileNode<3>&, const O
                                const TileOptions&, Sequencer<3>&, StreamCounts&, std::uint32_t,
                                std::uint64_t&, Task&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

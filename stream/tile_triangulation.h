@@ -16,7 +16,7 @@
 #include "stream/stage_times.h"
 #include "stream/tile_tree.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// How tiles are triangulated.
 struct TileOptions {
@@ -108,4 +108,4 @@ Border<D> merge_tiles(std::span<Border<D>> children, const TileNode<D>& node,
                       Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t slot,
                       std::uint64_t& final_simplices, Task& task);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -17,7 +17,7 @@
 #include "formats/file_system.h"
 #include "src/error.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// The calls that are counted and can be made to fail.
 enum class Call { kOpen, kRead, kCreate, kWrite, kRewrite, kCommit };
@@ -157,4 +157,4 @@ class FaultyFileSystem : public FileSystem {
   std::array<Counter, 6> counters_;
 };
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

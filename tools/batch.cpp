@@ -29,7 +29,7 @@
 #include "tools/json_text.h"
 #include "tools/text_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kExamples =
@@ -347,4 +347,4 @@ Subcommand add_batch(CLI::App& root) {
   return {app, [options, &root] { return Batch(root, *options).run(); }};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -20,7 +20,7 @@
 #include "tools/printable_text.h"
 #include "tools/text_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kExamples =
@@ -212,4 +212,4 @@ Subcommand add_check(CLI::App& root) {
   return {app, [options] { return run(*options); }};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "tools/mesh_proof.h"
 #include "tools/stream_proof.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 void require_dimension(int dimension) {
@@ -82,4 +82,4 @@ std::uint64_t canonical_hash(const Mesh& mesh) {
   return mesh.header.dimension == 2 ? hash_of<2>(mesh) : hash_of<3>(mesh);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

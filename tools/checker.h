@@ -12,7 +12,7 @@
 #include "formats/mesh_stream.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 struct CheckOptions {
   /// Accept any valid Delaunay triangulation: cocircular and cospherical facets may be split either
@@ -72,4 +72,4 @@ CheckReport count_mesh_stream(MeshStreamReader& reader, const CheckOptions& opti
 /// The canonical hash of any mesh, proved or not. Throws Error if a vertex number is out of range.
 std::uint64_t canonical_hash(const Mesh& mesh);
 
-}  // namespace spillway
+}  // namespace spillway::detail

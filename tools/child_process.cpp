@@ -12,7 +12,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr int kCannotStart = 127;
@@ -60,4 +60,4 @@ ChildEnd wait_for_any_child() {
   return {id, WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status)};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

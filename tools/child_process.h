@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A run of this same program in a process of its own, which ends with this one: whatever ends this
 /// process, the child is told to stop and cleans up.
@@ -26,4 +26,4 @@ struct ChildEnd {
 /// Waits until one of the children has ended. There must be one.
 ChildEnd wait_for_any_child();
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -17,7 +17,7 @@
 #include "tools/suggestion.h"
 #include "tools/text_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kDescription =
@@ -171,4 +171,4 @@ int run_command(int argc, const char* const* argv) {
   return tree.run();
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

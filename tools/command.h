@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 inline constexpr int kExitDone = 0;
 inline constexpr int kExitFailed = 1;        ///< an Error, or a mesh that `check` refutes
@@ -41,4 +41,4 @@ void check_command_line(const std::vector<std::string>& arguments);
 /// wrong command line and Error for what goes wrong later.
 int run_command(int argc, const char* const* argv);
 
-}  // namespace spillway
+}  // namespace spillway::detail

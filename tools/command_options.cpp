@@ -18,7 +18,7 @@
 #include "stream/memory_budget.h"
 #include "tools/rank_job.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// A check that help does not speak of; `wrong` says what is wrong with a text, nothing if it is
@@ -247,4 +247,4 @@ std::uint64_t parse_point_count(std::string_view text) {
   return static_cast<std::uint64_t>(value);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

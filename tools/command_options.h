@@ -17,7 +17,7 @@
 #include "formats/scratch_folder.h"
 #include "tools/progress.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Most that --threads takes.
 inline constexpr unsigned kMostThreads = 4096;
@@ -107,4 +107,4 @@ CLI::Option* add_number_list(CLI::App& app, const std::string& name, std::vector
 /// anything else, negative and fractional numbers included.
 std::uint64_t parse_point_count(std::string_view text);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "tools/option_tree.h"
 #include "tools/text_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kExamples =
@@ -178,4 +178,4 @@ Subcommand add_completion(CLI::App& root) {
   return {app, [&root, shell] { return run(root, *shell); }};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -23,7 +23,7 @@
 #include "tools/terrain_input.h"
 #include "tools/text_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kExamples =
@@ -194,4 +194,4 @@ Subcommand add_contour(CLI::App& root) {
   return {app, [options] { return run(*options); }};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -20,7 +20,7 @@
 #include "tools/input_list.h"
 #include "tools/input_options.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kExamples =
@@ -180,4 +180,4 @@ Subcommand add_convert(CLI::App& root) {
   return {app, [options] { return run(*options); }};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

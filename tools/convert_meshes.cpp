@@ -20,7 +20,7 @@
 #include "tools/checker.h"
 #include "tools/facet_count.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Passes the blocks of a stream on as they come.
@@ -139,4 +139,4 @@ void convert_mesh(ProbedInput& input, InputKind kind, const MeshConversion& conv
   if (const std::string note = rounding_note(format); !note.empty()) progress.say(note);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 #include "formats/scratch_folder.h"
 #include "tools/progress.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A mesh that is to be written in another format.
 struct MeshConversion {
@@ -21,4 +21,4 @@ struct MeshConversion {
 void convert_mesh(ProbedInput& input, InputKind kind, const MeshConversion& conversion,
                   ScratchFolder& scratch, Progress& progress);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -15,7 +15,7 @@
 #include "src/parallel/parallel.h"
 #include "tools/statistics.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Pieces of the inputs under way at a time.
@@ -191,4 +191,4 @@ void convert_points(PointSource& source, const PointOutput& output, const Lattic
   progress.say(fmt::format("{} points in {}", written, output.name()));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "tools/point_output.h"
 #include "tools/progress.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Writes, as the phase that has begun, all points of the source as one file, as they come, and
 /// says how many and what the format does not keep. LAS needs a lattice: points that have none are
@@ -17,4 +17,4 @@ namespace spillway {
 void convert_points(PointSource& source, const PointOutput& output, const LatticeChoice& choice,
                     ScratchFolder& scratch, Progress& progress);
 
-}  // namespace spillway
+}  // namespace spillway::detail

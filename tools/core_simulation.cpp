@@ -6,7 +6,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr unsigned kMostCores = 1U << 20;
@@ -63,4 +63,4 @@ std::string simulation_table(const std::vector<SimulatedRun>& runs) {
   return table;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

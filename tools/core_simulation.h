@@ -6,7 +6,7 @@
 
 #include "src/delaunay/schedule.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Reads a list of core counts: "1,2,8", and "1,2,4,...,1024", where the dots stand for doubling.
 /// Throws UsageError.
@@ -24,4 +24,4 @@ std::vector<SimulatedRun> simulate_cores(const Task& tasks, const std::vector<un
 /// A table for people: a heading, then one line a run; no line end after the last.
 std::string simulation_table(const std::vector<SimulatedRun>& runs);
 
-}  // namespace spillway
+}  // namespace spillway::detail

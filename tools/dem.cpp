@@ -27,7 +27,7 @@
 #include "tools/terrain_input.h"
 #include "tools/text_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kExamples =
@@ -253,4 +253,4 @@ Subcommand add_dem(CLI::App& root) {
   return {app, [options] { return run(*options); }, true};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

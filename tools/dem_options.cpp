@@ -11,7 +11,7 @@
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 double parse_resolution(const std::string& text) {
@@ -153,4 +153,4 @@ DemOptions dem_options(const DemCommandOptions& options, RasterGrid& like) {
   return dem;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "stream/dem.h"
 #include "tools/terrain_input.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The command line of `dem`; an empty text is an option that was not given.
 struct DemCommandOptions : TerrainOptions {
@@ -31,4 +31,4 @@ void add_dem_options(CLI::App& app, DemCommandOptions& options);
 /// Throws UsageError for options that are wrong or contradict each other.
 DemOptions dem_options(const DemCommandOptions& options, RasterGrid& like);
 
-}  // namespace spillway
+}  // namespace spillway::detail

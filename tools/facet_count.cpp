@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// `corners` is the number of vertices of a facet.
@@ -41,4 +41,4 @@ std::uint64_t count_boundary_facets(const Mesh& mesh) {
   return mesh.header.dimension == 2 ? count_single<2>(mesh) : count_single<3>(mesh);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

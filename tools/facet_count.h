@@ -4,9 +4,9 @@
 
 #include "formats/mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Number of facets that belong to one simplex only: the hull's, in a complete triangulation.
 std::uint64_t count_boundary_facets(const Mesh& mesh);
 
-}  // namespace spillway
+}  // namespace spillway::detail

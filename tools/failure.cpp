@@ -16,7 +16,7 @@
 #include "tools/rank_job.h"
 #include "tools/standard_error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// The limit of a resource in words that end in `unit`, or nothing if there is none.
@@ -99,4 +99,4 @@ void handle_uncaught_exceptions() {
   });
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

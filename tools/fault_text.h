@@ -13,7 +13,7 @@
 #include "src/geometry/point.h"
 #include "tools/checker.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The words for a simplex and its facets.
 template <int D>
@@ -93,4 +93,4 @@ class Faults {
   std::size_t most_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -14,7 +14,7 @@
 #include "tools/command_options.h"
 #include "tools/point_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kExamples =
@@ -110,4 +110,4 @@ Subcommand add_generate(CLI::App& root) {
   return {app, [options] { return run(*options); }};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

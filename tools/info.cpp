@@ -27,7 +27,7 @@
 #include "tools/statistics.h"
 #include "tools/text_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -333,4 +333,4 @@ Subcommand add_info(CLI::App& root) {
   return {app, [options] { return run(*options); }};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

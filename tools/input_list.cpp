@@ -16,7 +16,7 @@
 #include "formats/point_format.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,4 +145,4 @@ std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments
   return found.files;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

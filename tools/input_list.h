@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Whether an argument is a list, a folder or a pattern, as below.
 bool stands_for_several(const std::string& argument);
@@ -24,4 +24,4 @@ std::vector<std::string> expand_inputs(
     const std::vector<std::string>& arguments,
     const std::function<void(std::string_view)>& notice = nullptr);
 
-}  // namespace spillway
+}  // namespace spillway::detail

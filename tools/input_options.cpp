@@ -14,7 +14,7 @@
 #include "tools/command_options.h"
 #include "tools/input_list.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// The part of --memory that thinning may take. Points that wait to be spilled and the last cells
@@ -254,4 +254,4 @@ std::unique_ptr<PointSource> make_point_source(FileSystem& files,
   return source;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -16,7 +16,7 @@
 #include "stream/point_source.h"
 #include "tools/progress.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// As on the command line; an empty text is an option that was not given.
 struct InputOptions {
@@ -74,4 +74,4 @@ Box<3> parse_bounds(std::string_view text);
 /// Reads the value of --thin: "CELL" or "CELL:CHOICE". Memory and scratch are left as they are.
 ThinningRequest parse_thinning(std::string_view text);
 
-}  // namespace spillway
+}  // namespace spillway::detail

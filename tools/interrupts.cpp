@@ -16,7 +16,7 @@
 #include "src/distributed/ranks.h"
 #include "tools/standard_error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 std::string message_of(int number, std::vector<std::string> outputs) {
@@ -55,4 +55,4 @@ void handle_interrupts() {
   }).detach();
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Makes SIGINT, SIGTERM and SIGHUP remove unfinished output files, say so on standard error (for
 /// all ranks once), and end the process with exit code 128 + signal. A closed pipe and a file
@@ -10,4 +10,4 @@ namespace spillway {
 /// std::system_error if that thread cannot be started.
 void handle_interrupts();
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -16,7 +16,7 @@
 #include "formats/whole_file.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -191,4 +191,4 @@ std::vector<Job> jobs_of_files(const std::vector<std::string>& files,
   return jobs;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

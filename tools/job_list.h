@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Options by their long names without dashes; flags have no values.
 using JobOptions = std::map<std::string, std::vector<std::string>>;
@@ -32,4 +32,4 @@ std::vector<Job> jobs_of_files(const std::vector<std::string>& files,
 /// Whether `path` is a job list by its extension: .json or .toml.
 bool is_job_list(const std::string& path);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// A line is not longer, or its end will do.
@@ -49,4 +49,4 @@ std::string JobLog::last_line() const {
   return std::string(last.starts_with(kPrefix) ? last.substr(kPrefix.size()) : last);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

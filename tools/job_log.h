@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The file that the messages of a job go to. Stays the job's own, whatever becomes of its name.
 class JobLog {
@@ -23,4 +23,4 @@ class JobLog {
   int descriptor_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

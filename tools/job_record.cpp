@@ -11,7 +11,7 @@
 #include "tools/json_text.h"
 #include "tools/text_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -74,4 +74,4 @@ bool is_complete_and_unchanged(const JobRun& run) {
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 
 #include "tools/job_steps.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A job under way, or done.
 struct JobRun {
@@ -33,4 +33,4 @@ void save_record(const JobRun& run);
 /// they are now. A record that makes no sense tells of nothing.
 bool is_complete_and_unchanged(const JobRun& run);
 
-}  // namespace spillway
+}  // namespace spillway::detail

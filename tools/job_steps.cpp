@@ -12,7 +12,7 @@
 #include "formats/mesh_writer.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// What the first part of a kind like "slope.tif" stands for.
@@ -222,4 +222,4 @@ void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 
 #include "tools/job_list.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A kind of output: what makes it, and how.
 struct OutputKind {
@@ -53,4 +53,4 @@ class JobPlanner {
 /// The subcommands whose options a job may have.
 const std::vector<std::string>& job_subcommands();
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -2,7 +2,7 @@
 
 #include "tools/printable_text.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 std::string json_text(const nlohmann::ordered_json& json, int indent) {
   const std::string text =
@@ -11,4 +11,4 @@ std::string json_text(const nlohmann::ordered_json& json, int indent) {
   return indent < 0 ? printable(text) : text;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

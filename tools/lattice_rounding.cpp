@@ -10,7 +10,7 @@
 #include "formats/lattice_check.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr double kLeast = std::numeric_limits<std::int32_t>::min();
@@ -100,4 +100,4 @@ std::string axes_text(const std::array<double, 3>& values) {
   return fmt::format("{}, {}, {}", values[0], values[1], values[2]);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

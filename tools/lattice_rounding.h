@@ -11,7 +11,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The lattice that points are to be rounded to.
 struct LatticeChoice {
@@ -59,4 +59,4 @@ class LatticeRounding {
 /// "0.001", or "0.01, 0.01, 0.001" if the axes differ.
 std::string axes_text(const std::array<double, 3>& values);
 
-}  // namespace spillway
+}  // namespace spillway::detail

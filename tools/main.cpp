@@ -7,14 +7,14 @@
 #include "tools/standard_descriptors.h"
 
 int main(int argc, char** argv) {
-  spillway::open_standard_descriptors();
-  spillway::handle_uncaught_exceptions();
+  spillway::detail::open_standard_descriptors();
+  spillway::detail::handle_uncaught_exceptions();
   try {
-    spillway::handle_interrupts();
-    const int exit_code = spillway::run_command(argc, argv);
-    spillway::leave_ranks();
+    spillway::detail::handle_interrupts();
+    const int exit_code = spillway::detail::run_command(argc, argv);
+    spillway::detail::leave_ranks();
     return exit_code;
   } catch (...) {
-    return spillway::report_failure(std::current_exception());
+    return spillway::detail::report_failure(std::current_exception());
   }
 }

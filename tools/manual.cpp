@@ -7,7 +7,7 @@
 #include "tools/option_tree.h"
 #include "tools/text_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Text as roff takes it: hyphens that can be copied, backslashes and leading dots made harmless.
@@ -118,4 +118,4 @@ Subcommand add_manual(CLI::App& root) {
   return {app, [&root] { return run(root); }};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

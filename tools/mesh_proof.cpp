@@ -6,7 +6,7 @@
 
 #include "src/geometry/predicates.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 template <int D>
 NamedVertex<D> MeshView<D>::named(std::uint64_t vertex) const {
@@ -19,8 +19,8 @@ template <int D>
 std::string MeshView<D>::simplex_text(std::uint64_t simplex) const {
   std::array<NamedVertex<D>, D + 1> vertices;
   for (int i = 0; i <= D; ++i) vertices[i] = named(corner(simplex, i));
-  return spillway::simplex_text<D>(numbers_ == nullptr ? simplex : numbers_->simplices[simplex],
-                                   vertices);
+  return spillway::detail::simplex_text<D>(
+      numbers_ == nullptr ? simplex : numbers_->simplices[simplex], vertices);
 }
 
 template <int D>
@@ -274,4 +274,4 @@ template const char* apex_fault<3>(const std::array<Point<3>, 4>&, const Point<3
 template void prove_mesh<2>(const Mesh&, const CheckOptions&, CheckReport&);
 template void prove_mesh<3>(const Mesh&, const CheckOptions&, CheckReport&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -15,7 +15,7 @@
 #include "tools/checker.h"
 #include "tools/fault_text.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A face as the sorted numbers of its K vertices, and whose face it is.
 template <std::size_t K>
@@ -86,7 +86,7 @@ class MeshView {
 
   /// "vertex 7 (1.5, 2)", in output coordinates.
   [[nodiscard]] std::string vertex_text(std::uint64_t vertex) const {
-    return spillway::vertex_text<D>(named(vertex));
+    return spillway::detail::vertex_text<D>(named(vertex));
   }
   /// "triangle 3 (vertices 5, 6, 7 at (0, 0), (1, 0), (0, 1))".
   [[nodiscard]] std::string simplex_text(std::uint64_t simplex) const;
@@ -132,4 +132,4 @@ void for_each_run(std::vector<Face<K>>& faces, F&& f) {
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

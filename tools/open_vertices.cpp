@@ -4,7 +4,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 template <int D>
 void OpenVertices<D>::enter(const MeshBlock& block, const std::vector<bool>& finalized_here,
@@ -58,4 +58,4 @@ void OpenVertices<D>::finalize(std::uint32_t slot) {
 template class OpenVertices<2>;
 template class OpenVertices<3>;
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -7,7 +7,7 @@
 #include "src/geometry/point.h"
 #include "tools/probing_table.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The vertices of a mesh stream that may still be needed: those not finalized, and those that
 /// somebody holds. Each has a slot, which is used again once it is free.
@@ -75,4 +75,4 @@ class OpenVertices {
   std::uint64_t announced_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -2,7 +2,7 @@
 
 #include "tools/command_options.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 std::vector<std::string> split_words(const std::string& type_name) {
@@ -57,4 +57,4 @@ std::vector<const CLI::App*> subcommands_of(const CLI::App& app) {
       [](const CLI::App* subcommand) { return !subcommand->get_name().empty(); });
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

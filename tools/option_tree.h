@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// One option or positional argument.
 struct OptionInfo {
@@ -28,4 +28,4 @@ std::vector<OptionInfo> options_of(const CLI::App& app);
 /// Subcommands in the order of their definition.
 std::vector<const CLI::App*> subcommands_of(const CLI::App& app);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "stream/tile_tree.h"
 #include "tools/fault_text.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Marks the index of a vertex, to tell it from a point of the input.
@@ -196,4 +196,4 @@ void PointComparison::compare(PointSource& input, const CheckOptions& options, C
           : fmt::format("the vertices are the {} distinct points of the input", distinct));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

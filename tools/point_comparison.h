@@ -12,7 +12,7 @@
 #include "tools/checker.h"
 #include "tools/progress.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Compares the vertices of a mesh with the distinct points of its input, in bounded memory: both
 /// are dealt into tiles, where equal points meet, and each tile is compared for itself.
@@ -43,4 +43,4 @@ class PointComparison {
   std::vector<TileBlock> blocks_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

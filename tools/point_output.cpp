@@ -7,7 +7,7 @@
 #include "src/error.h"
 #include "tools/command_options.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 void add_las_version(CLI::App& app, PointOutput& output) {
   add_choice(app, "--las-version", output.las_version, {"1.2", "1.4"},
@@ -40,4 +40,4 @@ std::string wkt_of_code(const std::string& crs) {
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

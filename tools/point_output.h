@@ -4,7 +4,7 @@
 #include <CLI/App.hpp>
 #include <string>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// -o, --output-format and --las-version.
 struct PointOutput {
@@ -29,4 +29,4 @@ std::string format_name_of(const PointOutput& output);
 /// `crs` as WKT if it is a code and GDAL is there to tell; else empty.
 std::string wkt_of_code(const std::string& crs);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Multiplies the bits of a key all over the word; what is taken is its upper part.
 inline std::uint64_t scatter(std::uint64_t key) {
@@ -87,4 +87,4 @@ class ProbingTable {
   std::size_t size_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

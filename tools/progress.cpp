@@ -7,7 +7,7 @@
 #include "tools/printable_text.h"
 #include "tools/standard_error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 MessageStyle message_style(ProgressStyle style) {
@@ -163,4 +163,4 @@ void Progress::wipe(const std::lock_guard<std::mutex>& /*lock*/) const {
   if (style_ == ProgressStyle::kTerminal) write_to_standard_error("\r\x1b[K");
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 
 #include "tools/progress_line.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 enum class ProgressStyle {
   kNone,
@@ -81,4 +81,4 @@ class Progress {
   std::jthread ticker_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

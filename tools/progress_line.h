@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Where a phase of the work is.
 struct PhaseState {
@@ -34,4 +34,4 @@ std::string short_number(double number);
 /// 0:05, 12:34, 1:02:03.
 std::string clock_time(double seconds);
 
-}  // namespace spillway
+}  // namespace spillway::detail

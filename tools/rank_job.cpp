@@ -17,7 +17,7 @@
 #include "tools/printable_text.h"
 #include "tools/standard_error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using distributed::launch;
@@ -96,4 +96,4 @@ int end_quietly(int exit_code) {
   distributed::abort_job(exit_code);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

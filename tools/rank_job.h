@@ -6,7 +6,7 @@
 #include "src/distributed/ranks.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The ranks that this process works with, joined at the first call; null if it was started alone.
 const distributed::Ranks* join_ranks();
@@ -30,4 +30,4 @@ int report_error(const Error& error, int exit_code);
 /// Ends all ranks without a message, where report_error() would end them.
 int end_quietly(int exit_code);
 
-}  // namespace spillway
+}  // namespace spillway::detail

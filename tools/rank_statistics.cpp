@@ -7,7 +7,7 @@
 #include "formats/bytes.h"
 #include "tools/json_text.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -114,4 +114,4 @@ void share_statistics(RunStatistics& statistics, const RankMesh& mesh, const Ran
                       {"each", std::move(all)}};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -14,7 +14,7 @@
 #include "stream/dem_writer.h"
 #include "tools/render_scene.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr Colour kLineColour = {0.07F, 0.09F, 0.13F};
@@ -139,4 +139,4 @@ std::unique_ptr<Scene> make_relief_scene(const RenderRequest& request, const Ter
   return std::make_unique<ReliefScene>(request, header, memory, threads, scratch);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

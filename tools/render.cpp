@@ -23,7 +23,7 @@
 #include "tools/statistics.h"
 #include "tools/text_output.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kExamples =
@@ -244,4 +244,4 @@ Subcommand add_render(CLI::App& root) {
   return {app, [options] { return run(*options); }};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

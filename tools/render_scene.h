@@ -12,7 +12,7 @@
 #include "src/picture/tetrahedron_cut.h"
 #include "tools/terrain_input.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Where one looks from, in degrees.
 struct ViewDirection {
@@ -80,4 +80,4 @@ std::unique_ptr<Scene> make_relief_scene(const RenderRequest& request, const Ter
 /// The hull of tetrahedra, or a slice. Throws UsageError for a request that is only for terrains.
 std::unique_ptr<Scene> make_space_scene(const RenderRequest& request, const TerrainHeader& header);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 #include "stream/tetrahedron_writers.h"
 #include "tools/render_scene.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr Colour kHullColour = {0.66F, 0.76F, 0.84F};
@@ -215,4 +215,4 @@ std::unique_ptr<Scene> make_space_scene(const RenderRequest& request, const Terr
   return std::make_unique<SliceScene>(request, header);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Puts something in place of those of standard input, output and error that are closed, so that no
 /// file which is opened later gets their numbers. Reading such an input or writing such an output
@@ -8,4 +8,4 @@ namespace spillway {
 /// exit code 1 where that cannot be done.
 void open_standard_descriptors();
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 #include "tools/json_text.h"
 #include "tools/printable_text.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{200};
@@ -77,4 +77,4 @@ void last_message(std::string_view message) {
   if (takes_more) write_all(styled(message));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

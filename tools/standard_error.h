@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// How a run speaks to standard error.
 enum class MessageStyle {
@@ -27,4 +27,4 @@ void write_error(std::string_view message);
 /// end of the run by a signal.
 void last_message(std::string_view message);
 
-}  // namespace spillway
+}  // namespace spillway::detail

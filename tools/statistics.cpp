@@ -4,7 +4,7 @@
 
 #include "src/geometry/canonical_hash.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -100,4 +100,4 @@ Json to_json(const RunStatistics& statistics) {
   return json;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "stream/point_filter.h"
 #include "tools/core_simulation.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What --stats tells about a run of `triangulate`. docs/cli.md lists the keys; they are stable.
 struct RunStatistics {
@@ -38,4 +38,4 @@ nlohmann::ordered_json to_json(const PointCounts& counts);
 /// The most memory this process has held so far, in bytes.
 std::uint64_t peak_rss_bytes();
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 #include "src/geometry/predicates.h"
 #include "tools/mesh_proof.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 template <int D>
 void StreamBlock<D>::examine(const StreamCoordinates<D>& coordinates, const CheckOptions& options,
@@ -118,4 +118,4 @@ void StreamBlock<D>::prove_facet(std::uint32_t older, std::uint32_t newer, bool 
 template class StreamBlock<2>;
 template class StreamBlock<3>;
 
-}  // namespace spillway
+}  // namespace spillway::detail

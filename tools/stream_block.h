@@ -11,7 +11,7 @@
 #include "tools/fault_text.h"
 #include "tools/stream_coordinates.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The facet opposite a simplex's i-th corner, its vertices sorted, and whether it takes an odd
 /// number of swaps to sort it once it is listed so that its outside is positive. Two positive
@@ -119,4 +119,4 @@ class StreamBlock {
   std::vector<std::uint64_t> hashes_;  // of vertices, by short number
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace spillway {
+namespace spillway::detail {
 
 template <int D>
 StreamCoordinates<D>::StreamCoordinates(const MeshStreamHeader& header,
@@ -50,4 +50,4 @@ Point<D> StreamCoordinates<D>::to_output(const Point<D>& point) const {
 template class StreamCoordinates<2>;
 template class StreamCoordinates<3>;
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Between the three kinds of coordinates of a mesh stream: those that its blocks hold, those that
 /// predicates run on (the lattice's integers, where the axes have one scale, else output
@@ -43,4 +43,4 @@ class StreamCoordinates {
   bool on_lattice_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

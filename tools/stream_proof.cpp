@@ -9,7 +9,7 @@
 #include "tools/open_vertices.h"
 #include "tools/probing_table.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // A facet that one simplex has so far. 24 bytes.
@@ -335,4 +335,4 @@ void prove_stream(MeshStreamReader& reader, const CheckOptions& options, StreamT
 template void prove_stream<2>(MeshStreamReader&, const CheckOptions&, StreamTask, CheckReport&);
 template void prove_stream<3>(MeshStreamReader&, const CheckOptions&, StreamTask, CheckReport&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -7,7 +7,7 @@
 #include "tools/checker.h"
 #include "tools/stream_block.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Reads the stream to its end and writes the outcome into the report.
 ///
@@ -18,4 +18,4 @@ template <int D>
 void prove_stream(MeshStreamReader& reader, const CheckOptions& options, StreamTask task,
                   CheckReport& report);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// How many letters have to be inserted, left out or replaced to make `b` of `a` (Levenshtein).
@@ -42,4 +42,4 @@ std::string suggestion(std::string_view word, std::span<const std::string> names
   return found.empty() ? "" : fmt::format(" (did you mean {}?)", found);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

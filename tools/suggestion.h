@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// " (did you mean --bounds?)" with the name that `word` is most likely a slip of the pen for, or
 /// nothing if none is near.
 std::string suggestion(std::string_view word, std::span<const std::string> names);
 
-}  // namespace spillway
+}  // namespace spillway::detail

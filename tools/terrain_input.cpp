@@ -19,7 +19,7 @@
 #include "tools/input_list.h"
 #include "tools/rank_statistics.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Makes x and y of all vertices integers of the mesh's lattice and returns it (heights stay as
@@ -316,4 +316,4 @@ void feed_terrain(const TerrainOptions& options, TerrainUse& use, const TerrainT
   TerrainFeed(options, use, tools, statistics).run();
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

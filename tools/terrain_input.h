@@ -19,7 +19,7 @@
 #include "tools/statistics.h"
 #include "tools/triangulation_options.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The command line of such a subcommand.
 struct TerrainOptions : TriangulationOptions {
@@ -82,4 +82,4 @@ struct TerrainTools {
 void feed_terrain(const TerrainOptions& options, TerrainUse& use, const TerrainTools& tools,
                   RunStatistics& statistics);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 
 #include "formats/file_system.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 void write_text(const std::string& path, std::string_view text) {
   const auto output = disk().create(path);
@@ -12,4 +12,4 @@ void write_text(const std::string& path, std::string_view text) {
   output->commit();
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

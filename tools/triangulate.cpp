@@ -32,7 +32,7 @@
 #include "tools/text_output.h"
 #include "tools/triangulation_options.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kExamples =
@@ -264,4 +264,4 @@ Subcommand add_triangulate(CLI::App& root) {
   return {app, [options] { return run(*options); }, true};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

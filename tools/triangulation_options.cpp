@@ -13,7 +13,7 @@
 #include "src/parallel/parallel.h"
 #include "stream/heights.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 DivisionScheme division_by_name(const std::string& name) {
@@ -109,4 +109,4 @@ void reuse_freed_memory(std::size_t kept) {
   mallopt(M_ARENA_MAX, 1);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 #include "tools/command_options.h"
 #include "tools/input_options.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// As on the command line.
 struct TriangulationOptions {
@@ -63,4 +63,4 @@ StreamOptions stream_options(const TriangulationOptions& options, Progress& prog
 /// pieces of up to a quarter of it, in one store for all threads.
 void reuse_freed_memory(std::size_t kept = std::size_t{16} << 20);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -15,7 +15,7 @@
 #include "formats/gdal/gdal_errors.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // GDAL's measure of how well a system fits one of EPSG's: equal in all but its name.
@@ -189,4 +189,4 @@ CrsKind crs_kind(const std::string& crs) {
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -7,7 +7,7 @@
 
 #include "formats/gdal/gdal.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The coordinate system that a text names, x east and y north. Throws Error if it names none.
 OGRSpatialReference parse_crs(const std::string& crs);
@@ -22,4 +22,4 @@ CrsKind crs_kind(const std::string& crs);
 /// The coordinate system as Gdal::crs_to_wkt() gives it; empty if there is none.
 std::string wkt_of(const OGRSpatialReference* crs);
 
-}  // namespace spillway
+}  // namespace spillway::detail

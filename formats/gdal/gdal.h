@@ -10,7 +10,7 @@
 #include "formats/gdal/raster.h"
 #include "formats/gdal/vector_layer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What the coordinates of a system are.
 enum class CrsKind : std::uint8_t {
@@ -75,4 +75,4 @@ const Gdal& gdal();
 using GdalFactory = const Gdal* (*)();
 inline constexpr const char* kGdalFactory = "spillway_gdal";
 
-}  // namespace spillway
+}  // namespace spillway::detail

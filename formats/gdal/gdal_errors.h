@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Keeps GDAL from printing on standard error; to be called once, when the module is loaded.
 void silence_gdal();
@@ -17,4 +17,4 @@ std::string gdal_reason();
 /// Whether GDAL has complained of a failure in this thread since they were forgotten.
 bool gdal_failed();
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -19,7 +19,7 @@
 #include "formats/gdal/gdal_errors.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// How far rows may be from square with columns, as a part of a pixel over the whole raster.
@@ -202,4 +202,4 @@ RasterGrid read_geotiff_grid(const std::string& path) {
   return {{west, north, width, columns, rows}, wkt_of(file->GetSpatialRef())};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

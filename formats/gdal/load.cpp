@@ -9,7 +9,7 @@
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr const char* kModule = "spillway_gdal.so";
@@ -61,4 +61,4 @@ const Gdal& gdal() {
   return instance;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

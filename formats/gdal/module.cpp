@@ -9,7 +9,7 @@
 #include "formats/gdal/geotiff.h"
 #include "formats/gdal/vectors.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 class LoadedGdal : public Gdal {
@@ -23,19 +23,19 @@ class LoadedGdal : public Gdal {
   }
 
   [[nodiscard]] bool same_crs(const std::string& a, const std::string& b) const override {
-    return spillway::same_crs(a, b);
+    return spillway::detail::same_crs(a, b);
   }
   [[nodiscard]] std::string crs_to_wkt(const std::string& crs) const override {
-    return spillway::crs_to_wkt(crs);
+    return spillway::detail::crs_to_wkt(crs);
   }
   [[nodiscard]] std::string crs_name(const std::string& crs) const override {
-    return spillway::crs_name(crs);
+    return spillway::detail::crs_name(crs);
   }
   [[nodiscard]] double crs_unit(const std::string& crs) const override {
-    return spillway::crs_unit(crs);
+    return spillway::detail::crs_unit(crs);
   }
   [[nodiscard]] CrsKind crs_kind(const std::string& crs) const override {
-    return spillway::crs_kind(crs);
+    return spillway::detail::crs_kind(crs);
   }
   [[nodiscard]] std::unique_ptr<VectorLayer> create_layer(
       const VectorLayerOptions& options) const override {
@@ -56,9 +56,9 @@ class LoadedGdal : public Gdal {
 };
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail
 
-extern "C" __attribute__((visibility("default"))) const spillway::Gdal* spillway_gdal() {
-  static const spillway::LoadedGdal instance;
+extern "C" __attribute__((visibility("default"))) const spillway::detail::Gdal* spillway_gdal() {
+  static const spillway::detail::LoadedGdal instance;
   return &instance;
 }

@@ -15,7 +15,7 @@
 #include "formats/gdal/vectors.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::uint64_t kFeaturesPerTransaction = 100'000;
@@ -161,4 +161,4 @@ std::unique_ptr<VectorLayer> create_ogr_layer(const VectorLayerOptions& options)
   return std::make_unique<OgrLayer>(options);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

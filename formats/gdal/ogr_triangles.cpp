@@ -14,7 +14,7 @@
 #include "formats/gdal/vectors.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 Point<3> point_of(const OGRLineString& line, int i) {
@@ -138,4 +138,4 @@ std::unique_ptr<TriangleLayer> open_ogr_layer(const std::string& path) {
   return std::make_unique<OgrTriangles>(path);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

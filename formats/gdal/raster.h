@@ -8,7 +8,7 @@
 
 #include "src/geometry/pixel_grid.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Side of a raster file's tiles in pixels.
 inline constexpr std::uint32_t kRasterTile = 256;
@@ -51,4 +51,4 @@ class Raster {
   virtual void finish() = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What a vector file of one layer holds.
 struct VectorLayerOptions {
@@ -56,4 +56,4 @@ class TriangleLayer {
   virtual bool next(std::array<Point<3>, 3>& corners) = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

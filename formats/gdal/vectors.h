@@ -6,7 +6,7 @@
 
 #include "formats/gdal/vector_layer.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What Gdal::create_layer() returns.
 std::unique_ptr<VectorLayer> create_ogr_layer(const VectorLayerOptions& options);
@@ -14,4 +14,4 @@ std::unique_ptr<VectorLayer> create_ogr_layer(const VectorLayerOptions& options)
 /// What Gdal::open_layer() returns.
 std::unique_ptr<TriangleLayer> open_ogr_layer(const std::string& path);
 
-}  // namespace spillway
+}  // namespace spillway::detail

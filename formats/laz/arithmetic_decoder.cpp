@@ -3,7 +3,7 @@
 #include "formats/laz/chunk_decoder.h"
 #include "src/error.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 ArithmeticDecoder::ArithmeticDecoder(std::span<const std::byte> bytes, LazBytes* source)
     : source_(source) {
@@ -30,4 +30,4 @@ ArithmeticDecoder::Bytes ArithmeticDecoder::take(Bytes bytes, unsigned count, La
 
 void ArithmeticDecoder::throw_corrupt() { throw Error("the compressed stream is corrupt"); }
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

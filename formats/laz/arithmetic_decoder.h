@@ -8,11 +8,11 @@
 #include "formats/laz/models.h"
 #include "formats/laz/select.h"
 
-namespace spillway {
+namespace spillway::detail {
 class LazBytes;
 }
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 /// Decodes bits and symbols of one stream. The state is five words that are cheap to copy: loops
 /// work on a local copy, which the compiler keeps in registers; that is why nothing here lets the
@@ -113,4 +113,4 @@ class ArithmeticDecoder {
   LazBytes* source_ = nullptr;
 };
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

@@ -6,7 +6,7 @@
 #include "formats/laz/layered_chunk.h"
 #include "formats/laz/pointwise_chunk.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 class LazChunkDecoder::Impl {
  public:
@@ -37,4 +37,4 @@ std::size_t LazChunkDecoder::end() {
   return std::visit([](auto& chunk) { return chunk.end(); }, impl_->chunk);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

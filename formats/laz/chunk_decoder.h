@@ -9,7 +9,7 @@
 
 #include "formats/point_reader.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The parts of a compressed record, by the numbers that LAZ gives them.
 enum class LazItemType : std::uint16_t {
@@ -74,4 +74,4 @@ class LazChunkDecoder {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 #include "formats/laz/source_bytes.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Where the table lies, and where the file ends.
@@ -159,4 +159,4 @@ std::optional<std::vector<LazChunk>> read_chunk_table(InputSource& source, const
   return table;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

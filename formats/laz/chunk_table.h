@@ -9,7 +9,7 @@
 #include "formats/input_source.h"
 #include "formats/las_header.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 struct LazChunk {
   std::uint64_t offset = 0;  ///< in the file
@@ -32,4 +32,4 @@ std::optional<std::uint64_t> read_end_of_chunks(InputSource& source, const LasHe
 /// Bytes of the shortest chunk: its first record and what every chunk has besides.
 std::size_t shortest_chunk(const LasHeader& las);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -2,7 +2,7 @@
 
 #include "formats/bytes.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kInfoSize = 160;
@@ -20,4 +20,4 @@ std::optional<CopcInfo> parse_copc_info(std::span<const std::byte> content) {
   return info;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

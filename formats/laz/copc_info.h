@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-namespace spillway {
+namespace spillway::detail {
 
 inline constexpr const char* kCopcUser = "copc";
 inline constexpr std::uint16_t kCopcInfoId = 1;
@@ -24,4 +24,4 @@ struct CopcInfo {
 /// Reads the content of that record; nothing if it is too short.
 std::optional<CopcInfo> parse_copc_info(std::span<const std::byte> content);
 
-}  // namespace spillway
+}  // namespace spillway::detail

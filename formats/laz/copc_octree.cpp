@@ -10,7 +10,7 @@
 #include "formats/bytes.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kEntrySize = 32;
@@ -216,4 +216,4 @@ std::vector<LazChunk> select_copc_chunks(InputSource& source, const LasHeader& l
   return std::move(hierarchy).chunks();
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

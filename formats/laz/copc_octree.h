@@ -8,7 +8,7 @@
 #include "formats/laz/chunk_table.h"
 #include "src/geometry/box.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Which nodes are wanted.
 struct CopcSelection {
@@ -22,4 +22,4 @@ struct CopcSelection {
 std::vector<LazChunk> select_copc_chunks(InputSource& source, const LasHeader& las,
                                          const CopcSelection& selection);
 
-}  // namespace spillway
+}  // namespace spillway::detail

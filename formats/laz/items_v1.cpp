@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 namespace {
 
 std::int32_t median(const std::array<std::int32_t, 3>& of) {
@@ -143,4 +143,4 @@ void ByteV1::decode(ArithmeticDecoder& stream) {
   stream = local;
 }
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

@@ -7,7 +7,7 @@
 #include "formats/laz/integer_decoder.h"
 #include "formats/laz/pointwise_item.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 /// Differences of x and y are predicted by the median of the last three.
 class Point10V1 : public Point10Item {
@@ -83,4 +83,4 @@ class ByteV1 : public PointwiseItem {
   IntegerDecoder<8> decoder_;
 };
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

@@ -5,7 +5,7 @@
 #include "formats/laz/return_tables.h"
 #include "src/error.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 void Point10V2::reset() {
   changed_.reset();
@@ -153,4 +153,4 @@ void ByteV2::decode(ArithmeticDecoder& stream) {
   stream = local;
 }
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

@@ -8,7 +8,7 @@
 #include "formats/laz/pointwise_item.h"
 #include "formats/laz/streaming_median.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 /// The attributes come first, so that returns of a kind predict each other's coordinates.
 class Point10V2 : public Point10Item {
@@ -75,4 +75,4 @@ class ByteV2 : public PointwiseItem {
   SymbolModels<256> differences_;
 };
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

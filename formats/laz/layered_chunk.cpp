@@ -4,7 +4,7 @@
 #include "formats/laz/laz_record.h"
 #include "src/error.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 LayeredChunk::LayeredChunk(const LazChunkFormat& format, bool attributes)
     : layer_count_(laz_layers(format)),
@@ -58,4 +58,4 @@ std::size_t LayeredChunk::end() {
   return input_.rest().size();
 }
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

@@ -9,7 +9,7 @@
 #include "formats/laz/piece_input.h"
 #include "formats/laz/point14_layers.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 /// Chunks of the compressor 3: the first record as it is, the number of points, the sizes of all
 /// layers, the layers. Those behind the wanted ones are skipped unseen.
@@ -33,4 +33,4 @@ class LayeredChunk {
   Point14Layers points_;
 };
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

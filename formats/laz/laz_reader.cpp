@@ -15,7 +15,7 @@
 #include "formats/laz/source_bytes.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // Larger chunks are decoded in order, so that memory does not depend on them.
@@ -411,4 +411,4 @@ std::unique_ptr<PointReader> open_laz_reader(std::unique_ptr<InputSource> source
   return std::make_unique<LazReader>(std::move(source), las, path, options);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

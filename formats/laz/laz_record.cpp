@@ -10,7 +10,7 @@
 #include "formats/las_header.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kRecordSize = 34;
@@ -132,4 +132,4 @@ std::size_t laz_layers(const LazChunkFormat& format) {
   return layers;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 
 #include "formats/laz/chunk_decoder.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 inline constexpr const char* kLazUser = "laszip encoded";
 inline constexpr std::uint16_t kLazRecordId = 22204;
@@ -33,4 +33,4 @@ LazRecord parse_laz_record(std::span<const std::byte> content, int point_format,
 /// Layers of a chunk of that format.
 std::size_t laz_layers(const LazChunkFormat& format);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 
 #include "formats/laz/select.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 /// The likelihood of a bit.
 class BitModel {
@@ -165,4 +165,4 @@ class SymbolModels {
   std::uint64_t chunk_ = 1;
 };
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

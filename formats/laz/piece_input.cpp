@@ -4,7 +4,7 @@
 
 #include "src/error.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 std::span<const std::byte> PieceInput::take(std::size_t size, std::vector<std::byte>& gathered) {
   if (rest_.empty() && size > 0) next_piece();
@@ -35,4 +35,4 @@ void PieceInput::next_piece() {
   if (rest_.empty()) throw Error("the compressed chunk ends too early");
 }
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

@@ -7,7 +7,7 @@
 
 #include "formats/laz/chunk_decoder.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 /// Bytes of a chunk as they are needed, from pieces of any size.
 class PieceInput {
@@ -31,4 +31,4 @@ class PieceInput {
   std::span<const std::byte> rest_;
 };
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

@@ -6,7 +6,7 @@
 #include "formats/laz/return_tables.h"
 #include "src/error.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 namespace {
 
 enum LayerIndex : unsigned { kXy, kZ, kClassification, kFlags };
@@ -135,4 +135,4 @@ void Point14Layers::end() const {
   }
 }
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

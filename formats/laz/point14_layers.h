@@ -10,7 +10,7 @@
 #include "formats/laz/integer_decoder.h"
 #include "formats/laz/streaming_median.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 /// What is wanted of the first 30 bytes of a record, and what the wanted layers need.
 struct Point14 {
@@ -82,4 +82,4 @@ class Point14Layers {
   Context* current_ = nullptr;
 };
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

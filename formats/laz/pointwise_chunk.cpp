@@ -6,7 +6,7 @@
 #include "formats/laz/piece_input.h"
 #include "src/error.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 namespace {
 
 std::unique_ptr<Point10Item> make_point(const LazItem& item) {
@@ -83,4 +83,4 @@ void PointwiseChunk::decode(std::span<Point<3>> points, std::span<PointAttribute
   }
 }
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

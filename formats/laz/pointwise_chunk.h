@@ -9,7 +9,7 @@
 #include "formats/laz/chunk_decoder.h"
 #include "formats/laz/pointwise_item.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 /// Chunks of the compressors 1 and 2: the first record as it is, then one stream for all others.
 class PointwiseChunk {
@@ -29,4 +29,4 @@ class PointwiseChunk {
   ArithmeticDecoder stream_;
 };
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

@@ -5,7 +5,7 @@
 
 #include "formats/laz/arithmetic_decoder.h"
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 /// A part of the record in a pointwise chunk. All parts share one stream, so each takes its symbols
 /// for every point, but keeps of the values only what later symbols depend on.
@@ -38,4 +38,4 @@ class Point10Item : public PointwiseItem {
   Point10 point;
 };
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

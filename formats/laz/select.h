@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 /// `yes` if a < b, else `no`, without a branch: for conditions that no branch predictor knows.
 /// Compilers are too fond of branches to be asked in C++.
@@ -19,4 +19,4 @@ namespace spillway::laz {
 #endif
 }
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace spillway {
+namespace spillway::detail {
 
 std::span<const std::byte> SourceBytes::more() {
   if (put_back_ > 0) {
@@ -19,4 +19,4 @@ std::span<const std::byte> SourceBytes::more() {
   return piece_;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

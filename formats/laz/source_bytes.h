@@ -8,7 +8,7 @@
 #include "formats/input_source.h"
 #include "formats/laz/chunk_decoder.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The bytes of a stream that is read front to back, in pieces.
 class SourceBytes : public LazBytes {
@@ -44,4 +44,4 @@ class SourceBytes : public LazBytes {
   bool reading_ = false;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace spillway::laz {
+namespace spillway::detail::laz {
 
 /// A running median of five: a new value pushes out the largest or the smallest in turn. Sorting is
 /// a row of minima and maxima without a branch, as the values are noise to a branch predictor.
@@ -31,4 +31,4 @@ class StreamingMedian {
   bool drop_largest_ = true;
 };
 
-}  // namespace spillway::laz
+}  // namespace spillway::detail::laz

@@ -10,7 +10,7 @@
 #include "src/delaunay/kernel_arena.h"
 #include "src/delaunay/working_memory.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 std::atomic<BaseCaseKernel> chosen_kernel = BaseCaseKernel::kOwn;
@@ -68,4 +68,4 @@ void release_base_case_memory() {
 template BaseCase<2> triangulate_base_case<2>(const BaseCaseInput<2>&);
 template BaseCase<3> triangulate_base_case<3>(const BaseCaseInput<3>&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include "src/delaunay/triangulation.h"
 #include "src/geometry/box.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The points of one base case, neighbours near each other in the list (a Hilbert curve's order, as
 /// divide() leaves them; any order is correct, but slower): point i is vertex first_vertex + i, and
@@ -78,4 +78,4 @@ void recycle(BlockArray<Simplex<D>> used) {
 /// Gives the system the memory that base cases keep for those that follow.
 void release_base_case_memory();
 
-}  // namespace spillway
+}  // namespace spillway::detail

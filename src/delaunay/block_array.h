@@ -7,7 +7,7 @@
 
 #include "src/delaunay/working_memory.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// An array of plain items at the beginning of a block of memory. Items are not initialised.
 template <typename T>
@@ -60,4 +60,4 @@ class BlockArray {
   std::size_t size_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,7 +3,7 @@
 
 #include "src/delaunay/kernel_arena.h"
 // CGAL's way to choose the allocator of its containers.
-#define CGAL_ALLOCATOR(T) spillway::KernelAllocator<T>
+#define CGAL_ALLOCATOR(T) spillway::detail::KernelAllocator<T>
 
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_3.h>
@@ -23,7 +23,7 @@
 #include "src/delaunay/hash.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -179,4 +179,4 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
 template BaseCase<2> cgal_base_case<2>(const BaseCaseInput<2>&, std::span<const VertexId>);
 template BaseCase<3> cgal_base_case<3>(const BaseCaseInput<3>&, std::span<const VertexId>);
 
-}  // namespace spillway
+}  // namespace spillway::detail

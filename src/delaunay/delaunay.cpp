@@ -15,7 +15,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Smaller base cases lose more to merging, larger ones more to memory (docs/performance.md has the
@@ -260,4 +260,4 @@ template Triangulation<3> delaunay<3>(std::span<const Point<3>>, const DelaunayO
 template void recycle<2>(Triangulation<2>);
 template void recycle<3>(Triangulation<3>);
 
-}  // namespace spillway
+}  // namespace spillway::detail

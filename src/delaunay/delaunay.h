@@ -8,7 +8,7 @@
 #include "src/delaunay/divide.h"
 #include "src/delaunay/triangulation.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 struct Task;
 
@@ -47,4 +47,4 @@ Triangulation<D> border_delaunay(BlockArray<Point<D>> points, Task& task);
 template <int D>
 void recycle(Triangulation<D> used);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "src/delaunay/working_memory.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// The median of the smallest sample lies within 2% of the true one, by rank, nearly always; that
@@ -233,4 +233,4 @@ Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
 template Part<2> divide<2>(std::span<Point<2>>, std::span<VertexId>, const DivideOptions&, Task*);
 template Part<3> divide<3>(std::span<Point<3>>, std::span<VertexId>, const DivideOptions&, Task*);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 struct Task;
 
@@ -48,4 +48,4 @@ template <int D>
 Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
                const DivideOptions& options, Task* task = nullptr);
 
-}  // namespace spillway
+}  // namespace spillway::detail

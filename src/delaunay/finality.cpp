@@ -7,7 +7,7 @@
 #include "src/geometry/circumsphere.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Simplices that a task of the border search looks at before it shares its work.
@@ -80,7 +80,7 @@ ConflictRegion<D>::ConflictRegion(const std::array<VertexId, D + 1>& vertices,
 
 template <int D>
 bool ConflictRegion<D>::may_meet(const Box<D>& box) const {
-  return infinite_ ? half_space_meets<D>(facet_, box) : spillway::may_meet<D>(ball_, box);
+  return infinite_ ? half_space_meets<D>(facet_, box) : spillway::detail::may_meet<D>(ball_, box);
 }
 
 template <int D>
@@ -157,4 +157,4 @@ template std::vector<SimplexId> border_among<3>(const Triangulation<3>&, std::ui
                                                 std::span<const Part<3>* const>,
                                                 std::span<BlockMarks>);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "src/delaunay/triangulation.h"
 #include "src/geometry/circumsphere.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Where a new point would destroy or change a simplex: its closed circumsphere (certified), or, of
 /// an infinite simplex, the closed half-space beyond its facet.
@@ -110,4 +110,4 @@ std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::
                                     std::span<const Part<D>* const> others,
                                     std::span<BlockMarks> marks);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 #include "src/delaunay/lanes.h"
 #include "src/delaunay/working_memory.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// One coordinate of the cells of eight points, or a bit of each level for them.
@@ -273,4 +273,4 @@ std::vector<VertexId> hilbert_order(std::span<const Point<D>> points, const Box<
 template std::vector<VertexId> hilbert_order<2>(std::span<const Point<2>>, const Box<2>&);
 template std::vector<VertexId> hilbert_order<3>(std::span<const Point<3>>, const Box<3>&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

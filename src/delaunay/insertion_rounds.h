@@ -10,7 +10,7 @@
 
 #include "src/delaunay/base_case.h"
 
-namespace spillway::kernel {
+namespace spillway::detail::kernel {
 
 /// The kernels' own vertex numbers: the infinite vertex, then the points in their order.
 inline constexpr VertexId kInfinite = 0;
@@ -88,4 +88,4 @@ inline std::vector<Duplicate> list_duplicates(std::span<const Repetition> repeti
   return duplicates;
 }
 
-}  // namespace spillway::kernel
+}  // namespace spillway::detail::kernel

@@ -9,7 +9,7 @@
 #include <mutex>
 #include <new>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
@@ -87,4 +87,4 @@ void* KernelArena::allocate(std::size_t bytes) {
   return result;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Serves the thread that made it, from its construction to its destruction. One at a time a
 /// thread.
@@ -61,4 +61,4 @@ struct KernelAllocator {
   bool operator==(const KernelAllocator&) const { return true; }
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

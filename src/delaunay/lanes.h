@@ -18,7 +18,7 @@
 #define SPILLWAY_TARGET(set)
 #endif
 
-namespace spillway::kernel {
+namespace spillway::detail::kernel {
 
 template <int kLanes>
 struct Vectors;
@@ -207,12 +207,12 @@ SPILLWAY_INLINE void scatter(const Records<kLanes>& records, const At& at) {
   }
 }
 
-}  // namespace spillway::kernel
+}  // namespace spillway::detail::kernel
 
-namespace spillway::kernel_2d {
+namespace spillway::detail::kernel_2d {
 using namespace kernel;
 }
 
-namespace spillway::kernel_3d {
+namespace spillway::detail::kernel_3d {
 using namespace kernel;
 }

@@ -13,7 +13,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
@@ -484,4 +484,4 @@ template PartSurface merge<2>(Triangulation<2>&, std::span<BlockMarks>, const Pa
 template PartSurface merge<3>(Triangulation<3>&, std::span<BlockMarks>, const Part<3>&,
                               std::span<PartSurface>, bool, const BorderTriangulator<3>&, Task&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

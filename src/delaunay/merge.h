@@ -9,7 +9,7 @@
 #include "src/delaunay/finality.h"
 #include "src/delaunay/triangulation.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 struct Task;
 
@@ -54,4 +54,4 @@ PartSurface merge(Triangulation<D>& triangulation, std::span<BlockMarks> marks, 
                   std::span<PartSurface> children, bool may_stay_open,
                   const BorderTriangulator<D>& triangulate_border, Task& task);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 #include <queue>
 #include <utility>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Plays a tree of tasks on a number of cores, event by event.
@@ -119,4 +119,4 @@ double Task::total_seconds() const {
 
 double greedy_makespan(const Task& root, unsigned cores) { return Simulation(cores).run(root); }
 
-}  // namespace spillway
+}  // namespace spillway::detail

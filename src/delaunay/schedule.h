@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// One task of a run: a node of the k-d recursion, or a step of one. Its parts follow one another
 /// in the order of the members: steps `before`, its own work, `children`, steps `after`. Steps run
@@ -42,4 +42,4 @@ class Stopwatch {
 /// data costs nothing.
 double greedy_makespan(const Task& root, unsigned cores);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include "src/delaunay/base_case.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::kernel {
+namespace spillway::detail::kernel {
 
 /// What is noted of simplices while they are listed: BaseCase::hull and BaseCase::not_inside.
 struct ListingNotes {
@@ -45,4 +45,4 @@ void list_simplices(BaseCase<D>& result, bool asked, const List& list) {
   }
 }
 
-}  // namespace spillway::kernel
+}  // namespace spillway::detail::kernel

@@ -1,6 +1,6 @@
 #include "src/delaunay/triangulation.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 template <int D>
 std::size_t Triangulation<D>::finite_count() const {
@@ -12,4 +12,4 @@ std::size_t Triangulation<D>::finite_count() const {
 template std::size_t Triangulation<2>::finite_count() const;
 template std::size_t Triangulation<3>::finite_count() const;
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "src/delaunay/block_array.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Number of a simplex: its block and its place there.
 struct SimplexId {
@@ -133,4 +133,4 @@ struct Triangulation {
 template <int D>
 std::vector<std::string> verify(const Triangulation<D>& triangulation);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 std::atomic<int> most_doubles = 8;
@@ -27,4 +27,4 @@ int vector_width() { return std::min(most_doubles.load(), widest_vectors()); }
 
 void limit_vectors(int doubles) { most_doubles = doubles; }
 
-}  // namespace spillway
+}  // namespace spillway::detail

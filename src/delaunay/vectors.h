@@ -1,6 +1,6 @@
 #pragma once
 
-namespace spillway {
+namespace spillway::detail {
 
 /// How many doubles the processor can compute with at a time, as far as it matters to the own
 /// kernels: 2, 4 (AVX2) or 8 (AVX-512, of which they use only that there are twice as many
@@ -14,4 +14,4 @@ int vector_width();
 /// starts.
 void limit_vectors(int doubles);
 
-}  // namespace spillway
+}  // namespace spillway::detail

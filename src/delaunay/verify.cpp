@@ -5,7 +5,7 @@
 #include "src/delaunay/triangulation.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kMostFaults = 10;
@@ -170,4 +170,4 @@ std::vector<std::string> verify(const Triangulation<D>& triangulation) {
 template std::vector<std::string> verify<2>(const Triangulation<2>&);
 template std::vector<std::string> verify<3>(const Triangulation<3>&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
@@ -142,4 +142,4 @@ void release_kept_blocks() {
   for (std::vector<Block>& blocks : kept.of_use) blocks.clear();
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Asks for huge pages where the memory spans some: a wish, without it everything is only slower.
 void ask_for_huge_pages(void* memory, std::size_t bytes);
@@ -75,4 +75,4 @@ void keep_block(BlockUse use, Block block);
 /// Gives the system all blocks that are kept for coming base cases.
 void release_kept_blocks();
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -14,7 +14,7 @@
 #include "src/distributed/view_builder.h"
 #include "src/error.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 namespace {
 
 /// A group of ranks and the number of its first one in the run.
@@ -73,7 +73,8 @@ class Run {
     std::vector<Point<D>> positions(points.size());
     std::transform(points.begin(), points.end(), positions.begin(),
                    [](const NamedPoint<D>& point) { return point.position; });
-    builder_.emplace(ranks_.rank(), spillway::delaunay<D>(positions, {.threads = options_.threads}),
+    builder_.emplace(ranks_.rank(),
+                     spillway::detail::delaunay<D>(positions, {.threads = options_.threads}),
                      points);
     Box<D> box;
     for (const Point<D>& position : positions) box.expand(position);
@@ -240,4 +241,4 @@ View<D> delaunay(const std::vector<Point<D>>& local_points, const Ranks& ranks,
 template View<2> delaunay<2>(const std::vector<Point<2>>&, const Ranks&, const DistributedOptions&);
 template View<3> delaunay<3>(const std::vector<Point<3>>&, const Ranks&, const DistributedOptions&);
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

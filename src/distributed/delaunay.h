@@ -6,7 +6,7 @@
 #include "src/distributed/ranks.h"
 #include "src/distributed/view.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 
 /// How distributed::delaunay does its work. None of it changes the set of simplices.
 struct DistributedOptions {
@@ -16,11 +16,11 @@ struct DistributedOptions {
   std::size_t gather_below = 100'000;
 };
 
-/// The Delaunay triangulation of all ranks' points, the same one that spillway::delaunay makes of
-/// them: Algorithms 2 and 3 of Funke and Sanders, "Parallel d-D Delaunay Triangulations in Shared
-/// and Distributed Memory" (ALENEX 2017); docs/algorithm.md, "Over several processes". Points are
-/// finite and may be anywhere: none at some ranks, fewer than ranks, equal ones at several. Equal
-/// points become one vertex.
+/// The Delaunay triangulation of all ranks' points, the same one that spillway::detail::delaunay
+/// makes of them: Algorithms 2 and 3 of Funke and Sanders, "Parallel d-D Delaunay Triangulations in
+/// Shared and Distributed Memory" (ALENEX 2017); docs/algorithm.md, "Over several processes".
+/// Points are finite and may be anywhere: none at some ranks, fewer than ranks, equal ones at
+/// several. Equal points become one vertex.
 ///
 /// Collective. Returns this rank's view; about as many vertices are its own as any other's. Throws
 /// Error if points or simplices of one rank are too many for 32-bit numbers; the other ranks then
@@ -29,4 +29,4 @@ template <int D>
 View<D> delaunay(const std::vector<Point<D>>& local_points, const Ranks& ranks,
                  const DistributedOptions& options = {});
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

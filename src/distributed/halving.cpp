@@ -8,7 +8,7 @@
 #include "src/distributed/items.h"
 #include "src/geometry/box.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 namespace {
 
 /// Cuts by so large a sample are within half a percent of the wanted share, by rank, so that ten of
@@ -101,4 +101,4 @@ std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const
 template std::vector<NamedPoint<2>> move_to_half(std::vector<NamedPoint<2>>, const Ranks&, int);
 template std::vector<NamedPoint<3>> move_to_half(std::vector<NamedPoint<3>>, const Ranks&, int);
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

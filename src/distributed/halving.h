@@ -5,7 +5,7 @@
 #include "src/distributed/ranks.h"
 #include "src/distributed/view.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 
 template <int D>
 struct NamedPoint {
@@ -21,4 +21,4 @@ template <int D>
 std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const Ranks& group,
                                         int low_ranks);
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

@@ -9,7 +9,7 @@
 
 #include "src/distributed/ranks.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 
 template <typename T>
 using ItemsByRank = std::map<int, std::vector<T>>;
@@ -48,4 +48,4 @@ std::vector<T> gather_item(const Ranks& ranks, const T& item) {
   return items;
 }
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

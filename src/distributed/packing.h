@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 
 class Packer {
  public:
@@ -75,4 +75,4 @@ class Unpacker {
   std::span<const std::byte> left_;
 };
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

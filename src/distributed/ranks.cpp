@@ -21,7 +21,7 @@
 
 #include "src/error.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 namespace {
 
 enum Tag : int {
@@ -483,4 +483,4 @@ void abort_job(int exit_code) {
   std::_Exit(exit_code);
 }
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

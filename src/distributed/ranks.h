@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 
 /// How many processes this one was started with, itself included, and how many of those on the same
 /// machine: told by the environment, MPI is not touched. 1 if it was started alone.
@@ -128,4 +128,4 @@ void set_largest_piece(std::size_t bytes);
 /// been reported.
 [[noreturn]] void abort_job(int exit_code);
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

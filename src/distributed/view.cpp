@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 
 template <int D>
 VertexId View<D>::beyond(const Simplex<D>& simplex, int i) const {
@@ -18,4 +18,4 @@ VertexId View<D>::beyond(const Simplex<D>& simplex, int i) const {
 template VertexId View<2>::beyond(const Simplex<2>&, int) const;
 template VertexId View<3>::beyond(const Simplex<3>&, int) const;
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

@@ -8,7 +8,7 @@
 
 #include "src/delaunay/triangulation.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 
 /// One of the things that are numbered at each rank for itself.
 struct Place {
@@ -67,4 +67,4 @@ struct View {
   static constexpr std::uint32_t kInfiniteElsewhere = SimplexBlock<D>::kUnlinked - 1;
 };
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

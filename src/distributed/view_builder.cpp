@@ -7,7 +7,7 @@
 #include "src/delaunay/hash.h"
 #include "src/error.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 namespace {
 
 std::uint64_t key(Place name) { return (std::uint64_t{name.rank} << 32U) | name.index; }
@@ -330,4 +330,4 @@ template BoxTree<3> tree_of_boxes<3>(std::span<const Box<3>>);
 template class ViewBuilder<2>;
 template class ViewBuilder<3>;
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

@@ -13,7 +13,7 @@
 #include "src/distributed/view.h"
 #include "src/geometry/box.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 
 /// The name of the infinite vertex.
 inline constexpr Place kInfiniteName{~0U, ~0U};
@@ -114,4 +114,4 @@ class ViewBuilder {
   std::vector<OpenFacet> open_facets_;  ///< sorted
 };
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

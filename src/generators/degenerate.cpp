@@ -7,7 +7,7 @@
 #include "src/generators/families.h"
 #include "src/generators/random.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Row by row through a square or cube of `side` points an axis.
@@ -248,4 +248,4 @@ std::unique_ptr<PointGenerator> make_degenerate(const GeneratorOptions& options)
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

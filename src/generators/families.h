@@ -9,7 +9,7 @@
 
 #include "src/generators/generators.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Points that depend on the seed and their index alone: point i is sampler(i).
 template <typename Sampler>
@@ -48,4 +48,4 @@ std::unique_ptr<PointGenerator> make_degenerate(const GeneratorOptions& options)
 /// terrain.
 std::unique_ptr<PointGenerator> make_terrain(const GeneratorOptions& options);
 
-}  // namespace spillway
+}  // namespace spillway::detail

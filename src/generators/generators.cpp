@@ -9,7 +9,7 @@
 #include "src/error.h"
 #include "src/generators/families.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::array<const char*, 13> kNames = {
@@ -61,4 +61,4 @@ std::vector<Point<D>> generate_points(const GeneratorOptions& options) {
 template std::vector<Point<2>> generate_points<2>(const GeneratorOptions&);
 template std::vector<Point<3>> generate_points<3>(const GeneratorOptions&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -14,7 +14,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// One family of points, described in docs/generators.md. From kClusters on they are extremes for
 /// tests.
@@ -71,4 +71,4 @@ std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options);
 template <int D>
 std::vector<Point<D>> generate_points(const GeneratorOptions& options);
 
-}  // namespace spillway
+}  // namespace spillway::detail

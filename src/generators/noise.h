@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Gradient noise in the plane (Perlin, "Improving Noise", SIGGRAPH 2002): smooth, of mean 0 and
 /// standard deviation about 0.2, with hills about as wide as the wavelength. It is evaluated along
@@ -28,4 +28,4 @@ class Noise {
   int log2_wavelength_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A bijection of 64-bit integers whose bits look random: the finalizer of SplitMix64 (Steele, Lea,
 /// Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014).
@@ -56,4 +56,4 @@ class Random {
 /// additions, multiplications and divisions only.
 double portable_log(double x);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // Octaves of the ground, wavelength 2^k metres. The mountains carry water surfaces; the hills and
@@ -216,4 +216,4 @@ void Relief::draw_trees(std::int64_t y, const Plantation& plantation, Cell* cell
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "src/generators/noise.h"
 #include "src/generators/random.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// What lies on top of a cell.
 enum class Cover : std::uint8_t { kOpen, kWater, kRoof, kCrown };
@@ -82,4 +82,4 @@ class Relief {
   std::vector<float> ground_, dryness_, detail_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 #include "src/generators/random.h"
 #include "src/generators/relief.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr double kScale = 0.01;  // metres a lattice step
@@ -249,4 +249,4 @@ std::unique_ptr<PointGenerator> make_terrain(const GeneratorOptions& options) {
   return std::make_unique<Terrain>(options);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

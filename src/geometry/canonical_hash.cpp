@@ -6,7 +6,7 @@
 
 #include <bit>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
@@ -56,4 +56,4 @@ template std::uint64_t vertex_hash<3>(Point<3>);
 template class CanonicalHash<2>;
 template class CanonicalHash<3>;
 
-}  // namespace spillway
+}  // namespace spillway::detail

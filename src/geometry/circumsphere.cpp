@@ -6,7 +6,7 @@
 #include "src/geometry/determinants.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // The names are those of docs/algorithm.md ("Certified balls").
@@ -310,4 +310,4 @@ template void certify<3>(const SimplexBatch<3>&, std::array<CertifiedBall<3>, 64
 template bool half_space_meets<2>(const std::array<Point<2>, 2>&, const Box<2>&);
 template bool half_space_meets<3>(const std::array<Point<3>, 3>&, const Box<3>&);
 
-}  // namespace spillway
+}  // namespace spillway::detail

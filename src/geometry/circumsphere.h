@@ -11,7 +11,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The circumsphere of a simplex with a bound on its rounding errors, kept relative to one of the
 /// simplex's own vertices so that large offsets cost no accuracy.
@@ -73,4 +73,4 @@ void certify(const SimplexBatch<D>& simplices,
 template <int D>
 bool half_space_meets(const std::array<Point<D>, D>& facet, const Box<D>& box);
 
-}  // namespace spillway
+}  // namespace spillway::detail

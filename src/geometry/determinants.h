@@ -6,7 +6,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// N vectors of D components each.
 template <int D, int N, typename T>
@@ -63,4 +63,4 @@ T in_sphere_determinant(const Vectors<D, D + 1, T>& v) {
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -7,7 +7,7 @@
 #include "src/error.h"
 #include "src/geometry/predicate_rungs.h"
 
-namespace spillway::rungs {
+namespace spillway::detail::rungs {
 namespace {
 
 // Signed integers of any size; those of ordinary coordinates need no memory from the heap.
@@ -61,4 +61,4 @@ template int exact<Orientation<3>>(const Points<Orientation<3>>&);
 template int exact<InSphere<2>>(const Points<InSphere<2>>&);
 template int exact<InSphere<3>>(const Points<InSphere<3>>&);
 
-}  // namespace spillway::rungs
+}  // namespace spillway::detail::rungs

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr double kMostExact = 0x1p53;  // integers up to it are doubles
@@ -68,4 +68,4 @@ bool Lattice::isotropic(int dimensions) const {
   return true;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

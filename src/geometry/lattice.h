@@ -5,7 +5,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The affine map from integer coordinates to output coordinates: world = integer * scale + offset,
 /// evaluated in double in exactly this way (one multiplication, one addition, each rounded to
@@ -39,4 +39,4 @@ struct Lattice {
   [[nodiscard]] bool isotropic(int dimensions) const;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

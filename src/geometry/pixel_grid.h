@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Square pixels, north up: column 0 is the westernmost, row 0 the northernmost.
 struct PixelGrid {
@@ -23,4 +23,4 @@ struct PixelGrid {
   }
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The dimensions that Spillway triangulates.
 template <int D>
@@ -28,4 +28,4 @@ inline constexpr VertexId kNoVertex = kInfiniteVertex - 1;
 /// The largest number of points that one in-memory triangulation holds.
 inline constexpr std::size_t kMaxVertices = kNoVertex;
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 
 #include "src/geometry/determinants.h"
 
-namespace spillway::rungs {
+namespace spillway::detail::rungs {
 
 /// Unit roundoff of double: half a unit in the last place of 1.
 inline constexpr double kRoundoff = 0x1p-53;
@@ -132,4 +132,4 @@ std::optional<int> integer(const Points<P>& points) {
 template <typename P>
 int exact(const Points<P>& points);
 
-}  // namespace spillway::rungs
+}  // namespace spillway::detail::rungs

@@ -15,7 +15,7 @@
 #include <exception>
 #include <mutex>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 // The thread sanitizer does not see how the library, which is not built with it, passes a task from
@@ -226,4 +226,4 @@ void run_pipeline(std::size_t slots, const std::function<bool(std::size_t slot)>
                                             tbb::filter_mode::parallel, [](std::size_t) {}));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

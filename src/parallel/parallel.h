@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Number of processors this process may use.
 unsigned available_threads();
@@ -91,4 +91,4 @@ void parallel_work_queue(std::vector<Item> items, std::size_t batch, const Body&
   group.wait();
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

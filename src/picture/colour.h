@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Red, green and blue from 0 to 1, in sRGB.
 using Colour = std::array<float, 3>;
@@ -29,4 +29,4 @@ inline Colour colour_at(std::span<const Colour> table, double t) {
              static_cast<float>(place - static_cast<double>(before)));
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

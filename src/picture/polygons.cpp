@@ -9,7 +9,7 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Samples of a pixel, each way.
@@ -208,4 +208,4 @@ Picture draw_polygons(std::span<const SeenPolygon> polygons, std::uint32_t colum
   return picture;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 Point<2> crossing(const Point<3>* a, const Point<3>* b, const AxisPlane& plane) {
@@ -46,4 +46,4 @@ PlaneCut cut(const std::array<Point<3>, 4>& tetrahedron, const AxisPlane& plane)
   return result;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

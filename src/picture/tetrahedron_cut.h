@@ -4,7 +4,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A plane on which one coordinate is the same everywhere.
 struct AxisPlane {
@@ -23,4 +23,4 @@ struct PlaneCut {
 /// tetrahedra. A cut's corner depends on nothing but the edge it lies on.
 PlaneCut cut(const std::array<Point<3>, 4>& tetrahedron, const AxisPlane& plane);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::int64_t kMostInTriangle = 1'000'000;
@@ -119,4 +119,4 @@ void append_segments(const std::array<Corner, 3>& corners, const Levels& levels,
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The heights at which lines are drawn: all multiples of an interval above and below a base, or
 /// the heights of a list. A level's number says which one it is.
@@ -65,4 +65,4 @@ struct IsoSegment {
 void append_segments(const std::array<Corner, 3>& corners, const Levels& levels,
                      std::vector<IsoSegment>& segments);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -4,7 +4,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// How far, in steps of the lattice, rounding takes a coordinate of some millions of steps.
@@ -39,4 +39,4 @@ PixelCentres::PixelCentres(const PixelGrid& grid, const std::optional<Lattice>& 
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/pixel_grid.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The centres of a raster's pixels in the coordinates of the triangles. Where these are integers
 /// of a lattice, the centres are mapped there and not the triangles to the world: a triangulation
@@ -57,4 +57,4 @@ class PixelCentres {
   double per_y_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

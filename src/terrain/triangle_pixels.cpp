@@ -8,7 +8,7 @@
 #include "src/geometry/predicate_rungs.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Products between these are rounded by remainders that are doubles themselves.
@@ -174,4 +174,4 @@ void find_pixels(const PixelCentres& centres, const Triangle& canonical, const P
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -24,7 +24,7 @@
 #include "stream/ranks/stream_parts.h"
 #include "stream/ranks/together.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using distributed::Ranks;
@@ -383,4 +383,4 @@ std::unique_ptr<MeshOutput> open_mesh_output(FileSystem& files, const MeshTarget
                       : open_one_file(files, target, header, scratch, ranks);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

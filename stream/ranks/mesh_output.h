@@ -11,7 +11,7 @@
 #include "src/distributed/ranks.h"
 #include "stream/ranks/rank_pipeline.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Where the mesh of all ranks goes.
 struct MeshTarget {
@@ -62,4 +62,4 @@ std::unique_ptr<MeshOutput> open_mesh_output(FileSystem& files, const MeshTarget
                                              const MeshStreamHeader& header, ScratchFolder& scratch,
                                              const distributed::Ranks& ranks);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using distributed::Packer;
@@ -148,4 +148,4 @@ template void pack(Packer&, const Border<3>&, bool);
 template Border<2> unpack_border(Unpacker&, bool);
 template Border<3> unpack_border(Unpacker&, bool);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "stream/point_source.h"
 #include "stream/tile_tree.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 void pack(distributed::Packer& message, const SourceFacts& facts);
 SourceFacts unpack_source_facts(distributed::Unpacker& message);
@@ -26,4 +26,4 @@ void pack(distributed::Packer& message, const Border<D>& border, bool with_index
 template <int D>
 Border<D> unpack_border(distributed::Unpacker& message, bool with_index);
 
-}  // namespace spillway
+}  // namespace spillway::detail

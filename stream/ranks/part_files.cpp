@@ -15,7 +15,7 @@
 #include "stream/ranks/stream_parts.h"
 #include "stream/ranks/together.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using distributed::Ranks;
@@ -166,4 +166,4 @@ std::unique_ptr<MeshOutput> open_part_files(FileSystem& files, const MeshTarget&
   return std::make_unique<PartFiles>(files, target, header, scratch, ranks);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

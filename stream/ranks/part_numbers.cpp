@@ -4,7 +4,7 @@
 
 #include "formats/global_ids.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 PartNumbers::PartNumbers(const RankMesh& mesh) : parts_(mesh.parts) {
   if (mesh.own_part) append_run(parts_[*mesh.own_part]);
@@ -57,4 +57,4 @@ std::optional<std::uint64_t> PartNumbers::find(std::uint64_t global) const {
   return found == foreign_.end() ? std::nullopt : std::optional(found->second);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 #include "formats/mesh_stream.h"
 #include "stream/ranks/rank_pipeline.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The vertices of a mesh that stands for itself: those of this rank's parts of the stream, and
 /// those of other parts that simplices there use. They are numbered as they come.
@@ -45,4 +45,4 @@ class PartNumbers {
   std::uint64_t vertices_ = 0;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

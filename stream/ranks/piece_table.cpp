@@ -7,7 +7,7 @@
 
 #include "stream/tile_block.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 PieceTable::PieceTable(PointSource& source, const distributed::Ranks& ranks, ScratchFolder& scratch,
                        StageTimes& times, const std::function<void()>& progress)
@@ -117,4 +117,4 @@ void PieceTable::decode(SourcePiece& batch, PointBlock& block) const {
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

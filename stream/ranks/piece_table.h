@@ -11,7 +11,7 @@
 #include "stream/point_source.h"
 #include "stream/stage_times.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// All points of the inputs as pieces of some ten thousand, numbered in their order. Pieces of
 /// files that can be read in any order are read by any rank. What can only be read from front to
@@ -69,4 +69,4 @@ class PieceTable {
   std::unique_ptr<ScratchFile> file_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "stream/deal.h"
 #include "stream/tile_block.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// An index that is not counted through all inputs: the number of a piece, then that of a record.
@@ -173,4 +173,4 @@ void PointExchange::send(std::vector<OwnPiece>& own) {
   }
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "stream/ranks/rank_division.h"
 #include "stream/stage_times.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// How many pieces may be on their way at a time.
 struct ExchangeRound {
@@ -84,4 +84,4 @@ class PointExchange {
 /// Puts indices that count through all inputs in place of those that name pieces.
 void count_through(std::span<std::uint64_t> index, std::span<const std::uint64_t> records_before);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 
 #include "src/distributed/packing.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Pieces that are looked at, at least if there are as many: all of them, for small inputs. More
@@ -74,4 +74,4 @@ RankDivision divide_among_ranks(PieceTable& pieces, int dimension,
   return division;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

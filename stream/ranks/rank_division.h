@@ -6,7 +6,7 @@
 #include "stream/cut_tree.h"
 #include "stream/ranks/piece_table.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Which rank each point belongs to: the top of the k-d tree, one tile for each rank. Ranks are in
 /// the order of the tree, so that the ranks below a cut follow each other.
@@ -19,4 +19,4 @@ struct RankDivision {
 /// spread over all inputs. Collective; all ranks get the same.
 RankDivision divide_among_ranks(PieceTable& pieces, int dimension, const distributed::Ranks& ranks);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -19,7 +19,7 @@
 #include "stream/ranks/together.h"
 #include "stream/tile_engine.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using distributed::Ranks;
@@ -377,4 +377,4 @@ PointCounts shared_counts(const PointCounts& own, const Ranks& ranks) {
   return {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6]};
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

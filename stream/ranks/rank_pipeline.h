@@ -13,7 +13,7 @@
 #include "stream/point_source.h"
 #include "stream/stream_options.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// A part of the stream that all ranks make together: what the tiles of one rank gave, or a merge
 /// between ranks. Parts follow each other as tiles and merges do in a stream.
@@ -80,4 +80,4 @@ std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<s
 /// The sums over all ranks. Collective.
 PointCounts shared_counts(const PointCounts& own, const distributed::Ranks& ranks);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 
 #include "stream/ranks/messages.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 template <int D>
 RankTree<D>::RankTree(const RankDivision& division, const std::optional<TileNode<D>>& own,
@@ -74,4 +74,4 @@ std::uint32_t RankTree<D>::add_node(const TileNode<D>& tiles, const Shape& shape
 template class RankTree<2>;
 template class RankTree<3>;
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "stream/tile_tree.h"
 #include "stream/tile_triangulation.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The tree of all tiles of all ranks, and its top, where ranks merge what their tiles have left.
 template <int D>
@@ -61,4 +61,4 @@ class RankTree {
   std::optional<std::uint32_t> own_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -5,7 +5,7 @@
 
 #include "src/distributed/packing.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using distributed::Packer;
@@ -82,4 +82,4 @@ void send_raster(Dem& dem, const Ranks& ranks) {
   ranks.send(0, {});
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

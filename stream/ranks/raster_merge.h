@@ -8,7 +8,7 @@
 #include "stream/dem.h"
 #include "stream/ranks/rank_pipeline.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Paints what a merge between ranks made final.
 void paint_merged(Dem& dem, const MergedPart& part);
@@ -22,4 +22,4 @@ void write_raster_of_ranks(Dem& dem, Raster& raster,
 /// The other ranks: send all they have painted to rank 0.
 void send_raster(Dem& dem, const distributed::Ranks& ranks);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace spillway {
+namespace spillway::detail {
 
 StreamParts::StreamParts(const MeshSpool& spool, RankMesh& mesh)
     : own_part_(mesh.own_part), parts_(mesh.parts.size()) {
@@ -45,4 +45,4 @@ bool StreamParts::next(std::uint32_t part, std::vector<std::byte>& piece) {
   return !piece.empty();
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

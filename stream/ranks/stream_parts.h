@@ -11,7 +11,7 @@
 #include "src/distributed/ranks.h"
 #include "stream/ranks/rank_pipeline.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// About how many bytes of output go to a file or to another rank at a time.
 inline constexpr std::size_t kOutputPiece = std::size_t{4} << 20;
@@ -45,4 +45,4 @@ class StreamParts {
   std::size_t parts_;
 };
 
-}  // namespace spillway
+}  // namespace spillway::detail

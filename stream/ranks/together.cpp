@@ -4,7 +4,7 @@
 #include <exception>
 #include <span>
 
-namespace spillway {
+namespace spillway::detail {
 
 void do_together(const distributed::Ranks& ranks, const std::function<void()>& step) {
   std::exception_ptr failure;
@@ -22,4 +22,4 @@ void do_together(const distributed::Ranks& ranks, const std::function<void()>& s
   ranks.barrier();  // never left: the rank that throws ends the job
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

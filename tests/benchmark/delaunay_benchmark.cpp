@@ -24,7 +24,7 @@
 #include "src/generators/generators.h"
 #include "tests/benchmark/cgal_timing.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 struct Plan {
@@ -177,10 +177,10 @@ std::string compare(const std::string& family, const Plan& plan) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail
 
 int main(int argc, char** argv) {
-  spillway::Plan plan;
+  spillway::detail::Plan plan;
   CLI::App app("Times CGAL's Delaunay triangulations and ours in turns");
   app.add_option("--families", plan.families, "Families of points")->delimiter(',');
   app.add_option("--dims", plan.dimensions, "Dimensions")->delimiter(',');
@@ -212,8 +212,8 @@ int main(int argc, char** argv) {
   std::string simulated;
   for (const int dimension : plan.dimensions) {
     for (const std::string& family : plan.families) {
-      simulated +=
-          dimension == 2 ? spillway::compare<2>(family, plan) : spillway::compare<3>(family, plan);
+      simulated += dimension == 2 ? spillway::detail::compare<2>(family, plan)
+                                  : spillway::detail::compare<3>(family, plan);
     }
   }
   if (plan.simulated_base_cases.empty()) return 0;

@@ -14,7 +14,7 @@
 
 #include "src/delaunay/schedule.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 struct Plan {
@@ -104,10 +104,10 @@ void compare(const Plan& plan, std::uint64_t count) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail
 
 int main(int argc, char** argv) {
-  spillway::Plan plan;
+  spillway::detail::Plan plan;
   CLI::App app("Times `spillway dem` beside `gdal_grid -a linear`");
   app.add_option("--command", plan.command, "The spillway to run");
   app.add_option("--folder", plan.folder, "Where all files lie");
@@ -121,5 +121,5 @@ int main(int argc, char** argv) {
   fmt::print(
       "| points | pixels | triangulate us/pt | dem us/pt | dem / triangulate | gdal_grid us/pt | "
       "gdal_grid / dem |\n|---|---|---|---|---|---|---|\n");
-  for (const std::uint64_t count : plan.points) spillway::compare(plan, count);
+  for (const std::uint64_t count : plan.points) spillway::detail::compare(plan, count);
 }

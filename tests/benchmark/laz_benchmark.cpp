@@ -18,7 +18,7 @@
 #include "formats/point_reader.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 struct Plan {
@@ -111,10 +111,10 @@ void print_table(const Plan& plan) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail
 
 int main(int argc, char** argv) {
-  spillway::Plan plan;
+  spillway::detail::Plan plan;
   CLI::App app("Times the reading of LAZ and other point files");
   app.add_option("files", plan.files)->required();
   app.add_option("-r,--repetitions", plan.repetitions)->check(CLI::Range(1, 1000));
@@ -123,8 +123,8 @@ int main(int argc, char** argv) {
   app.add_flag("--keep-withheld", plan.keep_withheld, "flags are not needed, then");
   CLI11_PARSE(app, argc, argv);
   try {
-    spillway::print_table(plan);
-  } catch (const spillway::Error& error) {
+    spillway::detail::print_table(plan);
+  } catch (const spillway::detail::Error& error) {
     fmt::print(stderr, "laz_benchmark: {}\n", error.what());
     return 1;
   }

@@ -22,7 +22,7 @@
 #include "src/generators/generators.h"
 #include "tests/benchmark/cgal_timing.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 struct Plan {
@@ -163,10 +163,10 @@ void compare(const Plan& plan, std::uint64_t count, const std::string& memory) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail
 
 int main(int argc, char** argv) {
-  spillway::Plan plan;
+  spillway::detail::Plan plan;
   CLI::App app("Times the whole command beside CGAL's insertion in memory and plain copies");
   app.add_option("--command", plan.command, "The spillway to run");
   app.add_option("--folder", plan.folder, "Where input, output and scratch files lie");
@@ -186,6 +186,7 @@ int main(int argc, char** argv) {
       "tiles | writes/pt | spill B/pt | mesh B/pt | border | of simplices | copies us/pt | ours / "
       "copies |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < plan.points.size(); ++i) {
-    spillway::compare(plan, plan.points[i], plan.memory[std::min(i, plan.memory.size() - 1)]);
+    spillway::detail::compare(plan, plan.points[i],
+                              plan.memory[std::min(i, plan.memory.size() - 1)]);
   }
 }

@@ -7,7 +7,7 @@
 
 #include "src/delaunay/affine_basis.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 template <int D>
@@ -83,4 +83,4 @@ TEST(BaseCase, IsFastForManyCollinearPointsAndOneBeside) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -16,7 +16,7 @@
 #include "tests/delaunay/cgal_oracle.h"
 #include "tests/generators/family_cases.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 template <int D>
@@ -247,4 +247,4 @@ TEST(RecycledTriangulation, IsGivenBackByARefusedCall) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

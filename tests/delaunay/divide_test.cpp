@@ -8,7 +8,7 @@
 #include "src/delaunay/schedule.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 struct Divided {
@@ -145,4 +145,4 @@ TEST(Divide, DoesNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 #include "src/delaunay/schedule.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Whether one of the others destroys a simplex of this triangulation.
@@ -203,4 +203,4 @@ TEST(FinalityInSpace, BorderPickedFromARotatedLatticeIsThatOfTheSearch) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

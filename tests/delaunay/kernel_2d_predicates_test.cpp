@@ -12,7 +12,7 @@
 #include "src/generators/random.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::kernel_2d {
+namespace spillway::detail::kernel_2d {
 namespace {
 
 using Four = std::array<Point<2>, 4>;
@@ -251,4 +251,4 @@ TEST(Kernel2dPredicates, LatticesAreFoundWhateverTheirUnit) {
 }
 
 }  // namespace
-}  // namespace spillway::kernel_2d
+}  // namespace spillway::detail::kernel_2d

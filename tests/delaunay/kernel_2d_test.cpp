@@ -14,7 +14,7 @@
 #include "tests/delaunay/kernel_sets.h"
 #include "tests/generators/family_cases.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Points = std::vector<Point<2>>;
@@ -179,4 +179,4 @@ TEST(Kernel2d, EqualsCgalWithNarrowVectors) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -15,7 +15,7 @@
 #include "tests/delaunay/kernel_sets.h"
 #include "tests/generators/family_cases.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Points = std::vector<Point<3>>;
@@ -280,4 +280,4 @@ TEST(Kernel3d, RefusesMorePointsThanItCanNumber) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

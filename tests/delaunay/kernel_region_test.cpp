@@ -16,7 +16,7 @@
 #include "tests/geometry/exact_sphere.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 template <int D>
@@ -211,4 +211,4 @@ TYPED_TEST(KernelRegion, SaysNothingUnasked) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -15,7 +15,7 @@
 #include "src/generators/random.h"
 #include "tests/delaunay/cgal_oracle.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 template <int D>
@@ -243,4 +243,4 @@ template std::vector<Point<3>> hard_set<3>(std::uint64_t);
 template std::string compare_kernel_with_cgal<2>(std::span<const Point<2>>, std::uint64_t);
 template std::string compare_kernel_with_cgal<3>(std::span<const Point<3>>, std::uint64_t);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "src/delaunay/vectors.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Limits the vectors of the kernels for the length of its life.
 class VectorLimit {
@@ -31,4 +31,4 @@ std::vector<Point<D>> hard_set(std::uint64_t seed);
 template <int D>
 std::string compare_kernel_with_cgal(std::span<const Point<D>> points, std::uint64_t seed);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -9,7 +9,7 @@
 
 #include "src/delaunay/hash.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 class Parallel : public testing::TestWithParam<unsigned> {};
@@ -94,4 +94,4 @@ TEST(SimplexHash, SimplexesAreTheSameUpToEvenPermutationsOnly) {
 INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 4));
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 Task work(double seconds, std::size_t pieces = 1) {
@@ -51,4 +51,4 @@ TEST(GreedyMakespan, TakesTheDeepestWorkFirst) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

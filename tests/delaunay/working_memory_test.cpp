@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kUnit = 64;  ///< blocks are multiples of it
@@ -44,4 +44,4 @@ TEST_F(KeptBlocksTest, AreGoneWhenReleased) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

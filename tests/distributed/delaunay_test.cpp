@@ -21,7 +21,7 @@
 #include "tests/distributed/world.h"
 #include "tests/generators/family_cases.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 namespace {
 
 /// Which rank gives which points.
@@ -108,7 +108,7 @@ struct Expected {
   std::uint64_t hash = 0;
 
   explicit Expected(const std::vector<Point<D>>& points)
-      : triangulation(spillway::delaunay<D>(points, {.threads = 1})) {
+      : triangulation(spillway::detail::delaunay<D>(points, {.threads = 1})) {
     const auto number = [&](VertexId v) {
       return v == kInfiniteVertex ? v : triangulation.input_index[v];
     };
@@ -373,4 +373,4 @@ TYPED_TEST(DistributedDelaunay, GivesEveryRankAboutAsManyVertices) {
 }
 
 }  // namespace
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

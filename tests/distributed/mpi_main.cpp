@@ -10,7 +10,7 @@
 
 #include "tests/distributed/world.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 namespace {
 
 std::optional<Ranks> joined;
@@ -38,17 +38,17 @@ class Failures : public testing::EmptyTestEventListener {
 
 const Ranks& world() { return *joined; }
 
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed
 
 int main(int argc, char** argv) {
-  using spillway::distributed::joined;
+  using spillway::detail::distributed::joined;
   testing::InitGoogleTest(&argc, argv);
-  joined = spillway::distributed::Ranks::all();
+  joined = spillway::detail::distributed::Ranks::all();
   auto& listeners = testing::UnitTest::GetInstance()->listeners();
   if (joined->rank() != 0) {
     delete listeners.Release(listeners.default_result_printer());
   }
-  listeners.Append(new spillway::distributed::Failures);
+  listeners.Append(new spillway::detail::distributed::Failures);
   const int result = RUN_ALL_TESTS();
   joined.reset();  // MPI is left here, not among the destructors of other libraries' globals.
   return result;

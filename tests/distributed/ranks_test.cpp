@@ -17,7 +17,7 @@
 #include "src/error.h"
 #include "tests/distributed/world.h"
 
-namespace spillway::distributed {
+namespace spillway::detail::distributed {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -463,4 +463,4 @@ TEST(Traffic, CountsMessagesToOtherRanksOnce) {
 }
 
 }  // namespace
-}  // namespace spillway::distributed
+}  // namespace spillway::detail::distributed

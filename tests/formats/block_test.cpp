@@ -5,7 +5,7 @@
 #include "formats/bytes.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -103,4 +103,4 @@ TEST(Block, ASizeThatNoCompressionReachesIsNotAllocated) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -7,7 +7,7 @@
 
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -209,4 +209,4 @@ TEST(Columns, NumbersOutOfRange) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -12,7 +12,7 @@
 #include "tests/formats/laz_encoder/laz_file.h"
 #include "tests/formats/laz_encoder/random_records.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// A COPC file made from nodes; the octree lies open, as in LazFile.
 struct CopcFile {
@@ -119,4 +119,4 @@ struct CopcFile {
   }
 };
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -5,7 +5,7 @@
 #include "tests/formats/copc_file.h"
 #include "tests/formats/shared_data.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -331,4 +331,4 @@ TEST(CopcCorruption, CountIsNotThatOfTheChunk) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

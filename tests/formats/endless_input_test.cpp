@@ -15,7 +15,7 @@
 #include "formats/point_reader.h"
 #include "src/error.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -156,4 +156,4 @@ TEST(EndlessInput, XmlSaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -10,7 +10,7 @@
 
 #include "tests/formats/stream_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// A grid of triangles over one square kilometre of UTM, every vertex used.
 inline StreamedMesh kilometre(const std::string& crs) {
@@ -117,4 +117,4 @@ inline void expect_near(const std::vector<Triangle>& a, const std::vector<Triang
   EXPECT_LE(worst, tolerance);
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

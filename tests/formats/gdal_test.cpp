@@ -13,7 +13,7 @@
 #include "src/error.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -86,4 +86,4 @@ TEST(GdalCrs, NonsenseIsAnErrorInOneLine) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

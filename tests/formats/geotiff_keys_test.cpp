@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -168,4 +168,4 @@ TEST(GeotiffKeys, KindsOfCodesThatAreNotAskedForAreThoseOfGdal) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -15,7 +15,7 @@
 #include "src/error.h"
 #include "tests/faulty_file_system.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 InputKind kind_of(const std::string& path, const std::string& content) {
@@ -109,4 +109,4 @@ TEST(InputKindTest, AMissingFileIsAnError) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

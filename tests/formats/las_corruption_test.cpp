@@ -3,7 +3,7 @@
 #include "tests/formats/las_file.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -169,4 +169,4 @@ TEST(LasCorruption, MessagesBeginWithTheFile) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -9,7 +9,7 @@
 
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// A LAS file made field by field from the specification, independently of the writer. The offsets
 /// are spelled out here again on purpose.
@@ -105,4 +105,4 @@ struct LasFile {
   }
 };
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -9,7 +9,7 @@
 #include "tests/formats/laz_encoder/laz_file.h"
 #include "tests/formats/laz_encoder/random_records.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -496,4 +496,4 @@ INSTANTIATE_TEST_SUITE_P(Files, SharedLazDamage,
                          });
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

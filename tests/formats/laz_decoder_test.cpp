@@ -18,7 +18,7 @@
 #include "formats/laz/streaming_median.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using laz::ArithmeticDecoder;
@@ -464,4 +464,4 @@ TEST(LazChunk, RandomBytesGivePointsOrAnError) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

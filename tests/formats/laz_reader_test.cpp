@@ -5,7 +5,7 @@
 #include "tests/formats/laz_encoder/random_records.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::ElementsAre;
@@ -295,4 +295,4 @@ TEST(LasVersions, TheyArePartOfThePointsWhereThereIsNoRoomForThem) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -7,7 +7,7 @@
 #include "tests/formats/laz_encoder/laz_file.h"
 #include "tests/formats/laz_encoder/random_records.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 constexpr std::size_t kPoints = 300;
@@ -299,4 +299,4 @@ TEST(LazRoundTripOthers, RecognisedByItsFirstBytes) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -28,8 +28,8 @@
 
 namespace {
 
-using spillway::PointBlock;
-using spillway::testing::DamageOutcome;
+using spillway::detail::PointBlock;
+using spillway::detail::testing::DamageOutcome;
 
 struct Settings {
   std::vector<std::string> files;
@@ -83,7 +83,7 @@ void sweep(const Settings& settings, const Target& target, const Damage& damage,
       damage(damaged, place);
       try {
         const DamageOutcome outcome =
-            spillway::testing::read_damaged_laz(damaged, !settings.pipe, target.sound);
+            spillway::detail::testing::read_damaged_laz(damaged, !settings.pipe, target.sound);
         if (settings.list && outcome == DamageOutcome::kOther) report(place, "other points");
         ++(outcome == DamageOutcome::kError   ? counts.errors
            : outcome == DamageOutcome::kRight ? counts.right
@@ -105,7 +105,7 @@ class Sweep {
       : settings_(settings),
         name_(std::filesystem::path(name).filename().string()),
         bytes_(content_of(name)),
-        sound_(spillway::testing::read_laz(bytes_, !settings.pipe)),
+        sound_(spillway::detail::testing::read_laz(bytes_, !settings.pipe)),
         excerpts_(bytes_) {}
 
   /// Damages every `step`-th byte, in the file of its chunk if `in_chunks`; returns how many runs
@@ -123,7 +123,7 @@ class Sweep {
       }
     };
     for (std::size_t i = 0; i < chunks; ++i) {
-      const spillway::LazChunk& chunk = excerpts_.chunk(i);
+      const spillway::detail::LazChunk& chunk = excerpts_.chunk(i);
       take_places(chunk.offset, whole);
       Target part{excerpts_.file(i),
                   excerpts_.points(sound_, i),
@@ -155,7 +155,7 @@ class Sweep {
   std::string name_;
   std::string bytes_;
   PointBlock sound_;
-  spillway::testing::LazExcerpts excerpts_;
+  spillway::detail::testing::LazExcerpts excerpts_;
 };
 
 /// Sweeps one file; returns how many runs failed.

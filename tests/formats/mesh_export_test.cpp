@@ -10,7 +10,7 @@
 #include "tests/formats/export_test_helpers.h"
 #include "tests/formats/mesh_writer_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -342,4 +342,4 @@ TEST(ExportFormats, TooLargeForGltfIsRefusedAtOnce) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -2,7 +2,7 @@
 
 #include "tests/formats/mesh_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -103,4 +103,4 @@ INSTANTIATE_TEST_SUITE_P(All, MeshFaults,
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

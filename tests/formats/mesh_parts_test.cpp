@@ -4,7 +4,7 @@
 #include "formats/ply_records.h"
 #include "tests/formats/mesh_writer_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -127,4 +127,4 @@ TEST(PlyRecords, EndWherePlyDoes) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -2,7 +2,7 @@
 
 #include "tests/formats/mesh_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::Bool;
@@ -293,4 +293,4 @@ TEST(Notes, ALongCoordinateSystemIsCutIntoLinesAndComesBackWhole) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -2,7 +2,7 @@
 
 #include "tests/formats/stream_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -43,4 +43,4 @@ TEST(MeshSpool, NamesTheOutputWhereTotalsAreNotWhatCame) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -15,7 +15,7 @@
 #include "tests/faulty_file_system.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// A few simplices of doubles that need 17 digits, at offsets as large as UTM's, signed zeros and
 /// subnormals among them.
@@ -113,4 +113,4 @@ inline void expect_equal(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.input_index, b.input_index);
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

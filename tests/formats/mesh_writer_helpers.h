@@ -4,7 +4,7 @@
 
 #include "tests/formats/mesh_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// A unit square of two triangles, or a tetrahedron.
 inline Mesh small_mesh(int dimension) {
@@ -41,4 +41,4 @@ inline std::string written(MeshFormat format, const Mesh& mesh, std::size_t bloc
 inline constexpr MeshFormat kFullFormats[] = {MeshFormat::kPly, MeshFormat::kPlyAscii,
                                               MeshFormat::kVtu, MeshFormat::kNpy};
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -4,7 +4,7 @@
 
 #include "tests/formats/mesh_writer_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -482,4 +482,4 @@ TEST(MeshWriters, MissingInputIndicesAreTold) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -4,7 +4,7 @@
 
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -184,4 +184,4 @@ TEST(NpyCorruption, IntegerBeyondDoubles) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -6,7 +6,7 @@
 #include "tests/formats/laz_encoder/random_records.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::HasSubstr;
@@ -135,4 +135,4 @@ TEST(PointFormatChoice, PipeThatNeedsTheCountBeforehand) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

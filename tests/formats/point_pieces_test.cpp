@@ -13,7 +13,7 @@
 #include "tests/formats/laz_encoder/random_records.h"
 #include "tests/formats/shared_data.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -416,4 +416,4 @@ TEST(PointPieceErrors, FailingReadsAreReportedAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -13,7 +13,7 @@
 #include "src/error.h"
 #include "tests/faulty_file_system.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// Everything that a reader gives.
 struct AllPoints {
@@ -87,4 +87,4 @@ void put(std::string& content, std::size_t at, const T& value) {
   std::memcpy(&content[at], &value, sizeof(T));
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

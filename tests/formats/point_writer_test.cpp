@@ -8,7 +8,7 @@
 #include "tests/formats/las_file.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -474,4 +474,4 @@ TEST(PointWriter, RefusesAnotherNumberOfPoints) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -12,7 +12,7 @@
 #include "formats/unfinished_files.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -186,4 +186,4 @@ TEST_F(Scratch, TheDefaultParentIsTheEnvironmentS) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

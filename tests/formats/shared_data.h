@@ -12,7 +12,7 @@
 #include "tests/formats/point_test_helpers.h"
 #include "tests/formats/sha256.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 inline std::filesystem::path shared_file(const char* name) {
   return std::filesystem::path(SPILLWAY_SHARED_DATA) / name;
@@ -51,4 +51,4 @@ inline std::string name_of_sample(const ::testing::TestParamInfo<Sample>& tested
 inline constexpr const char* kAutzenPoints =
     "c29fb60ac342200ce4cf4ef97c8aa366e65fd83aef4abbafddee90e9224109cd";
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

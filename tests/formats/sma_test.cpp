@@ -1,7 +1,7 @@
 #include "formats/sma_reader.h"
 #include "tests/formats/stream_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -168,4 +168,4 @@ TEST(Sma, IsToldFromObjAndReadAsAWholeMesh) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -3,7 +3,7 @@
 #include "formats/bytes.h"
 #include "tests/formats/stream_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 void append(std::string& stream, std::span<const std::byte> bytes) { stream += as_text(bytes); }
@@ -92,4 +92,4 @@ TEST(SpmParts, APartWithoutBlocksIsEmpty) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

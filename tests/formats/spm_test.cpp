@@ -13,7 +13,7 @@
 #include "src/generators/generators.h"
 #include "tests/formats/stream_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -400,4 +400,4 @@ TEST(Spm, IsKnownByItsMagicAndReadAsAWholeMesh) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -11,7 +11,7 @@
 #include "formats/spp_format.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -266,4 +266,4 @@ TEST(Spp, ADescriptionThatIsTooLong) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

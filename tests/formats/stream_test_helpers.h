@@ -12,7 +12,7 @@
 #include "formats/mesh_stream_writer.h"
 #include "tests/formats/mesh_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// A mesh in blocks, and what its stream says of it.
 struct StreamedMesh {
@@ -171,4 +171,4 @@ inline FlatMesh flat(const StreamedMesh& mesh) {
   return all;
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

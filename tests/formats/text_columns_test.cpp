@@ -11,7 +11,7 @@
 #include "formats/text_columns.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -335,4 +335,4 @@ TEST(TextSeparators, HoldFromFrontToBackOfPipes) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -2,7 +2,7 @@
 
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 using ::testing::AllOf;
@@ -188,4 +188,4 @@ TEST(TextCorruption, LongLinesAreShortenedInMessages) {
 TEST(TextCorruption, UnreadableTail) { EXPECT_THAT(text_error("1 2 3\n4 5"), HasSubstr("line 2")); }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

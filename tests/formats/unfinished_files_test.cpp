@@ -21,7 +21,7 @@
 #include "formats/scratch_folder.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -258,4 +258,4 @@ TEST_F(Unfinished, OneRunAfterTheOtherGivesNamesInAFolder) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

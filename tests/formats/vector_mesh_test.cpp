@@ -12,7 +12,7 @@
 #include "formats/unfinished_files.h"
 #include "tests/formats/export_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -215,4 +215,4 @@ TEST(VectorMesh, ContoursAsGeoJsonHaveTheirElevation) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -7,7 +7,7 @@
 
 #include "src/generators/generators.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Wide = __int128;
@@ -134,4 +134,4 @@ TEST(Utm, IsFarFromTheOrigin) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

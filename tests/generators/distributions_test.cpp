@@ -7,7 +7,7 @@
 #include "src/generators/generators.h"
 #include "src/generators/random.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::uint64_t kCount = 40000;
@@ -143,4 +143,4 @@ TEST(RandomNumbers, BelowStaysBelowAndReachesAll) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using ::testing::HasSubstr;
@@ -137,4 +137,4 @@ TEST(Generators, OtherDimensionsAreAUsageError) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

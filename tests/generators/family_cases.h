@@ -8,7 +8,7 @@
 
 #include "src/generators/generators.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 struct FamilyCase {
   Family family;
@@ -31,4 +31,4 @@ inline std::string family_case_name(const testing::TestParamInfo<FamilyCase>& te
          std::to_string(tested.param.dimension) + "d";
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

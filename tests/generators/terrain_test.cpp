@@ -9,7 +9,7 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using ::testing::HasSubstr;
@@ -155,4 +155,4 @@ TEST(Terrain, HugeOnesStayWithinThirtyTwoBitsOrAreRefused) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

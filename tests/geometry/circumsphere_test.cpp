@@ -8,7 +8,7 @@
 #include "tests/geometry/exact_sphere.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using testing::ExactSphere;
@@ -362,4 +362,4 @@ TYPED_TEST(CertifiedBallTest, HalfSpaceMeetsABoxIfAnyOfItsPointsIsBeyond) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "src/geometry/determinants.h"
 #include "src/geometry/point.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 using Rational = boost::multiprecision::cpp_rational;
 
@@ -60,4 +60,4 @@ struct ExactSphere {
   }
 };
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -11,7 +11,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// D+2 points: a simplex and a query.
 template <int D>
@@ -191,4 +191,4 @@ std::array<Point<D>, D + 1> simplex_of(const Group<D>& group) {
   return simplex;
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

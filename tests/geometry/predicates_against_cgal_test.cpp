@@ -11,7 +11,7 @@
 #include "src/geometry/predicates.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using testing::Group;
@@ -113,4 +113,4 @@ TEST(PredicatesAgainstCgal3DTest, EverySimplexAndQueryOfACubeIsPerturbedAlike) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include "src/geometry/predicate_rungs.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using testing::Group;
@@ -246,4 +246,4 @@ TYPED_TEST(PredicatesTest, CoordinatesThatAreNotFiniteThrow) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

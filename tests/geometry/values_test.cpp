@@ -17,7 +17,7 @@
 #include "src/geometry/longest_edge.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 TEST(LongestEdgeTest, EveryEdgeIsMeasuredInTheFirstCoordinatesOnly) {
@@ -301,4 +301,4 @@ TEST(CanonicalHashValueTest, IsPartOfTheFormatAndNeverChanges) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

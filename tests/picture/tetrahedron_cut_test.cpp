@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Tetrahedron = std::array<Point<3>, 4>;
@@ -79,4 +79,4 @@ TEST(TetrahedronCut, AVertexOnThePlaneIsACornerToTheLastBit) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

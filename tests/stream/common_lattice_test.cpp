@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 Lattice lattice(double scale, double offset = 0) {
@@ -168,4 +168,4 @@ TEST(CommonLattice, OutputCoordinatesAreThoseOfTheInputUpToTheLastPlace) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

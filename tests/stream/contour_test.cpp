@@ -15,7 +15,7 @@
 #include "stream/contour_writer.h"
 #include "stream/line_joiner.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using Line = std::vector<Point<2>>;
@@ -262,4 +262,4 @@ TEST(LineJoiner, RefusesTrianglesThatDoNotFitTogether) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -16,7 +16,7 @@
 
 #include "tests/stream/dem_runner.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using testing::kAllProducts;
@@ -314,4 +314,4 @@ TEST(DemOracle, ATriangleThatFallsDueNorthWinsOverItsNeighbours) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -14,7 +14,7 @@
 #include "tests/stream/stream_runner.h"
 #include "tests/terrain/terrain_mesh.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 inline constexpr std::uint64_t kMemory = std::uint64_t{64} << 20;
 
@@ -108,4 +108,4 @@ inline const DemOptions kAllProducts{.products = {DemProduct::kHeight, DemProduc
                                                   DemProduct::kAspect, DemProduct::kHillshade,
                                                   DemProduct::kDensity}};
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -13,7 +13,7 @@
 #include "src/geometry/predicates.h"
 #include "tests/stream/dem_runner.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using testing::edges_touched;
@@ -317,4 +317,4 @@ TEST(RasterStore, AFullDiskIsAnError) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

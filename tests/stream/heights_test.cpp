@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 struct Stack {
@@ -49,4 +49,4 @@ TEST(Heights, MeanCountsEveryPointOnce) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

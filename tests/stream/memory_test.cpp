@@ -6,7 +6,7 @@
 #include "stream/memory_budget.h"
 #include "stream/memory_plan.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
@@ -98,4 +98,4 @@ TEST(MemoryPlan, DependsOnThreadsOnlyInTheirNumber) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

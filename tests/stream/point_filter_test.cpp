@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 PointAttributes return_of(std::uint8_t number, std::uint8_t count) {
@@ -107,4 +107,4 @@ TEST(PointCounts, AddUp) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -10,7 +10,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 std::vector<std::uint64_t> order_of_all(PointRuns& runs, std::size_t most) {
@@ -83,4 +83,4 @@ TEST(PointRuns, AFullDiskIsAnError) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

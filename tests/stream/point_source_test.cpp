@@ -16,7 +16,7 @@
 #include "tests/faulty_file_system.h"
 #include "tests/formats/las_file.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using ::testing::AllOf;
@@ -261,4 +261,4 @@ TEST_F(PointSourceTest, IntegersThatALatticeDoesNotKeepApartAreFoundInTheirBlock
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

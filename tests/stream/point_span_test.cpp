@@ -13,7 +13,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using ::testing::HasSubstr;
@@ -101,4 +101,4 @@ TEST(PointSpan, OfPartsIsThatOfTheWhole) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -25,7 +25,7 @@
 #include "tests/distributed/world.h"
 #include "tests/faulty_file_system.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -478,4 +478,4 @@ TEST(RankOutput, WhatCannotBeCreatedIsSaidAtOnce) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

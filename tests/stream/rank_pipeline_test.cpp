@@ -8,7 +8,7 @@
 #include "tests/generators/family_cases.h"
 #include "tests/stream/rank_runner.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using distributed::world;
@@ -137,4 +137,4 @@ TEST(RanksInThePipeline, SayWhatTheySentAndMerged) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -15,7 +15,7 @@
 #include "tests/distributed/world.h"
 #include "tests/stream/stream_runner.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// The points in so many files in the test's temporary folder; made by rank 0, known to all.
 template <int D>
@@ -125,4 +125,4 @@ WholeMesh<D> gather_mesh(const RankRunResult& run) {
   return mesh;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -16,7 +16,7 @@
 #include "stream/pipeline.h"
 #include "tests/faulty_file_system.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using ::testing::HasSubstr;
@@ -249,4 +249,4 @@ INSTANTIATE_TEST_SUITE_P(Threads, StreamFault, ::testing::Values(1, 2, 4),
                          [](const auto& tested) { return std::to_string(tested.param); });
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -13,7 +13,7 @@
 #include "tests/generators/family_cases.h"
 #include "tests/stream/stream_runner.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// Tiny tiles that fit into memory, tiny tiles that all go to the disk, one tile of many leaves.
@@ -170,4 +170,4 @@ INSTANTIATE_TEST_SUITE_P(Families, StreamOfFamily, testing::ValuesIn(all_family_
                          family_case_name);
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

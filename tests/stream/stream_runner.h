@@ -14,7 +14,7 @@
 #include "formats/point_writer.h"
 #include "stream/pipeline.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Keeps all blocks, and checks on the way that vertices are announced before and finalized after
 /// their last use, once each, and that a block imports what it uses or finalizes, and nothing else.
@@ -116,4 +116,4 @@ std::vector<std::array<VertexId, D + 1>> simplices_of(const KeepingWriter& mesh)
   return simplices;
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

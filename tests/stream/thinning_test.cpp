@@ -14,7 +14,7 @@
 
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using testing::HasSubstr;
@@ -228,4 +228,4 @@ TEST(Thinning, CellsThatCannotBeCountedAreRefused) {
 TEST(Thinning, OfNothingIsNothing) { EXPECT_EQ(thinned({}, {.cell = 1}), Cloud{}); }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -11,7 +11,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kCapacity = 1000;
@@ -207,4 +207,4 @@ TEST(TileTree, SaysWhenTheDiskIsFull) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

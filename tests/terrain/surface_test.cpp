@@ -11,7 +11,7 @@
 #include "src/terrain/grid_choice.h"
 #include "tests/terrain/terrain_mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using testing::box_of;
@@ -169,4 +169,4 @@ TEST(GridChoice, PixelsHoldTheirWesternAndNorthernEdgesAndTheLastOneBoth) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

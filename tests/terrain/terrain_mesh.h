@@ -10,7 +10,7 @@
 #include "src/terrain/triangle_pixels.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 using HeightOf = std::function<double(double x, double y)>;
 
@@ -67,4 +67,4 @@ inline int edges_touched(const Triangle& triangle, const Point<2>& p) {
   return touched;
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

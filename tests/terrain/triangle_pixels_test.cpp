@@ -9,7 +9,7 @@
 #include "src/error.h"
 #include "tests/terrain/terrain_mesh.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using testing::box_of;
@@ -165,4 +165,4 @@ TEST(PixelCentres, TooFineAResolutionIsRefused) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -15,7 +15,7 @@
 #include "tests/geometry/point_families.h"
 #include "tests/tools/mesh_surgery.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using testing::add_simplex;
@@ -427,4 +427,4 @@ TEST(CheckerDimensionTest, OtherDimensionsAreRefused) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

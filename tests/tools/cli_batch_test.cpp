@@ -8,7 +8,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using ::testing::Contains;
@@ -236,4 +236,4 @@ TEST_F(Batch, EndsItsJobsWhenItIsInterrupted) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

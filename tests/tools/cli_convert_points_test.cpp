@@ -11,7 +11,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/las_samples.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using ::testing::AllOf;
@@ -296,4 +296,4 @@ TEST(ConvertPoints, TakesNoMoreMemoryForMorePoints) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

@@ -14,7 +14,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/las_samples.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using ::testing::AllOf;
@@ -187,4 +187,4 @@ TEST(CoordinateSystems, OfRealFiles) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

@@ -15,7 +15,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -512,4 +512,4 @@ TEST(DemFaults, PointsWithoutHeightsHaveNone) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

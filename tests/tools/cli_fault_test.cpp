@@ -11,7 +11,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using testing::HasSubstr;
@@ -204,4 +204,4 @@ TEST(ClosedPipe, EndsTheRunQuietly) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

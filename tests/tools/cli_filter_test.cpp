@@ -8,7 +8,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/las_samples.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using ::testing::AllOf;
@@ -243,4 +243,4 @@ TEST(SharedData, GroundOfAutzen) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

@@ -9,7 +9,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -221,4 +221,4 @@ TEST(EndlessPipes, EndWithAnError) {
 INSTANTIATE_TEST_SUITE_P(Cli, EveryPointFormat, testing::Values("txt", "csv", "npy"));
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

@@ -11,7 +11,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/las_samples.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using ::testing::AllOf;
@@ -253,4 +253,4 @@ TEST(SharedData, ManyFilesAreOneTriangulation) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

@@ -11,7 +11,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using testing::AnyOf;
@@ -102,4 +102,4 @@ TEST_F(Limits, OfThreads) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

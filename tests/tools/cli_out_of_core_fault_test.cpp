@@ -20,7 +20,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -271,4 +271,4 @@ TEST_F(OutOfCoreFault, PointsThatSpanNothingAreToldByTheirOwnNameNotByTheMemoryT
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

@@ -17,7 +17,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using testing::HasSubstr;
@@ -316,4 +316,4 @@ TEST_F(OutOfCore, ProgressOfAChainNamesEveryPhase) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

@@ -10,7 +10,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/progress_lines.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using Phases = std::vector<EndedPhase>;
@@ -251,4 +251,4 @@ TEST_F(ProgressOfTheCommand, GrowsWhileAPipeIsRead) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

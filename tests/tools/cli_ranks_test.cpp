@@ -20,7 +20,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/progress_lines.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -385,4 +385,4 @@ TEST_P(RanksThatAreStopped, ByAnInterruptOfMpirunLeaveNothing) {
 INSTANTIATE_TEST_SUITE_P(AfterMilliseconds, RanksThatAreStopped, testing::Values(100, 900));
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

@@ -9,7 +9,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using testing::AnyOf;
@@ -75,4 +75,4 @@ TEST_F(SameOutput, IsAWholeJobOfABatch) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

@@ -6,7 +6,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 struct Sample {
@@ -71,4 +71,4 @@ INSTANTIATE_TEST_SUITE_P(
                     Sample{"1.2-with-color.copc.laz", 1065, 1065, 2114, 14, 6246}));
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

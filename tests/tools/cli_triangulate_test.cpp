@@ -10,7 +10,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using testing::HasSubstr;
@@ -278,4 +278,4 @@ TEST(CliTriangulate, MaxEdgeMayLeaveOutNearlyEverything) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

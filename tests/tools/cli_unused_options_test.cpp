@@ -7,7 +7,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using testing::AllOf;
@@ -261,4 +261,4 @@ TEST(UnusedOptions, ThatHaveAnEffectOnSomeInputAreTaken) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

@@ -13,7 +13,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 using testing::HasSubstr;
@@ -306,4 +306,4 @@ TEST(Manual, GivesNoWarningsOfGroff) {
 }
 
 }  // namespace
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

@@ -12,7 +12,7 @@
 #include <iterator>
 #include <stdexcept>
 
-namespace spillway::test {
+namespace spillway::detail::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -157,4 +157,4 @@ fs::path shared_file(const std::string& name) {
   return fs::exists(path) ? path : fs::path();
 }
 
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

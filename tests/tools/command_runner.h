@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway::test {
+namespace spillway::detail::test {
 
 struct Result {
   int exit_code;  ///< 128 + signal if it was killed
@@ -63,4 +63,4 @@ int wait_for_exit(pid_t process);
 /// A file of the shared sample data, or an empty path if that folder is not there.
 std::filesystem::path shared_file(const std::string& name);
 
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

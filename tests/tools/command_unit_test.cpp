@@ -18,7 +18,7 @@
 #include "tools/progress_line.h"
 #include "tools/triangulation_options.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 /// All options but --help.
@@ -156,4 +156,4 @@ TEST(FacetCount, CountsWhatOneSimplexHasAlone) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -7,7 +7,7 @@
 
 #include "tests/formats/las_file.h"
 
-namespace spillway::test {
+namespace spillway::detail::test {
 
 /// A LAS file of `count` points, no two of equal x, y, on a lattice of 0.01, that belongs to a
 /// sequence of such files: record i has class (first + i) % 5 and is return 1 + i % 3 of 3.
@@ -36,4 +36,4 @@ inline testing::LasFile::Vlr epsg_keys(std::uint16_t code) {
   return {"LASF_Projection", 34735, keys};
 }
 
-}  // namespace spillway::test
+}  // namespace spillway::detail::test

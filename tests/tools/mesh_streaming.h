@@ -11,7 +11,7 @@
 #include "formats/mesh_stream.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// A stream that lies in memory.
 class StreamInMemory : public MeshStreamReader {
@@ -115,4 +115,4 @@ void sort_along(Mesh& mesh, int axis) {
   }
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

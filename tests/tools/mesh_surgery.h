@@ -10,7 +10,7 @@
 #include "src/error.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 template <int D>
 Point<D> point_of(const Mesh& mesh, std::uint64_t vertex) {
@@ -117,4 +117,4 @@ std::uint64_t find_simplex(const Mesh& mesh, bool inner) {
   throw Error("the mesh has no such simplex");
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

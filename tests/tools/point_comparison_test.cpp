@@ -10,7 +10,7 @@
 #include <fstream>
 #include <random>
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using testing::Contains;
@@ -100,4 +100,4 @@ TEST(PointComparison, AcceptsAnyHeightBetweenThoseOfThePlace) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -17,7 +17,7 @@
 #include "tools/open_vertices.h"
 #include "tools/probing_table.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace {
 
 using ::testing::Contains;
@@ -386,4 +386,4 @@ TEST(ProbingTableTest, FindsWhatIsThereAndNothingElseAfterManyErasures) {
 }
 
 }  // namespace
-}  // namespace spillway
+}  // namespace spillway::detail

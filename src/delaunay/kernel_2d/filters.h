@@ -7,7 +7,7 @@
 #include "src/geometry/point.h"
 #include "src/geometry/predicate_rungs.h"
 
-namespace spillway::kernel_2d {
+namespace spillway::detail::kernel_2d {
 
 /// Two numbers that are computed with side by side.
 using Pair [[gnu::vector_size(16)]] = double;
@@ -72,4 +72,4 @@ inline bool tie_conflicts(const Corner& from, const Corner& to, const Corner& ap
   return std::max(rank(from), rank(to)) > std::max(rank(apex), 0.0);
 }
 
-}  // namespace spillway::kernel_2d
+}  // namespace spillway::detail::kernel_2d

@@ -14,7 +14,7 @@
 #include "src/delaunay/kernel_2d/working_points.h"
 #include "src/delaunay/lanes.h"
 
-namespace spillway::kernel_2d {
+namespace spillway::detail::kernel_2d {
 
 /// Builds the triangulation point by point. kLattice says what WorkingPoints::lattice does.
 template <bool kLattice>
@@ -88,4 +88,4 @@ class Insertion {
 extern template class Insertion<false>;
 extern template class Insertion<true>;
 
-}  // namespace spillway::kernel_2d
+}  // namespace spillway::detail::kernel_2d

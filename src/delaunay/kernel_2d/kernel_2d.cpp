@@ -17,7 +17,7 @@
 #include "src/delaunay/working_memory.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace kernel_2d {
 namespace {
 
@@ -112,4 +112,4 @@ BaseCase<2> kernel_2d_base_case(const BaseCaseInput<2>& input, std::span<const V
                         : triangulate<false>(input, basis, points, *triangles);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,7 +6,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::kernel_2d {
+namespace spillway::detail::kernel_2d {
 
 /// A vertex's place in a triangle, and the edge opposite to it: 16 * triangle + slot (0, 1 or 2).
 using Handle = std::uint32_t;
@@ -68,4 +68,4 @@ class TriangleArray {
   std::uint32_t* numbers_;
 };
 
-}  // namespace spillway::kernel_2d
+}  // namespace spillway::detail::kernel_2d

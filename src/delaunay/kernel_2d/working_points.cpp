@@ -6,7 +6,7 @@
 
 #include "src/delaunay/coordinate_scaling.h"
 
-namespace spillway::kernel_2d {
+namespace spillway::detail::kernel_2d {
 
 WorkingPoints make_working_points(std::span<const Point<2>> points, Block& memory,
                                   const std::optional<Box<2>>& region) {
@@ -26,4 +26,4 @@ WorkingPoints make_working_points(std::span<const Point<2>> points, Block& memor
   return result;
 }
 
-}  // namespace spillway::kernel_2d
+}  // namespace spillway::detail::kernel_2d

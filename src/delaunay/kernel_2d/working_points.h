@@ -10,7 +10,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::kernel_2d {
+namespace spillway::detail::kernel_2d {
 
 using kernel::kFirstPoint;
 using kernel::kInfinite;
@@ -36,4 +36,4 @@ struct WorkingPoints {
 WorkingPoints make_working_points(std::span<const Point<2>> points, Block& memory,
                                   const std::optional<Box<2>>& region = std::nullopt);
 
-}  // namespace spillway::kernel_2d
+}  // namespace spillway::detail::kernel_2d

@@ -8,7 +8,7 @@
 
 #include "src/delaunay/kernel_3d/working_points.h"
 
-namespace spillway::kernel_3d {
+namespace spillway::detail::kernel_3d {
 
 /// Finite vertices: those of a cell, and the query.
 struct Five {
@@ -52,4 +52,4 @@ int orientation(const WorkingPoints& points, const std::array<VertexRef, 4>& p);
 /// rule of in_sphere().
 bool tie_conflicts(const WorkingPoints& points, const Five& five);
 
-}  // namespace spillway::kernel_3d
+}  // namespace spillway::detail::kernel_3d

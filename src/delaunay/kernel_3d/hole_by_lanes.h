@@ -10,7 +10,7 @@
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_3d/ties_by_lanes.h"
 
-namespace spillway::kernel_3d {
+namespace spillway::detail::kernel_3d {
 
 /// Words whose highest bits are the bits of a number.
 struct HighBits {
@@ -145,4 +145,4 @@ SPILLWAY_INLINE auto Insertion<kRanked>::find_hole(VertexRef query, std::size_t 
   return hole;
 }
 
-}  // namespace spillway::kernel_3d
+}  // namespace spillway::detail::kernel_3d

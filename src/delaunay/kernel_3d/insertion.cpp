@@ -12,7 +12,7 @@
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/error.h"
 
-namespace spillway::kernel_3d {
+namespace spillway::detail::kernel_3d {
 namespace {
 
 /// How far the query is outside of the cell's sphere: the difference of squares.
@@ -266,4 +266,4 @@ void Insertion<kRanked>::close_gaps() {
 template class Insertion<false>;
 template class Insertion<true>;
 
-}  // namespace spillway::kernel_3d
+}  // namespace spillway::detail::kernel_3d

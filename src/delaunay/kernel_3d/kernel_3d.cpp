@@ -17,7 +17,7 @@
 #include "src/delaunay/working_memory.h"
 #include "src/error.h"
 
-namespace spillway {
+namespace spillway::detail {
 namespace kernel_3d {
 namespace {
 
@@ -128,4 +128,4 @@ BaseCase<3> kernel_3d_base_case(const BaseCaseInput<3>& input, std::span<const V
                        : triangulate<false>(input, basis, points, *cells);
 }
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -6,11 +6,11 @@
 
 #include "src/delaunay/base_case.h"
 
-namespace spillway {
+namespace spillway::detail {
 
 /// Triangulates points that span space; `basis` has the places of four that are not coplanar. Works
 /// for any finite doubles. Throws Error for more than 2^28 - 2 points, or if there are more than
 /// 2^28 cells, which is more than it can number: those of some 39 million scattered points.
 BaseCase<3> kernel_3d_base_case(const BaseCaseInput<3>& input, std::span<const VertexId> basis);
 
-}  // namespace spillway
+}  // namespace spillway::detail

@@ -12,7 +12,7 @@
 #include "src/delaunay/lanes.h"
 #include "src/geometry/predicate_rungs.h"
 
-namespace spillway::kernel_3d {
+namespace spillway::detail::kernel_3d {
 
 /// A cell the product of whose edges is so many times its determinant is too flat for its sphere.
 inline constexpr double kFlattest = 0x1p40;
@@ -134,4 +134,4 @@ SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t beg
   return mask_of((R)(proves & (I)s));
 }
 
-}  // namespace spillway::kernel_3d
+}  // namespace spillway::detail::kernel_3d

@@ -6,7 +6,7 @@
 
 #include "src/delaunay/coordinate_scaling.h"
 
-namespace spillway::kernel_3d {
+namespace spillway::detail::kernel_3d {
 
 WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memory,
                                   const std::optional<Box<3>>& region) {
@@ -44,4 +44,4 @@ WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memor
   return result;
 }
 
-}  // namespace spillway::kernel_3d
+}  // namespace spillway::detail::kernel_3d

@@ -10,7 +10,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::kernel_3d {
+namespace spillway::detail::kernel_3d {
 
 using kernel::kFirstPoint;
 
@@ -45,4 +45,4 @@ inline constexpr VertexRef ref(VertexId number) { return 4 * number; }
 WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memory,
                                   const std::optional<Box<3>>& region = std::nullopt);
 
-}  // namespace spillway::kernel_3d
+}  // namespace spillway::detail::kernel_3d

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 constexpr std::uint32_t kMinLength = 0x01000000;
@@ -111,4 +111,4 @@ std::string ArithmeticEncoder::finish() {
   return std::move(bytes_);
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// Adaptive probability of a bit.
 class BitModel {
@@ -79,4 +79,4 @@ class ArithmeticEncoder {
   std::uint32_t length_ = 0xffffffff;
 };
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

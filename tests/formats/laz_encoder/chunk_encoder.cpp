@@ -8,7 +8,7 @@
 #include "tests/formats/laz_encoder/point14_encoder.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 /// One layer behind POINT14: a part of the record, with four contexts.
@@ -153,4 +153,4 @@ std::string encode_laz_chunk(const std::vector<LazItem>& items,
   return encode_layered(items, records, options);
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// Contexts by [number of returns][return number], three bits each.
 inline constexpr std::uint8_t kReturnMap8[8][8] = {
@@ -61,4 +61,4 @@ class StreamingMedian {
   bool drop_largest_ = true;
 };
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

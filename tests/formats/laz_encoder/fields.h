@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// The little-endian value at a place in a record.
 template <typename T>
@@ -61,4 +61,4 @@ inline constexpr std::size_t kGpsTime = 22;
 inline unsigned channel(std::string_view record) { return byte_at(record, kFlags) >> 4 & 3; }
 }  // namespace core14
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

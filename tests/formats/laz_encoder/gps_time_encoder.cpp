@@ -6,7 +6,7 @@
 #include "tests/formats/laz_encoder/fields.h"
 #include "tests/formats/laz_encoder/item_encoder.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 /// The integer nearest to step / last, within bounds.
@@ -166,4 +166,4 @@ void GpsSequences::begin_sequence(ArithmeticEncoder& encoder, std::uint64_t time
   sequences_[current_] = {time, 0, 0};
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -5,7 +5,7 @@
 
 #include "tests/formats/laz_encoder/integer_compressor.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// GPS times as bit patterns: up to four interleaved sequences, each running with a step of its
 /// own. Item version 2, and the layer of POINT14.
@@ -40,4 +40,4 @@ class GpsSequences {
   IntegerCompressor values_{32, 9};
 };
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

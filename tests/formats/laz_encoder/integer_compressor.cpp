@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 IntegerCompressor::IntegerCompressor(unsigned bits, std::size_t contexts)
     : bits_(bits), classes_(contexts, bits + 1) {
@@ -34,4 +34,4 @@ void IntegerCompressor::encode(ArithmeticEncoder& encoder, std::int32_t predicti
   if (raw_bits > 0) encoder.raw(code & ((std::uint32_t{1} << raw_bits) - 1), raw_bits);
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

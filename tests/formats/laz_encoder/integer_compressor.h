@@ -4,7 +4,7 @@
 
 #include "tests/formats/laz_encoder/arithmetic_encoder.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// Writes integers of 8, 16 or 32 bits by their difference from a prediction, modulo 2^bits.
 class IntegerCompressor {
@@ -26,4 +26,4 @@ class IntegerCompressor {
   std::vector<SymbolModels> correctors_;  // by class; each has one model
 };
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -5,7 +5,7 @@
 #include "tests/formats/laz_encoder/fields.h"
 #include "tests/formats/laz_encoder/integer_compressor.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 class WavePacketEncoder : public ItemEncoder {
@@ -107,4 +107,4 @@ std::unique_ptr<ItemEncoder> make_item_encoder(const LazItem& item, std::string_
   }
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

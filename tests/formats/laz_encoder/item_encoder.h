@@ -7,7 +7,7 @@
 #include "formats/laz/chunk_decoder.h"
 #include "tests/formats/laz_encoder/arithmetic_encoder.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// The models of one part of a record (an item, or a layer of one) in one chunk or context.
 class ItemEncoder {
@@ -30,4 +30,4 @@ std::unique_ptr<ItemEncoder> make_wave_packet_encoder();
 /// Also a layer of BYTE14, with version 2 and one byte.
 std::unique_ptr<ItemEncoder> make_bytes_encoder(int version, std::size_t bytes);
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

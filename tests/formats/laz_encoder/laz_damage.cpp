@@ -6,7 +6,7 @@
 #include "src/error.h"
 #include "tests/faulty_file_system.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 constexpr const char* kName = "a.laz";
@@ -64,4 +64,4 @@ DamageOutcome read_damaged_laz(const std::string& content, bool seekable, const 
   return same && count == sound.size() ? DamageOutcome::kRight : DamageOutcome::kOther;
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -5,7 +5,7 @@
 
 #include "formats/point_reader.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// How reading a damaged file ended: with an Error, with the points of the sound one, or with
 /// others, which is right only where no check of the format can tell.
@@ -19,4 +19,4 @@ PointBlock read_laz(const std::string& content, bool seekable = true);
 /// one line that begins with the name of the file, or if the file gives points without end.
 DamageOutcome read_damaged_laz(const std::string& content, bool seekable, const PointBlock& sound);
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

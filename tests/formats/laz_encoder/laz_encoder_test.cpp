@@ -9,7 +9,7 @@
 
 // The encoder against streams that a reference encoder made of the same values.
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 std::string from_hex(std::string_view hex) {
@@ -137,4 +137,4 @@ TEST(LazEncoder, WritesTheReferenceLayeredChunks) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -5,7 +5,7 @@
 #include "tests/faulty_file_system.h"
 #include "tests/formats/laz_encoder/laz_file.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 LazExcerpts::LazExcerpts(std::string bytes) : bytes_(std::move(bytes)) {
   FaultyFileSystem files;
@@ -53,4 +53,4 @@ PointBlock LazExcerpts::points(const PointBlock& whole, std::size_t i) const {
   return part;
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -8,7 +8,7 @@
 #include "formats/laz/chunk_table.h"
 #include "formats/point_reader.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// Cuts a sound LAZ file into files of one chunk each. Chunks are independent, so what damage does
 /// to one shows in such a file as well, and reading it takes a fraction of the time.
@@ -37,4 +37,4 @@ class LazExcerpts {
   std::vector<LazChunk> chunks_;
 };
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -5,7 +5,7 @@
 
 #include "tests/formats/laz_encoder/integer_compressor.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 std::vector<LazItem> laz_items(int point_format, std::size_t extra_bytes, int version) {
   const auto items_version = static_cast<std::uint16_t>(version);
@@ -151,4 +151,4 @@ std::string LazFile::bytes() const {
   return file;
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -6,7 +6,7 @@
 #include "tests/formats/laz_encoder/integer_compressor.h"
 #include "tests/formats/laz_encoder/item_encoder.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 /// A bit for each attribute that differs and that versions 1 and 2 number alike.
@@ -162,4 +162,4 @@ std::unique_ptr<ItemEncoder> make_point10_encoder(int version) {
   return std::make_unique<Point10Version2>();
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

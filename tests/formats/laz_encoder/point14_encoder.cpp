@@ -7,7 +7,7 @@
 #include "tests/formats/laz_encoder/gps_time_encoder.h"
 #include "tests/formats/laz_encoder/integer_compressor.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 unsigned return_number(std::string_view point) { return byte_at(point, kReturns) & 15; }
@@ -201,4 +201,4 @@ void Point14Encoder::encode_rest(std::string_view point, const Pulse& pulse) {
   }
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

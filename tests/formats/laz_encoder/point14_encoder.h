@@ -8,7 +8,7 @@
 
 #include "tests/formats/laz_encoder/arithmetic_encoder.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// One layer of a chunk.
 struct LayerStream {
@@ -62,4 +62,4 @@ class Point14Encoder {
   unsigned channel_;
 };
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -9,7 +9,7 @@
 #include "tests/formats/las_file.h"
 #include "tests/formats/laz_encoder/fields.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 /// What lies in a record behind the core: the places of its parts, 0 if it has none.
@@ -241,4 +241,4 @@ PointAttributes attributes_of_record(int point_format, const std::string& record
   return attributes;
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -5,7 +5,7 @@
 
 #include "formats/point_reader.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 
 /// Records like those of a scanner: pulses with returns, channels that take turns, GPS times that
 /// run, repeat and jump, and now and then the extremes of each field.
@@ -25,4 +25,4 @@ struct RandomRecords {
 Point<3> point_of_record(const std::string& record);
 PointAttributes attributes_of_record(int point_format, const std::string& record);
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing

@@ -5,7 +5,7 @@
 #include "tests/formats/laz_encoder/integer_compressor.h"
 #include "tests/formats/laz_encoder/item_encoder.h"
 
-namespace spillway::testing {
+namespace spillway::detail::testing {
 namespace {
 
 /// A bit for each byte that differs.
@@ -88,4 +88,4 @@ std::unique_ptr<ItemEncoder> make_rgb_encoder(int version) {
 
 std::unique_ptr<ItemEncoder> make_nir_encoder() { return std::make_unique<Nir>(); }
 
-}  // namespace spillway::testing
+}  // namespace spillway::detail::testing
