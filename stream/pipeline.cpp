@@ -2,7 +2,7 @@
 
 #include "src/delaunay/base_case.h"
 #include "src/parallel/parallel.h"
-#include "stream/tile_engine.h"
+#include "stream/triangulate/tile_engine.h"
 
 namespace spillway::detail {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "formats/mesh_stream.h"
-#include "formats/scratch_folder.h"
-#include "stream/memory_budget.h"
-#include "stream/point_source.h"
-#include "stream/stream_options.h"
+#include "formats/disk/scratch_folder.h"
+#include "formats/meshes/common/mesh_stream.h"
+#include "src/runtime/memory_budget.h"
+#include "stream/plan/stream_options.h"
+#include "stream/source/point_source.h"
 
 namespace spillway::detail {
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <utility>
 
-#include "formats/file_system.h"
+#include "formats/disk/file_system.h"
 #include "src/error.h"
 
 namespace spillway::detail::testing {

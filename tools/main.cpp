@@ -1,10 +1,10 @@
 #include <exception>
 
-#include "tools/command.h"
-#include "tools/failure.h"
-#include "tools/interrupts.h"
-#include "tools/rank_job.h"
-#include "tools/standard_descriptors.h"
+#include "tools/commands/command.h"
+#include "tools/process/failure.h"
+#include "tools/process/interrupts.h"
+#include "tools/process/rank_job.h"
+#include "tools/process/standard_descriptors.h"
 
 int main(int argc, char** argv) {
   spillway::detail::open_standard_descriptors();

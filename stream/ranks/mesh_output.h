@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
-#include "formats/file_system.h"
-#include "formats/mesh_spool.h"
-#include "formats/mesh_writer.h"
-#include "formats/scratch_folder.h"
+#include "formats/disk/file_system.h"
+#include "formats/disk/scratch_folder.h"
+#include "formats/meshes/common/mesh_writer.h"
+#include "formats/meshes/spool/mesh_spool.h"
 #include "src/distributed/ranks.h"
 #include "stream/ranks/rank_pipeline.h"
 

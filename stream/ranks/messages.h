@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "src/distributed/packing.h"
-#include "stream/border.h"
-#include "stream/point_source.h"
-#include "stream/tile_tree.h"
+#include "stream/source/point_source.h"
+#include "stream/tiles/tile_tree.h"
+#include "stream/triangulate/border.h"
 
 namespace spillway::detail {
 

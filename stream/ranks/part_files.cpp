@@ -5,12 +5,14 @@
 #include <utility>
 #include <vector>
 
-#include "formats/bytes.h"
-#include "formats/mesh_block.h"
-#include "formats/mesh_parts.h"
-#include "formats/naming_turn.h"
-#include "formats/spm_part.h"
-#include "stream/open_facets.h"
+#include "formats/bytes/bytes.h"
+#include "formats/disk/naming_turn.h"
+#include "formats/meshes/common/mesh_block.h"
+#include "formats/meshes/create_mesh.h"
+#include "formats/meshes/mesh_parts.h"
+#include "formats/meshes/spm/spm_encoding.h"
+#include "formats/meshes/spool/spm_part.h"
+#include "stream/output/open_facets.h"
 #include "stream/ranks/part_numbers.h"
 #include "stream/ranks/stream_parts.h"
 #include "stream/ranks/together.h"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "formats/global_ids.h"
+#include "formats/meshes/common/global_ids.h"
 
 namespace spillway::detail {
 

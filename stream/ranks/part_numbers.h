@@ -5,8 +5,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "formats/mesh.h"
-#include "formats/mesh_stream.h"
+#include "formats/meshes/common/mesh.h"
+#include "formats/meshes/common/mesh_stream.h"
 #include "stream/ranks/rank_pipeline.h"
 
 namespace spillway::detail {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "stream/tile_block.h"
+#include "stream/tiles/tile_block.h"
 
 namespace spillway::detail {
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "formats/scratch_folder.h"
+#include "formats/disk/scratch_folder.h"
 #include "src/distributed/ranks.h"
-#include "stream/point_source.h"
-#include "stream/stage_times.h"
+#include "src/runtime/stage_times.h"
+#include "stream/source/point_source.h"
 
 namespace spillway::detail {
 

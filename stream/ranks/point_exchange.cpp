@@ -8,8 +8,8 @@
 
 #include "src/distributed/packing.h"
 #include "src/parallel/parallel.h"
-#include "stream/deal.h"
-#include "stream/tile_block.h"
+#include "stream/tiles/deal.h"
+#include "stream/tiles/tile_block.h"
 
 namespace spillway::detail {
 namespace {

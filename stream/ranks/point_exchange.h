@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "src/distributed/ranks.h"
+#include "src/runtime/stage_times.h"
 #include "stream/ranks/piece_table.h"
 #include "stream/ranks/rank_division.h"
-#include "stream/stage_times.h"
 
 namespace spillway::detail {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "src/distributed/ranks.h"
-#include "stream/cut_tree.h"
 #include "stream/ranks/piece_table.h"
+#include "stream/tiles/cut_tree.h"
 
 namespace spillway::detail {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "formats/bytes.h"
+#include "formats/bytes/bytes.h"
 #include "src/delaunay/base_case.h"
 #include "src/parallel/parallel.h"
 #include "stream/ranks/messages.h"
@@ -17,7 +17,7 @@
 #include "stream/ranks/rank_division.h"
 #include "stream/ranks/rank_tree.h"
 #include "stream/ranks/together.h"
-#include "stream/tile_engine.h"
+#include "stream/triangulate/tile_engine.h"
 
 namespace spillway::detail {
 namespace {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "formats/mesh_stream.h"
-#include "formats/scratch_folder.h"
+#include "formats/disk/scratch_folder.h"
+#include "formats/meshes/common/mesh_stream.h"
 #include "src/distributed/ranks.h"
-#include "stream/memory_budget.h"
-#include "stream/point_source.h"
-#include "stream/stream_options.h"
+#include "src/runtime/memory_budget.h"
+#include "stream/plan/stream_options.h"
+#include "stream/source/point_source.h"
 
 namespace spillway::detail {
 

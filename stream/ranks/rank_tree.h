@@ -7,8 +7,8 @@
 
 #include "src/distributed/ranks.h"
 #include "stream/ranks/rank_division.h"
-#include "stream/tile_tree.h"
-#include "stream/tile_triangulation.h"
+#include "stream/tiles/tile_tree.h"
+#include "stream/triangulate/tile_triangulation.h"
 
 namespace spillway::detail {
 

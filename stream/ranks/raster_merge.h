@@ -5,8 +5,8 @@
 
 #include "formats/gdal/raster.h"
 #include "src/distributed/ranks.h"
-#include "stream/dem.h"
 #include "stream/ranks/rank_pipeline.h"
+#include "stream/sinks/dem.h"
 
 namespace spillway::detail {
 

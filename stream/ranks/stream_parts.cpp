@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "formats/meshes/spm/spm_encoding.h"
+
 namespace spillway::detail {
 
 StreamParts::StreamParts(const MeshSpool& spool, RankMesh& mesh)

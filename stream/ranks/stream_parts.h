@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "formats/mesh_spool.h"
-#include "formats/spm_part.h"
+#include "formats/meshes/spool/mesh_spool.h"
+#include "formats/meshes/spool/spm_part.h"
 #include "src/distributed/ranks.h"
 #include "stream/ranks/rank_pipeline.h"
 

@@ -14,8 +14,9 @@
 #include <thread>
 #include <vector>
 
-#include "formats/file_system.h"
-#include "formats/point_reader.h"
+#include "formats/disk/file_system.h"
+#include "formats/inputs/open_points.h"
+#include "formats/points/common/point_reader.h"
 #include "src/error.h"
 
 namespace spillway::detail {

@@ -1,7 +1,7 @@
 spillway_test(blocks_test unit
   SOURCES
-    formats/block_test.cpp
-    formats/columns_test.cpp
-    formats/scratch_folder_test.cpp
-    formats/spp_test.cpp
+    formats/blocks/block_test.cpp
+    formats/blocks/columns_test.cpp
+    formats/disk/scratch_folder_test.cpp
+    formats/points/spp/spp_test.cpp
   LIBS spillway_formats fmt::fmt)

@@ -1,3 +1,3 @@
 spillway_test(laz_decoder_test unit
-  SOURCES formats/laz_decoder_test.cpp
+  SOURCES formats/points/laz/laz_decoder_test.cpp
   LIBS spillway_formats)

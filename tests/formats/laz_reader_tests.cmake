@@ -1,9 +1,9 @@
 spillway_test(laz_reader_test unit
-  SOURCES formats/copc_test.cpp formats/laz_reader_test.cpp
+  SOURCES formats/points/copc/copc_test.cpp formats/points/laz/laz_reader_test.cpp
   LIBS laz_encoder fmt::fmt)
 spillway_test(laz_shared_data_test unit
-  SOURCES formats/laz_shared_data_test.cpp
+  SOURCES formats/points/laz/laz_shared_data_test.cpp
   LIBS spillway_formats fmt::fmt)
 spillway_test(point_pieces_test unit
-  SOURCES formats/point_pieces_test.cpp
+  SOURCES formats/points/point_pieces_test.cpp
   LIBS laz_encoder fmt::fmt)

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/point_reader.h"
+#include "formats/inputs/open_points.h"
+#include "formats/points/common/point_reader.h"
 #include "src/error.h"
 #include "tests/faulty_file_system.h"
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "formats/mesh_stream_writer.h"
+#include "formats/meshes/mesh_stream_writer.h"
 #include "src/delaunay/delaunay.h"
 #include "src/error.h"
 #include "src/generators/generators.h"

@@ -10,8 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "formats/mesh_stream.h"
-#include "formats/point_writer.h"
+#include "formats/meshes/common/mesh_stream.h"
+#include "formats/points/common/point_writer.h"
+#include "formats/points/create_points.h"
 #include "stream/pipeline.h"
 
 namespace spillway::detail {

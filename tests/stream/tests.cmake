@@ -1,6 +1,6 @@
 spillway_test(stream_unit_test unit
-  SOURCES stream/contour_test.cpp stream/heights_test.cpp stream/memory_test.cpp
-          stream/point_span_test.cpp stream/tile_tree_test.cpp
+  SOURCES stream/sinks/contour_test.cpp stream/output/heights_test.cpp stream/plan/memory_plan_test.cpp
+          stream/tiles/point_span_test.cpp stream/tiles/tile_tree_test.cpp
   LIBS spillway_stream)
 
 spillway_test(stream_property_test property
@@ -13,23 +13,23 @@ spillway_test(stream_fault_test fault
   LIBS spillway_stream spillway_generators)
 
 spillway_test(point_input_test unit
-  SOURCES stream/common_lattice_test.cpp stream/point_filter_test.cpp stream/point_runs_test.cpp
-          stream/point_source_test.cpp stream/thinning_test.cpp
+  SOURCES stream/source/common_lattice_test.cpp stream/source/point_filter_test.cpp stream/source/point_runs_test.cpp
+          stream/source/point_source_test.cpp stream/source/thinning_test.cpp
   LIBS spillway_stream fmt::fmt)
 
 spillway_test(dem_test property
-  SOURCES stream/dem_test.cpp stream/dem_oracle_test.cpp
+  SOURCES stream/sinks/dem_test.cpp stream/sinks/dem_oracle_test.cpp
   LIBS spillway_stream
   TIMEOUT 300)
 
 spillway_mpi_test(rank_pipeline_test
-  SOURCES stream/rank_pipeline_test.cpp
+  SOURCES stream/ranks/rank_pipeline_test.cpp
   LIBS spillway_stream spillway_generators
   RANKS 1 2 3 4 5 8
   TIMEOUT 600)
 
 spillway_mpi_test(rank_output_test
-  SOURCES stream/rank_output_test.cpp
+  SOURCES stream/ranks/rank_output_test.cpp
   LIBS spillway_stream
   RANKS 1 2 3 5
   TIMEOUT 300)

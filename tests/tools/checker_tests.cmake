@@ -1,12 +1,12 @@
 spillway_test(checker_test unit
-  SOURCES tools/checker_test.cpp
+  SOURCES stream/checker/checker_test.cpp
   LIBS spillway_checker cgal_oracle)
 spillway_test(stream_proof_test unit
-  SOURCES tools/stream_proof_test.cpp
+  SOURCES stream/checker/stream_proof_test.cpp
   LIBS spillway_checker spillway_delaunay spillway_generators)
 spillway_test(input_kind_test unit
-  SOURCES formats/input_kind_test.cpp
+  SOURCES formats/inputs/input_kind_test.cpp
   LIBS spillway_formats fmt::fmt)
 spillway_test(point_comparison_test unit
-  SOURCES tools/point_comparison_test.cpp
+  SOURCES tools/commands/point_comparison_test.cpp
   LIBS spillway_command)

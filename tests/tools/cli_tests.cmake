@@ -12,44 +12,44 @@ function(spillway_command_test name label)
 endfunction()
 
 spillway_command_test(cli_tests cli
-  tools/cli_formats_test.cpp
-  tools/cli_info_check_test.cpp
-  tools/cli_shared_data_test.cpp
-  tools/cli_convert_points_test.cpp
-  tools/cli_convert_test.cpp tools/cli_stream_test.cpp
-  tools/cli_triangulate_test.cpp
-  tools/cli_unused_options_test.cpp
-  tools/cli_usage_test.cpp)
+  tools/commands/cli_formats_test.cpp
+  tools/commands/cli_info_check_test.cpp
+  tools/commands/cli_shared_data_test.cpp
+  tools/commands/cli_convert_points_test.cpp
+  tools/commands/cli_convert_test.cpp tools/inputs/cli_stream_test.cpp
+  tools/commands/cli_triangulate_test.cpp
+  tools/options/cli_unused_options_test.cpp
+  tools/options/cli_usage_test.cpp)
 spillway_command_test(cli_fault_tests fault
-  tools/cli_descriptor_test.cpp
-  tools/cli_fault_test.cpp
-  tools/cli_limit_test.cpp
-  tools/cli_same_output_test.cpp
-  tools/cli_signal_test.cpp)
+  tools/process/cli_descriptor_test.cpp
+  tools/process/cli_fault_test.cpp
+  tools/process/cli_limit_test.cpp
+  tools/process/cli_same_output_test.cpp
+  tools/process/cli_signal_test.cpp)
 spillway_command_test(cli_out_of_core_tests cli
-  tools/cli_out_of_core_test.cpp)
+  tools/process/cli_out_of_core_test.cpp)
 spillway_command_test(cli_out_of_core_fault_tests fault
-  tools/cli_out_of_core_fault_test.cpp)
+  tools/process/cli_out_of_core_fault_test.cpp)
 spillway_command_test(cli_input_tests cli
-  tools/cli_crs_test.cpp tools/cli_filter_test.cpp tools/cli_inputs_test.cpp
-  tools/cli_lattice_test.cpp)
+  tools/inputs/cli_crs_test.cpp tools/inputs/cli_filter_test.cpp tools/inputs/cli_inputs_test.cpp
+  tools/inputs/cli_lattice_test.cpp)
 
 spillway_command_test(cli_progress_tests cli
-  tools/cli_progress_test.cpp tools/progress_lines.cpp)
+  tools/report/cli_progress_test.cpp tools/report/progress_lines.cpp)
 
 spillway_command_test(cli_batch_tests cli
-  tools/cli_batch_test.cpp tools/cli_contour_test.cpp)
+  tools/commands/cli_batch_test.cpp tools/commands/cli_contour_test.cpp)
 
 spillway_command_test(cli_dem_tests cli
-  tools/cli_dem_test.cpp)
+  tools/commands/cli_dem_test.cpp)
 target_link_libraries(cli_dem_tests PRIVATE PkgConfig::gdal)
 
 spillway_command_test(cli_render_tests cli
-  tools/cli_render_test.cpp)
+  tools/commands/cli_render_test.cpp)
 target_link_libraries(cli_render_tests PRIVATE PNG::PNG)
 
 spillway_command_test(cli_ranks_tests mpi
-  tools/cli_ranks_test.cpp tools/progress_lines.cpp)
+  tools/process/cli_ranks_test.cpp tools/report/progress_lines.cpp)
 target_compile_definitions(cli_ranks_tests PRIVATE SPILLWAY_MPIRUN="${MPIEXEC_EXECUTABLE}")
 
 # Two runs of the same commands make the same files and messages, and leave nothing in temporary folders.

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "src/error.h"
-#include "tools/command_options.h"
-#include "tools/core_simulation.h"
-#include "tools/facet_count.h"
-#include "tools/json_text.h"
-#include "tools/progress.h"
-#include "tools/progress_line.h"
-#include "tools/triangulation_options.h"
+#include "tools/commands/facet_count.h"
+#include "tools/options/command_options.h"
+#include "tools/options/triangulation_options.h"
+#include "tools/report/core_simulation.h"
+#include "tools/report/json_text.h"
+#include "tools/report/progress.h"
+#include "tools/report/progress_line.h"
 
 namespace spillway::detail {
 namespace {

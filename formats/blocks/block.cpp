@@ -1,0 +1,106 @@
+#include "formats/blocks/block.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <array>
+
+#include "formats/bytes/bytes.h"
+#include "formats/compression/lz4.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+// Where the head's fields are.
+constexpr std::size_t kKindAt = 0;
+constexpr std::size_t kContentSizeAt = 4;
+constexpr std::size_t kStoredSizeAt = 8;
+constexpr std::size_t kCompressedAt = 12;
+constexpr std::size_t kChecksumAt = 16;
+
+// LZ4 makes at most this many bytes of one.
+constexpr std::uint64_t kLargestRatio = 255;
+
+void encode_fields(const BlockHead& head, std::byte* bytes) {
+  store(bytes + kKindAt, head.kind);
+  store(bytes + kContentSizeAt, head.content_size);
+  store(bytes + kStoredSizeAt, head.stored_size);
+  store(bytes + kCompressedAt, static_cast<std::uint32_t>(head.compressed));
+}
+
+/// The hash of the fields is the seed for that of the stored bytes.
+std::uint64_t checksum_of(const BlockHead& head, const std::byte* stored) {
+  std::array<std::byte, kChecksumAt> fields;
+  encode_fields(head, fields.data());
+  const std::uint64_t seed = XXH3_64bits(fields.data(), fields.size());
+  return XXH3_64bits_withSeed(stored, head.stored_size, seed);
+}
+
+[[noreturn]] void fail(const std::string& where, const char* what) {
+  throw Error(fmt::format("{}: {}; the file is corrupt, make it again", where, what));
+}
+
+}  // namespace
+
+void append_block(std::vector<std::byte>& out, std::uint32_t kind,
+                  std::span<const std::byte> content) {
+  if (content.size() > kLargestBlock) {
+    throw Error(fmt::format("a block of {} bytes is too large to write; the limit is {}",
+                            content.size(), kLargestBlock));
+  }
+  BlockHead head;
+  head.kind = kind;
+  head.content_size = static_cast<std::uint32_t>(content.size());
+  const std::size_t begin = out.size();
+  out.resize(begin + kBlockHeadSize + content.size());
+  std::byte* const stored = out.data() + begin + kBlockHeadSize;
+  // What does not get shorter is stored as it is: LZ4 stops when its room is used up.
+  const std::size_t compressed =
+      content.size() <= 1 ? 0 : lz4_compress(content, {stored, content.size() - 1});
+  head.compressed = compressed > 0;
+  head.stored_size = head.compressed ? static_cast<std::uint32_t>(compressed) : head.content_size;
+  if (!head.compressed && !content.empty()) {
+    std::memcpy(stored, content.data(), content.size());
+  }
+  head.checksum = checksum_of(head, stored);
+  encode_fields(head, out.data() + begin);
+  store(out.data() + begin + kChecksumAt, head.checksum);
+  out.resize(begin + kBlockHeadSize + head.stored_size);
+}
+
+BlockHead decode_block_head(std::span<const std::byte, kBlockHeadSize> bytes,
+                            const std::string& where) {
+  BlockHead head;
+  head.kind = load<std::uint32_t>(bytes.data() + kKindAt);
+  head.content_size = load<std::uint32_t>(bytes.data() + kContentSizeAt);
+  head.stored_size = load<std::uint32_t>(bytes.data() + kStoredSizeAt);
+  const auto compressed = load<std::uint32_t>(bytes.data() + kCompressedAt);
+  head.compressed = compressed == 1;
+  head.checksum = load<std::uint64_t>(bytes.data() + kChecksumAt);
+  const bool sizes_fit = head.compressed ? head.stored_size < head.content_size &&
+                                               head.content_size <= kLargestRatio * head.stored_size
+                                         : head.stored_size == head.content_size;
+  if (compressed > 1 || !sizes_fit || head.content_size > kLargestBlock) {
+    fail(where, "what should be the head of a block makes no sense");
+  }
+  return head;
+}
+
+void decode_block(const BlockHead& head, std::span<const std::byte> stored,
+                  std::vector<std::byte>& content, const std::string& where) {
+  if (stored.size() != head.stored_size) fail(where, "the block ends early");
+  if (checksum_of(head, stored.data()) != head.checksum) {
+    fail(where, "the checksum of the block does not fit its bytes");
+  }
+  if (!head.compressed) {
+    content.assign(stored.begin(), stored.end());
+    return;
+  }
+  content.resize(head.content_size);
+  if (!lz4_decompress(stored, content)) {
+    fail(where, "the block does not decompress to the size that its head tells");
+  }
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/disk/file_system.h"
+
+namespace spillway::detail {
+
+/// Lines of a text file, read in big chunks. A line ends with LF or CR LF or the end of the file; a
+/// UTF-8 byte order mark before the first one is dropped. Memory is constant: a line longer than
+/// kLongestLine is an Error.
+class LineReader {
+ public:
+  static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
+  static constexpr std::uint64_t kLongestGap = std::uint64_t{16} << 20;
+
+  /// `file` must outlive the reader.
+  explicit LineReader(InputFile& file) : file_(file), buffer_(kLongestLine + 2) {}
+
+  /// Sets `line` to the next one without its end, valid until the next call; false at the end.
+  bool next(std::string_view& line);
+
+  /// What has been read of the file behind that line: most of the first MiB once next() has given
+  /// the first line. Valid until the next call.
+  [[nodiscard]] std::string_view unread() const { return {buffer_.data() + begin_, end_ - begin_}; }
+
+  /// Says that the line which next() gave last holds nothing, so that input of nothing else comes
+  /// to an end: throws Error if more than kLongestGap bytes of such lines have followed one
+  /// another.
+  void pass_over();
+
+  /// Makes next() go on with the first line that begins at that byte or behind it. Lines have no
+  /// numbers from then on. Only for a file that can seek.
+  void seek(std::uint64_t byte);
+
+  [[nodiscard]] bool numbered() const { return numbered_; }
+
+  /// Number of the line that next() gave last, counted from 1.
+  [[nodiscard]] std::uint64_t number() const { return number_; }
+
+  /// The byte where that line begins, and where the next one does.
+  [[nodiscard]] std::uint64_t line_begin() const { return line_begin_; }
+  [[nodiscard]] std::uint64_t position() const { return buffer_begin_ + begin_; }
+
+  /// That line as messages call it: "line 7", or without numbers "the line at byte 123".
+  [[nodiscard]] std::string line_name() const { return name_of_line(number_, line_begin_); }
+
+ private:
+  [[nodiscard]] std::string name_of_line(std::uint64_t number, std::uint64_t byte) const;
+
+  /// Moves the unread bytes to the front and fills up behind them; false if there was nothing more.
+  bool refill();
+
+  InputFile& file_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0;  // the unread bytes are [begin_, end_)
+  std::size_t end_ = 0;
+  std::uint64_t buffer_begin_ = 0;  // byte of the file where the buffer begins
+  std::uint64_t line_begin_ = 0;
+  std::uint64_t gap_begin_ = 0;  // the last lines that were passed over are [gap_begin_, gap_end_)
+  std::uint64_t gap_end_ = 0;
+  std::uint64_t number_ = 0;
+  bool numbered_ = true;
+};
+
+/// Whether these bytes may be of a text: no control characters but white space.
+bool looks_like_text(std::string_view bytes);
+
+/// Text for messages: at most some 60 characters, nothing that is not printable, in quotes.
+std::string quoted(std::string_view text);
+
+}  // namespace spillway::detail

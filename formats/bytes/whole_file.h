@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "formats/bytes/input_source.h"
+
+namespace spillway::detail {
+
+/// All that is left of a file.
+std::vector<std::byte> read_whole(InputSource& source);
+
+/// The next `count` bytes; fewer if the file ends before. Memory is taken as bytes come, so that a
+/// wrong count takes none.
+std::vector<std::byte> read_up_to(InputSource& source, std::uint64_t count);
+
+}  // namespace spillway::detail

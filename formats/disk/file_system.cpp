@@ -1,0 +1,236 @@
+#include "formats/disk/file_system.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "formats/disk/output_target.h"
+#include "formats/disk/unfinished_files.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::size_t kOutputBuffer = std::size_t{1} << 20;
+
+// Linux transfers at most 2 GiB - 4 KiB in one call; smaller pieces keep errors close to the cause.
+constexpr std::size_t kLargestTransfer = std::size_t{1} << 28;
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+/// Owns a file descriptor.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  [[nodiscard]] int get() const { return fd_; }
+
+  /// Closes and returns 0, or the error that closing met.
+  int close() {
+    const int fd = std::exchange(fd_, -1);
+    return fd >= 0 && ::close(fd) != 0 ? errno : 0;
+  }
+
+ private:
+  int fd_;
+};
+
+class DiskInput : public InputFile {
+ public:
+  DiskInput(int fd, std::string name) : file_(fd), name_(std::move(name)) {
+    struct stat status {};
+    if (::fstat(fd, &status) != 0) fail(errno);
+    if (S_ISDIR(status.st_mode)) {
+      throw Error(fmt::format("cannot read {}: it is a folder; name a file in it", name_));
+    }
+    if (S_ISREG(status.st_mode)) {
+      // Standard input may have been read from before: what counts is the rest.
+      start_ = std::max<off_t>(0, ::lseek(fd, 0, SEEK_CUR));
+      size_ = static_cast<std::uint64_t>(std::max<off_t>(0, status.st_size - start_));
+      ::posix_fadvise(fd, 0, 0, POSIX_FADV_SEQUENTIAL);  // only advice: no result is an error
+    }
+  }
+
+  std::size_t read(std::span<std::byte> buffer) override {
+    std::size_t done = 0;
+    while (done < buffer.size()) {
+      const std::size_t wanted = std::min(buffer.size() - done, kLargestTransfer);
+      const ssize_t got = ::read(file_.get(), buffer.data() + done, wanted);
+      if (got == 0) break;
+      if (got > 0) {
+        done += static_cast<std::size_t>(got);
+      } else if (errno != EINTR) {
+        fail(errno);
+      }
+    }
+    return done;
+  }
+
+  bool seek(std::uint64_t position) override {
+    if (!size_) return false;
+    if (::lseek(file_.get(), start_ + static_cast<off_t>(position), SEEK_SET) < 0) fail(errno);
+    return true;
+  }
+
+  [[nodiscard]] std::optional<std::uint64_t> size() const override { return size_; }
+  [[nodiscard]] const std::string& name() const override { return name_; }
+
+ private:
+  [[noreturn]] void fail(int error) const {
+    throw Error(fmt::format("cannot read {}: {}", name_, reason(error)));
+  }
+
+  Descriptor file_;
+  std::string name_;
+  off_t start_ = 0;  // where reading began
+  std::optional<std::uint64_t> size_;
+};
+
+/// A file being written through one buffer. `temporary` is null for what has no temporary name.
+class DiskOutput : public OutputFile {
+ public:
+  DiskOutput(int fd, std::string name, std::unique_ptr<UnfinishedFile> temporary)
+      : file_(fd), name_(std::move(name)), temporary_(std::move(temporary)) {
+    buffer_.reserve(kOutputBuffer);
+  }
+
+  void write(std::span<const std::byte> bytes) override {
+    if (buffer_.size() + bytes.size() > kOutputBuffer) flush();
+    if (bytes.size() >= kOutputBuffer) {
+      append(bytes);
+    } else {
+      buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+    }
+  }
+
+  bool rewrite(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    if (!temporary_) return false;
+    flush();
+    while (!bytes.empty()) {
+      const ssize_t put =
+          ::pwrite(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (put >= 0) {
+        bytes = bytes.subspan(static_cast<std::size_t>(put));
+        offset += static_cast<std::uint64_t>(put);
+      } else if (errno != EINTR) {
+        fail(errno);
+      }
+    }
+    return true;
+  }
+
+  void commit() override {
+    flush();
+    if (const int error = file_.close()) fail(error);
+    if (!temporary_) return;
+    if (const int error = temporary_->rename()) fail(error);
+  }
+
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] std::string temporary_path() const override {
+    return temporary_ ? temporary_->path() : "";
+  }
+
+ private:
+  void flush() {
+    append(buffer_);
+    buffer_.clear();
+  }
+
+  void append(std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+      const std::size_t wanted = std::min(bytes.size(), kLargestTransfer);
+      const ssize_t put = ::write(file_.get(), bytes.data(), wanted);
+      if (put >= 0) {
+        bytes = bytes.subspan(static_cast<std::size_t>(put));
+      } else if (errno != EINTR) {
+        fail(errno);
+      }
+    }
+  }
+
+  [[noreturn]] void fail(int error) const {
+    if (error == EPIPE) throw ClosedPipe();
+    throw Error(
+        fmt::format("cannot write {}: {}{}", name_, reason(error), output_hint(error, name_)));
+  }
+
+  Descriptor file_;
+  std::string name_;
+  std::unique_ptr<UnfinishedFile> temporary_;
+  std::vector<std::byte> buffer_;
+};
+
+/// A copy of standard input or output. Throws Error that begins with `what` if it is closed, or
+/// open for the wrong direction only, as what main puts in place of what is closed.
+int copy_of_standard(int descriptor, int wrong_direction, const std::string& what) {
+  const int flags = ::fcntl(descriptor, F_GETFL);
+  if (flags < 0 || (flags & O_ACCMODE) == wrong_direction) {
+    throw Error(fmt::format("{}: it is closed; name a file, or connect a pipe", what));
+  }
+  const int copy = ::fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  if (copy < 0) throw Error(fmt::format("{}: {}", what, reason(errno)));
+  return copy;
+}
+
+class Disk : public FileSystem {
+ public:
+  std::unique_ptr<InputFile> open(const std::string& path) override {
+    if (path == "-") {
+      const int fd = copy_of_standard(STDIN_FILENO, O_WRONLY, "cannot read standard input");
+      return std::make_unique<DiskInput>(fd, "standard input");
+    }
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd < 0) {
+      const int error = errno;
+      throw Error(fmt::format("cannot open {}: {}{}", path, reason(error),
+                              error == ENOENT ? "; check the name" : ""));
+    }
+    return std::make_unique<DiskInput>(fd, path);
+  }
+
+  std::unique_ptr<OutputFile> create(const std::string& path) override {
+    if (path == "-") {
+      const int fd = copy_of_standard(STDOUT_FILENO, O_RDONLY, "cannot write standard output");
+      return std::make_unique<DiskOutput>(fd, "standard output", nullptr);
+    }
+    const OutputTarget target = output_target(path);
+    if (!target.regular) {
+      const int fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+      if (fd < 0) fail_to_create(path, errno);
+      return std::make_unique<DiskOutput>(fd, path, nullptr);
+    }
+    auto temporary = std::make_unique<UnfinishedFile>(target.path, path);
+    const int fd = temporary->create();
+    if (fd < 0) fail_to_create(path, errno);
+    // Failing that, as on file systems without permissions, it has those of a new file.
+    if (target.mode) static_cast<void>(::fchmod(fd, *target.mode));
+    return std::make_unique<DiskOutput>(fd, path, std::move(temporary));
+  }
+
+  [[nodiscard]] bool exists(const std::string& path) const override {
+    struct stat status {};
+    return ::stat(path.c_str(), &status) == 0;
+  }
+};
+
+}  // namespace
+
+FileSystem& disk() {
+  static Disk instance;
+  return instance;
+}
+
+}  // namespace spillway::detail

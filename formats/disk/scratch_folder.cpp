@@ -1,0 +1,207 @@
+#include "formats/disk/scratch_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <mutex>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "formats/disk/unfinished_files.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+/// What is now on the disk, and what was.
+class Usage {
+ public:
+  explicit Usage(std::optional<std::uint64_t> cap) : cap_(cap) {}
+
+  /// Counts bytes that are about to be written; false, and nothing counted, if they pass the cap.
+  bool add(std::uint64_t bytes) {
+    const std::lock_guard lock(mutex_);
+    if (cap_ && (bytes > *cap_ || present_ > *cap_ - bytes)) return false;
+    present_ += bytes;
+    written_ += bytes;
+    peak_ = std::max(peak_, present_);
+    return true;
+  }
+
+  void remove(std::uint64_t bytes) {
+    const std::lock_guard lock(mutex_);
+    present_ -= bytes;
+  }
+
+  [[nodiscard]] std::uint64_t written() const {
+    const std::lock_guard lock(mutex_);
+    return written_;
+  }
+  [[nodiscard]] std::uint64_t peak() const {
+    const std::lock_guard lock(mutex_);
+    return peak_;
+  }
+  [[nodiscard]] std::optional<std::uint64_t> cap() const { return cap_; }
+
+ private:
+  const std::optional<std::uint64_t> cap_;
+  mutable std::mutex mutex_;  // guards what follows
+  std::uint64_t present_ = 0;
+  std::uint64_t written_ = 0;
+  std::uint64_t peak_ = 0;
+};
+
+/// A file that is open for the duration of one operation: there may be more files than descriptors.
+class Opened {
+ public:
+  Opened(const std::string& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC)) {}
+  ~Opened() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Opened(const Opened&) = delete;
+  Opened& operator=(const Opened&) = delete;
+
+  [[nodiscard]] int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+class DiskScratchFile : public ScratchFile {
+ public:
+  DiskScratchFile(const std::string& folder, const std::string& name, std::shared_ptr<Usage> usage)
+      : path_((std::filesystem::path(folder) / name).string()), usage_(std::move(usage)) {
+    create_in_temporary_folder(folder, name);
+  }
+  ~DiskScratchFile() override {
+    ::unlink(path_.c_str());  // gone already if the folder is
+    usage_->remove(size_);
+  }
+  DiskScratchFile(const DiskScratchFile&) = delete;
+  DiskScratchFile& operator=(const DiskScratchFile&) = delete;
+
+  void append(std::span<const std::byte> bytes) override {
+    if (!usage_->add(bytes.size())) {
+      throw Error(
+          fmt::format("cannot write {}: temporary files would take more than the {} bytes "
+                      "allowed; raise --max-tmp or --memory",
+                      path_, usage_->cap().value_or(0)));
+    }
+    size_ += bytes.size();
+    const Opened file(path_, O_WRONLY | O_APPEND);
+    if (file.get() < 0) fail("write", errno);
+    while (!bytes.empty()) {
+      const ssize_t put = ::write(file.get(), bytes.data(), bytes.size());
+      if (put >= 0) {
+        bytes = bytes.subspan(static_cast<std::size_t>(put));
+      } else if (errno != EINTR) {
+        fail("write", errno);
+      }
+    }
+  }
+
+  void read(std::uint64_t offset, std::span<std::byte> buffer) const override {
+    const Opened file(path_, O_RDONLY);
+    if (file.get() < 0) fail("read", errno);
+    while (!buffer.empty()) {
+      const ssize_t got =
+          ::pread(file.get(), buffer.data(), buffer.size(), static_cast<off_t>(offset));
+      if (got == 0) {
+        throw Error(
+            fmt::format("cannot read {}: it ends at byte {}, before what was written to "
+                        "it; leave the folder alone while the program runs",
+                        path_, offset));
+      }
+      if (got > 0) {
+        buffer = buffer.subspan(static_cast<std::size_t>(got));
+        offset += static_cast<std::uint64_t>(got);
+      } else if (errno != EINTR) {
+        fail("read", errno);
+      }
+    }
+  }
+
+  [[nodiscard]] std::uint64_t size() const override { return size_; }
+  [[nodiscard]] const std::string& name() const override { return path_; }
+
+ private:
+  [[noreturn]] void fail(std::string_view action, int error) const {
+    stop_if_run_is_ending();
+    throw Error(fmt::format("cannot {} {}: {}{}", action, path_,
+                            std::generic_category().message(error), hint(error)));
+  }
+
+  [[nodiscard]] static std::string_view hint(int error) {
+    switch (error) {
+      case ENOSPC:
+      case EDQUOT:
+        return "; free some space or choose another folder with --tmpdir";
+      case EFBIG:
+        return "; raise the file size limit (ulimit -f) or choose another folder with --tmpdir";
+      case EMFILE:
+      case ENFILE:
+        return "; raise the limit of open files (ulimit -n)";
+      case ENOENT:
+        return "; leave the folder alone while the program runs";
+      default:
+        return "; choose another folder with --tmpdir";
+    }
+  }
+
+  std::string path_;
+  std::shared_ptr<Usage> usage_;
+  std::uint64_t size_ = 0;
+};
+
+class DiskScratchFolder : public ScratchFolder {
+ public:
+  DiskScratchFolder(std::string parent, std::optional<std::uint64_t> cap)
+      : parent_(std::move(parent)), usage_(std::make_shared<Usage>(cap)) {}
+  ~DiskScratchFolder() override {
+    if (!path_.empty()) remove_temporary_folder(path_);
+  }
+  DiskScratchFolder(const DiskScratchFolder&) = delete;
+  DiskScratchFolder& operator=(const DiskScratchFolder&) = delete;
+
+  std::unique_ptr<ScratchFile> create(const std::string& label) override {
+    const std::lock_guard lock(mutex_);
+    try {
+      if (path_.empty()) path_ = make_temporary_folder(parent_, "spillway-");
+      return std::make_unique<DiskScratchFile>(path_, fmt::format("{}-{}", label, ++files_),
+                                               usage_);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}; choose another folder with --tmpdir", error.what()));
+    }
+  }
+
+  [[nodiscard]] std::uint64_t bytes_written() const override { return usage_->written(); }
+  [[nodiscard]] std::uint64_t peak_bytes() const override { return usage_->peak(); }
+
+ private:
+  const std::string parent_;
+  const std::shared_ptr<Usage> usage_;
+  std::mutex mutex_;         // guards what follows
+  std::string path_;         // empty until the first file is made
+  std::uint64_t files_ = 0;  // made so far
+};
+
+}  // namespace
+
+std::string scratch_parent(const std::string& parent) {
+  if (!parent.empty()) return parent;
+  const char* const temporary = std::getenv("TMPDIR");
+  return temporary != nullptr && *temporary != '\0' ? temporary : "/tmp";
+}
+
+std::unique_ptr<ScratchFolder> make_scratch_folder(const std::string& parent,
+                                                   std::optional<std::uint64_t> cap) {
+  return std::make_unique<DiskScratchFolder>(scratch_parent(parent), cap);
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,251 @@
+#include "formats/disk/unfinished_files.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <string_view>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// No file system has a lower limit for names, and MPI-IO puts files beside a shared one whose
+/// names are longer still.
+constexpr std::size_t kLongestName = 140;
+
+constexpr int kMostAttempts = 100;
+
+constexpr std::size_t kSpareMemory = std::size_t{1} << 20;
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+/// What exists now under a temporary name, with the name of the output that it becomes, "" for
+/// none. Locked for each change on disk, so that a file is either registered, or in a registered
+/// folder, or complete under its own name.
+struct Registry {
+  /// Let go of when the run is ended, which may be for want of memory. Null if there was none.
+  std::unique_ptr<std::byte[]> spare{new (std::nothrow) std::byte[kSpareMemory]};
+  std::recursive_mutex mutex;
+  bool ending = false;                         // guarded by mutex, as is what follows
+  std::map<std::string, std::string> files;    // by path
+  std::map<std::string, std::string> folders;  // by path
+};
+
+Registry& registry() {
+  static Registry instance;
+  return instance;
+}
+
+[[noreturn]] void stop_for_good() {
+  while (true) ::pause();
+}
+
+/// The lock, for creating and renaming. Not to be had any more once the run is ending.
+std::unique_lock<std::recursive_mutex> lock_to_create() {
+  std::unique_lock lock(registry().mutex);
+  if (registry().ending) {
+    lock.unlock();
+    stop_for_good();
+  }
+  return lock;
+}
+
+std::string random_characters() {
+  constexpr std::string_view kCharacters =
+      "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+  std::array<unsigned char, 6> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), GRND_NONBLOCK) < 0) {
+    auto ticks = static_cast<std::uint64_t>(
+        std::chrono::steady_clock::now().time_since_epoch().count() ^ ::getpid());
+    for (unsigned char& byte : bytes) {
+      byte = static_cast<unsigned char>(ticks % kCharacters.size());
+      ticks /= kCharacters.size();
+    }
+  }
+  std::string text;
+  for (const unsigned char byte : bytes) text += kCharacters[byte % kCharacters.size()];
+  return text;
+}
+
+/// As much of a name as leaves room for `more` bytes, without half a UTF-8 character at its end.
+std::string_view shortened(std::string_view name, std::size_t more) {
+  constexpr auto kContinues = [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) == 0x80;
+  };
+  if (name.size() + more <= kLongestName) return name;
+  std::size_t size = kLongestName - more;
+  while (size > 0 && kContinues(name[size])) --size;
+  return name.substr(0, size);
+}
+
+/// Calls create(path) with temporary paths for `final_path` until one is not taken. Returns that
+/// path, or "" with the reason in errno.
+std::string under_a_new_name(const std::string& final_path,
+                             const std::function<bool(const std::string&)>& create) {
+  const fs::path target(final_path);
+  const std::string name = target.filename().string();
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    const std::string ending = fmt::format(".{}.part", random_characters());
+    std::string path =
+        (target.parent_path() / fmt::format("{}{}", shortened(name, ending.size()), ending))
+            .string();
+    if (create(path)) return path;
+    if (errno != EEXIST) return "";
+  }
+  return "";
+}
+
+/// Removes what is in a folder now; returns how many files and folders that were.
+std::size_t remove_content(const fs::path& folder);
+
+/// Removes a folder with all that is in it, while others may add and remove files. Gives up on what
+/// cannot be removed: that is left to whoever cleans the parent.
+void remove_folder(const fs::path& folder) {
+  constexpr int kMostFruitless = 20;
+  constexpr std::chrono::milliseconds kPause{5};
+  for (int fruitless = 0; fruitless < kMostFruitless;) {
+    if (::rmdir(folder.c_str()) == 0 || (errno != ENOTEMPTY && errno != EEXIST)) return;
+    if (remove_content(folder) > 0) {
+      fruitless = 0;
+    } else {
+      ++fruitless;
+      std::this_thread::sleep_for(kPause);
+    }
+  }
+}
+
+std::size_t remove_content(const fs::path& folder) {
+  std::size_t removed = 0;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const fs::path& path = entry->path();
+    if (::unlink(path.c_str()) == 0) {
+      ++removed;
+    } else if (errno == EISDIR || errno == EPERM) {
+      remove_folder(path);
+      if (std::error_code ignored; !fs::exists(fs::symlink_status(path, ignored))) ++removed;
+    }
+  }
+  return removed;
+}
+
+}  // namespace
+
+UnfinishedFile::UnfinishedFile(std::string final_path, std::string name)
+    : final_path_(std::move(final_path)), name_(std::move(name)) {}
+
+UnfinishedFile::~UnfinishedFile() {
+  if (path_.empty()) return;
+  const std::lock_guard lock(registry().mutex);
+  if (registry().files.erase(path_) > 0) ::unlink(path_.c_str());
+}
+
+int UnfinishedFile::create() {
+  const auto lock = lock_to_create();
+  int descriptor = -1;
+  path_ = under_a_new_name(final_path_, [&](const std::string& path) {
+    descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    return descriptor >= 0;
+  });
+  if (descriptor >= 0) registry().files.emplace(path_, name_);
+  return descriptor;
+}
+
+int UnfinishedFile::rename() {
+  const auto lock = lock_to_create();
+  if (::rename(path_.c_str(), final_path_.c_str()) != 0) return errno;
+  registry().files.erase(path_);
+  path_.clear();
+  return 0;
+}
+
+OthersUnfinishedFile::OthersUnfinishedFile(std::string path) : path_(std::move(path)) {
+  const auto lock = lock_to_create();
+  registry().files.emplace(path_, "");
+}
+
+OthersUnfinishedFile::~OthersUnfinishedFile() {
+  const std::lock_guard lock(registry().mutex);
+  registry().files.erase(path_);
+}
+
+std::string make_temporary_folder(const std::string& parent, const std::string& prefix) {
+  std::string path = (fs::path(parent) / (prefix + "XXXXXX")).string();
+  const auto lock = lock_to_create();
+  if (::mkdtemp(path.data()) == nullptr) {
+    throw Error(fmt::format("cannot create a temporary folder in {}: {}", parent, reason(errno)));
+  }
+  registry().folders.emplace(path, "");
+  return path;
+}
+
+std::string make_folder_beside(const std::string& final_path, const std::string& name) {
+  const auto lock = lock_to_create();
+  std::string path = under_a_new_name(
+      final_path, [](const std::string& folder) { return ::mkdir(folder.c_str(), 0700) == 0; });
+  if (!path.empty()) registry().folders.emplace(path, name);
+  return path;
+}
+
+void create_in_temporary_folder(const std::string& folder, const std::string& name) {
+  const std::string path = (fs::path(folder) / name).string();
+  const auto lock = lock_to_create();
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (descriptor < 0) throw Error(fmt::format("cannot create {}: {}", path, reason(errno)));
+  ::close(descriptor);
+}
+
+void remove_temporary_folder(const std::string& folder) {
+  const std::lock_guard lock(registry().mutex);
+  if (registry().folders.erase(folder) > 0) remove_folder(folder);
+}
+
+std::vector<std::string> remove_unfinished_files() {
+  Registry& all = registry();
+  const std::lock_guard lock(all.mutex);
+  if (all.ending) return {};
+  all.ending = true;
+  all.spare.reset();
+  std::vector<std::string> names;
+  for (const auto& [path, name] : all.files) {
+    ::unlink(path.c_str());
+    if (!name.empty()) names.push_back(name);
+  }
+  for (const auto& [path, name] : all.folders) {
+    remove_folder(path);
+    if (!name.empty()) names.push_back(name);
+  }
+  all.files.clear();
+  all.folders.clear();
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::unique_lock<std::recursive_mutex> hold_off_end_of_run() { return lock_to_create(); }
+
+void stop_if_run_is_ending() { lock_to_create(); }
+
+}  // namespace spillway::detail

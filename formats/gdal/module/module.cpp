@@ -1,0 +1,64 @@
+// The module's one door.
+
+#include <cpl_conv.h>
+#include <gdal.h>
+
+#include "formats/gdal/gdal.h"
+#include "formats/gdal/module/crs.h"
+#include "formats/gdal/module/gdal_errors.h"
+#include "formats/gdal/module/geotiff.h"
+#include "formats/gdal/vectors.h"
+
+namespace spillway::detail {
+namespace {
+
+class LoadedGdal : public Gdal {
+ public:
+  LoadedGdal() {
+    silence_gdal();
+    // Files get their final name only when complete, so that a crash may leave them broken.
+    CPLSetConfigOption("OGR_SQLITE_SYNCHRONOUS", "OFF");
+    CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");
+    GDALAllRegister();
+  }
+
+  [[nodiscard]] bool same_crs(const std::string& a, const std::string& b) const override {
+    return spillway::detail::same_crs(a, b);
+  }
+  [[nodiscard]] std::string crs_to_wkt(const std::string& crs) const override {
+    return spillway::detail::crs_to_wkt(crs);
+  }
+  [[nodiscard]] std::string crs_name(const std::string& crs) const override {
+    return spillway::detail::crs_name(crs);
+  }
+  [[nodiscard]] double crs_unit(const std::string& crs) const override {
+    return spillway::detail::crs_unit(crs);
+  }
+  [[nodiscard]] CrsKind crs_kind(const std::string& crs) const override {
+    return spillway::detail::crs_kind(crs);
+  }
+  [[nodiscard]] std::unique_ptr<VectorLayer> create_layer(
+      const VectorLayerOptions& options) const override {
+    return create_ogr_layer(options);
+  }
+  [[nodiscard]] std::unique_ptr<TriangleLayer> open_layer(const std::string& path) const override {
+    return open_ogr_layer(path);
+  }
+  void check_raster_driver(const RasterOptions& options) const override {
+    check_geotiff_driver(options);
+  }
+  [[nodiscard]] std::unique_ptr<Raster> create_raster(const RasterOptions& options) const override {
+    return create_geotiff(options);
+  }
+  [[nodiscard]] RasterGrid read_raster_grid(const std::string& path) const override {
+    return read_geotiff_grid(path);
+  }
+};
+
+}  // namespace
+}  // namespace spillway::detail
+
+extern "C" __attribute__((visibility("default"))) const spillway::detail::Gdal* spillway_gdal() {
+  static const spillway::detail::LoadedGdal instance;
+  return &instance;
+}

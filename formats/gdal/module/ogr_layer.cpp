@@ -1,0 +1,164 @@
+// Vector layers that are written.
+
+#include <fmt/format.h>
+#include <ogrsf_frmts.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cstdint>
+#include <fstream>
+#include <utility>
+
+#include "formats/gdal/module/crs.h"
+#include "formats/gdal/module/gdal_errors.h"
+#include "formats/gdal/vectors.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::uint64_t kFeaturesPerTransaction = 100'000;
+constexpr std::uint64_t kFeaturesPerLook = 64;  ///< at the disk's free space
+constexpr const char* kElevation = "elevation";
+
+// A shapefile's parts may not pass 2 GB, for many programs count their bytes in signed 32 bits. A
+// record of .shp has 8 bytes before it; of a line or polygon with z it has a box, two counts, one
+// part, and for each point x, y, z; with the ranges of z (ESRI Shapefile Technical Description,
+// 1998, p. 16).
+constexpr std::uint64_t kShapefileLimit = (std::uint64_t{1} << 31) - 1;
+constexpr std::uint64_t kShapefileHeader = 100;
+constexpr std::uint64_t kShapefileRecord = 8 + 4 + 32 + 4 + 4 + 4 + 16;
+constexpr std::uint64_t kShapefilePoint = 24;
+
+/// Whether nothing more fits on the disk where a file lies.
+bool disk_is_full(const std::string& path) {
+  struct statvfs disk {};
+  if (::statvfs(path.c_str(), &disk) != 0) return false;
+  return (::geteuid() == 0 ? disk.f_bfree : disk.f_bavail) == 0;
+}
+
+/// Whether a text file ends as JSON does.
+bool ends_as_json(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  for (std::streamoff end = file.tellg(); end > 0; --end) {
+    file.seekg(end - 1);
+    const int last = file.get();
+    if (std::isspace(last) == 0) return last == '}';
+  }
+  return false;
+}
+
+class OgrLayer : public VectorLayer {
+ public:
+  explicit OgrLayer(const VectorLayerOptions& options)
+      : name_(options.name),
+        path_(options.path),
+        is_shapefile_(options.driver == "ESRI Shapefile"),
+        is_json_(options.driver == "GeoJSON") {
+    forget_gdal_errors();
+    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(options.driver.c_str());
+    if (driver == nullptr) fail("GDAL is installed without its driver " + options.driver);
+    file_.reset(driver->Create(options.path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    if (!file_) fail(gdal_reason());
+    create_layer(options);
+    forget_gdal_errors();
+    in_transaction_ = file_->StartTransaction() == OGRERR_NONE;  // not every driver has them
+    forget_gdal_errors();
+  }
+
+  void add_triangle(std::span<const Point<3>, 3> corners) override {
+    take_space(4);
+    OGRLinearRing ring;
+    ring.setNumPoints(4, FALSE);
+    for (int i = 0; i < 4; ++i) {
+      const Point<3>& corner = corners[i % 3];
+      ring.setPoint(i, corner[0], corner[1], corner[2]);
+    }
+    OGRPolygon polygon;
+    polygon.addRing(&ring);
+    add(polygon, nullptr);
+  }
+
+  void add_line(std::span<const Point<3>> points, double elevation) override {
+    take_space(points.size());
+    OGRLineString line;
+    line.setNumPoints(static_cast<int>(points.size()), FALSE);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      line.setPoint(static_cast<int>(i), points[i][0], points[i][1], points[i][2]);
+    }
+    add(line, &elevation);
+  }
+
+  void finish() override {
+    forget_gdal_errors();
+    if (in_transaction_ && file_->CommitTransaction() != OGRERR_NONE) fail(gdal_reason());
+    file_.reset();  // closing writes what is left: only now can the disk be full
+    if (gdal_failed()) fail(gdal_reason());
+    if (is_json_ && !ends_as_json(path_)) fail("its end is missing; is the disk full?");
+  }
+
+ private:
+  void create_layer(const VectorLayerOptions& options) {
+    OGRSpatialReference crs;
+    if (!options.crs.empty()) crs = parse_crs(options.crs);
+    layer_ = file_->CreateLayer(options.layer.c_str(), options.crs.empty() ? nullptr : &crs,
+                                options.lines ? wkbLineString25D : wkbPolygon25D, nullptr);
+    if (layer_ == nullptr) fail(gdal_reason());
+    if (options.lines) {
+      OGRFieldDefn field(kElevation, OFTReal);
+      if (layer_->CreateField(&field) != OGRERR_NONE) fail(gdal_reason());
+    }
+    for (const auto& [name, text] : options.metadata) {
+      layer_->SetMetadataItem(name.c_str(), text.c_str());
+    }
+  }
+
+  /// Counts a feature of so many points, which must fit the format.
+  void take_space(std::size_t points) {
+    shapefile_bytes_ += kShapefileRecord + kShapefilePoint * points;
+    if (is_shapefile_ && shapefile_bytes_ > kShapefileLimit) {
+      fail(fmt::format("a shapefile holds 2 GB, which are full after {} features; choose gpkg",
+                       features_));
+    }
+  }
+
+  void add(const OGRGeometry& geometry, const double* elevation) {
+    forget_gdal_errors();
+    OGRFeature feature(layer_->GetLayerDefn());
+    feature.SetGeometry(&geometry);
+    if (elevation != nullptr) feature.SetField(0, *elevation);
+    if (layer_->CreateFeature(&feature) != OGRERR_NONE) fail(gdal_reason());
+    ++features_;
+    // GDAL's driver for GeoJSON does not notice that its writes fail.
+    if (is_json_ && features_ % kFeaturesPerLook == 0 && disk_is_full(path_)) {
+      fail("the disk is full");
+    }
+    if (in_transaction_ && features_ % kFeaturesPerTransaction == 0 &&
+        (file_->CommitTransaction() != OGRERR_NONE || file_->StartTransaction() != OGRERR_NONE)) {
+      fail(gdal_reason());
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("cannot write {}: {}", name_, what));
+  }
+
+  std::string name_;
+  std::string path_;
+  bool is_shapefile_;
+  bool is_json_;
+  GDALDatasetUniquePtr file_;
+  OGRLayer* layer_ = nullptr;  // owned by file_
+  bool in_transaction_ = false;
+  std::uint64_t features_ = 0;
+  std::uint64_t shapefile_bytes_ = kShapefileHeader;
+};
+
+}  // namespace
+
+std::unique_ptr<VectorLayer> create_ogr_layer(const VectorLayerOptions& options) {
+  return std::make_unique<OgrLayer>(options);
+}
+
+}  // namespace spillway::detail

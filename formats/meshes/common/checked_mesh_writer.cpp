@@ -1,0 +1,67 @@
+#include "formats/meshes/common/checked_mesh_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+
+CheckedMeshWriter::CheckedMeshWriter(MeshHeader header, std::string name)
+    : header_(std::move(header)), name_(std::move(name)) {
+  if (!header_.global_ids) return;
+  std::uint64_t ids = 0;
+  for (const IdRun& run : *header_.global_ids) ids += run.count;
+  if (ids != header_.vertices) {
+    fail(fmt::format("{} vertices were promised, but {} ids for them", header_.vertices, ids));
+  }
+}
+
+void CheckedMeshWriter::write_vertices(std::span<const Point<3>> vertices,
+                                       std::span<const std::uint64_t> input_index) {
+  if (vertices.size() > header_.vertices - vertices_) {
+    fail(fmt::format("more than the {} vertices that were promised came", header_.vertices));
+  }
+  if (input_index.size() != (header_.has_input_index ? vertices.size() : 0)) {
+    fail(
+        fmt::format("{} vertices came with {} input indices", vertices.size(), input_index.size()));
+  }
+  put_vertices(vertices, input_index);
+  vertices_ += vertices.size();
+}
+
+void CheckedMeshWriter::write_simplices(std::span<const std::uint64_t> corners) {
+  if (vertices_ != header_.vertices) {
+    fail(fmt::format("{} vertices were promised, but {} came before the first simplex",
+                     header_.vertices, vertices_));
+  }
+  const std::size_t count = corners.size() / corners_per_simplex();
+  if (corners.size() % corners_per_simplex() != 0 || count > header_.simplices - simplices_) {
+    fail(fmt::format("{} corners came where {} simplices of {} were left to write", corners.size(),
+                     header_.simplices - simplices_, corners_per_simplex()));
+  }
+  const auto largest = std::max_element(corners.begin(), corners.end());
+  if (largest != corners.end() && *largest >= header_.vertices) {
+    fail(fmt::format("simplex {} has vertex {}, but there are only {} vertices",
+                     simplices_ + (largest - corners.begin()) / corners_per_simplex(), *largest,
+                     header_.vertices));
+  }
+  put_simplices(corners);
+  simplices_ += count;
+}
+
+void CheckedMeshWriter::finish() {
+  if (vertices_ != header_.vertices || simplices_ != header_.simplices) {
+    fail(fmt::format("{} vertices and {} simplices were promised, but {} and {} came",
+                     header_.vertices, header_.simplices, vertices_, simplices_));
+  }
+  complete();
+}
+
+void CheckedMeshWriter::fail(const std::string& what) const {
+  throw Error(fmt::format("cannot write {}: {}", name_, what));
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+
+#include "formats/meshes/common/mesh_writer.h"
+
+namespace spillway::detail {
+
+/// What all mesh writers have in common: that numbers add up to the header's and that vertex
+/// numbers are valid is checked here; a format only puts values down.
+class CheckedMeshWriter : public MeshWriter {
+ public:
+  void write_vertices(std::span<const Point<3>> vertices,
+                      std::span<const std::uint64_t> input_index) final;
+  void write_simplices(std::span<const std::uint64_t> corners) final;
+  void finish() final;
+
+ protected:
+  /// `name` is that of the output, for messages.
+  CheckedMeshWriter(MeshHeader header, std::string name);
+
+  /// Appends vertices that have passed the checks.
+  virtual void put_vertices(std::span<const Point<3>> vertices,
+                            std::span<const std::uint64_t> input_index) = 0;
+
+  /// Appends simplices that have passed the checks, after the last vertex.
+  virtual void put_simplices(std::span<const std::uint64_t> corners) = 0;
+
+  /// Called once, after all vertices and simplices.
+  virtual void complete() = 0;
+
+  [[nodiscard]] const MeshHeader& header() const { return header_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] std::size_t corners_per_simplex() const { return header_.dimension + 1; }
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  MeshHeader header_;
+  std::string name_;
+  std::uint64_t vertices_ = 0;   // written so far
+  std::uint64_t simplices_ = 0;  // written so far
+};
+
+}  // namespace spillway::detail

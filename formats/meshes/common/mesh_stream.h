@@ -1,0 +1,112 @@
+#pragma once
+// A mesh as it flows: blocks of vertices, of the simplices that use them, and of the word that a
+// vertex is not used any more, so that whoever reads along never holds more than a border.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
+#include "src/geometry/point.h"
+
+namespace spillway::detail {
+
+/// What a mesh stream says before its first block.
+struct MeshStreamHeader {
+  int dimension = 2;                    ///< 2: triangles with z carried along, 3: tetrahedra
+  bool has_input_index = false;         ///< each vertex carries its index in the input
+  std::optional<Lattice> lattice;       ///< set if the coordinates of blocks are to be mapped by it
+  std::optional<std::uint64_t> points;  ///< of the input, where known beforehand
+  std::optional<Box<3>> extent;         ///< of the points, in output coordinates, where known
+  std::string crs;                      ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
+};
+
+/// Some vertices and simplices. The stream numbers its vertices 0, 1, 2, ... in the order in which
+/// they come; inside a block, vertices have short numbers: first those of `vertices`, then those of
+/// `imported`.
+struct MeshBlock {
+  /// Vertices that come for the first time. On the header's lattice if there is one (x, y and, in
+  /// space, z are integers; in the plane z may lie between), else in output coordinates.
+  std::vector<Point<3>> vertices;
+  std::vector<std::uint64_t> input_index;  ///< of `vertices`, if the header says has_input_index
+  std::vector<std::uint64_t> imported;     ///< stream numbers of earlier vertices used here
+  std::vector<std::uint32_t> corners;      ///< dimension+1 short numbers a simplex, oriented
+  std::vector<std::uint32_t> finalized;    ///< short numbers of vertices that come no more
+  /// What MeshStreamWriter::prepare() made of the members above (`imported` apart).
+  std::vector<std::byte> prepared;
+
+  /// Bytes that its members take, counted by their sizes.
+  [[nodiscard]] std::uint64_t bytes() const {
+    return vertices.size() * sizeof(vertices[0]) + input_index.size() * sizeof(input_index[0]) +
+           imported.size() * sizeof(imported[0]) + corners.size() * sizeof(corners[0]) +
+           finalized.size() * sizeof(finalized[0]) + prepared.size();
+  }
+
+  void clear() {
+    vertices.clear();
+    input_index.clear();
+    imported.clear();
+    corners.clear();
+    finalized.clear();
+    prepared.clear();
+  }
+};
+
+/// What is known at the end of a stream.
+struct MeshTotals {
+  std::uint64_t vertices = 0;
+  std::uint64_t simplices = 0;
+  std::uint64_t hull_facets = 0;  ///< facets of one simplex only
+  std::uint64_t points = 0;       ///< of the input
+  std::uint64_t duplicates = 0;   ///< points that equal another one
+  std::uint64_t canonical_hash = 0;
+
+  bool operator==(const MeshTotals&) const = default;
+};
+
+/// Writes a mesh block by block. Nothing appears under the final name before finish(); a writer
+/// that is destroyed without it leaves nothing behind.
+class MeshStreamWriter {
+ public:
+  virtual ~MeshStreamWriter() = default;
+
+  /// Does ahead what does not depend on other blocks, such as compression. May be called for many
+  /// blocks at once, by many threads, or not at all.
+  virtual void prepare(MeshBlock& /*block*/) const {}
+
+  /// Appends a block. Its vertices get the next stream numbers.
+  virtual void write(MeshBlock&& block) = 0;
+
+  /// Completes the file. Throws Error if the totals' vertices and simplices are not what was
+  /// written.
+  virtual void finish(const MeshTotals& totals) = 0;
+
+  /// Bytes of output so far.
+  [[nodiscard]] virtual std::uint64_t bytes_written() const = 0;
+};
+
+/// Reads a mesh block by block.
+class MeshStreamReader {
+ public:
+  virtual ~MeshStreamReader() = default;
+
+  [[nodiscard]] virtual const MeshStreamHeader& header() const = 0;
+
+  /// Replaces `block` by the next one; false at the end. Every number in it is checked: short ones
+  /// against the block, imported ones against what is announced and not finalized; coordinates are
+  /// finite. Throws Error with the file's name and the byte or line, also if the file is cut short.
+  virtual bool read(MeshBlock& block) = 0;
+
+  /// The totals that the stream ends with; once read() has returned false. Formats without them
+  /// (.sma) count vertices and simplices and leave the rest 0; `has_hash` tells them apart.
+  [[nodiscard]] virtual const MeshTotals& totals() const = 0;
+  [[nodiscard]] virtual bool has_hash() const = 0;
+
+  /// How far the input has been read, from 0 to 1; nothing for pipes.
+  [[nodiscard]] virtual std::optional<double> fraction_read() const = 0;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "formats/disk/file_system.h"
+#include "formats/meshes/common/mesh.h"
+
+namespace spillway::detail {
+
+/// Writes one mesh: first all vertices, in blocks of any size, then all simplices, then finish().
+/// Numbers must add up to the header's counts. Nothing appears under the final name before
+/// finish(); a writer that is destroyed without it leaves nothing behind.
+class MeshWriter {
+ public:
+  virtual ~MeshWriter() = default;
+
+  /// Appends vertices. `input_index` has one entry a vertex if the header says has_input_index and
+  /// is empty otherwise.
+  virtual void write_vertices(std::span<const Point<3>> vertices,
+                              std::span<const std::uint64_t> input_index) = 0;
+
+  /// Appends simplices: dimension+1 vertex numbers each, counted from 0, positively oriented.
+  virtual void write_simplices(std::span<const std::uint64_t> corners) = 0;
+
+  /// Completes the file and gives it its final name. Throws Error if anything is missing.
+  virtual void finish() = 0;
+};
+
+/// The mesh formats, by the names `--output-format` and `--input-format` take. Spm and sma are
+/// streams, and stl, gpkg and shp are written as such, too, block by block.
+enum class MeshFormat {
+  kPly,
+  kPlyAscii,
+  kObj,
+  kOff,
+  kVtu,
+  kNpy,
+  kSpm,
+  kSma,
+  kGlb,
+  kStl,
+  kLandXml,
+  kGpkg,
+  kShp
+};
+
+/// The files of a mesh, created but still empty.
+struct MeshFiles {
+  MeshFormat format = MeshFormat::kPly;
+  /// The only one but for npy, where it has the vertices; none for gpkg and shp, which GDAL writes.
+  std::unique_ptr<OutputFile> main;
+  std::unique_ptr<OutputFile> simplices;    ///< npy only
+  std::unique_ptr<OutputFile> input_index;  ///< npy only, if there is an input index
+};
+
+}  // namespace spillway::detail

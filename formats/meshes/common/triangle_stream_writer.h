@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "formats/meshes/common/mesh_stream.h"
+
+namespace spillway::detail {
+
+/// What the formats have in common that repeat the corners with every triangle and number no
+/// vertices: blocks are checked here and their triangles passed on with coordinates, in the memory
+/// of the stream's border. Vertices of no triangle are not in such files.
+class TriangleStreamWriter : public MeshStreamWriter {
+ public:
+  void write(MeshBlock&& block) final;
+  void finish(const MeshTotals& totals) final;
+
+ protected:
+  /// `name` is that of the output, for messages.
+  TriangleStreamWriter(MeshStreamHeader header, std::string name);
+
+  /// Appends a triangle in output coordinates.
+  virtual void put_triangle(const std::array<Point<3>, 3>& corners) = 0;
+
+  /// Called once, after all triangles.
+  virtual void complete() = 0;
+
+  [[nodiscard]] const MeshStreamHeader& header() const { return header_; }
+  [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  void take_positions(const MeshBlock& block);
+  void settle_vertices(const MeshBlock& block);
+
+  MeshStreamHeader header_;
+  std::string name_;
+  std::unordered_map<std::uint64_t, Point<3>> live_;  // vertices that may still be used
+  std::vector<Point<3>> positions_;                   // of the block in work, by short number
+  std::vector<bool> finalized_;                       // likewise
+  std::uint64_t vertices_ = 0;                        // written so far
+  std::uint64_t triangles_ = 0;                       // written so far
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,235 @@
+#include "formats/meshes/glb/glb_reader.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "formats/bytes/bytes.h"
+#include "formats/bytes/whole_file.h"
+#include "formats/meshes/common/mesh_checks.h"
+#include "formats/meshes/glb/glb_format.h"
+#include "formats/meshes/glb/glb_scene.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Some values of the binary chunk.
+struct Values {
+  std::span<const std::byte> bytes;
+  std::uint64_t count = 0;
+  std::size_t stride = 0;
+  int type = 0;  // of their components
+};
+
+std::size_t size_of_component(int type) {
+  switch (type) {
+    case glb::kUint8:
+      return 1;
+    case glb::kUint16:
+      return 2;
+    default:
+      return 4;
+  }
+}
+
+/// y up, as glTF has it, to z up.
+Point<3> z_up(const Point<3>& p) { return {p[0], -p[2], p[1]}; }
+
+class GlbReader {
+ public:
+  explicit GlbReader(InputSource& source) : source_(source) {}
+
+  Mesh read() {
+    read_chunks();
+    try {
+      read_scene();
+    } catch (const Json::exception& error) {
+      fail(fmt::format("its JSON is not as glTF has it: {}", error.what()));
+    }
+    mesh_.header.vertices = mesh_.vertices.size();
+    mesh_.header.simplices = mesh_.corners.size() / 3;
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_chunks() {
+    const std::vector<std::byte> head = read_bytes(glb::kHeader + glb::kChunkHeader, "its header");
+    if (!as_text(head).starts_with(glb::kMagic)) fail("byte 0: this is no binary glTF file");
+    const auto version = load<std::uint32_t>(&head[4]);
+    if (version != glb::kVersion) fail(fmt::format("byte 4: glTF {} is not read, only 2", version));
+    length_ = load<std::uint32_t>(&head[8]);
+    const std::optional<std::uint64_t> size = source_.size();
+    if (size && length_ > *size) {
+      fail(fmt::format("byte 8: the file shall have {} bytes, but has {}; get a complete copy",
+                       length_, *size));
+    }
+    if (load<std::uint32_t>(&head[16]) != glb::kJson) fail("byte 16: the first chunk is no JSON");
+    const std::vector<std::byte> json = read_chunk(load<std::uint32_t>(&head[12]), "its JSON");
+    try {
+      gltf_ = Json::parse(as_text(json));
+    } catch (const Json::exception& error) {
+      fail(fmt::format("its JSON cannot be parsed: {}", error.what()));
+    }
+    while (length_ - source_.position() >= glb::kChunkHeader && binary_.empty()) {
+      const std::vector<std::byte> chunk = read_bytes(glb::kChunkHeader, "a chunk's header");
+      std::vector<std::byte> bytes = read_chunk(load<std::uint32_t>(chunk.data()), "a chunk");
+      if (load<std::uint32_t>(&chunk[4]) == glb::kBinary) binary_ = std::move(bytes);
+    }
+  }
+
+  std::vector<std::byte> read_bytes(std::uint64_t count, const char* what) {
+    std::vector<std::byte> bytes = read_up_to(source_, count);
+    if (bytes.size() < count) {
+      fail(fmt::format("the file ends at byte {}, within {}; get a complete copy",
+                       source_.position(), what));
+    }
+    return bytes;
+  }
+
+  std::vector<std::byte> read_chunk(std::uint64_t size, const char* what) {
+    if (source_.position() > length_ || size > length_ - source_.position()) {
+      fail(fmt::format("before byte {}: {} shall have {} bytes, but the file ends at {}",
+                       source_.position(), what, size, length_));
+    }
+    return read_bytes(size, what);
+  }
+
+  void read_scene() {
+    const Json& asset = gltf_.at("asset");
+    const auto extras = asset.find("extras");
+    if (extras != asset.end() && extras->is_object()) {
+      mesh_.header.crs = extras->value("crs", std::string());
+    }
+    if (gltf_.contains("extensionsRequired") && !gltf_.at("extensionsRequired").empty()) {
+      fail(fmt::format("it needs the extension {}, which is not read; export it without",
+                       gltf_.at("extensionsRequired").at(0).dump()));
+    }
+    for (const glb::PlacedMesh& placed : meshes_of_scene()) {
+      for (const Json& primitive : gltf_.at("meshes").at(placed.mesh).at("primitives")) {
+        read_primitive(primitive, placed.transform);
+      }
+    }
+    const bool by_spillway = asset.value("generator", std::string()) == glb::kGenerator;
+    if (mesh_.corners.empty() && !by_spillway) fail_for_point_cloud(source_.name(), "glTF");
+  }
+
+  [[nodiscard]] std::vector<glb::PlacedMesh> meshes_of_scene() const {
+    try {
+      return glb::placed_meshes(gltf_);
+    } catch (const Error& error) {
+      fail(error.what());
+    }
+  }
+
+  void read_primitive(const Json& primitive, const glb::Transform& transform) {
+    const int mode = primitive.value("mode", glb::kTriangles);
+    if (mode != glb::kTriangles && mode != glb::kPoints) {
+      fail(fmt::format("a primitive has mode {}; only lists of triangles (4) are read", mode));
+    }
+    const std::uint64_t first = mesh_.vertices.size();
+    const std::uint64_t count =
+        read_positions(values(primitive.at("attributes").at("POSITION"), "VEC3"), transform);
+    if (mode == glb::kPoints) return;
+    const std::size_t corners = mesh_.corners.size();
+    if (primitive.contains("indices")) {
+      read_indices(values(primitive.at("indices"), "SCALAR"), first, count);
+    } else {
+      for (std::uint64_t i = 0; i < count; ++i) mesh_.corners.push_back(first + i);
+    }
+    if ((mesh_.corners.size() - corners) % 3 != 0) {
+      fail(fmt::format("a primitive has {} corners, which make no whole number of triangles",
+                       mesh_.corners.size() - corners));
+    }
+  }
+
+  std::uint64_t read_positions(const Values& positions, const glb::Transform& transform) {
+    if (positions.type != glb::kFloat32) fail("positions must be float32");
+    for (std::uint64_t i = 0; i < positions.count; ++i) {
+      const auto local = load<std::array<float, 3>>(positions.bytes.data() + i * positions.stride);
+      const Point<3> point = z_up(glb::apply(transform, {local[0], local[1], local[2]}));
+      for (const double coordinate : point) {
+        if (!std::isfinite(coordinate)) fail(fmt::format("position {} is not finite", i));
+      }
+      mesh_.vertices.push_back(point);
+    }
+    return positions.count;
+  }
+
+  void read_indices(const Values& indices, std::uint64_t first, std::uint64_t count) {
+    for (std::uint64_t i = 0; i < indices.count; ++i) {
+      const std::byte* const at = indices.bytes.data() + i * indices.stride;
+      const std::uint64_t index = indices.type == glb::kUint8    ? load<std::uint8_t>(at)
+                                  : indices.type == glb::kUint16 ? load<std::uint16_t>(at)
+                                                                 : load<std::uint32_t>(at);
+      if (index >= count) {
+        fail(fmt::format("index {} is {}, but there are only {} positions", i, index, count));
+      }
+      mesh_.corners.push_back(first + index);
+    }
+  }
+
+  /// The values of an accessor, all of them within the binary chunk.
+  [[nodiscard]] Values values(const Json& number, const std::string& type) const {
+    const Json& accessor = gltf_.at("accessors").at(number.get<std::size_t>());
+    if (accessor.contains("sparse")) fail("sparse accessors are not read");
+    if (accessor.at("type").get<std::string>() != type) {
+      fail(fmt::format("accessor {} must have the type {}", number.dump(), type));
+    }
+    const Json& view = gltf_.at("bufferViews").at(accessor.at("bufferView").get<std::size_t>());
+    const auto buffer = view.at("buffer").get<std::size_t>();
+    if (buffer != 0 || gltf_.at("buffers").at(buffer).contains("uri")) {
+      fail("its positions or indices lie in another file; export it as one file");
+    }
+    Values result;
+    result.type = accessor.at("componentType").get<int>();
+    result.count = accessor.at("count").get<std::uint64_t>();
+    if (type == "SCALAR" && result.type != glb::kUint8 && result.type != glb::kUint16 &&
+        result.type != glb::kUint32) {
+      fail("indices must be unsigned integers");
+    }
+    const std::size_t each = size_of_component(result.type) * (type == "VEC3" ? 3 : 1);
+    result.stride = view.value("byteStride", each);
+    const auto begin = part(binary_, view.value("byteOffset", std::uint64_t{0}),
+                            view.at("byteLength").get<std::uint64_t>());
+    const auto offset = accessor.value("byteOffset", std::uint64_t{0});
+    result.bytes =
+        part(begin, offset, begin.size() - std::min<std::uint64_t>(offset, begin.size()));
+    // The last value need not fill its stride.
+    if (result.count > 0 && (result.stride < each || result.bytes.size() < each ||
+                             result.count - 1 > (result.bytes.size() - each) / result.stride)) {
+      fail(fmt::format("accessor {} reaches beyond its {} bytes", number.dump(),
+                       result.bytes.size()));
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::span<const std::byte> part(std::span<const std::byte> bytes,
+                                                std::uint64_t offset, std::uint64_t size) const {
+    if (offset > bytes.size() || size > bytes.size() - offset) {
+      fail(fmt::format("bytes {} to {} of its binary chunk are spoken of, but it has {}", offset,
+                       offset + size, bytes.size()));
+    }
+    return bytes.subspan(offset, size);
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("{}: {}", source_.name(), what));
+  }
+
+  InputSource& source_;
+  std::uint64_t length_ = 0;  // of the file, as it says itself
+  Json gltf_;
+  std::vector<std::byte> binary_;
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Mesh read_glb(InputSource& source) { return GlbReader(source).read(); }
+
+}  // namespace spillway::detail

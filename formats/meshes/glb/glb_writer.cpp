@@ -1,0 +1,186 @@
+#include "formats/meshes/glb/glb_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "formats/bytes/block_output.h"
+#include "formats/bytes/bytes.h"
+#include "formats/meshes/common/checked_mesh_writer.h"
+#include "formats/meshes/common/local_origin.h"
+#include "formats/meshes/glb/glb_format.h"
+
+namespace spillway::detail {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Position = std::array<float, 3>;
+
+constexpr std::uint64_t kTriangleBytes = 3 * sizeof(std::uint32_t);
+// What nine more numbers may take: the origin and the extent are known only at the end.
+constexpr std::size_t kRoomForNumbers = 9 * 28;
+
+class GlbWriter : public CheckedMeshWriter {
+ public:
+  GlbWriter(std::unique_ptr<OutputFile> file, const MeshHeader& mesh)
+      : CheckedMeshWriter(mesh, file->name()), output_(std::move(file)) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+    if (mesh.vertices > kMost / sizeof(Position) || mesh.simplices > kMost / kTriangleBytes) {
+      fail_for_size();
+    }
+    // Padded with blanks to a multiple of four, as the container demands.
+    json_size_ = (json_text().size() + kRoomForNumbers + 3) / 4 * 4;
+    if (file_size() > kMost) fail_for_size();
+    output_.append(head());
+    if (!output_.rewrite(0, head())) {  // a pipe is refused now, not at the end
+      fail(
+          "glTF begins with the extent of its positions, and this file cannot go back to its "
+          "begin; name a regular file");
+    }
+  }
+
+ private:
+  void put_vertices(std::span<const Point<3>> vertices,
+                    std::span<const std::uint64_t> /*input_index*/) override {
+    for (const Point<3>& vertex : vertices) {
+      if (written_ == 0) origin_ = local_origin(vertex);
+      const auto position = to_local(vertex, origin_);
+      if (!position) {
+        fail(fmt::format("vertex {} is too far from the first one for glTF's float32; choose ply",
+                         written_));
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        lowest_[axis] =
+            written_ == 0 ? (*position)[axis] : std::min(lowest_[axis], (*position)[axis]);
+        highest_[axis] =
+            written_ == 0 ? (*position)[axis] : std::max(highest_[axis], (*position)[axis]);
+      }
+      std::byte* const room = output_.reserve(sizeof(Position));
+      store(room, *position);
+      output_.advance_to(room + sizeof(Position));
+      ++written_;
+    }
+  }
+
+  void put_simplices(std::span<const std::uint64_t> corners) override {
+    for (const std::uint64_t corner : corners) {
+      std::byte* const room = output_.reserve(sizeof(std::uint32_t));
+      store(room, static_cast<std::uint32_t>(corner));
+      output_.advance_to(room + sizeof(std::uint32_t));
+    }
+  }
+
+  void complete() override {
+    output_.rewrite(0, head());
+    output_.commit();
+  }
+
+  [[nodiscard]] std::uint64_t positions_size() const {
+    return header().vertices * sizeof(Position);
+  }
+  [[nodiscard]] std::uint64_t binary_size() const {
+    return positions_size() + header().simplices * kTriangleBytes;
+  }
+  [[nodiscard]] std::uint64_t file_size() const {
+    const std::uint64_t binary = binary_size() == 0 ? 0 : glb::kChunkHeader + binary_size();
+    return glb::kHeader + glb::kChunkHeader + json_size_ + binary;
+  }
+
+  /// All that stands before the positions.
+  [[nodiscard]] std::string head() const {
+    std::string json = json_text();
+    json.resize(json_size_, ' ');
+    std::string text(glb::kMagic);
+    append_number(text, glb::kVersion);
+    append_number(text, static_cast<std::uint32_t>(file_size()));
+    append_number(text, static_cast<std::uint32_t>(json_size_));
+    append_number(text, glb::kJson);
+    text += json;
+    if (binary_size() > 0) {
+      append_number(text, static_cast<std::uint32_t>(binary_size()));
+      append_number(text, glb::kBinary);
+    }
+    return text;
+  }
+
+  static void append_number(std::string& text, std::uint32_t number) {
+    text.append(reinterpret_cast<const char*>(&number), sizeof(number));
+  }
+
+  /// What glTF says of the mesh. A mesh without vertices is a scene without meshes, as the
+  /// specification allows no empty ones.
+  [[nodiscard]] std::string json_text() const {
+    Json json;
+    json["asset"] = {{"version", "2.0"}, {"generator", glb::kGenerator}};
+    if (!header().crs.empty()) json["asset"]["extras"] = {{"crs", header().crs}};
+    json["scene"] = 0;
+    json["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
+    Json turned = {{"name", "z up"},
+                   {"matrix", {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}},
+                   {"children", Json::array({1})}};
+    Json moved = {{"name", "tin"}, {"translation", origin_}};
+    if (header().vertices > 0) moved["mesh"] = 0;
+    json["nodes"] = Json::array({turned, moved});
+    if (header().vertices > 0) add_mesh(json);
+    // Of text that is no UTF-8, what is wrong is replaced: JSON has no other.
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+
+  void add_mesh(Json& json) const {
+    const bool has_triangles = header().simplices > 0;
+    Json primitive = {{"attributes", {{"POSITION", 0}}},
+                      {"mode", has_triangles ? glb::kTriangles : glb::kPoints}};
+    if (has_triangles) primitive["indices"] = 1;
+    json["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
+    json["buffers"] = Json::array({{{"byteLength", binary_size()}}});
+    const Json positions = {{"buffer", 0},
+                            {"byteOffset", 0},
+                            {"byteLength", positions_size()},
+                            {"target", glb::kVertexBuffer}};
+    json["bufferViews"] = Json::array({positions});
+    const Json position = {{"bufferView", 0},
+                           {"componentType", glb::kFloat32},
+                           {"count", header().vertices},
+                           {"type", "VEC3"},
+                           {"min", lowest_},
+                           {"max", highest_}};
+    json["accessors"] = Json::array({position});
+    if (!has_triangles) return;
+    json["bufferViews"].push_back({{"buffer", 0},
+                                   {"byteOffset", positions_size()},
+                                   {"byteLength", header().simplices * kTriangleBytes},
+                                   {"target", glb::kIndexBuffer}});
+    json["accessors"].push_back({{"bufferView", 1},
+                                 {"componentType", glb::kUint32},
+                                 {"count", header().simplices * 3},
+                                 {"type", "SCALAR"}});
+  }
+
+  [[noreturn]] void fail_for_size() const {
+    fail(
+        fmt::format("{} vertices and {} triangles take more than the 4 GiB that glTF holds; "
+                    "choose ply",
+                    header().vertices, header().simplices));
+  }
+
+  BlockOutput output_;
+  std::uint64_t json_size_ = 0;
+  std::uint64_t written_ = 0;  // vertices
+  Point<3> origin_{};
+  Position lowest_{};
+  Position highest_{};
+};
+
+}  // namespace
+
+std::unique_ptr<MeshWriter> open_glb_writer(std::unique_ptr<OutputFile> file,
+                                            const MeshHeader& header) {
+  return std::make_unique<GlbWriter>(std::move(file), header);
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,251 @@
+#include "formats/meshes/npy/npy_mesh.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "formats/bytes/block_input.h"
+#include "formats/bytes/number_type.h"
+#include "formats/points/npy/npy_header.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::string_view kExtension = ".npy";
+constexpr std::string_view kVertices = "_vertices";
+constexpr std::string_view kSimplices = "_simplices";
+constexpr std::string_view kInputIndex = "_input_index";
+
+std::string without(std::string_view path, std::string_view end) {
+  return std::string(path.ends_with(end) ? path.substr(0, path.size() - end.size()) : path);
+}
+
+struct NamedType {
+  std::string_view name;  // without the sign of the byte order
+  NumberType type;
+};
+
+constexpr std::array kTypes = {
+    NamedType{"f8", NumberType::kFloat64}, NamedType{"f4", NumberType::kFloat32},
+    NamedType{"i8", NumberType::kInt64},   NamedType{"u8", NumberType::kUint64},
+    NamedType{"i4", NumberType::kInt32},   NamedType{"u4", NumberType::kUint32}};
+
+/// One array of one or two dimensions being read.
+class ArrayInput {
+ public:
+  ArrayInput(FileSystem& files, const std::string& path)
+      : source_(files.open(path)), header_(read_npy_header(source_)) {
+    choose_type();
+    if (header_.fortran_order) {
+      fail("the array is in Fortran order; save numpy.ascontiguousarray(a)");
+    }
+  }
+
+  [[nodiscard]] std::uint64_t rows() const { return header_.shape[0]; }
+  [[nodiscard]] std::uint64_t columns() const { return header_.shape[1]; }
+  [[nodiscard]] NumberType type() const { return type_; }
+
+  /// Demands a shape of n x `least` to n x `most`; n alone if both are 0.
+  void check_shape(std::uint64_t least, std::uint64_t most) const {
+    const std::vector<std::uint64_t>& shape = header_.shape;
+    const bool flat = most == 0;
+    if (shape.size() != (flat ? 1 : 2) || (!flat && (shape[1] < least || shape[1] > most))) {
+      fail(fmt::format("the array has shape ({}), but {} is needed", fmt::join(shape, ", "),
+                       flat ? "n" : fmt::format("n x {} or n x {}", least, most)));
+    }
+  }
+
+  /// Demands real numbers.
+  void check_reals() const {
+    if (is_integer(type_)) {
+      fail(
+          fmt::format("the array has elements of type '{}', but coordinates are 'f8' or 'f4'; save "
+                      "a.astype('<f8')",
+                      header_.type));
+    }
+  }
+
+  /// Demands integers.
+  void check_integers() const {
+    if (!is_integer(type_)) {
+      fail(
+          fmt::format("the array has elements of type '{}', but these are indices; save "
+                      "a.astype('<i8')",
+                      header_.type));
+    }
+  }
+
+  /// Calls `take` with the bytes of each row, one after another. The file's size is checked before
+  /// the first; `reserve` is called in between.
+  void read_rows(std::uint64_t columns, const std::function<void(std::uint64_t)>& reserve,
+                 const std::function<void(const std::byte*)>& take) {
+    const std::uint64_t each = columns * size_of(type_);
+    row_size_ = each;
+    data_begin_ = source_.position();
+    if (const std::optional<std::uint64_t> size = source_.size()) {
+      const std::uint64_t room = *size - std::min(*size, source_.position());
+      if (rows() > room / each || rows() * each != room) {
+        fail(
+            fmt::format("the header says {} rows of {} bytes, but {} bytes follow it; get a "
+                        "complete copy",
+                        rows(), each, room));
+      }
+      reserve(rows());
+    }
+    BlockInput input(source_);
+    for (row_ = 0; row_ < rows(); ++row_) {
+      const std::byte* const bytes = input.take(each);
+      if (bytes == nullptr) {
+        fail(fmt::format("the file ends at byte {}, within row {}; get a complete copy",
+                         input.end(), row_));
+      }
+      take(bytes);
+    }
+  }
+
+  [[nodiscard]] double number(const std::byte* row, std::uint64_t column) const {
+    return load_number(type_, row + column * size_of(type_), swap_);
+  }
+
+  [[nodiscard]] std::uint64_t index(const std::byte* row, std::uint64_t column) const {
+    const std::optional<std::uint64_t> index =
+        load_index(type_, row + column * size_of(type_), swap_);
+    if (!index) fail_at_row("a number is negative");
+    return *index;
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("{}: {}", source_.name(), what));
+  }
+
+  /// Throws Error about the row that is being read.
+  [[noreturn]] void fail_at_row(const std::string& what) const {
+    fail(fmt::format("row {} at byte {}: {}", row_, data_begin_ + row_ * row_size_, what));
+  }
+
+ private:
+  void choose_type() {
+    const std::string_view name = header_.type;
+    for (const NamedType& known : kTypes) {
+      if (name.size() != 3 || (name[0] != '<' && name[0] != '>') || name.substr(1) != known.name) {
+        continue;
+      }
+      type_ = known.type;
+      swap_ = name[0] == '>';
+      return;
+    }
+    fail(
+        fmt::format("the array has elements of type '{}', but only f8, f4, i8, u8, i4 and u4 are "
+                    "read; save a.astype('<f8') or '<i8'",
+                    header_.type));
+  }
+
+  InputSource source_;
+  NpyHeader header_;
+  NumberType type_ = NumberType::kFloat64;
+  bool swap_ = false;
+  std::uint64_t row_ = 0;
+  std::uint64_t row_size_ = 0;    // in bytes
+  std::uint64_t data_begin_ = 0;  // byte of row 0
+};
+
+/// Returns the number of coordinates of a vertex.
+int read_vertices(FileSystem& files, const std::string& path, Mesh& mesh) {
+  ArrayInput array(files, path);
+  array.check_shape(2, 3);
+  array.check_reals();
+  mesh.header.vertices = array.rows();
+  const std::uint64_t columns = array.columns();
+  array.read_rows(
+      columns, [&](std::uint64_t rows) { mesh.vertices.reserve(rows); },
+      [&](const std::byte* row) {
+        Point<3> point{};
+        for (std::uint64_t axis = 0; axis < columns; ++axis) {
+          point[axis] = array.number(row, axis);
+          if (!std::isfinite(point[axis])) {
+            array.fail_at_row(
+                fmt::format("the vertex has the coordinate {}, not finite", point[axis]));
+          }
+        }
+        mesh.vertices.push_back(point);
+      });
+  return static_cast<int>(columns);
+}
+
+void read_simplices(FileSystem& files, const std::string& path, int coordinates, Mesh& mesh) {
+  ArrayInput array(files, path);
+  array.check_shape(3, 4);
+  array.check_integers();
+  const std::uint64_t columns = array.columns();
+  mesh.header.simplices = array.rows();
+  mesh.header.dimension = static_cast<int>(columns) - 1;
+  if (mesh.header.dimension > coordinates) {
+    array.fail(
+        fmt::format("these are tetrahedra, but the vertices have {} coordinates; save them "
+                    "as n x 3",
+                    coordinates));
+  }
+  array.read_rows(
+      columns, [&](std::uint64_t rows) { mesh.corners.reserve(rows * columns); },
+      [&](const std::byte* row) {
+        for (std::uint64_t c = 0; c < columns; ++c) {
+          const std::uint64_t corner = array.index(row, c);
+          if (corner >= mesh.header.vertices) {
+            array.fail_at_row(fmt::format("the simplex has vertex {}, but there are only {}",
+                                          corner, mesh.header.vertices));
+          }
+          mesh.corners.push_back(corner);
+        }
+      });
+}
+
+void read_input_index(FileSystem& files, const std::string& path, Mesh& mesh) {
+  ArrayInput array(files, path);
+  array.check_shape(0, 0);
+  array.check_integers();
+  if (array.rows() != mesh.header.vertices) {
+    array.fail(fmt::format("the array has {} elements for {} vertices; it is of another mesh",
+                           array.rows(), mesh.header.vertices));
+  }
+  mesh.header.has_input_index = true;
+  array.read_rows(
+      1, [&](std::uint64_t rows) { mesh.input_index.reserve(rows); },
+      [&](const std::byte* row) { mesh.input_index.push_back(array.index(row, 0)); });
+}
+
+}  // namespace
+
+NpyMeshNames npy_mesh_names(const std::string& path) {
+  const std::string stem = without(path, kExtension);
+  const auto name = [&](std::string_view part) {
+    return fmt::format("{}{}{}", stem, part, kExtension);
+  };
+  return {name(kVertices), name(kSimplices), name(kInputIndex)};
+}
+
+std::optional<NpyMeshNames> find_npy_mesh(const FileSystem& files, const std::string& path) {
+  const std::string stem = without(path, kExtension);
+  const NpyMeshNames names = npy_mesh_names(without(without(stem, kVertices), kSimplices));
+  if (!files.exists(names.vertices) || !files.exists(names.simplices)) return std::nullopt;
+  return names;
+}
+
+bool is_part_of_npy_mesh(const FileSystem& files, const std::string& path) {
+  const auto names = find_npy_mesh(files, without(without(path, kExtension), kInputIndex));
+  return names &&
+         (path == names->vertices || path == names->simplices || path == names->input_index);
+}
+
+Mesh read_npy_mesh(FileSystem& files, const NpyMeshNames& names) {
+  Mesh mesh;
+  const int coordinates = read_vertices(files, names.vertices, mesh);
+  read_simplices(files, names.simplices, coordinates, mesh);
+  if (files.exists(names.input_index)) read_input_index(files, names.input_index, mesh);
+  return mesh;
+}
+
+}  // namespace spillway::detail

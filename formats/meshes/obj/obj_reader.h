@@ -1,0 +1,12 @@
+#pragma once
+
+#include "formats/bytes/input_source.h"
+#include "formats/meshes/common/mesh.h"
+
+namespace spillway::detail {
+
+/// Reads the vertices and triangles of a Wavefront OBJ file; normals, texture, groups, materials,
+/// points and lines are passed over. Throws Error that names the line.
+Mesh read_obj(InputSource& source);
+
+}  // namespace spillway::detail

@@ -1,0 +1,129 @@
+#include "formats/meshes/off/off_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/bytes/fields.h"
+#include "formats/bytes/line_reader.h"
+#include "formats/meshes/common/mesh_checks.h"
+#include "formats/meshes/common/mesh_notes.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+// "0 0 0" and "3 0 1 2", each with the end of its line.
+constexpr std::uint64_t kSmallestVertex = 6;
+constexpr std::uint64_t kSmallestFace = 8;
+
+class OffReader {
+ public:
+  explicit OffReader(InputSource& source) : source_(source), lines_(source) {}
+
+  Mesh read() {
+    if (!next_line() || fields_.word() != "OFF") {
+      fail("this is no OFF file: its first line is not \"OFF\"; name its format");
+    }
+    read_counts();
+    for (std::uint64_t i = 0; i < mesh_.header.vertices; ++i) read_vertex(i);
+    for (std::uint64_t i = 0; i < mesh_.header.simplices; ++i) read_face(i);
+    if (next_line()) fail("the file goes on after its last face; its counts are wrong");
+    if (mesh_.corners.empty() && !by_spillway_) fail_for_point_cloud(source_.name(), "OFF");
+    return std::move(mesh_);
+  }
+
+ private:
+  /// The counts of vertices, faces and (not needed) edges, on the first line or the next.
+  void read_counts() {
+    if (fields_.at_end() && !next_line()) fail_at_end("the counts");
+    const std::optional<std::uint64_t> vertices = fields_.count();
+    const std::optional<std::uint64_t> faces = fields_.count();
+    if (!vertices || !faces) fail("the numbers of vertices and faces must stand here");
+    mesh_.header.vertices = *vertices;
+    mesh_.header.simplices = *faces;
+    const std::optional<std::uint64_t> size = source_.size();
+    if (!size) return;
+    // The end of the last line may be missing.
+    if (*vertices > (*size + 1) / kSmallestVertex || *faces > (*size + 1) / kSmallestFace) {
+      fail(
+          fmt::format("the file says {} vertices and {} faces, but ends at byte {}, so has fewer; "
+                      "get a complete copy",
+                      *vertices, *faces, *size));
+    }
+    mesh_.vertices.reserve(*vertices);
+    mesh_.corners.reserve(*faces * 3);
+  }
+
+  void read_vertex(std::uint64_t number) {
+    if (!next_line()) fail_at_end(fmt::format("vertex {}", number));
+    Point<3> point;
+    for (double& coordinate : point) {
+      const std::optional<double> value = fields_.number();
+      if (!value || !std::isfinite(*value)) {
+        fail(fmt::format("vertex {} needs three finite coordinates", number));
+      }
+      coordinate = *value;
+    }
+    if (!fields_.at_end()) fail(fmt::format("vertex {} has more than three coordinates", number));
+    mesh_.vertices.push_back(point);
+  }
+
+  /// What follows the corners is a colour.
+  void read_face(std::uint64_t number) {
+    if (!next_line()) fail_at_end(fmt::format("face {}", number));
+    const std::optional<std::uint64_t> length = fields_.count();
+    if (length != 3) {
+      fail(fmt::format("face {} is no triangle; only triangles are read", number));
+    }
+    for (int c = 0; c < 3; ++c) {
+      const std::optional<std::uint64_t> corner = fields_.count();
+      if (!corner) fail(fmt::format("face {} needs three vertex numbers", number));
+      if (*corner >= mesh_.header.vertices) {
+        fail(fmt::format("face {} has vertex {}, but there are only {}", number, *corner,
+                         mesh_.header.vertices));
+      }
+      mesh_.corners.push_back(*corner);
+    }
+  }
+
+  /// Goes to the next line that has more than a comment; takes notes from comments.
+  bool next_line() {
+    std::string_view line;
+    while (lines_.next(line)) {
+      if (line.starts_with("# ")) {
+        const std::string_view comment = line.substr(2);
+        if (!read_mesh_note(comment, mesh_.header)) {
+          fail("the lattice must be six numbers: three positive scales, three offsets");
+        }
+        by_spillway_ |= is_spillway_note(comment);
+      }
+      fields_ = Fields(line.substr(0, line.find('#')));
+      if (!fields_.at_end()) return true;
+      lines_.pass_over();
+    }
+    return false;
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("{}: line {}: {}", source_.name(), lines_.number(), what));
+  }
+
+  [[noreturn]] void fail_at_end(const std::string& what) const {
+    throw Error(fmt::format("{}: the file ends with line {}, before {}; get a complete copy",
+                            source_.name(), lines_.number(), what));
+  }
+
+  InputSource& source_;
+  LineReader lines_;
+  Fields fields_{""};
+  Mesh mesh_;
+  bool by_spillway_ = false;
+};
+
+}  // namespace
+
+Mesh read_off(InputSource& source) { return OffReader(source).read(); }
+
+}  // namespace spillway::detail

@@ -1,0 +1,52 @@
+#include "formats/meshes/off/off_writer.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "formats/bytes/block_output.h"
+#include "formats/meshes/common/checked_mesh_writer.h"
+#include "formats/meshes/common/mesh_notes.h"
+#include "formats/meshes/common/mesh_text.h"
+
+namespace spillway::detail {
+namespace {
+
+class OffWriter : public CheckedMeshWriter {
+ public:
+  OffWriter(std::unique_ptr<OutputFile> file, const MeshHeader& header)
+      : CheckedMeshWriter(header, file->name()), output_(std::move(file)) {
+    output_.append("OFF\n");
+    for (const std::string& note : mesh_notes(header)) output_.append("# " + note + '\n');
+    // The third number counts edges; readers ignore it, and 0 is customary.
+    output_.append(fmt::format("{} {} 0\n", header.vertices, header.simplices));
+  }
+
+ private:
+  void put_vertices(std::span<const Point<3>> vertices,
+                    std::span<const std::uint64_t> /*input_index*/) override {
+    for (const Point<3>& vertex : vertices) {
+      append_coordinates(output_, "", vertex);
+      append_line_end(output_);
+    }
+  }
+
+  void put_simplices(std::span<const std::uint64_t> corners) override {
+    for (; !corners.empty(); corners = corners.subspan(3)) {
+      append_simplex(output_, "3", corners.first(3), 0);
+    }
+  }
+
+  void complete() override { output_.commit(); }
+
+  BlockOutput output_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshWriter> open_off_writer(std::unique_ptr<OutputFile> file,
+                                            const MeshHeader& header) {
+  return std::make_unique<OffWriter>(std::move(file), header);
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "formats/bytes/input_source.h"
+#include "formats/meshes/common/mesh.h"
+
+namespace spillway::detail {
+
+/// Reads a PLY mesh, binary of either byte order or ASCII. Elements and properties that are not the
+/// mesh's are passed over, faces too where there are tetrahedra. Throws Error that names the item
+/// and its byte or line.
+Mesh read_ply(InputSource& source);
+
+}  // namespace spillway::detail

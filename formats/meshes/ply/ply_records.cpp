@@ -1,0 +1,70 @@
+#include "formats/meshes/ply/ply_records.h"
+
+#include <fmt/format.h>
+
+#include "formats/bytes/bytes.h"
+#include "formats/meshes/common/mesh_notes.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::uint64_t kMostInInt = std::uint64_t{1} << 31;
+constexpr std::uint64_t kMostInUint = std::uint64_t{1} << 32;
+
+/// Input indices are doubles, as PLY has no 64-bit integers; up to here they are exact.
+constexpr std::uint64_t kLargestIndex = std::uint64_t{1} << 53;
+
+std::string index_property(std::string_view property) {
+  return fmt::format(
+      "comment {0} is a whole number; PLY has no 64-bit integer type\n"
+      "property double {0}\n",
+      property);
+}
+
+template <typename T>
+std::byte* put(std::byte* at, const T& value) {
+  store(at, value);
+  return at + sizeof(T);
+}
+
+}  // namespace
+
+std::string ply_header_text(const MeshHeader& header, bool ascii, const std::string& name) {
+  if (header.vertices > kMostInUint) {
+    throw Error(fmt::format("cannot write {}: PLY numbers at most {} vertices; choose vtu or npy",
+                            name, kMostInUint));
+  }
+  std::string text = fmt::format("ply\nformat {} 1.0\n", ascii ? "ascii" : "binary_little_endian");
+  for (const std::string& note : mesh_notes(header)) text += "comment " + note + '\n';
+  text +=
+      fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty double z\n",
+                  header.vertices);
+  if (header.has_input_index) text += index_property("input_index");
+  if (header.global_ids) text += index_property("global_id");
+  return text + fmt::format("element {} {}\nproperty list uchar {} vertex_indices\nend_header\n",
+                            header.dimension == 2 ? "face" : "tetrahedron", header.simplices,
+                            header.vertices > kMostInInt ? "uint" : "int");
+}
+
+double ply_index(std::uint64_t index, const std::string& name) {
+  if (index > kLargestIndex) {
+    throw Error(fmt::format(
+        "cannot write {}: PLY cannot hold the input index {}; choose vtu or npy", name, index));
+  }
+  return static_cast<double>(index);
+}
+
+std::byte* put_ply_vertex(std::byte* at, const Point<3>& vertex, std::span<const double> indices) {
+  for (const double coordinate : vertex) at = put(at, coordinate);
+  for (const double index : indices) at = put(at, index);
+  return at;
+}
+
+std::byte* put_ply_simplex(std::byte* at, std::span<const std::uint64_t> corners) {
+  at = put(at, static_cast<std::uint8_t>(corners.size()));
+  for (const std::uint64_t corner : corners) at = put(at, static_cast<std::uint32_t>(corner));
+  return at;
+}
+
+}  // namespace spillway::detail

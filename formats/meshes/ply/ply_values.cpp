@@ -1,0 +1,88 @@
+#include "formats/meshes/ply/ply_values.h"
+
+#include <fmt/format.h>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+
+std::string PlyItem::text() const { return fmt::format("{} {}", element_, number_); }
+
+void PlyItem::fail(const std::string& place, const std::string& what) const {
+  throw Error(fmt::format("{}: {}: {}: {}; the file is corrupt or not what it says", file_, place,
+                          text(), what));
+}
+
+void PlyItem::fail_for_end(const std::string& place) const {
+  throw Error(fmt::format("{}: the file ends at {}, before the end of {}; get a complete copy",
+                          file_, place, text()));
+}
+
+void PlyItem::fail_for_excess(const std::string& place) const {
+  throw Error(
+      fmt::format("{}: the file goes on at {} after all that its header says; the header "
+                  "is corrupt or there is more than one mesh",
+                  file_, place));
+}
+
+void PlyBinaryValues::finish() {
+  const std::uint64_t end = input_.position();
+  if (input_.take(1) != nullptr) item_.fail_for_excess(fmt::format("byte {}", end));
+}
+
+void PlyBinaryValues::fail(const std::string& what) const {
+  item_.fail(fmt::format("before byte {}", input_.position()), what);
+}
+
+std::string PlyBinaryValues::end_place() const { return fmt::format("byte {}", input_.end()); }
+
+double PlyTextValues::number(NumberType type) {
+  const std::string_view word = fields_.word();
+  const std::optional<double> value = Fields(word).number();
+  if (!value) fail(word.empty() ? "a value is missing" : quoted(word) + " is no number");
+  // What was computed with was the float, not the decimals that stand for it.
+  return type == NumberType::kFloat32 ? static_cast<float>(*value) : *value;
+}
+
+std::uint64_t PlyTextValues::index(NumberType type, std::string_view what) {
+  const std::string_view word = fields_.word();
+  if (is_integer(type)) {
+    const std::optional<std::uint64_t> value = parse_count(word);
+    if (value) return *value;
+  } else {
+    const std::optional<double> number = Fields(word).number();
+    const std::optional<std::uint64_t> value = number ? to_index(*number) : std::nullopt;
+    if (value) return *value;
+  }
+  fail(word.empty()
+           ? fmt::format("{} is missing", what)
+           : fmt::format("{} is {}, but must be a whole number, not negative", what, quoted(word)));
+}
+
+void PlyTextValues::skip(NumberType type, std::uint64_t count) {
+  for (; count > 0; --count) number(type);
+}
+
+void PlyTextValues::end_item() {
+  if (!fields_.at_end()) fail("the line goes on after the last value");
+}
+
+void PlyTextValues::finish() {
+  if (next_line()) item_.fail_for_excess(place());
+}
+
+bool PlyTextValues::next_line() {
+  std::string_view line;
+  while (lines_.next(line)) {
+    fields_ = Fields(line);
+    if (!fields_.at_end()) return true;
+    lines_.pass_over();
+  }
+  return false;
+}
+
+std::string PlyTextValues::place() const {
+  return fmt::format("line {}", header_lines_ + lines_.number());
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,116 @@
+#pragma once
+// The values behind a PLY header, one after another, in either encoding. Both classes have the same
+// functions; what reads values is a template over them, so that no value costs a virtual call.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "formats/bytes/block_input.h"
+#include "formats/bytes/fields.h"
+#include "formats/bytes/line_reader.h"
+#include "formats/bytes/number_type.h"
+
+namespace spillway::detail {
+
+/// The item that is being read, for messages: "face 7".
+class PlyItem {
+ public:
+  explicit PlyItem(const InputSource& source) : file_(source.name()) {}
+
+  void set(std::string_view element, std::uint64_t number) {
+    element_ = element;
+    number_ = number;
+  }
+
+  [[nodiscard]] std::string text() const;
+
+  /// Throws Error; `place` is "byte 7" or "line 7".
+  [[noreturn]] void fail(const std::string& place, const std::string& what) const;
+  [[noreturn]] void fail_for_end(const std::string& place) const;
+  [[noreturn]] void fail_for_excess(const std::string& place) const;
+
+ private:
+  std::string file_;
+  std::string_view element_;
+  std::uint64_t number_ = 0;
+};
+
+/// Values in binary, of the machine's byte order or the other one.
+class PlyBinaryValues {
+ public:
+  PlyBinaryValues(InputSource& source, bool swap) : item_(source), input_(source), swap_(swap) {}
+
+  /// Begins item `number` of the element, whose name must outlive it.
+  void begin_item(std::string_view element, std::uint64_t number) { item_.set(element, number); }
+
+  /// The next value.
+  double number(NumberType type) { return load_number(type, take(type), swap_); }
+
+  /// The next value as an index; fails if it is none. `what` is its name for the message.
+  std::uint64_t index(NumberType type, std::string_view what) {
+    const std::optional<std::uint64_t> value = load_index(type, take(type), swap_);
+    if (!value) fail(std::string(what) + " is negative or not whole");
+    return *value;
+  }
+
+  void skip(NumberType type, std::uint64_t count) {
+    if (!input_.skip(count * size_of(type))) item_.fail_for_end(end_place());
+  }
+
+  void end_item() {}
+
+  /// Makes sure that the file ends here.
+  void finish();
+
+  /// Throws Error about the current item.
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  const std::byte* take(NumberType type) {
+    const std::byte* const bytes = input_.take(size_of(type));
+    if (bytes == nullptr) item_.fail_for_end(end_place());
+    return bytes;
+  }
+
+  [[nodiscard]] std::string end_place() const;
+
+  PlyItem item_;
+  BlockInput input_;
+  bool swap_;
+};
+
+/// Values in text, one item a line.
+class PlyTextValues {
+ public:
+  PlyTextValues(InputSource& source, std::uint64_t header_lines)
+      : item_(source), lines_(source), header_lines_(header_lines) {}
+
+  void begin_item(std::string_view element, std::uint64_t number) {
+    item_.set(element, number);
+    if (!next_line()) item_.fail_for_end(place());
+  }
+
+  double number(NumberType type);
+  std::uint64_t index(NumberType type, std::string_view what);
+  void skip(NumberType type, std::uint64_t count);
+
+  /// Makes sure that the line ends here.
+  void end_item();
+
+  void finish();
+  [[noreturn]] void fail(const std::string& what) const { item_.fail(place(), what); }
+
+ private:
+  /// Goes to the next line that is not blank; false at the end.
+  bool next_line();
+
+  [[nodiscard]] std::string place() const;
+
+  PlyItem item_;
+  LineReader lines_;
+  Fields fields_{""};
+  std::uint64_t header_lines_;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,162 @@
+#include "formats/meshes/sma/sma_writer.h"
+
+#include <fmt/compile.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "formats/bytes/bytes.h"
+#include "formats/meshes/common/mesh.h"
+#include "formats/meshes/common/mesh_block.h"
+#include "formats/meshes/common/mesh_notes.h"
+#include "formats/meshes/sma/sma_reader.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+// Isenburg's reader takes lines of at most 511 bytes.
+constexpr std::size_t kLongestCrsPart = 400;
+
+std::string header_text(const MeshStreamHeader& header) {
+  std::string text = fmt::format("{}\n", kSmaNote);
+  MeshHeader notes;
+  notes.lattice = header.lattice;
+  notes.crs = header.crs;
+  for (const std::string& note : mesh_notes(notes, kLongestCrsPart)) {
+    fmt::format_to(std::back_inserter(text), "# {}\n", note);
+  }
+  if (header.extent && !header.extent->empty()) {
+    fmt::format_to(std::back_inserter(text), "# bb_min {}\n# bb_max {}\n",
+                   fmt::join(header.extent->lo, " "), fmt::join(header.extent->hi, " "));
+  }
+  return text;
+}
+
+/// A prepared block is the lines of its vertices.
+class SmaWriter : public MeshStreamWriter {
+ public:
+  SmaWriter(std::unique_ptr<OutputFile> file, MeshStreamHeader header)
+      : file_(std::move(file)), header_(std::move(header)) {
+    put(header_text(header_));
+  }
+
+  void prepare(MeshBlock& block) const override {
+    if (!block.prepared.empty() || block.vertices.empty()) return;
+    move_to_world(header_, block);
+    fmt::memory_buffer text;
+    for (const Point<3>& vertex : block.vertices) {
+      for (const double coordinate : vertex) {
+        if (!std::isfinite(coordinate)) {
+          fail(fmt::format("a vertex has a coordinate {}; repair the points", coordinate));
+        }
+      }
+      fmt::format_to(std::back_inserter(text), FMT_COMPILE("v {} {} {}\n"), vertex[0], vertex[1],
+                     vertex[2]);
+    }
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(text.data(), text.size()));
+    block.prepared.assign(bytes.begin(), bytes.end());
+  }
+
+  void write(MeshBlock&& block) override {
+    prepare(block);
+    put(as_text(block.prepared));
+    append_stream_numbers_checked(block);
+    vertices_ += block.vertices.size();
+    put_triangles(block);
+    triangles_ += corners_.size() / 3;
+    block.clear();
+  }
+
+  void finish(const MeshTotals& totals) override {
+    if (totals.vertices != vertices_ || totals.simplices != triangles_) {
+      fail(fmt::format("{} vertices and {} triangles were promised, but {} and {} came",
+                       totals.vertices, totals.simplices, vertices_, triangles_));
+    }
+    put(fmt::format("# nverts {}\n# nfaces {}\n", vertices_, triangles_));
+    file_->commit();
+  }
+
+  [[nodiscard]] std::uint64_t bytes_written() const override { return bytes_; }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("cannot write {}: {}", file_->name(), what));
+  }
+
+  /// Sets corners_.
+  void append_stream_numbers_checked(const MeshBlock& block) {
+    const std::size_t numbers = block.vertices.size() + block.imported.size();
+    const auto check = [&](std::uint64_t number, std::uint64_t end, const char* what) {
+      if (number < end) return;
+      fail(fmt::format("a block has {} {}, but there are only {}", what, number, end));
+    };
+    for (const std::uint32_t number : block.corners) check(number, numbers, "a short number");
+    for (const std::uint32_t number : block.finalized) check(number, numbers, "a short number");
+    for (const std::uint64_t number : block.imported)
+      check(number, vertices_, "an imported vertex");
+    if (block.corners.size() % 3 != 0) fail("a block's corners make no whole number of triangles");
+    corners_.clear();
+    append_stream_numbers(block, vertices_, corners_);
+  }
+
+  /// A finalized vertex has a negative number where it comes last, or a line of its own if the
+  /// block's triangles do not use it.
+  void put_triangles(const MeshBlock& block) {
+    std::vector<bool> ends(block.vertices.size() + block.imported.size());
+    for (const std::uint32_t number : block.finalized) ends[number] = true;
+    relative_.assign(block.corners.size(), false);
+    for (std::size_t i = block.corners.size(); i-- > 0;) {
+      const std::uint32_t number = block.corners[i];
+      relative_[i] = ends[number];
+      ends[number] = false;
+    }
+    fmt::memory_buffer text;
+    for (std::size_t i = 0; i < corners_.size(); i += 3) {
+      fmt::format_to(std::back_inserter(text), FMT_COMPILE("f {} {} {}\n"), written(i),
+                     written(i + 1), written(i + 2));
+    }
+    const std::uint64_t first = vertices_ - block.vertices.size();
+    for (const std::uint32_t number : block.finalized) {
+      if (!ends[number]) continue;
+      ends[number] = false;
+      const std::uint64_t vertex = number < block.vertices.size()
+                                       ? first + number
+                                       : block.imported[number - block.vertices.size()];
+      fmt::format_to(std::back_inserter(text), FMT_COMPILE("x {}\n"), vertex + 1);
+    }
+    put({text.data(), text.size()});
+  }
+
+  /// The i-th corner as it is written: from 1, or back from the newest vertex, which is -1.
+  [[nodiscard]] std::int64_t written(std::size_t i) const {
+    const auto number = static_cast<std::int64_t>(corners_[i]);
+    return relative_[i] ? number - static_cast<std::int64_t>(vertices_) : number + 1;
+  }
+
+  void put(std::string_view text) {
+    if (!text.empty()) file_->write(as_bytes_of(text));
+    bytes_ += text.size();
+  }
+
+  std::unique_ptr<OutputFile> file_;
+  MeshStreamHeader header_;
+  std::vector<std::uint64_t> corners_;  // of the block in work, as stream numbers
+  std::vector<bool> relative_;          // for each of them, whether it is the vertex's last use
+  std::uint64_t vertices_ = 0;          // written so far
+  std::uint64_t triangles_ = 0;         // written so far
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshStreamWriter> open_sma_writer(std::unique_ptr<OutputFile> file,
+                                                  const MeshStreamHeader& header) {
+  return std::make_unique<SmaWriter>(std::move(file), header);
+}
+
+}  // namespace spillway::detail

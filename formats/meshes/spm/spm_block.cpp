@@ -1,0 +1,139 @@
+#include "formats/meshes/spm/spm_block.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "formats/blocks/columns.h"
+#include "formats/bytes/bytes.h"
+#include "formats/meshes/spm/spm_corners.h"
+#include "formats/points/spp/spp_format.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::size_t kCountsSize = 3 * sizeof(std::uint32_t);
+
+/// Whether this axis holds integers; the z that is carried along in the plane may lie between.
+bool is_integer_axis(const MeshStreamHeader& header, int axis) {
+  return header.lattice && axis < header.dimension;
+}
+
+const char* demand(bool integer) { return integer ? "an integer up to 2^53" : "finite"; }
+
+SpmCounts counts_of(const MeshStreamHeader& header, const MeshBlock& block) {
+  const std::size_t corners = header.dimension + 1;
+  constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
+  if (block.vertices.size() > kMost || block.corners.size() / corners > kMost) {
+    throw Error("a block is too large to write");
+  }
+  if (block.corners.size() % corners != 0) {
+    throw Error(fmt::format("a block has {} corners, which make no whole number of simplices",
+                            block.corners.size()));
+  }
+  if (block.input_index.size() != (header.has_input_index ? block.vertices.size() : 0)) {
+    throw Error(fmt::format("a block has {} vertices with {} input indices", block.vertices.size(),
+                            block.input_index.size()));
+  }
+  std::uint32_t largest = 0;
+  for (const std::uint32_t number : block.corners) largest = std::max(largest, number);
+  for (const std::uint32_t number : block.finalized) largest = std::max(largest, number);
+  if (largest > block.vertices.size() + block.corners.size() + block.imported.size() +
+                    block.finalized.size()) {
+    throw Error(fmt::format("a block has a short number {} that stands for no vertex", largest));
+  }
+  SpmCounts counts;
+  counts.vertices = static_cast<std::uint32_t>(block.vertices.size());
+  counts.simplices = static_cast<std::uint32_t>(block.corners.size() / corners);
+  const bool any = !block.corners.empty() || !block.finalized.empty();
+  counts.numbers = std::max(counts.vertices, any ? largest + 1 : 0);
+  return counts;
+}
+
+void append_coordinates(std::vector<std::byte>& out, const MeshStreamHeader& header,
+                        std::span<const Point<3>> vertices) {
+  std::vector<double> column(vertices.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < column.size(); ++i) column[i] = vertices[i][axis];
+    const bool integer = is_integer_axis(header, axis);
+    const std::size_t invalid = first_invalid_coordinate(column, integer);
+    if (invalid < column.size()) {
+      throw Error(fmt::format("coordinate {} of vertex {} of a block is not {}; repair the points",
+                              column[invalid], invalid, demand(integer)));
+    }
+    append_column(out, column);
+  }
+}
+
+void read_coordinates(ColumnReader& columns, const MeshStreamHeader& header, std::size_t count,
+                      const std::string& where, std::vector<Point<3>>& vertices) {
+  std::vector<double> column;
+  vertices.resize(count);
+  for (int axis = 0; axis < 3; ++axis) {
+    columns.read(count, column);
+    const bool integer = is_integer_axis(header, axis);
+    const std::size_t invalid = first_invalid_coordinate(column, integer);
+    if (invalid < count) {
+      throw Error(
+          fmt::format("{}: coordinate {} of vertex {} of the block is not {}; the file is corrupt, "
+                      "make it again",
+                      where, column[invalid], invalid, demand(integer)));
+    }
+    for (std::size_t i = 0; i < count; ++i) vertices[i][axis] = column[i];
+  }
+}
+
+}  // namespace
+
+SpmCounts append_spm_content(std::vector<std::byte>& out, const MeshStreamHeader& header,
+                             const MeshBlock& block) {
+  const SpmCounts counts = counts_of(header, block);
+  const std::size_t begin = out.size();
+  const std::size_t bits = begin + kCountsSize;
+  out.resize(bits + (std::size_t{counts.numbers} + 7) / 8);
+  store(out.data() + begin, counts.vertices);
+  store(out.data() + begin + 4, counts.numbers);
+  store(out.data() + begin + 8, counts.simplices);
+  for (const std::uint32_t number : block.finalized) {
+    out[bits + number / 8] |= std::byte{1} << (number % 8);
+  }
+  append_corners(out, header.dimension, counts.numbers, block.corners);
+  append_coordinates(out, header, block.vertices);
+  append_column(out, block.input_index);
+  return counts;
+}
+
+SpmCounts read_spm_content(std::span<const std::byte> content, const MeshStreamHeader& header,
+                           const std::string& where, MeshBlock& block) {
+  const auto fail = [&where](const char* what) {
+    throw Error(fmt::format("{}: {}; the file is corrupt, make it again", where, what));
+  };
+  if (content.size() < kCountsSize) fail("a block ends early");
+  const SpmCounts counts{load<std::uint32_t>(content.data()),
+                         load<std::uint32_t>(content.data() + 4),
+                         load<std::uint32_t>(content.data() + 8)};
+  content = content.subspan(kCountsSize);
+  const std::size_t bits_size = (std::size_t{counts.numbers} + 7) / 8;
+  if (counts.numbers < counts.vertices || content.size() < bits_size) {
+    fail("the numbers in a block do not fit");
+  }
+  const std::span<const std::byte> bits = content.first(bits_size);
+  const std::span<const std::byte> columns_bytes =
+      read_corners(content.subspan(bits_size), header.dimension, counts.numbers, counts.simplices,
+                   block.corners, where);
+  block.finalized.clear();
+  for (std::uint32_t number = 0; number < counts.numbers; ++number) {
+    if (((bits[number / 8] >> (number % 8)) & std::byte{1}) != std::byte{0}) {
+      block.finalized.push_back(number);
+    }
+  }
+  ColumnReader columns(columns_bytes, where);
+  read_coordinates(columns, header, counts.vertices, where, block.vertices);
+  columns.read(header.has_input_index ? counts.vertices : 0, block.input_index);
+  columns.expect_end();
+  return counts;
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,149 @@
+#include "formats/meshes/spm/spm_reader.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "formats/blocks/block_stream.h"
+#include "formats/blocks/columns.h"
+#include "formats/meshes/common/live_vertices.h"
+#include "formats/meshes/common/mesh_notes.h"
+#include "formats/meshes/spm/spm_block.h"
+#include "formats/meshes/spm/spm_format.h"
+#include "src/geometry/lattice_check.h"
+
+namespace spillway::detail {
+namespace {
+
+class SpmReader : public MeshStreamReader {
+ public:
+  explicit SpmReader(std::unique_ptr<InputSource> source)
+      : stream_(std::move(source), {"spm", kSpmMagic, kSpmVersion, "mesh"}, [this] {
+          return fmt::format("{} vertices and {} simplices", vertices_, simplices_);
+        }) {
+    if (stream_.next() != kSpmHeader) stream_.fail("the first block is no header");
+    parse_header();
+  }
+
+  [[nodiscard]] const MeshStreamHeader& header() const override { return header_; }
+
+  bool read(MeshBlock& block) override {
+    block.clear();
+    if (ended_) return false;
+    live_.begin_block();
+    std::uint32_t kind = stream_.next();
+    if (kind == kSpmTrailer) {
+      parse_trailer();
+      ended_ = true;
+      return false;
+    }
+    if (kind == kSpmImported) {
+      parse_imported(block.imported);
+      kind = stream_.next();
+    }
+    if (kind != kSpmMesh) stream_.fail("a block is of another kind than expected");
+    parse_mesh(block);
+    return true;
+  }
+
+  [[nodiscard]] const MeshTotals& totals() const override { return totals_; }
+  [[nodiscard]] bool has_hash() const override { return true; }
+  [[nodiscard]] std::optional<double> fraction_read() const override {
+    return stream_.fraction_read();
+  }
+
+ private:
+  void parse_header() {
+    stream_.take_version();
+    const auto dimension = stream_.take<std::uint32_t>();
+    if (dimension != 2 && dimension != 3) stream_.fail("the dimension is neither 2 nor 3");
+    header_.dimension = static_cast<int>(dimension);
+    const auto flags = stream_.take<std::uint32_t>();
+    constexpr std::uint32_t kKnown =
+        kSpmHasLattice | kSpmHasPoints | kSpmHasExtent | kSpmHasInputIndex;
+    if ((flags & ~kKnown) != 0) stream_.fail("unknown flags are set");
+    header_.has_input_index = (flags & kSpmHasInputIndex) != 0;
+    if ((flags & kSpmHasLattice) != 0) {
+      header_.lattice = lattice_of(stream_.take<std::array<double, 6>>());
+      if (!header_.lattice)
+        stream_.fail("the lattice is not three positive scales and three offsets");
+    }
+    if ((flags & kSpmHasPoints) != 0) header_.points = stream_.take<std::uint64_t>();
+    if ((flags & kSpmHasExtent) != 0) header_.extent = stream_.take_extent();
+    header_.crs = as_text(stream_.left());
+  }
+
+  void parse_imported(std::vector<std::uint64_t>& imported) {
+    const auto count = stream_.take<std::uint32_t>();
+    if (count == 0 || count > live_.size()) {
+      stream_.fail("a block imports more vertices than there are, or none");
+    }
+    ColumnReader columns(stream_.left(), stream_.where());
+    columns.read(count, imported);
+    columns.expect_end();
+    for (const std::uint64_t number : imported) {
+      if (!live_.import(number)) {
+        stream_.fail(
+            fmt::format("a block imports vertex {}, which has not come, is finalized, or is "
+                        "imported twice",
+                        number));
+      }
+    }
+  }
+
+  void parse_mesh(MeshBlock& block) {
+    const SpmCounts counts = read_spm_content(stream_.content(), header_, stream_.where(), block);
+    if (header_.lattice) {
+      check_lattice(stream_.where(), *header_.lattice, box_around(block.vertices),
+                    header_.dimension);
+    }
+    if (counts.numbers > counts.vertices + block.imported.size()) {
+      stream_.fail("a block has short numbers that stand for no vertex");
+    }
+    // Numbers in `finalized` are sorted: those of new vertices come first.
+    auto finalized = block.finalized.begin();
+    for (std::uint32_t i = 0; i < counts.vertices; ++i) {
+      if (finalized != block.finalized.end() && *finalized == i) {
+        ++finalized;
+      } else {
+        live_.announce(vertices_ + i);
+      }
+    }
+    for (; finalized != block.finalized.end(); ++finalized) {
+      live_.finalize(block.imported[*finalized - counts.vertices]);
+    }
+    vertices_ += counts.vertices;
+    simplices_ += counts.simplices;
+  }
+
+  void parse_trailer() {
+    for (std::uint64_t* const number :
+         {&totals_.vertices, &totals_.simplices, &totals_.hull_facets, &totals_.points,
+          &totals_.duplicates, &totals_.canonical_hash}) {
+      *number = stream_.take<std::uint64_t>();
+    }
+    if (!stream_.left().empty()) stream_.fail("the last block is too long");
+    if (totals_.vertices != vertices_ || totals_.simplices != simplices_) {
+      stream_.fail(fmt::format("{} vertices and {} simplices came, but the end tells of {} and {}",
+                               vertices_, simplices_, totals_.vertices, totals_.simplices));
+    }
+    stream_.expect_end();
+  }
+
+  BlockStream stream_;
+  MeshStreamHeader header_;
+  LiveVertices live_;
+  std::uint64_t vertices_ = 0;   // given out so far
+  std::uint64_t simplices_ = 0;  // given out so far
+  MeshTotals totals_;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshStreamReader> open_spm_reader(std::unique_ptr<InputSource> source) {
+  return std::make_unique<SpmReader>(std::move(source));
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <memory>
+
+#include "formats/bytes/input_source.h"
+#include "formats/meshes/common/mesh_stream.h"
+
+namespace spillway::detail {
+
+/// Reads Spillway's own mesh stream.
+std::unique_ptr<MeshStreamReader> open_spm_reader(std::unique_ptr<InputSource> source);
+
+}  // namespace spillway::detail

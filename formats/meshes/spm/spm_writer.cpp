@@ -1,0 +1,111 @@
+#include "formats/meshes/spm/spm_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "formats/blocks/block.h"
+#include "formats/bytes/bytes.h"
+#include "formats/meshes/spm/spm_block.h"
+#include "formats/meshes/spm/spm_encoding.h"
+#include "formats/meshes/spm/spm_format.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+template <typename T>
+void release(std::vector<T>& values) {
+  std::vector<T>().swap(values);
+}
+
+/// A prepared block is its counts, as they are in memory, and the bytes for the file.
+class SpmWriter : public MeshStreamWriter {
+ public:
+  SpmWriter(std::unique_ptr<OutputFile> file, MeshStreamHeader header)
+      : file_(std::move(file)), header_(std::move(header)) {
+    put(spm_head(header_));
+  }
+
+  void prepare(MeshBlock& block) const override {
+    if (!block.prepared.empty()) return;
+    std::vector<std::byte> content;
+    content.reserve(24 * block.vertices.size() + 4 * block.corners.size());
+    SpmCounts counts;
+    try {
+      counts = append_spm_content(content, header_, block);
+    } catch (const Error& error) {
+      fail(error.what());
+    }
+    block.prepared.resize(sizeof counts);
+    store(block.prepared.data(), counts);
+    append_block(block.prepared, kSpmMesh, content);
+    block.prepared.shrink_to_fit();
+    release(block.vertices);
+    release(block.input_index);
+    release(block.corners);
+    release(block.finalized);
+  }
+
+  void write(MeshBlock&& block) override {
+    prepare(block);
+    const auto counts = load<SpmCounts>(block.prepared.data());
+    if (counts.numbers > counts.vertices + block.imported.size()) {
+      fail(fmt::format("a block has a short number {}, but {} vertices and {} imported ones",
+                       counts.numbers - 1, counts.vertices, block.imported.size()));
+    }
+    if (!block.imported.empty()) put_imported(block.imported);
+    put(std::span(block.prepared).subspan(sizeof counts));
+    vertices_ += counts.vertices;
+    simplices_ += counts.simplices;
+    block.clear();
+  }
+
+  void finish(const MeshTotals& totals) override {
+    if (totals.vertices != vertices_ || totals.simplices != simplices_) {
+      fail(fmt::format("{} vertices and {} simplices were promised, but {} and {} came",
+                       totals.vertices, totals.simplices, vertices_, simplices_));
+    }
+    put(spm_trailer(totals));
+    file_->commit();
+  }
+
+  [[nodiscard]] std::uint64_t bytes_written() const override { return bytes_; }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("cannot write {}: {}", file_->name(), what));
+  }
+
+  void put_imported(std::span<const std::uint64_t> imported) {
+    const std::uint64_t largest = *std::max_element(imported.begin(), imported.end());
+    if (largest >= vertices_) {
+      fail(
+          fmt::format("a block imports vertex {}, but only {} came before it", largest, vertices_));
+    }
+    std::vector<std::byte> bytes;
+    append_spm_imported(bytes, imported);
+    put(bytes);
+  }
+
+  void put(std::span<const std::byte> bytes) {
+    file_->write(bytes);
+    bytes_ += bytes.size();
+  }
+
+  std::unique_ptr<OutputFile> file_;
+  MeshStreamHeader header_;
+  std::uint64_t vertices_ = 0;   // written so far
+  std::uint64_t simplices_ = 0;  // written so far
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshStreamWriter> open_spm_writer(std::unique_ptr<OutputFile> file,
+                                                  const MeshStreamHeader& header) {
+  return std::make_unique<SpmWriter>(std::move(file), header);
+}
+
+}  // namespace spillway::detail

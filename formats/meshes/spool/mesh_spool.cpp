@@ -1,0 +1,138 @@
+#include "formats/meshes/spool/mesh_spool.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "formats/meshes/common/mesh_block.h"
+#include "formats/meshes/spm/spm_reader.h"
+#include "formats/meshes/spm/spm_writer.h"
+
+namespace spillway::detail {
+
+/// Bytes that are appended, then read; those that came last are in memory.
+class ByteSpool {
+ public:
+  ByteSpool(ScratchFolder& scratch, std::size_t memory) : scratch_(scratch), memory_(memory) {}
+
+  void append(std::span<const std::byte> bytes) {
+    if (bytes.size() > memory_ - std::min(memory_, buffer_.size())) {
+      if (!file_) file_ = scratch_.create("mesh-spool");
+      file_->append(buffer_);
+      buffer_.clear();
+    }
+    if (bytes.size() > memory_) {
+      file_->append(bytes);
+    } else {
+      buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+    }
+  }
+
+  [[nodiscard]] std::uint64_t size() const { return on_disk() + buffer_.size(); }
+
+  /// Fills `bytes` from `offset` on; as many as there are.
+  std::size_t read(std::uint64_t offset, std::span<std::byte> bytes) const {
+    bytes = bytes.first(std::min<std::uint64_t>(bytes.size(), size() - std::min(offset, size())));
+    const std::uint64_t from_disk =
+        std::min<std::uint64_t>(bytes.size(), on_disk() - std::min(offset, on_disk()));
+    if (from_disk > 0) file_->read(offset, bytes.first(from_disk));
+    const std::span<std::byte> rest = bytes.subspan(from_disk);
+    if (!rest.empty()) {
+      std::memcpy(rest.data(), buffer_.data() + (offset + from_disk - on_disk()), rest.size());
+    }
+    return bytes.size();
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t on_disk() const { return file_ ? file_->size() : 0; }
+
+  ScratchFolder& scratch_;
+  std::size_t memory_;
+  std::unique_ptr<ScratchFile> file_;
+  std::vector<std::byte> buffer_;
+};
+
+namespace {
+
+/// A spool as a file to write to; messages name the file that the mesh is for.
+class SpoolOutput : public OutputFile {
+ public:
+  SpoolOutput(ByteSpool& store, std::string name) : store_(store), name_(std::move(name)) {}
+
+  void write(std::span<const std::byte> bytes) override { store_.append(bytes); }
+  bool rewrite(std::uint64_t /*offset*/, std::span<const std::byte> /*bytes*/) override {
+    return false;
+  }
+  void commit() override {}
+  [[nodiscard]] const std::string& name() const override { return name_; }
+
+ private:
+  ByteSpool& store_;
+  std::string name_;
+};
+
+/// A spool as a file to read from.
+class SpoolInput : public InputFile {
+ public:
+  explicit SpoolInput(const ByteSpool& store) : store_(store) {}
+
+  std::size_t read(std::span<std::byte> buffer) override {
+    const std::size_t got = store_.read(position_, buffer);
+    position_ += got;
+    return got;
+  }
+  [[nodiscard]] std::optional<std::uint64_t> size() const override { return store_.size(); }
+  [[nodiscard]] const std::string& name() const override { return name_; }
+
+ private:
+  const ByteSpool& store_;
+  std::uint64_t position_ = 0;
+  std::string name_ = "the temporary copy of the mesh";
+};
+
+}  // namespace
+
+MeshSpool::MeshSpool(const MeshStreamHeader& header, const std::string& name,
+                     ScratchFolder& scratch, std::size_t memory)
+    : header_(header),
+      store_(std::make_unique<ByteSpool>(scratch, memory)),
+      encoder_(open_spm_writer(std::make_unique<SpoolOutput>(*store_, name), header)) {}
+
+MeshSpool::~MeshSpool() = default;
+
+void MeshSpool::prepare(MeshBlock& block) const { encoder_->prepare(block); }
+
+void MeshSpool::write(MeshBlock&& block) { encoder_->write(std::move(block)); }
+
+void MeshSpool::finish(const MeshTotals& totals) { encoder_->finish(totals); }
+
+std::uint64_t MeshSpool::bytes_written() const { return store_->size(); }
+
+std::unique_ptr<MeshStreamReader> MeshSpool::open() const {
+  return open_spm_reader(std::make_unique<InputSource>(std::make_unique<SpoolInput>(*store_)));
+}
+
+void MeshSpool::copy_to(MeshWriter& writer) const {
+  MeshBlock block;
+  const std::unique_ptr<MeshStreamReader> for_vertices = open();
+  while (for_vertices->read(block)) {
+    move_to_world(header_, block);
+    writer.write_vertices(block.vertices, block.input_index);
+  }
+  const std::unique_ptr<MeshStreamReader> for_simplices = open();
+  std::vector<std::uint64_t> corners;
+  std::uint64_t first = 0;
+  while (for_simplices->read(block)) {
+    corners.clear();
+    append_stream_numbers(block, first, corners);
+    writer.write_simplices(corners);
+    first += block.vertices.size();
+  }
+}
+
+std::size_t MeshSpool::read(std::uint64_t offset, std::span<std::byte> bytes) const {
+  return store_->read(offset, bytes);
+}
+
+}  // namespace spillway::detail

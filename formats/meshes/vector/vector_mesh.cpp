@@ -1,0 +1,76 @@
+#include "formats/meshes/vector/vector_mesh.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "formats/gdal/gdal.h"
+#include "formats/meshes/common/mesh_notes.h"
+#include "formats/meshes/common/triangle_stream_writer.h"
+#include "formats/meshes/common/vertex_joiner.h"
+#include "formats/vectors/vector_file.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr const char* kNote = "SPILLWAY_LATTICE";
+
+VectorLayerOptions layer_options(const std::string& path, MeshFormat format,
+                                 const MeshStreamHeader& header) {
+  VectorLayerOptions options;
+  options.path = path;
+  options.driver = format == MeshFormat::kGpkg ? "GPKG" : "ESRI Shapefile";
+  options.crs = header.crs;
+  MeshHeader notes;
+  notes.lattice = header.lattice;
+  if (header.lattice) options.metadata[kNote] = mesh_notes(notes).back();
+  return options;
+}
+
+class VectorMeshWriter : public TriangleStreamWriter {
+ public:
+  VectorMeshWriter(const std::string& path, MeshFormat format, const MeshStreamHeader& header)
+      : TriangleStreamWriter(header, path), file_(layer_options(path, format, header)) {}
+
+  [[nodiscard]] std::uint64_t bytes_written() const override { return file_.bytes(); }
+
+ private:
+  void put_triangle(const std::array<Point<3>, 3>& corners) override {
+    file_.layer().add_triangle(corners);
+  }
+  void complete() override { file_.finish(); }
+
+  VectorFile file_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshStreamWriter> open_vector_mesh_writer(const std::string& path,
+                                                          MeshFormat format,
+                                                          const MeshStreamHeader& header) {
+  return std::make_unique<VectorMeshWriter>(path, format, header);
+}
+
+Mesh read_vector_mesh(const std::string& path) {
+  const std::unique_ptr<TriangleLayer> layer = gdal().open_layer(path);
+  Mesh mesh;
+  mesh.header.crs = layer->crs();
+  if (!read_mesh_note(layer->metadata(kNote), mesh.header)) {
+    throw Error(
+        fmt::format("cannot read {}: the layer's metadata {} holds no lattice: three "
+                    "positive scales, three offsets",
+                    path, kNote));
+  }
+  VertexJoiner joiner(mesh);
+  std::array<Point<3>, 3> corners;
+  while (layer->next(corners)) {
+    for (const Point<3>& corner : corners) joiner.add(corner);
+  }
+  joiner.finish();
+  return mesh;
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,35 @@
+#include "formats/points/common/point_reader.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+
+void PointReader::decode(RawPoints& raw, PointBlock& block) const { std::swap(raw.decoded, block); }
+
+void PointReader::begin_piece(std::uint64_t piece) {
+  const std::uint64_t count = pieces().value_or(0);
+  if (piece >= count) {
+    throw Error(fmt::format("{}: there is no piece {} of {}; read it from front to back",
+                            header().name, piece, count));
+  }
+  go_to_piece(piece);
+}
+
+bool PointReader::read(PointBlock& block) {
+  RawPoints raw;
+  std::uint64_t withheld = 0;
+  block.clear();
+  while (block.size() == 0 && fetch(raw)) {
+    decode(raw, block);
+    raw.clear();
+    withheld += std::exchange(block.withheld, 0);
+  }
+  block.withheld = withheld;
+  return block.size() > 0;
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,142 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/disk/file_system.h"
+#include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
+#include "src/geometry/point.h"
+
+namespace spillway::detail {
+
+/// What LAS and LAZ say of a point besides its coordinates, and filters look at.
+struct PointAttributes {
+  std::uint8_t classification = 0;
+  std::uint8_t return_number = 0;  ///< counted from 1; 0: not known
+  std::uint8_t return_count = 0;   ///< of its pulse; 0: not known
+  std::uint8_t flags = 0;          ///< the k... flags below
+
+  static constexpr std::uint8_t kSynthetic = 1;
+  static constexpr std::uint8_t kKeyPoint = 2;
+  static constexpr std::uint8_t kWithheld = 4;
+  static constexpr std::uint8_t kOverlap = 8;
+
+  bool operator==(const PointAttributes&) const = default;
+};
+
+/// Points in input order. z is 0 where the input has none.
+struct PointBlock {
+  /// Lattice integers if the source has a lattice, else output coordinates.
+  std::vector<Point<3>> points;
+  /// Each point's number in its source, counted from 0 over all records, dropped ones included; but
+  /// see PointReader::begin_piece().
+  std::vector<std::uint64_t> index;
+  /// One a point if they were asked for and the source has them, else none.
+  std::vector<PointAttributes> attributes;
+  /// Records left out of this block because they are flagged as withheld.
+  std::uint64_t withheld = 0;
+
+  [[nodiscard]] std::size_t size() const { return points.size(); }
+  void clear() {
+    points.clear();
+    index.clear();
+    attributes.clear();
+    withheld = 0;
+  }
+};
+
+/// A batch of a source as fetch() leaves it: bytes that are still to be decoded, or points.
+struct RawPoints {
+  PointBlock decoded;            ///< by readers whose input can only be decoded in order
+  std::vector<std::byte> bytes;  ///< by the others, and what decode() needs to know of them:
+  std::uint64_t offset = 0;      ///< of `bytes` in the source
+  std::uint64_t first = 0;       ///< number of the first record
+  std::uint64_t count = 0;       ///< of records in `bytes`
+
+  [[nodiscard]] std::uint64_t records() const { return count + decoded.size() + decoded.withheld; }
+  /// As new, but for the memory it has.
+  void clear() {
+    decoded.clear();
+    bytes.clear();
+    offset = first = count = 0;
+  }
+};
+
+/// What a source says about its points before any is read.
+struct PointHeader {
+  std::string name;       ///< as the user gave it, for messages
+  std::string format;     ///< "las", "laz", "copc", "text", "npy" or "spp"
+  std::string version;    ///< the format's own version, e.g. "1.2"; empty if it has none
+  int point_format = -1;  ///< LAS point data record format, -1 for others
+  int coordinates = 3;    ///< 2 if the points have no z
+  std::optional<std::uint64_t> count;  ///< records in the source, where known beforehand
+  std::optional<Lattice> lattice;      ///< set if the points come as integers
+  std::optional<Box<3>> extent;        ///< in output coordinates, where the header gives it
+  std::string crs;                     ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
+  std::string crs_note;                ///< why there is none, though the source tells of one; or
+                                       ///< what is not read of it; empty: neither
+  std::string software;                ///< generating software, LAS only
+  std::size_t extra_bytes = 0;         ///< of each record, behind what the LAS point format has
+  std::vector<std::string> notices;    ///< what was taken where the source leaves some doubt
+};
+
+struct PointReaderOptions {
+  std::string format;          ///< a name of point_format.h; empty: by extension, then first bytes
+  bool keep_withheld = false;  ///< keep points flagged as withheld
+  bool attributes = false;     ///< fill PointBlock::attributes where the source has them
+  /// Only points in this box (output coordinates, closed) are wanted: a reader that knows where its
+  /// points lie leaves out parts that have none there, but may give others too.
+  std::optional<Box<3>> bounds{};
+  /// Of COPC, levels of the octree finer than this spacing are left out; 0: all are read.
+  double resolution = 0;
+};
+
+/// A stream of points from one source. fetch() takes the next batch of the input, in order;
+/// decode() makes points of it and may run for many batches at a time, so that formats that are
+/// slow to decode use all threads. Many readers may share a file: each reads other pieces() of it.
+class PointReader {
+ public:
+  virtual ~PointReader() = default;
+
+  [[nodiscard]] virtual const PointHeader& header() const = 0;
+
+  /// Fills `raw`, which comes cleared, with the next batch (some tens of thousands of points);
+  /// false at the end, of the piece if one was begun. Throws Error with the source's name and the
+  /// byte, line or point index for anything that is not a finite point.
+  virtual bool fetch(RawPoints& raw) = 0;
+
+  /// Replaces `block` by the points of a batch, which is used up. Safe for many threads at a time.
+  /// Throws as fetch() does. A block may be empty before the end.
+  virtual void decode(RawPoints& raw, PointBlock& block) const;
+
+  /// Both steps: replaces `block` by the next points, at least one; false at the end, where
+  /// `block.withheld` still counts.
+  bool read(PointBlock& block);
+
+  /// Into how many pieces the source falls that can be read in any order, also by readers of it in
+  /// other processes: the file and the options alone decide it. Pieces have about as many records
+  /// each, or are the chunks that a file has. Nothing if the source can only be read from front to
+  /// back: pipes and standard input, compressed text, spp, LAZ without a table of its chunks.
+  [[nodiscard]] virtual std::optional<std::uint64_t> pieces() const { return std::nullopt; }
+
+  /// From now on fetch() gives the points of this piece, counted from 0, and no others. All pieces
+  /// in ascending order are what front to back is. Indices are as ever if header().count is known;
+  /// else they are counted from the piece's beginning, and errors name bytes instead of lines.
+  /// Throws Error unless the piece is below pieces().
+  void begin_piece(std::uint64_t piece);
+
+  /// How far the input has been read, from 0 to 1, by the place of the last batch in it; nothing if
+  /// the source's length is unknown.
+  [[nodiscard]] virtual std::optional<double> fraction_read() const = 0;
+
+ private:
+  /// begin_piece() of a piece that is there.
+  virtual void go_to_piece(std::uint64_t /*piece*/) {}
+};
+
+}  // namespace spillway::detail

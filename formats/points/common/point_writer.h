@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "formats/disk/file_system.h"
+#include "formats/disk/scratch_folder.h"
+#include "formats/points/common/point_reader.h"
+#include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
+#include "src/geometry/point.h"
+
+namespace spillway::detail {
+
+/// What a point file to be written holds.
+struct PointWriterOptions {
+  std::string format;   ///< "las", "text", "npy" or "spp"; empty: by extension
+  int coordinates = 3;  ///< 2: x and y only (not LAS)
+  /// How many points will come, where known. The headers of LAS and npy tell it, so on a pipe they
+  /// need it, or `scratch`.
+  std::optional<std::uint64_t> count{};
+  std::optional<Lattice> lattice{};  ///< set if the points come as integers; LAS requires it
+  std::optional<Box<3>> extent{};    ///< in output coordinates, where known; told by spp only
+  std::string crs{};                 ///< as in PointHeader; told by LAS and spp
+  /// `crs` as WKT where it is a code and the caller knows; without, LAS tells the code.
+  std::string crs_wkt{};
+  bool attributes = false;  ///< attributes will come too; LAS holds them, the others drop them
+  std::string version{};    ///< of LAS, "1.2" or "1.4"; empty: 1.2 unless `count` needs 1.4
+  /// Where an output that cannot go back to its header waits until the header is known; the folder
+  /// must outlive the writer.
+  ScratchFolder* scratch = nullptr;
+};
+
+/// Writes points. Nothing appears under the final name before finish().
+class PointWriter {
+ public:
+  virtual ~PointWriter() = default;
+
+  /// Appends points: integers if the options have a lattice, else output coordinates; with one
+  /// value of `attributes` each, or none at all: single returns of no class.
+  virtual void write(std::span<const Point<3>> points,
+                     std::span<const PointAttributes> attributes) = 0;
+
+  /// Completes the file. Throws Error if a number of points was promised and another came.
+  virtual void finish() = 0;
+};
+
+/// For writers: throws Error if `promised` is set and another number of points was written.
+void check_written(const OutputFile& file, std::optional<std::uint64_t> promised,
+                   std::uint64_t written);
+
+}  // namespace spillway::detail

@@ -1,0 +1,25 @@
+#pragma once
+// The octree of a COPC file: docs/formats-points.md ("COPC"). Source: COPC 1.0, https://copc.io.
+
+#include <optional>
+#include <vector>
+
+#include "formats/bytes/input_source.h"
+#include "formats/points/laz/chunk_table.h"
+#include "src/geometry/box.h"
+
+namespace spillway::detail {
+
+/// Which nodes are wanted.
+struct CopcSelection {
+  std::optional<Box<3>> bounds;  ///< nodes that may have points in this closed box
+  double resolution = 0;         ///< levels down to this spacing of points; 0: all
+};
+
+/// The chunks of the nodes that are wanted, in file order, in a file that can be read from any byte
+/// on (`source` is left somewhere). Reads the pages of the hierarchy that it needs. Throws Error
+/// for an octree that cannot be.
+std::vector<LazChunk> select_copc_chunks(InputSource& source, const LasHeader& las,
+                                         const CopcSelection& selection);
+
+}  // namespace spillway::detail

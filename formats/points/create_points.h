@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "formats/disk/file_system.h"
+#include "formats/points/common/point_writer.h"
+#include "formats/points/point_format.h"
+
+namespace spillway::detail {
+
+/// Opens `path` ("-": standard output). Throws UsageError for what cannot be asked for.
+std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::string& path,
+                                               const PointWriterOptions& options);
+
+/// The format that open_point_writer() chooses. Throws UsageError as it does.
+PointFormat point_format_to_write(const std::string& path, const std::string& format_name);
+
+}  // namespace spillway::detail

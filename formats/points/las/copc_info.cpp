@@ -1,0 +1,23 @@
+#include "formats/points/las/copc_info.h"
+
+#include "formats/bytes/bytes.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::size_t kInfoSize = 160;
+
+}  // namespace
+
+std::optional<CopcInfo> parse_copc_info(std::span<const std::byte> content) {
+  if (content.size() < kInfoSize) return std::nullopt;
+  CopcInfo info;
+  info.centre = load<std::array<double, 3>>(content.data());
+  info.halfsize = load<double>(&content[24]);
+  info.spacing = load<double>(&content[32]);
+  info.root_offset = load<std::uint64_t>(&content[40]);
+  info.root_size = load<std::uint64_t>(&content[48]);
+  return info;
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,374 @@
+#include "formats/points/las/las_header.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "formats/bytes/bytes.h"
+#include "formats/points/las/geotiff_keys.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+/// The fields that only reading needs.
+struct Layout {
+  std::size_t header_size;
+  std::uint64_t offset_to_points;
+  std::uint32_t vlr_count;
+  unsigned compression;  ///< the two upper bits of the point format
+  std::uint64_t evlr_start;
+  std::uint32_t evlr_count;
+  std::uint64_t waveform_start;  ///< 0: none
+};
+
+constexpr unsigned kNotCompressed = 0;
+constexpr unsigned kBeforeLaz = 3;
+
+[[noreturn]] void fail(const InputSource& source, const std::string& what) {
+  throw Error(fmt::format("{}: {}", source.name(), what));
+}
+
+/// Text up to the first NUL, on one line, without blanks at its end.
+std::string clean_text(std::string_view text) {
+  std::string result(text.substr(0, text.find('\0')));
+  std::replace_if(
+      result.begin(), result.end(),
+      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');
+  result.erase(result.find_last_not_of(' ') + 1);
+  return result;
+}
+
+std::vector<std::byte> read_public_header(InputSource& source) {
+  source.check_not_empty();
+  std::vector<std::byte> bytes(kLasHeaderSize);
+  const std::size_t got = source.read(bytes);
+  if (!as_text(std::span(bytes).first(got)).starts_with("LASF")) {
+    fail(source, "this is no LAS file: it does not begin with LASF; name its format");
+  }
+  if (got < kLasHeaderSize) {
+    fail(source, fmt::format("the file ends at byte {}, within the header of {} bytes; get a "
+                             "complete copy",
+                             got, kLasHeaderSize));
+  }
+  const auto header_size = load<std::uint16_t>(&bytes[las_field::kHeaderSize]);
+  const auto major = std::to_integer<int>(bytes[las_field::kVersionMajor]);
+  const auto minor = std::to_integer<int>(bytes[las_field::kVersionMinor]);
+  if (major != 1 || minor > 5) {
+    fail(source, fmt::format("the header says LAS version {}.{}, but only 1.0 to 1.5 are read; "
+                             "convert the file",
+                             major, minor));
+  }
+  const std::size_t least = minor < 4 ? kLasHeaderSize : kLas14HeaderSize;
+  if (header_size < least) {
+    fail(source, fmt::format("the header says it has {} bytes, but LAS 1.{} needs {}; the file is "
+                             "corrupt",
+                             header_size, minor, least));
+  }
+  bytes.resize(header_size);
+  const std::size_t rest = source.read(std::span(bytes).subspan(kLasHeaderSize));
+  if (rest < header_size - kLasHeaderSize) {
+    fail(source, fmt::format("the file ends at byte {}, within the header of {} bytes; get a "
+                             "complete copy",
+                             source.position(), header_size));
+  }
+  return bytes;
+}
+
+Layout read_layout(std::span<const std::byte> bytes) {
+  Layout layout{};
+  layout.header_size = bytes.size();
+  layout.offset_to_points = load<std::uint32_t>(&bytes[las_field::kOffsetToPoints]);
+  layout.vlr_count = load<std::uint32_t>(&bytes[las_field::kVlrCount]);
+  layout.compression = std::to_integer<unsigned>(bytes[las_field::kPointFormat]) >> 6U;
+  if (std::to_integer<int>(bytes[las_field::kVersionMinor]) >= 4) {
+    layout.evlr_start = load<std::uint64_t>(&bytes[las_field::kEvlrStart]);
+    layout.evlr_count = load<std::uint32_t>(&bytes[las_field::kEvlrCount]);
+  }
+  constexpr std::size_t kWaveformEnd = las_field::kWaveformStart + sizeof(std::uint64_t);
+  if (std::to_integer<int>(bytes[las_field::kVersionMinor]) >= 3 && bytes.size() >= kWaveformEnd) {
+    layout.waveform_start = load<std::uint64_t>(&bytes[las_field::kWaveformStart]);
+  }
+  return layout;
+}
+
+void check_point_format(const InputSource& source, unsigned format, std::size_t record_length) {
+  if (format >= kLasRecordLengths.size()) {
+    fail(source, fmt::format("the header says point format {}, but only 0 to 10 exist; the file is "
+                             "corrupt",
+                             format));
+  }
+  if (record_length < kLasRecordLengths[format]) {
+    fail(source, fmt::format("the header says point records of {} bytes, but format {} needs {}; "
+                             "the file is corrupt",
+                             record_length, format, kLasRecordLengths[format]));
+  }
+}
+
+std::uint64_t point_count(const InputSource& source, std::span<const std::byte> bytes,
+                          int point_format) {
+  const std::uint64_t legacy = load<std::uint32_t>(&bytes[las_field::kLegacyCount]);
+  if (std::to_integer<int>(bytes[las_field::kVersionMinor]) < 4) return legacy;
+  const auto count = load<std::uint64_t>(&bytes[las_field::kCount]);
+  if (count == 0) return legacy;
+  if (point_format < 6 && legacy != 0 && legacy != count) {
+    fail(source, fmt::format("the header gives two numbers of points, {} and {}; the file is "
+                             "corrupt",
+                             legacy, count));
+  }
+  return count;
+}
+
+Lattice read_lattice(const InputSource& source, std::span<const std::byte> bytes) {
+  constexpr double kLargest = 2147483648.0;
+  Lattice lattice;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto scale = load<double>(&bytes[las_field::kScale + axis * sizeof(double)]);
+    const auto offset = load<double>(&bytes[las_field::kOffset + axis * sizeof(double)]);
+    if (!(scale > 0) || !std::isfinite(kLargest * scale + std::abs(offset))) {
+      fail(source, fmt::format("the header has scale {} and offset {} for {}, but a scale is a "
+                               "positive number and an offset a finite one; the file is corrupt",
+                               scale, offset, "xyz"[axis]));
+    }
+    lattice.scale[axis] = scale;
+    lattice.offset[axis] = offset;
+  }
+  return lattice;
+}
+
+Box<3> read_extent(std::span<const std::byte> bytes) {
+  Box<3> extent;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::byte* bounds = &bytes[las_field::kBounds + axis * 2 * sizeof(double)];
+    extent.hi[axis] = load<double>(bounds);
+    extent.lo[axis] = load<double>(bounds + sizeof(double));
+    const double length = extent.hi[axis] - extent.lo[axis];
+    if (!(length >= 0 && std::isfinite(length))) return {};
+  }
+  return extent;
+}
+
+/// What variable length records say of the coordinate system, before the points or behind them.
+class CrsRecords {
+ public:
+  static bool tells_crs(std::string_view user, std::uint16_t record) {
+    return user == kLasCrsUser && (record == kLasWktRecord || record == kLasGeotiffRecord ||
+                                   record == kLasGeotiffTextRecord);
+  }
+
+  /// Keeps what a record tells that tells_crs().
+  void take(std::uint16_t record, std::span<const std::byte> content) {
+    if (record == kLasWktRecord) wkt_ = clean_text(as_text(content));
+    if (record == kLasGeotiffRecord) keys_.emplace(content.begin(), content.end());
+    if (record == kLasGeotiffTextRecord) text_ = as_text(content);
+  }
+
+  /// Puts what they tell into the header: WKT before keys.
+  void tell(LasHeader& header) const {
+    if (wkt_.empty() && !keys_) return;
+    GeotiffCrs told = wkt_.empty() ? read_geotiff_keys(*keys_, text_) : GeotiffCrs{wkt_, ""};
+    header.crs = std::move(told.crs);
+    header.crs_note = std::move(told.note);
+  }
+
+ private:
+  std::string wkt_;
+  std::optional<std::vector<std::byte>> keys_;
+  std::string text_;
+};
+
+/// Reads the variable length records up to the points into `header`.
+void read_vlrs(InputSource& source, const Layout& layout, LasHeader& header) {
+  CrsRecords records;
+  std::array<std::byte, kLasVlrHeaderSize> start_of_record;
+  std::vector<std::byte> content;
+  for (std::uint32_t i = 0; i < layout.vlr_count; ++i) {
+    const std::uint64_t start = source.position();
+    const auto read_part = [&](std::span<std::byte> part) {
+      if (source.position() + part.size() > layout.offset_to_points ||
+          source.read(part) < part.size()) {
+        fail(source, fmt::format("variable length record {} at byte {} does not end before the "
+                                 "points; the file is corrupt",
+                                 i, start));
+      }
+    };
+    read_part(start_of_record);
+    const std::string user = clean_text(as_text(std::span(start_of_record).subspan(2, 16)));
+    const auto record = load<std::uint16_t>(&start_of_record[18]);
+    content.resize(load<std::uint16_t>(&start_of_record[20]));
+    read_part(content);
+    if (CrsRecords::tells_crs(user, record)) records.take(record, content);
+    if (i == 0 && user == kCopcUser && record == kCopcInfoId) {
+      header.copc = parse_copc_info(content);
+    }
+    if (user == kLazUser && record == kLazRecordId) {
+      if (header.laz) fail(source, "there are two LAZ records; the file is corrupt");
+      header.laz =
+          parse_laz_record(content, header.point_format, header.record_length, source.name());
+    }
+  }
+  records.tell(header);
+}
+
+/// Puts the coordinate system that the records behind the points tell into the header. What is
+/// damaged there ends the search, as the points can be read without.
+void read_crs_of_evlrs(InputSource& source, const Layout& layout, LasHeader& las) {
+  constexpr std::uint32_t kMostRecords = 1000;
+  constexpr std::uint64_t kLongest = std::uint64_t{1} << 20;
+  const std::optional<std::uint64_t> size = source.size();
+  const std::uint64_t back = source.position();
+  CrsRecords records;
+  std::array<std::byte, kLasEvlrHeaderSize> header;
+  std::vector<std::byte> content;
+  std::uint64_t at = layout.evlr_start;
+  for (std::uint32_t i = 0; size && i < std::min(layout.evlr_count, kMostRecords); ++i) {
+    if (at < layout.offset_to_points || at > *size || *size - at < header.size()) break;
+    if (!source.seek(at) || source.read(header) < header.size()) break;
+    at += header.size();
+    const auto length = load<std::uint64_t>(&header[20]);
+    if (length > *size - at) break;
+    const std::string user = clean_text(as_text(std::span(header).subspan(2, 16)));
+    const auto record = load<std::uint16_t>(&header[18]);
+    if (CrsRecords::tells_crs(user, record) && length <= kLongest) {
+      content.resize(length);
+      if (source.read(content) < length) break;
+      records.take(record, content);
+    }
+    at += length;
+  }
+  if (source.position() != back) source.seek(back);
+  records.tell(las);
+}
+
+/// What begins first behind the points; nothing that would begin before them.
+std::optional<std::uint64_t> offset_behind_points(const Layout& layout, int point_format) {
+  const bool waveforms = point_format == 4 || point_format == 5 || point_format >= 9;
+  std::optional<std::uint64_t> offset;
+  for (const std::uint64_t start :
+       {layout.evlr_count > 0 ? layout.evlr_start : 0, waveforms ? layout.waveform_start : 0}) {
+    if (start > layout.offset_to_points && (!offset || start < *offset)) offset = start;
+  }
+  return offset;
+}
+
+/// Checks that the file can hold the records before any of them is read.
+void check_layout(const InputSource& source, const Layout& layout) {
+  if (layout.offset_to_points < layout.header_size) {
+    fail(source, fmt::format("the header says the points begin at byte {}, within the header of {} "
+                             "bytes; the file is corrupt",
+                             layout.offset_to_points, layout.header_size));
+  }
+  const std::uint64_t space = layout.offset_to_points - layout.header_size;
+  if (layout.vlr_count > space / kLasVlrHeaderSize) {
+    fail(source, fmt::format("the header says {} variable length records, but the {} bytes before "
+                             "the points cannot hold them; the file is corrupt",
+                             layout.vlr_count, space));
+  }
+  const std::optional<std::uint64_t> size = source.size();
+  if (size && layout.offset_to_points > *size) {
+    fail(source, fmt::format("the header says the points begin at byte {}, but the file ends at "
+                             "byte {}; get a complete copy",
+                             layout.offset_to_points, *size));
+  }
+}
+
+/// Makes the flag bits of the point format and the LAZ record agree.
+void check_compression(const InputSource& source, const Layout& layout, LasHeader& header) {
+  if (layout.compression == kBeforeLaz) {
+    fail(source,
+         "the points are compressed in the way before LAZ, which is not read; convert the "
+         "file with the program that wrote it");
+  }
+  if (layout.compression != kNotCompressed && !header.laz) {
+    fail(source,
+         "the points are said to be compressed (LAZ), but there is no record that says how; "
+         "the file is corrupt");
+  }
+  if (header.laz && header.laz->compressor == LazCompressor::kNone) header.laz.reset();
+  if (!header.laz || !header.laz->format.layered) header.copc.reset();
+}
+
+/// Goes to the first uncompressed point and checks that the file can hold all of them.
+void find_points(InputSource& source, LasHeader& header) {
+  constexpr std::uint16_t kStart = 0xCCDD;
+  constexpr std::uint16_t kStartSwapped = 0xDDCC;
+  const std::optional<std::uint64_t> size = source.size();
+  const auto room = [&] { return (*size - header.offset_to_points) / header.record_length; };
+  if (header.version == "1.0") {
+    const std::span<const std::byte> begin = source.peek(sizeof(kStart));
+    const auto value = begin.size() < sizeof(kStart) ? 0 : load<std::uint16_t>(begin.data());
+    if (value == kStart || value == kStartSwapped) {
+      if (!size) {
+        fail(source,
+             "without the size of the file it is not clear where the points of this LAS 1.0 "
+             "file begin; give it by its name instead of on a pipe");
+      }
+      header.offset_to_points += sizeof(kStart);
+      if (room() >= header.count) {
+        source.skip(sizeof(kStart));
+        return;
+      }
+      header.offset_to_points -= sizeof(kStart);
+    }
+  }
+  if (size && header.count > room()) {
+    fail(source, fmt::format("the header says {} points of {} bytes, but the file ends at byte {}, "
+                             "after {} of them; get a complete copy",
+                             header.count, header.record_length, *size, room()));
+  }
+}
+
+}  // namespace
+
+LasHeader read_las_header(InputSource& source) {
+  constexpr unsigned kFormatBits = 0x3f;
+  const std::vector<std::byte> bytes = read_public_header(source);
+  const Layout layout = read_layout(bytes);
+  LasHeader header;
+  header.version = fmt::format("1.{}", std::to_integer<int>(bytes[las_field::kVersionMinor]));
+  header.record_length = load<std::uint16_t>(&bytes[las_field::kRecordLength]);
+  header.offset_to_points = layout.offset_to_points;
+  const auto format = std::to_integer<unsigned>(bytes[las_field::kPointFormat]) & kFormatBits;
+  check_point_format(source, format, header.record_length);
+  header.point_format = static_cast<int>(format);
+  header.offset_behind_points = offset_behind_points(layout, header.point_format);
+  header.count = point_count(source, bytes, header.point_format);
+  header.lattice = read_lattice(source, bytes);
+  header.extent = read_extent(bytes);
+  header.software =
+      clean_text(as_text(std::span(bytes).subspan(las_field::kSoftware, kLasTextField)));
+  check_layout(source, layout);
+  read_vlrs(source, layout, header);
+  check_compression(source, layout, header);
+  if (header.crs.empty() && layout.evlr_count > 0) read_crs_of_evlrs(source, layout, header);
+  if (!source.skip(layout.offset_to_points - source.position())) {
+    fail(source, fmt::format("the file ends at byte {}, before the points; get a complete copy",
+                             source.position()));
+  }
+  if (!header.laz) find_points(source, header);
+  return header;
+}
+
+PointHeader las_point_header(const LasHeader& las, const std::string& path) {
+  PointHeader header;
+  header.name = path;
+  header.format = las.copc ? "copc" : las.laz ? "laz" : "las";
+  header.version = las.version;
+  header.point_format = las.point_format;
+  header.count = las.count;
+  header.lattice = las.lattice;
+  if (!las.extent.empty()) header.extent = las.extent;
+  header.crs = las.crs;
+  header.crs_note = las.crs_note;
+  header.software = las.software;
+  header.extra_bytes = las.record_length - kLasRecordLengths.at(las.point_format);
+  return header;
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,126 @@
+#include "formats/points/las/las_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "formats/bytes/bytes.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+// A block of records stays within the processor's caches whatever the record length.
+constexpr std::size_t kBlockPoints = 65536;
+constexpr std::size_t kBlockBytes = std::size_t{4} << 20;
+
+/// What a record's bytes 14 to 16 say: docs/formats-points.md ("LAS").
+PointAttributes record_attributes(const std::byte* record, bool extended) {
+  const auto byte = [&](std::size_t at) { return std::to_integer<unsigned>(record[at]); };
+  PointAttributes attributes;
+  if (extended) {
+    attributes.return_number = byte(14) & 0x0f;
+    attributes.return_count = byte(14) >> 4;
+    attributes.flags = byte(15) & 0x0f;
+    attributes.classification = static_cast<std::uint8_t>(byte(16));
+  } else {
+    attributes.return_number = byte(14) & 0x07;
+    attributes.return_count = (byte(14) >> 3) & 0x07;
+    attributes.flags = static_cast<std::uint8_t>(byte(15) >> 5);
+    attributes.classification = byte(15) & 0x1f;
+  }
+  return attributes;
+}
+
+class LasReader : public PointReader {
+ public:
+  LasReader(std::unique_ptr<InputSource> source, const LasHeader& las, const std::string& path,
+            const PointReaderOptions& options)
+      : source_(std::move(source)),
+        las_(las),
+        header_(las_point_header(las_, path)),
+        attributes_(options.attributes),
+        withheld_mask_(options.keep_withheld ? 0 : las_withheld_mask(las_.point_format)),
+        block_points_(std::clamp<std::size_t>(kBlockBytes / las_.record_length, 1, kBlockPoints)),
+        in_pieces_(path != "-" && source_->seekable()),
+        begin_(source_->position()),
+        end_(las_.count) {}
+
+  [[nodiscard]] const PointHeader& header() const override { return header_; }
+
+  bool fetch(RawPoints& raw) override {
+    raw.offset = source_->position();
+    raw.first = next_;
+    raw.count = std::min<std::uint64_t>(block_points_, end_ - next_);
+    raw.bytes.resize(raw.count * las_.record_length);
+    const std::size_t got = source_->read(raw.bytes);
+    if (got < raw.bytes.size()) {
+      throw Error(fmt::format(
+          "{}: the file ends at byte {}, within point {} of {}; get a complete "
+          "copy",
+          source_->name(), source_->position(), next_ + got / las_.record_length, las_.count));
+    }
+    next_ += raw.count;
+    return raw.count > 0;
+  }
+
+  void decode(RawPoints& raw, PointBlock& block) const override {
+    // Every point is stored, and the place moves on only past those that are kept: no branch.
+    block.points.resize(raw.count);
+    block.index.resize(raw.count);
+    block.attributes.resize(attributes_ ? raw.count : 0);
+    std::size_t kept = 0;
+    const std::byte* record = raw.bytes.data();
+    for (std::size_t i = 0; i < raw.count; ++i, record += las_.record_length) {
+      block.points[kept] = {static_cast<double>(load<std::int32_t>(record)),
+                            static_cast<double>(load<std::int32_t>(record + 4)),
+                            static_cast<double>(load<std::int32_t>(record + 8))};
+      block.index[kept] = raw.first + i;
+      if (attributes_) block.attributes[kept] = record_attributes(record, las_.point_format >= 6);
+      kept += (std::to_integer<unsigned>(record[kLasFlagByte]) & withheld_mask_) == 0 ? 1 : 0;
+    }
+    block.points.resize(kept);
+    block.index.resize(kept);
+    block.attributes.resize(attributes_ ? kept : 0);
+    block.withheld = raw.count - kept;
+  }
+
+  /// A piece is what fetch() takes at a time.
+  [[nodiscard]] std::optional<std::uint64_t> pieces() const override {
+    if (!in_pieces_) return std::nullopt;
+    return las_.count / block_points_ + (las_.count % block_points_ == 0 ? 0 : 1);
+  }
+
+  [[nodiscard]] std::optional<double> fraction_read() const override {
+    return las_.count == 0 ? 1.0 : static_cast<double>(next_) / static_cast<double>(las_.count);
+  }
+
+ private:
+  void go_to_piece(std::uint64_t piece) override {
+    next_ = piece * block_points_;
+    end_ = next_ + std::min<std::uint64_t>(block_points_, las_.count - next_);
+    source_->seek(begin_ + next_ * las_.record_length);
+  }
+
+  std::unique_ptr<InputSource> source_;
+  LasHeader las_;
+  PointHeader header_;
+  bool attributes_;
+  unsigned withheld_mask_;
+  std::size_t block_points_;
+  bool in_pieces_;
+  std::uint64_t begin_;     // byte of the first record
+  std::uint64_t end_;       // number of the first record that is not to be read
+  std::uint64_t next_ = 0;  // number of the next record
+};
+
+}  // namespace
+
+std::unique_ptr<PointReader> open_las_reader(std::unique_ptr<InputSource> source,
+                                             const LasHeader& las, const std::string& path,
+                                             const PointReaderOptions& options) {
+  return std::make_unique<LasReader>(std::move(source), las, path, options);
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,40 @@
+#include "formats/points/laz/chunk_decoder.h"
+
+#include <utility>
+#include <variant>
+
+#include "formats/points/laz/layered_chunk.h"
+#include "formats/points/laz/pointwise_chunk.h"
+
+namespace spillway::detail {
+
+class LazChunkDecoder::Impl {
+ public:
+  using Chunk = std::variant<laz::PointwiseChunk, laz::LayeredChunk>;
+
+  Impl(const LazChunkFormat& format, bool attributes)
+      : chunk(format.layered ? Chunk(std::in_place_type<laz::LayeredChunk>, format, attributes)
+                             : Chunk(std::in_place_type<laz::PointwiseChunk>, format)) {}
+
+  Chunk chunk;
+};
+
+LazChunkDecoder::LazChunkDecoder(const LazChunkFormat& format, bool attributes)
+    : impl_(std::make_unique<Impl>(format, attributes)) {}
+LazChunkDecoder::~LazChunkDecoder() = default;
+LazChunkDecoder::LazChunkDecoder(LazChunkDecoder&&) noexcept = default;
+LazChunkDecoder& LazChunkDecoder::operator=(LazChunkDecoder&&) noexcept = default;
+
+void LazChunkDecoder::begin(LazBytes& bytes, std::uint64_t count) {
+  std::visit([&](auto& chunk) { chunk.begin(bytes, count); }, impl_->chunk);
+}
+
+void LazChunkDecoder::decode(std::span<Point<3>> points, std::span<PointAttributes> attributes) {
+  std::visit([&](auto& chunk) { chunk.decode(points, attributes); }, impl_->chunk);
+}
+
+std::size_t LazChunkDecoder::end() {
+  return std::visit([](auto& chunk) { return chunk.end(); }, impl_->chunk);
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,43 @@
+#pragma once
+// From the bytes of one LAZ chunk to points: docs/formats-laz.md.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "formats/points/common/point_reader.h"
+#include "formats/points/las/laz_record.h"
+#include "formats/points/laz/coding/laz_bytes.h"
+
+namespace spillway::detail {
+
+/// Decodes chunk after chunk, with memory that is used again. Throws Error, with a message that
+/// names neither file nor chunk, for what cannot be the work of an encoder.
+class LazChunkDecoder {
+ public:
+  /// `attributes`: whether classification, returns and flags are wanted besides coordinates; layers
+  /// that nobody wants are skipped.
+  LazChunkDecoder(const LazChunkFormat& format, bool attributes);
+  ~LazChunkDecoder();
+  LazChunkDecoder(LazChunkDecoder&&) noexcept;
+  LazChunkDecoder& operator=(LazChunkDecoder&&) noexcept;
+
+  /// Begins a chunk of `count` points (one at least). `bytes` must outlive the chunk. A layered
+  /// chunk that says another count is an error.
+  void begin(LazBytes& bytes, std::uint64_t count);
+
+  /// The next points of the chunk, as integers; `attributes` has as many entries, or is empty if
+  /// the decoder was made without.
+  void decode(std::span<Point<3>> points, std::span<PointAttributes> attributes);
+
+  /// After the chunk's last point: checks that the stream ended as encoders end it, and returns how
+  /// many bytes of the last piece of `bytes` lie behind the chunk.
+  std::size_t end();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,35 @@
+#pragma once
+// Where the chunks of a LAZ file lie. docs/formats-points.md ("LAZ").
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "formats/bytes/input_source.h"
+#include "formats/points/las/las_header.h"
+
+namespace spillway::detail {
+
+struct LazChunk {
+  std::uint64_t offset = 0;  ///< in the file
+  std::uint64_t bytes = 0;
+  std::uint64_t count = 0;  ///< of points
+};
+
+/// Size of the pointer to the chunk table, which stands before the first chunk.
+inline constexpr std::size_t kChunkTablePointer = 8;
+
+/// The chunks that the table lists, up to the header's number of points, in a file that can be
+/// read from any byte on (`source` is left somewhere). Nothing if the table was never written.
+/// Throws Error for a table that is not that of a complete file.
+std::optional<std::vector<LazChunk>> read_chunk_table(InputSource& source, const LasHeader& las);
+
+/// Reads the pointer at the beginning of the points of a source that cannot go back, and returns
+/// what it says of where the chunks end; nothing where the table tells that or is missing.
+std::optional<std::uint64_t> read_end_of_chunks(InputSource& source, const LasHeader& las);
+
+/// Bytes of the shortest chunk: its first record and what every chunk has besides.
+std::size_t shortest_chunk(const LasHeader& las);
+
+}  // namespace spillway::detail

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace spillway::detail {
+
+/// The bytes of chunks, piece by piece.
+class LazBytes {
+ public:
+  virtual ~LazBytes() = default;
+  /// The bytes behind those given out so far, valid until the next call; empty at the end.
+  virtual std::span<const std::byte> more() = 0;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,85 @@
+#pragma once
+// The layers of the first item of a layered chunk: docs/formats-laz.md.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "formats/points/laz/coding/integer_decoder.h"
+#include "formats/points/laz/coding/streaming_median.h"
+
+namespace spillway::detail::laz {
+
+/// What is wanted of the first 30 bytes of a record, and what the wanted layers need.
+struct Point14 {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+  std::int32_t z = 0;
+  std::uint8_t return_number = 0;
+  std::uint8_t return_count = 0;
+  std::uint8_t channel = 0;  ///< of the scanner, 0 to 3
+  std::uint8_t flags = 0;    ///< bits 0-3 as in PointAttributes, 4: direction, 5: edge
+  std::uint8_t classification = 0;
+
+  /// Reads a record as it is without compression.
+  static Point14 of_record(const std::byte* record);
+};
+
+/// Decodes coordinates, returns, classification and flags; the layers behind are not needed, as no
+/// layer depends on those after it. Each scanner channel has its own models and last point.
+class Point14Layers {
+ public:
+  static constexpr std::size_t kCoordinateLayers = 2;  ///< x, y and returns; z
+  static constexpr std::size_t kLayers = 4;            ///< also classification; flags
+
+  /// Begins a chunk. `layers` has the bytes of the layers one after the other; a layer of size 0
+  /// leaves its values as they are in the first point.
+  void begin(const Point14& first, std::span<const std::byte> layers,
+             const std::array<std::size_t, kLayers>& sizes, std::uint64_t count);
+
+  /// The next point.
+  void decode();
+
+  /// The point decoded last, at first the chunk's first one.
+  [[nodiscard]] const Point14& point() const { return current_->last; }
+
+  /// Checks that all layers have been read to their ends.
+  void end() const;
+
+ private:
+  struct Context {
+    void begin(const Point14& point);
+
+    SymbolModels<128> changed{8};
+    SymbolModels<3> channel{1};
+    SymbolModels<16> return_count{16};
+    SymbolModels<16> return_number{16};
+    SymbolModels<13> return_step{1};
+    IntegerDecoder<32> dx{2};
+    IntegerDecoder<32> dy{22};
+    IntegerDecoder<32> z{20};
+    SymbolModels<256> classification{64};
+    SymbolModels<64> flags{64};
+    std::array<StreamingMedian, 12> dx_median{};
+    std::array<StreamingMedian, 12> dy_median{};
+    std::array<std::int32_t, 8> last_z{};
+    Point14 last;
+    bool time_changed = false;
+    bool used = false;  // in this chunk
+  };
+
+  struct Layer {
+    bool present = false;
+    ArithmeticDecoder stream;
+  };
+
+  Context& use(unsigned channel, const Point14& last);
+
+  std::array<Layer, kLayers> layers_;
+  std::array<std::unique_ptr<Context>, 4> contexts_;
+  Context* current_ = nullptr;
+};
+
+}  // namespace spillway::detail::laz

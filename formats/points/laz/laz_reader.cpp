@@ -1,0 +1,414 @@
+#include "formats/points/laz/laz_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "formats/bytes/bytes.h"
+#include "formats/points/laz/chunk_decoder.h"
+#include "formats/points/laz/chunk_table.h"
+#include "formats/points/laz/coding/point14_layers.h"
+#include "formats/points/laz/source_bytes.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+// Larger chunks are decoded in order, so that memory does not depend on them.
+constexpr std::uint64_t kLargestPieceBytes = std::uint64_t{16} << 20;
+constexpr std::uint64_t kLargestPiecePoints = 262144;
+
+constexpr std::size_t kBlockPoints = 65536;                // of chunks that are decoded in order
+constexpr std::size_t kReadAtOnce = std::size_t{4} << 20;  // where sizes may be wrong
+constexpr std::uint64_t kUnlimited = ~std::uint64_t{0};
+
+/// A chunk that lies in memory.
+class MemoryBytes : public LazBytes {
+ public:
+  explicit MemoryBytes(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  std::span<const std::byte> more() override { return std::exchange(bytes_, {}); }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+/// Chunks are taken from a list, by the chunk table or by the octree, or one after the other where
+/// there is no going back. They are handed out to be decoded by any thread where their bytes can be
+/// told before they are decoded; else fetch() decodes them.
+class LazReader : public PointReader {
+ public:
+  LazReader(std::unique_ptr<InputSource> source, const LasHeader& las, const std::string& path,
+            const PointReaderOptions& options, std::optional<std::vector<LazChunk>> chosen)
+      : source_(std::move(source)),
+        las_(las),
+        header_(las_point_header(las, path)),
+        attributes_(options.attributes),
+        withheld_flag_(options.keep_withheld ? 0U : PointAttributes::kWithheld),
+        count_(las.count),
+        chunks_(std::move(chosen)),
+        stream_(*source_) {
+    if (chunks_) {
+      count_chosen(options);
+    } else {
+      find_chunks();
+    }
+    count_ = end_ = header_.count.value();
+    number_chunks();
+  }
+
+  [[nodiscard]] const PointHeader& header() const override { return header_; }
+
+  bool fetch(RawPoints& raw) override {
+    raw.decoded.clear();
+    raw.count = 0;
+    if (left_ == 0) {
+      if (next_ == end_) return false;
+      if (las_.laz->format.layered) {
+        fetch_layered(raw);
+      } else {
+        fetch_pointwise(raw);
+      }
+    }
+    if (raw.count == 0) decode_in_order(raw.decoded);
+    return true;
+  }
+
+  void decode(RawPoints& raw, PointBlock& block) const override {
+    if (raw.count == 0) {
+      std::swap(raw.decoded, block);
+      return;
+    }
+    std::unique_ptr<LazChunkDecoder> decoder = take_decoder();
+    MemoryBytes bytes(raw.bytes);
+    try {
+      decoder->begin(bytes, raw.count);
+      decode_points(*decoder, raw.first, raw.count, block);
+      check_end(decoder->end() == 0);
+    } catch (const Error& error) {
+      fail_at(raw.offset, error);
+    }
+    give_back(std::move(decoder));
+  }
+
+  /// A piece is a chunk of the list.
+  [[nodiscard]] std::optional<std::uint64_t> pieces() const override {
+    if (!chunks_ || header_.name == "-") return std::nullopt;
+    return chunks_->size();
+  }
+
+  [[nodiscard]] std::optional<double> fraction_read() const override {
+    return count_ == 0 ? 1.0 : static_cast<double>(next_) / static_cast<double>(count_);
+  }
+
+ private:
+  void go_to_piece(std::uint64_t piece) override {
+    next_chunk_ = piece;
+    next_ = first_of_chunk_[piece];
+    end_ = next_ + (*chunks_)[piece].count;
+    left_ = 0;
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("{}: {}", source_->name(), what));
+  }
+
+  [[noreturn]] void fail_at(std::uint64_t offset, const Error& error) const {
+    fail(fmt::format("the chunk at byte {}: {}; get a complete copy", offset, error.what()));
+  }
+
+  [[noreturn]] void fail_truncated() const {
+    fail(fmt::format("the file ends at byte {}, after {} of {} points; get a complete copy",
+                     source_->position(), next_, count_));
+  }
+
+  static void check_end(bool at_end) {
+    if (!at_end) throw Error("its points end before it does");
+  }
+
+  void count_chosen(const PointReaderOptions& options) {
+    header_.count = 0;
+    for (const LazChunk& chunk : *chunks_) *header_.count += chunk.count;
+    if (options.bounds && header_.extent) intersect(*options.bounds);
+  }
+
+  void find_chunks() {
+    const bool seekable = source_->seekable();
+    if (las_.count == 0) {
+      if (seekable) chunks_.emplace();
+      return;
+    }
+    if (is_unchunked()) {
+      chunks_end_ = las_.offset_behind_points.value_or(kUnlimited);
+      return;
+    }
+    if (seekable) {
+      chunks_ = read_chunk_table(*source_, las_);
+      if (!chunks_) source_->seek(las_.offset_to_points + kChunkTablePointer);
+    } else {
+      chunks_end_ = read_end_of_chunks(*source_, las_).value_or(kUnlimited);
+    }
+    if (!chunks_ && !las_.laz->chunk_points && !las_.laz->format.layered) {
+      fail(seekable ? "the table of the compressed chunks is missing, and they have different "
+                      "sizes; write the file anew"
+                    : "its compressed chunks have different sizes, which a table at its end tells; "
+                      "give the file by its name instead of on a pipe");
+    }
+  }
+
+  void number_chunks() {
+    if (!chunks_) return;
+    std::uint64_t first = 0;
+    first_of_chunk_.reserve(chunks_->size());
+    for (const LazChunk& chunk : *chunks_) {
+      first_of_chunk_.push_back(first);
+      first += chunk.count;
+    }
+  }
+
+  void intersect(const Box<3>& bounds) {
+    Box<3>& extent = *header_.extent;
+    for (int k = 0; k < 3; ++k) {
+      extent.lo[k] = std::max(extent.lo[k], bounds.lo[k]);
+      extent.hi[k] = std::min(extent.hi[k], bounds.hi[k]);
+      if (!(extent.lo[k] <= extent.hi[k])) {
+        header_.extent.reset();
+        return;
+      }
+    }
+  }
+
+  [[nodiscard]] bool is_unchunked() const {
+    return las_.laz->compressor == LazCompressor::kPointwise;
+  }
+
+  /// The next chunk of the list, with the source at its begin; or what is known of the chunk that
+  /// begins where the last one ended: most points and bytes that it may have.
+  LazChunk next_chunk() {
+    if (!chunks_) {
+      const std::uint64_t most =
+          is_unchunked() ? kUnlimited : las_.laz->chunk_points.value_or(kUnlimited);
+      const std::uint64_t begin = stream_.position();
+      return {begin, chunks_end_ - std::min(begin, chunks_end_), std::min(most, count_ - next_)};
+    }
+    const LazChunk& chunk = (*chunks_)[next_chunk_++];
+    if (source_->position() != chunk.offset) source_->seek(chunk.offset);
+    return chunk;
+  }
+
+  /// Whether the chunk that ends with the `points`-th point may leave that much of its room: there
+  /// may be chunks beyond the header's number of points, but not behind one with fewer than the
+  /// others.
+  [[nodiscard]] bool may_leave(std::uint64_t bytes, std::uint64_t points) const {
+    if (bytes == 0) return true;
+    if (chunks_) return false;
+    if (points < count_ || chunks_end_ == kUnlimited) return true;
+    const std::uint32_t of_each = las_.laz->chunk_points.value_or(1);
+    return points % of_each == 0 && bytes >= shortest_chunk(las_);
+  }
+
+  void hand_out(RawPoints& raw, const LazChunk& chunk) {
+    raw.offset = chunk.offset;
+    raw.first = next_;
+    raw.count = chunk.count;
+    next_ += chunk.count;
+  }
+
+  void fetch_pointwise(RawPoints& raw) {
+    const LazChunk chunk = next_chunk();
+    const bool listed = chunks_.has_value();
+    if (listed && chunk.bytes <= kLargestPieceBytes && chunk.count <= kLargestPiecePoints) {
+      raw.bytes.clear();
+      append(raw.bytes, chunk.bytes);
+      hand_out(raw, chunk);
+      return;
+    }
+    stream_.limit(chunk.bytes);
+    begin_in_order(chunk, stream_);
+  }
+
+  /// Reads the layers that are wanted, which are the first, and marks the others as empty.
+  void fetch_layered(RawPoints& raw) {
+    LazChunk chunk = next_chunk();
+    const LazChunkFormat& format = las_.laz->format;
+    const std::size_t count_at = las_.record_length;
+    const std::size_t sizes_at = count_at + sizeof(std::uint32_t);
+    const std::size_t layers = laz_layers(format);
+    raw.bytes.clear();
+    const std::size_t head = sizes_at + layers * sizeof(std::uint32_t);
+    if (head > chunk.bytes) fail_layers(chunk, head);
+    append(raw.bytes, head);
+    const auto count = load<std::uint32_t>(&raw.bytes[count_at]);
+    const bool exact = chunks_ || las_.laz->chunk_points;
+    if (exact ? count != chunk.count : count == 0 || count > chunk.count) {
+      fail(
+          fmt::format("the chunk at byte {} says it has {} points, but {} are to come; the file is "
+                      "corrupt",
+                      chunk.offset, count, chunk.count));
+    }
+    chunk.count = count;
+    std::uint64_t wanted = 0;
+    std::uint64_t others = 0;
+    const std::size_t wanted_layers =
+        needs_attributes() ? laz::Point14Layers::kLayers : laz::Point14Layers::kCoordinateLayers;
+    for (std::size_t i = 0; i < layers; ++i) {
+      std::byte* const size = &raw.bytes[sizes_at + i * sizeof(std::uint32_t)];
+      (i < wanted_layers ? wanted : others) += load<std::uint32_t>(size);
+      if (i >= wanted_layers) store(size, std::uint32_t{0});
+    }
+    const std::uint64_t bytes = head + wanted + others;
+    if (bytes > chunk.bytes || !may_leave(chunk.bytes - bytes, next_ + chunk.count)) {
+      fail_layers(chunk, bytes);
+    }
+    append(raw.bytes, wanted);
+    if (!chunks_ && !source_->skip(others)) fail_truncated();
+    if (raw.bytes.size() <= kLargestPieceBytes && chunk.count <= kLargestPiecePoints) {
+      hand_out(raw, chunk);
+      return;
+    }
+    held_ = std::move(raw.bytes);
+    raw.bytes = {};
+    held_bytes_ = MemoryBytes(held_);
+    begin_in_order(chunk, held_bytes_);
+  }
+
+  [[noreturn]] void fail_layers(const LazChunk& chunk, std::uint64_t bytes) const {
+    fail(
+        fmt::format("the chunk at byte {} and its layers take {} bytes, but the chunk table "
+                    "leaves it {}; the file is corrupt",
+                    chunk.offset, bytes, chunk.bytes));
+  }
+
+  /// Reads `count` more bytes; memory grows only with what is there.
+  void append(std::vector<std::byte>& bytes, std::uint64_t count) {
+    while (count > 0) {
+      const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(count, kReadAtOnce));
+      const std::size_t had = bytes.size();
+      bytes.resize(had + wanted);
+      if (source_->read(std::span(bytes).subspan(had)) < wanted) fail_truncated();
+      count -= wanted;
+    }
+  }
+
+  void begin_in_order(const LazChunk& chunk, LazBytes& bytes) {
+    in_order_at_ = chunk.offset;
+    left_ = chunk.count;
+    if (!in_order_) in_order_ = take_decoder();
+    checked([&] { in_order_->begin(bytes, chunk.count); });
+  }
+
+  void decode_in_order(PointBlock& block) {
+    const std::uint64_t count = std::min<std::uint64_t>(left_, kBlockPoints);
+    checked([&] {
+      decode_points(*in_order_, next_, count, block);
+      next_ += count;
+      left_ -= count;
+      if (left_ == 0) end_in_order();
+    });
+  }
+
+  void end_in_order() {
+    const std::size_t behind = in_order_->end();
+    if (las_.laz->format.layered) {
+      held_.clear();
+    } else if (is_unchunked()) {
+      check_end(behind == 0 && stream_.more().empty());
+    } else {
+      check_end(may_leave(behind + stream_.left(), next_));
+      stream_.put_back(behind);
+    }
+  }
+
+  /// Runs a step of the chunk that is decoded in order.
+  template <typename Step>
+  void checked(Step&& step) const {
+    try {
+      step();
+    } catch (const Error& error) {
+      if (stream_.read_failed()) throw;
+      fail_at(in_order_at_, error);
+    }
+  }
+
+  /// Decodes `count` points, the first of which has that number, and leaves out withheld ones.
+  void decode_points(LazChunkDecoder& decoder, std::uint64_t first, std::uint64_t count,
+                     PointBlock& block) const {
+    block.points.resize(count);
+    block.index.resize(count);
+    block.attributes.resize(needs_attributes() ? count : 0);
+    decoder.decode(block.points, block.attributes);
+    for (std::size_t i = 0; i < count; ++i) block.index[i] = first + i;
+    if (withheld_flag_ != 0) drop_withheld(block);
+    if (!attributes_) block.attributes.clear();
+  }
+
+  void drop_withheld(PointBlock& block) const {
+    const std::size_t count = block.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      block.points[kept] = block.points[i];
+      block.index[kept] = block.index[i];
+      block.attributes[kept] = block.attributes[i];
+      kept += (block.attributes[i].flags & withheld_flag_) == 0 ? 1 : 0;
+    }
+    block.points.resize(kept);
+    block.index.resize(kept);
+    block.attributes.resize(kept);
+    block.withheld = count - kept;
+  }
+
+  [[nodiscard]] bool needs_attributes() const { return attributes_ || withheld_flag_ != 0; }
+
+  std::unique_ptr<LazChunkDecoder> take_decoder() const {
+    const std::lock_guard lock(idle_mutex_);
+    if (idle_.empty()) {
+      return std::make_unique<LazChunkDecoder>(las_.laz->format, needs_attributes());
+    }
+    std::unique_ptr<LazChunkDecoder> decoder = std::move(idle_.back());
+    idle_.pop_back();
+    return decoder;
+  }
+
+  void give_back(std::unique_ptr<LazChunkDecoder> decoder) const {
+    const std::lock_guard lock(idle_mutex_);
+    idle_.push_back(std::move(decoder));
+  }
+
+  std::unique_ptr<InputSource> source_;
+  LasHeader las_;
+  PointHeader header_;
+  bool attributes_;
+  unsigned withheld_flag_;
+  std::uint64_t count_ = 0;  // of all records that come
+  std::uint64_t next_ = 0;   // number of the next record
+  std::uint64_t end_ = 0;    // number of the first record that is not to be read
+
+  std::optional<std::vector<LazChunk>> chunks_;  // nothing: they come one after the other
+  std::vector<std::uint64_t> first_of_chunk_;    // number of its first record
+  std::size_t next_chunk_ = 0;
+  std::uint64_t chunks_end_ = kUnlimited;  // as far as that is known without a list
+
+  // The chunk that is decoded in order.
+  std::unique_ptr<LazChunkDecoder> in_order_;
+  std::uint64_t in_order_at_ = 0;
+  std::uint64_t left_ = 0;  // points still to come
+  SourceBytes stream_;      // its bytes if it is pointwise
+  std::vector<std::byte> held_;
+  MemoryBytes held_bytes_{{}};  // if it is layered
+
+  mutable std::mutex idle_mutex_;
+  mutable std::vector<std::unique_ptr<LazChunkDecoder>> idle_;  // guarded by idle_mutex_
+};
+
+}  // namespace
+
+std::unique_ptr<PointReader> open_laz_reader(std::unique_ptr<InputSource> source,
+                                             const LasHeader& las, const std::string& path,
+                                             const PointReaderOptions& options,
+                                             std::optional<std::vector<LazChunk>> chosen) {
+  return std::make_unique<LazReader>(std::move(source), las, path, options, std::move(chosen));
+}
+
+}  // namespace spillway::detail

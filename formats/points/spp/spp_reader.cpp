@@ -1,0 +1,126 @@
+#include "formats/points/spp/spp_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "formats/blocks/block_stream.h"
+#include "formats/blocks/columns.h"
+#include "formats/points/spp/spp_format.h"
+
+namespace spillway::detail {
+namespace {
+
+template <typename Values>
+bool all_finite(const Values& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+class SppReader : public PointReader {
+ public:
+  SppReader(std::unique_ptr<InputSource> source, const std::string& path)
+      : stream_(std::move(source), {"spp", kSppMagic, kSppVersion, "stream", kSppLargestBlock},
+                [this] { return fmt::format("{} points", points_); }) {
+    header_.name = path;
+    header_.format = "spp";
+    if (stream_.next() != kSppHeader) stream_.fail("the first block is no header");
+    parse_header();
+  }
+
+  [[nodiscard]] const PointHeader& header() const override { return header_; }
+
+  bool fetch(RawPoints& raw) override {
+    PointBlock& block = raw.decoded;
+    block.clear();
+    if (ended_) return false;
+    switch (stream_.next()) {
+      case kSppPoints:
+        parse_points(block);
+        return true;
+      case kSppTrailer:
+        parse_trailer();
+        ended_ = true;
+        return false;
+      default:
+        stream_.fail("a block is of unknown kind");
+    }
+  }
+
+  [[nodiscard]] std::optional<double> fraction_read() const override {
+    return stream_.fraction_read();
+  }
+
+ private:
+  void parse_header() {
+    stream_.take_version();
+    header_.version = fmt::format("{}", kSppVersion);
+    const auto coordinates = stream_.take<std::uint32_t>();
+    if (coordinates != 2 && coordinates != 3) stream_.fail("points are to have 2 or 3 coordinates");
+    header_.coordinates = static_cast<int>(coordinates);
+    const auto flags = stream_.take<std::uint32_t>();
+    if (flags > (kSppHasLattice | kSppHasCount | kSppHasExtent))
+      stream_.fail("unknown flags are set");
+    if ((flags & kSppHasLattice) != 0) {
+      Lattice& lattice = header_.lattice.emplace();
+      lattice.scale = stream_.take<std::array<double, 3>>();
+      lattice.offset = stream_.take<std::array<double, 3>>();
+      if (!all_finite(lattice.scale) || !all_finite(lattice.offset) ||
+          std::ranges::count(lattice.scale, 0) > 0) {
+        stream_.fail("the lattice has scales or offsets that make no sense");
+      }
+    }
+    if ((flags & kSppHasCount) != 0) header_.count = stream_.take<std::uint64_t>();
+    if ((flags & kSppHasExtent) != 0) header_.extent = stream_.take_extent();
+    header_.crs = as_text(stream_.left());
+  }
+
+  void parse_points(PointBlock& block) {
+    const auto size = stream_.take<std::uint32_t>();
+    if (size == 0 || size > kSppBlockPoints)
+      stream_.fail("a block's number of points makes no sense");
+    ColumnReader columns(stream_.left(), stream_.where());
+    block.points.resize(size);
+    for (int axis = 0; axis < header_.coordinates; ++axis) {
+      columns.read(size, column_);
+      const std::size_t invalid = first_invalid_coordinate(column_, header_.lattice.has_value());
+      if (invalid < size) {
+        stream_.fail(fmt::format("coordinate {} of point {} is not {}", column_[invalid],
+                                 points_ + invalid,
+                                 header_.lattice ? "an integer up to 2^53" : "finite"));
+      }
+      for (std::size_t i = 0; i < size; ++i) block.points[i][axis] = column_[i];
+    }
+    columns.expect_end();
+    block.index.resize(size);
+    for (std::size_t i = 0; i < size; ++i) block.index[i] = points_ + i;
+    points_ += size;
+  }
+
+  void parse_trailer() {
+    const auto total = stream_.take<std::uint64_t>();
+    if (!stream_.left().empty() || total != points_ || (header_.count && *header_.count != total)) {
+      stream_.fail(fmt::format("the numbers of points do not fit: {} came, and the end tells of {}",
+                               points_, total));
+    }
+    stream_.expect_end();
+  }
+
+  BlockStream stream_;
+  PointHeader header_;
+  std::vector<double> column_;
+  std::uint64_t points_ = 0;  // given out so far
+  bool ended_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<PointReader> open_spp_reader(std::unique_ptr<InputSource> source,
+                                             const std::string& path) {
+  return std::make_unique<SppReader>(std::move(source), path);
+}
+
+}  // namespace spillway::detail

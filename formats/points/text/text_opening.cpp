@@ -1,0 +1,481 @@
+#include "formats/points/text/text_opening.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "formats/bytes/fields.h"
+#include "formats/points/text/column_names.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+/// Bytes of the first rows, which settle the decimal sign.
+constexpr std::size_t kSample = std::size_t{1} << 16;
+
+/// Rows of so many numbers without a single decimal point may be fewer numbers with decimal commas.
+constexpr std::size_t kFewestAmbiguous = 4;
+
+/// Comments that name x and y, of which the last ones are kept.
+constexpr std::size_t kMostComments = 16;
+
+constexpr std::array kSeparators = {Separator::kSemicolon, Separator::kTab, Separator::kComma,
+                                    Separator::kBlanks};
+
+char sign_of(Separator separator) { return static_cast<char>(separator); }
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const std::size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == text.npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+std::vector<std::string_view>::const_iterator at_most(const std::vector<std::string_view>& fields,
+                                                      std::size_t count) {
+  return fields.begin() + static_cast<std::ptrdiff_t>(std::min(count, fields.size()));
+}
+
+/// Whether a field is made of what numbers are made of, even if it is none.
+bool resembles_number(std::string_view field) {
+  constexpr std::string_view kDigits = "0123456789";
+  double value = 0;
+  return read_decimal(field, false, value) ||
+         (field.find_first_not_of("0123456789+-.,eE") == field.npos &&
+          field.find_first_of(kDigits) != field.npos);
+}
+
+/// Whether a sign other than blanks separates fields of the line: stands outside of quotes.
+bool occurs(Separator separator, std::string_view line) {
+  bool in_quotes = false;
+  return separator != Separator::kBlanks && std::any_of(line.begin(), line.end(), [&](char c) {
+           in_quotes ^= c == '"';
+           return !in_quotes && c == sign_of(separator);
+         });
+}
+
+/// The first separator of the list that occurs in the line.
+Separator likely_separator(std::string_view line) {
+  const auto* const found =
+      std::find_if(kSeparators.begin(), kSeparators.end(),
+                   [&](Separator separator) { return occurs(separator, trimmed(line)); });
+  return found == kSeparators.end() ? Separator::kBlanks : *found;
+}
+
+/// A line of names, read.
+struct NamesLine {
+  Separator separator;
+  std::vector<std::string_view> names;
+  ColumnChoice choice;
+};
+
+NamesLine read_names(std::string_view line, Separator separator) {
+  NamesLine result{separator, text_names(line, separator), {}};
+  result.choice = choose_columns(result.names);
+  return result;
+}
+
+/// With the first separator that makes sense of the names. Tabs may also be mere blanks.
+NamesLine read_names(std::string_view line) {
+  NamesLine likely = read_names(line, likely_separator(line));
+  if (likely.choice.fault.empty()) return likely;
+  for (const Separator separator : kSeparators) {
+    const bool blanks = separator == Separator::kBlanks && occurs(Separator::kTab, trimmed(line));
+    if (!blanks && !occurs(separator, trimmed(line))) continue;
+    NamesLine other = read_names(line, separator);
+    if (other.choice.fault.empty()) return other;
+  }
+  return likely;
+}
+
+/// The text of a comment, without the sign that makes it one.
+std::string_view text_of_comment(std::string_view line) {
+  line = trimmed(line);
+  while (is_comment(line) && !line.empty()) {
+    line = trimmed(line.substr(line.starts_with("//") ? 2 : 1));
+  }
+  return line;
+}
+
+/// Without words in brackets, as the units in "x [m] y [m]".
+std::string without_brackets(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t blank = std::min(text.find_first_of(" \t"), text.size());
+    const std::string_view word = text.substr(0, blank);
+    const bool bracketed = (word.starts_with('(') && word.ends_with(')')) ||
+                           (word.starts_with('[') && word.ends_with(']'));
+    if (!bracketed) result += word;
+    result += text.substr(blank, 1);
+    text.remove_prefix(std::min(blank + 1, text.size()));
+  }
+  return std::string(trimmed(result));
+}
+
+/// Whether one of the names is a word that sentences have.
+bool is_prose(const std::vector<std::string_view>& names) {
+  constexpr std::array<std::string_view, 16> kWords = {"the", "of",   "and", "in", "is", "are",
+                                                       "for", "by",   "to",  "as", "at", "with",
+                                                       "or",  "from", "und", "von"};
+  return std::any_of(names.begin(), names.end(), [&](std::string_view name) {
+    return std::find(kWords.begin(), kWords.end(), name) != kWords.end();
+  });
+}
+
+/// A comment that names x and y.
+class CommentHeader {
+ public:
+  /// Nothing, if the comment names no x or no y. A label before a colon is left out, if the names
+  /// stand behind it.
+  static std::optional<CommentHeader> read(std::string_view comment, std::uint64_t line) {
+    if (const std::size_t colon = comment.find(':'); colon != comment.npos) {
+      CommentHeader header(comment.substr(colon + 1), line);
+      if (header.names_plane()) return header;
+    }
+    CommentHeader header(comment, line);  // of all its text
+    return header.names_plane() ? std::optional(std::move(header)) : std::nullopt;
+  }
+
+  [[nodiscard]] std::uint64_t line() const { return line_; }
+  [[nodiscard]] NamesLine names() const { return read_names(text_); }
+
+  /// Whether most words are names of columns, and not those of a sentence. Where x and y may be
+  /// words of one, and no z is named, all have to be.
+  static bool is_list(const NamesLine& names) {
+    const std::size_t count = names.names.size();
+    return names.choice.plain ? 2 * names.choice.known > count : names.choice.known == count;
+  }
+
+  /// Whether it names the columns of a row that has as many.
+  static bool is_header(const NamesLine& names) {
+    return names.choice.fault.empty() &&
+           (is_list(names) || (names.choice.plain && !is_prose(names.names)));
+  }
+
+  /// Whether x, y and z, if it is named, are columns 1 to 3.
+  static bool in_order(const NamesLine& names) {
+    const std::array<int, 3>& column = names.choice.column;
+    return column[0] == 0 && column[1] == 1 && (column[2] == 2 || column[2] < 0);
+  }
+
+ private:
+  CommentHeader(std::string_view text, std::uint64_t line)
+      : text_(without_brackets(trimmed(text))), line_(line) {}
+
+  /// Whether x and y are named, and not given, as in "E: 500000, N: 5400000".
+  [[nodiscard]] bool names_plane() const {
+    return text_.find_first_of(":=") == text_.npos && names().choice.column[0] >= 0;
+  }
+
+  std::string text_;
+  std::uint64_t line_;
+};
+
+/// What the first row alone tells of the layout.
+struct RowLayout {
+  Separator separator = Separator::kBlanks;
+  bool decimal_commas = false;
+  std::size_t count = 0;  // of columns
+};
+
+class Opening {
+ public:
+  Opening(LineReader& lines, const std::string& name) : lines_(lines), name_(name) {}
+
+  TextOpening read() {
+    if (!next_data_line()) return without_rows(first_columns({}));
+    if (line_.find('\r') != line_.npos) {
+      fail("has line ends of CR alone: convert them to LF (tr '\\r' '\\n')");
+    }
+    if (read_count()) return with_row(columns_of_row());
+    if (scan_points_) return without_rows(first_columns({}));
+    if (is_header()) return under_header();
+    return with_row(columns_of_row());
+  }
+
+ private:
+  /// Sets line_ to the next one that is no comment; false at the end. Of comments before it the
+  /// last ones that name x and y are kept.
+  bool next_data_line() {
+    while (lines_.next(line_)) {
+      if (!is_comment(line_)) return true;
+      if (auto header = CommentHeader::read(text_of_comment(line_), lines_.number())) {
+        if (comments_.size() == kMostComments) comments_.erase(comments_.begin());
+        comments_.push_back(std::move(*header));
+      }
+      lines_.pass_over();
+    }
+    return false;
+  }
+
+  /// Reads lines with counts of points, as in PTS; false if there is none, or no row behind.
+  bool read_count() {
+    while (const auto count = point_count_of_line(line_)) {
+      if (scan_points_.value_or(0) > 0) {
+        fail(fmt::format("is a count of points, but line {} says that {} points follow there",
+                         scan_line_, *scan_points_));
+      }
+      scan_points_ = count;
+      scan_line_ = lines_.number();
+      if (!next_data_line()) return false;
+    }
+    return scan_points_.has_value();
+  }
+
+  /// Whether none of the line's first three fields is or resembles a number, so that it can only
+  /// name the columns.
+  [[nodiscard]] bool is_header() const {
+    const auto begins_with_numbers = [&](Separator separator, std::size_t some, std::size_t all) {
+      const std::vector<std::string_view> fields = text_names(line_, separator);
+      const auto numbers = std::count_if(fields.begin(), at_most(fields, some), resembles_number);
+      return static_cast<std::size_t>(numbers) >= all;
+    };
+    return !begins_with_numbers(likely_separator(line_), 3, 1) &&
+           !begins_with_numbers(Separator::kBlanks, 2, 2);
+  }
+
+  TextOpening under_header() {
+    const std::string header(line_);
+    const NamesLine names = read_names(header);
+    if (!names.choice.fault.empty()) {
+      fail(fmt::format(
+          "is a header whose columns are {}: {}; name columns x, y and z, or put # before a line "
+          "that is no header",
+          listed(names.names), names.choice.fault));
+    }
+    if (!names.choice.notice.empty()) notices_.push_back(names.choice.notice);
+    const std::array<int, 3>& column = names.choice.column;
+    if (!next_data_line()) {
+      return without_rows(TextColumns(names.separator, false, column, names.names.size(), true));
+    }
+    std::vector<std::string_view> fields = text_fields(line_, names.separator);
+    const std::size_t all_fields = fields.size();
+    while (!fields.empty() && fields.back().empty()) fields.pop_back();
+    if (all_fields > 1 && all_fields < names.names.size()) {
+      fail(fmt::format(
+          "has {} columns, but the header names {}: {}; write names without blanks, or fill in the "
+          "missing column",
+          all_fields, names.names.size(), listed(names.names)));
+    }
+    if (fields.size() > names.names.size()) {
+      fail(fmt::format("has {} columns, but the header names {}: {}; name all of them, or none",
+                       fields.size(), names.names.size(), listed(names.names)));
+    }
+    return with_row(TextColumns(names.separator, has_decimal_commas(names.separator, column),
+                                column, names.names.size(), true));
+  }
+
+  /// The columns by the last comment that names those of the first row, else by the row itself.
+  /// Throws Error if a comment names x, y or z in other columns than that reads, but not all
+  /// columns.
+  TextColumns columns_of_row() {
+    for (auto comment = comments_.rbegin(); comment != comments_.rend(); ++comment) {
+      if (std::optional<TextColumns> columns = columns_of_comment(*comment)) return *columns;
+    }
+    const RowLayout layout = layout_of_row();
+    check_comments(layout.count);
+    return first_columns(layout);
+  }
+
+  std::optional<TextColumns> columns_of_comment(const CommentHeader& comment) {
+    const NamesLine names = comment.names();
+    if (!CommentHeader::is_header(names)) return std::nullopt;
+    const std::array<int, 3>& column = names.choice.column;
+    for (const bool any : {false, true}) {
+      for (const Separator separator : kSeparators) {
+        const std::vector<std::string_view> fields = text_fields(line_, separator);
+        if (fields.size() != names.names.size()) continue;
+        const bool commas = has_decimal_commas(separator, column);
+        if (!any && !are_numbers(fields, column, commas)) continue;
+        if (!CommentHeader::in_order(names) || !names.choice.notice.empty()) {
+          notices_.push_back(fmt::format("the comment in line {} is a header: {}", comment.line(),
+                                         taken_columns(names.names, column)));
+        }
+        return TextColumns(separator, commas, column, fields.size(), true);
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Throws Error if the last comment that lists columns has others than 1 to 3, which are to be
+  /// read as it does not fit a row of so many columns. Of sentences a notice will do.
+  void check_comments(std::size_t columns) {
+    if (comments_.empty()) return;
+    const auto list = std::find_if(
+        comments_.rbegin(), comments_.rend(),
+        [](const CommentHeader& comment) { return CommentHeader::is_list(comment.names()); });
+    const bool is_list = list != comments_.rend();
+    const CommentHeader& comment = is_list ? *list : comments_.back();
+    const NamesLine names = comment.names();
+    if (CommentHeader::in_order(names)) return;
+    if (!is_list) {
+      notices_.push_back(
+          fmt::format("the comment in line {} is not taken for a header: columns 1 to 3 are read",
+                      comment.line()));
+      return;
+    }
+    const std::string fault =
+        names.choice.fault.empty()
+            ? fmt::format("the first row, {}, has {} columns", lines_.line_name(), columns)
+            : names.choice.fault;
+    throw Error(fmt::format(
+        "{}: line {} is a comment that names the columns {}, but {}; name each column once, or "
+        "remove that line",
+        name_, comment.line(), listed(names.names), fault));
+  }
+
+  static TextColumns first_columns(const RowLayout& layout) {
+    return {layout.separator, layout.decimal_commas, first_three(layout.count), layout.count,
+            false};
+  }
+
+  /// The first separator with which the columns that are read are numbers.
+  RowLayout layout_of_row() {
+    // Two tabs side by side may be one column that is empty, or mere blanks.
+    const std::string_view text = trimmed(line_);
+    const bool tabs_only = text.find(' ') == text.npos && line_.find('\t') != line_.npos;
+    for (const Separator separator : kSeparators) {
+      const std::vector<std::string_view> fields = text_fields(line_, separator);
+      if (fields.size() < 2 || (separator == Separator::kBlanks && tabs_only)) continue;
+      const std::array<int, 3> column = first_three(fields.size());
+      for (const bool commas : {false, true}) {
+        if (commas && separator == Separator::kComma) continue;
+        if (!are_numbers(fields, column, commas)) continue;
+        if (separator == Separator::kComma) check_commas(fields);
+        const bool decimal_commas = commas || has_decimal_commas(separator, column);
+        if (decimal_commas && separator == Separator::kBlanks) {
+          notices_.emplace_back("commas are read as decimal commas, as blanks separate columns");
+        }
+        return {separator, decimal_commas, fields.size()};
+      }
+    }
+    // No way to read it; the likeliest one words the error.
+    const Separator likeliest = likely_separator(line_);
+    return {likeliest, false, text_fields(line_, likeliest).size()};
+  }
+
+  static std::array<int, 3> first_three(std::size_t count) { return {0, 1, count == 2 ? -1 : 2}; }
+
+  static bool are_numbers(const std::vector<std::string_view>& fields,
+                          const std::array<int, 3>& column, bool decimal_commas) {
+    double value = 0;
+    return std::all_of(column.begin(), column.end(), [&](int i) {
+      return i < 0 || read_decimal(fields[i], decimal_commas, value);
+    });
+  }
+
+  /// Throws Error if the commas of a first row without a header may be decimal commas, too.
+  void check_commas(const std::vector<std::string_view>& fields) const {
+    const auto numbers = static_cast<std::size_t>(
+        std::find_if(fields.begin(), fields.end(),
+                     [](std::string_view field) { return !resembles_number(field); }) -
+        fields.begin());
+    const std::string_view text = trimmed(line_);
+    std::size_t commas = 0;
+    std::size_t with_blanks = 0;
+    for (std::size_t at = text.find(','); at != text.npos; at = text.find(',', at + 1)) {
+      ++commas;
+      const auto is_blank = [&](std::size_t i) { return text[i] == ' ' || text[i] == '\t'; };
+      if ((at > 0 && is_blank(at - 1)) || (at + 1 < text.size() && is_blank(at + 1))) ++with_blanks;
+    }
+    if (with_blanks == commas) return;
+    if (with_blanks == 0 && numbers < kFewestAmbiguous) return;
+    if (text.find('"') != text.npos || sample_has(Separator::kComma, '.', numbers)) return;
+    fail(fmt::format(
+        "may be columns separated by commas, or numbers with decimal commas: {}; begin the file "
+        "with a line that names its columns, as x,y,z, or separate them by semicolons",
+        quoted(line_)));
+  }
+
+  /// Calls `look` with the fields of the first rows, until it returns true; false at their end.
+  template <typename Look>
+  bool look_at_rows(Separator separator, Look&& look) const {
+    if (look(text_fields(line_, separator))) return true;
+    std::string_view rest = lines_.unread().substr(0, kSample);
+    while (!rest.empty()) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      std::string_view row = rest.substr(0, end);
+      if (row.ends_with('\r')) row.remove_suffix(1);
+      if (look(text_fields(row, separator))) return true;
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    return false;
+  }
+
+  /// Whether one of the first `count` columns of the first rows is a number with this decimal sign.
+  [[nodiscard]] bool sample_has(Separator separator, char sign, std::size_t count) const {
+    return look_at_rows(separator, [&](const std::vector<std::string_view>& fields) {
+      double value = 0;
+      return std::any_of(fields.begin(), at_most(fields, count), [&](std::string_view field) {
+        return field.find(sign) != field.npos && read_decimal(field, sign == ',', value);
+      });
+    });
+  }
+
+  /// Whether the first number of these columns with a decimal sign has a comma.
+  [[nodiscard]] bool has_decimal_commas(Separator separator,
+                                        const std::array<int, 3>& column) const {
+    if (separator == Separator::kComma) return false;
+    bool commas = false;
+    look_at_rows(separator, [&](const std::vector<std::string_view>& fields) {
+      for (const int i : column) {
+        if (i < 0 || static_cast<std::size_t>(i) >= fields.size()) continue;
+        const std::string_view field = fields[i];
+        double value = 0;
+        commas = field.find(',') != field.npos && read_decimal(field, true, value);
+        if (commas || (field.find('.') != field.npos && read_decimal(field, false, value))) {
+          return true;
+        }
+      }
+      return false;
+    });
+    return commas;
+  }
+
+  TextOpening with_row(TextColumns columns) {
+    Point<3> point;
+    if (scan_points_ && columns.coordinates() < 3) {
+      fail(
+          fmt::format("has no third column, but line {} is a count of points, as in PTS, where "
+                      "rows have three or more; remove that line if it is none",
+                      scan_line_));
+    }
+    if (!columns.parse(line_, point)) {
+      throw Error(fmt::format("{}: {}, {}", name_, lines_.line_name(), columns.fault(line_)));
+    }
+    TextOpening opening = without_rows(std::move(columns));
+    opening.first_row = line_;
+    return opening;
+  }
+
+  TextOpening without_rows(TextColumns columns) {
+    return {std::move(columns), std::nullopt, scan_points_, scan_line_, std::move(notices_)};
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("{}: {} {}", name_, lines_.line_name(), what));
+  }
+
+  LineReader& lines_;
+  const std::string& name_;
+  std::string_view line_;
+  std::vector<CommentHeader> comments_;
+  std::optional<std::uint64_t> scan_points_;
+  std::uint64_t scan_line_ = 0;
+  std::vector<std::string> notices_;
+};
+
+}  // namespace
+
+TextOpening read_text_opening(LineReader& lines, const std::string& name) {
+  return Opening(lines, name).read();
+}
+
+std::optional<std::uint64_t> point_count_of_line(std::string_view line) {
+  return parse_count(trimmed(line));
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,148 @@
+#include "formats/points/text/text_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "formats/bytes/line_reader.h"
+#include "formats/points/text/text_columns.h"
+#include "formats/points/text/text_opening.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::size_t kBlockPoints = 65536;
+
+class TextReader : public PointReader {
+ public:
+  TextReader(std::unique_ptr<InputSource> source, const std::string& path,
+             std::unique_ptr<InputFile> content, std::uint64_t piece_bytes)
+      : source_(std::move(source)),
+        content_(std::move(content)),
+        lines_(content_ ? *content_ : *source_),
+        opening_(read_text_opening(lines_, source_->name())),
+        columns_(opening_.columns),
+        piece_bytes_(piece_bytes) {
+    has_first_ = opening_.first_row.has_value();
+    if (has_first_) line_ = *opening_.first_row;
+    begin_ = has_first_ ? lines_.line_begin() : lines_.position();
+    // Where one scan of a PTS ends and the next one's count stands only what is before tells.
+    in_pieces_ = path != "-" && !content_ && !opening_.scan_points && source_->seekable();
+    header_.notices = std::move(opening_.notices);
+    header_.name = path;
+    header_.format = "text";
+    header_.coordinates = columns_.coordinates();
+  }
+
+  [[nodiscard]] const PointHeader& header() const override { return header_; }
+
+  bool fetch(RawPoints& raw) override {
+    PointBlock& block = raw.decoded;
+    block.clear();
+    Point<3> point;
+    if (has_first_ && columns_.parse(line_, point)) append(point, block);
+    has_first_ = false;
+    while (block.size() < kBlockPoints && lines_.position() < end_ && lines_.next(line_)) {
+      // Comments are rare: they are looked for only where there is no point.
+      if (columns_.parse(line_, point)) {
+        append(point, block);
+      } else if (is_comment(line_)) {
+        lines_.pass_over();
+      } else {
+        begin_scan();
+      }
+    }
+    if (block.size() == 0) check_scan();
+    return block.size() > 0;
+  }
+
+  [[nodiscard]] std::optional<std::uint64_t> pieces() const override {
+    if (!in_pieces_) return std::nullopt;
+    const std::uint64_t bytes = *source_->size() - std::min(begin_, *source_->size());
+    return bytes / piece_bytes_ + (bytes % piece_bytes_ == 0 ? 0 : 1);
+  }
+
+  [[nodiscard]] std::optional<double> fraction_read() const override {
+    return source_->fraction_read();
+  }
+
+ private:
+  void go_to_piece(std::uint64_t piece) override {
+    const std::uint64_t from = begin_ + piece * piece_bytes_;
+    lines_.seek(from);
+    end_ = from + piece_bytes_;
+    next_ = 0;
+    has_first_ = false;
+  }
+
+  /// Takes a line that holds no point: the count of the next scan in a PTS, or an error.
+  void begin_scan() {
+    const std::optional<std::uint64_t> count =
+        opening_.scan_points ? point_count_of_line(line_) : std::nullopt;
+    if (!count) fail(fmt::format("{}, {}", lines_.line_name(), columns_.fault(line_)));
+    check_scan();
+    opening_.scan_points = count;
+    opening_.scan_line = lines_.number();
+    scan_begin_ = next_;
+  }
+
+  /// Throws Error if a scan of a PTS has not as many points as the line before it says.
+  void check_scan() const {
+    const std::uint64_t came = next_ - scan_begin_;
+    if (!opening_.scan_points || *opening_.scan_points == came) return;
+    fail(
+        fmt::format("line {} says {} points, but {} follow; get a complete copy, or correct the "
+                    "line",
+                    opening_.scan_line, *opening_.scan_points, came));
+  }
+
+  void append(const Point<3>& point, PointBlock& block) {
+    if (!std::isfinite(point[0] + point[1] + point[2]) && !all_finite(point)) {
+      fail(fmt::format("{} in {} is not finite: {}; correct or remove it",
+                       lines_.numbered() ? fmt::format("point {}", next_) : "the point",
+                       lines_.line_name(), quoted(line_)));
+    }
+    block.points.push_back(point);
+    block.index.push_back(next_++);
+  }
+
+  static bool all_finite(const Point<3>& p) {
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("{}: {}", source_->name(), what));
+  }
+
+  std::unique_ptr<InputSource> source_;
+  std::unique_ptr<InputFile> content_;  // decompressed, or nothing
+  LineReader lines_;
+  TextOpening opening_;  // of a PTS: what the last count line says
+  TextColumns columns_;
+  std::string_view line_;
+  bool has_first_ = false;  // line_ is the first row, still to be given out
+  PointHeader header_;
+  std::uint64_t next_ = 0;        // number of the next point, in its piece if that was asked for
+  std::uint64_t scan_begin_ = 0;  // number of the first point behind the last count line
+
+  std::uint64_t piece_bytes_;
+  bool in_pieces_ = false;
+  std::uint64_t begin_ = 0;  // byte where the first point's line begins
+  std::uint64_t end_ = std::numeric_limits<std::uint64_t>::max();  // no line from here on is read
+};
+
+}  // namespace
+
+std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputSource> source,
+                                              const std::string& path,
+                                              std::unique_ptr<InputFile> content,
+                                              std::uint64_t piece_bytes) {
+  return std::make_unique<TextReader>(std::move(source), path, std::move(content), piece_bytes);
+}
+
+}  // namespace spillway::detail

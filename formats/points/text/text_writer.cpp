@@ -1,0 +1,122 @@
+#include "formats/points/text/text_writer.h"
+
+#include <fmt/compile.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "formats/bytes/bytes.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::size_t kFlushAt = std::size_t{256} << 10;
+
+// 10^0 to 10^9 as doubles and as integers.
+constexpr std::array<std::int64_t, 10> kPowersOfTen = {
+    1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000, 1000000000};
+
+/// How to print integer * scale + offset in decimals without rounding: as
+/// (integer + shift) / 10^decimals.
+struct Decimal {
+  int decimals;
+  std::int64_t shift;
+};
+
+/// Nothing if the scale is no power of ten from 1 down, or the offset no multiple of it.
+std::optional<Decimal> exact_decimal(double scale, double offset) {
+  constexpr double kLargestShift = 1e15;
+  for (std::size_t d = 0; d < kPowersOfTen.size(); ++d) {
+    const auto power = static_cast<double>(kPowersOfTen[d]);
+    if (scale != 1.0 / power) continue;
+    const double shift = std::round(offset * power);
+    if (std::abs(shift) > kLargestShift || shift / power != offset) return std::nullopt;
+    return Decimal{static_cast<int>(d), static_cast<std::int64_t>(shift)};
+  }
+  return std::nullopt;
+}
+
+class TextWriter : public PointWriter {
+ public:
+  TextWriter(std::unique_ptr<OutputFile> file, const PointWriterOptions& options, char separator)
+      : file_(std::move(file)),
+        lattice_(options.lattice),
+        count_(options.count),
+        coordinates_(options.coordinates),
+        separator_(separator) {
+    for (int axis = 0; lattice_ && axis < 3; ++axis) {
+      decimal_[axis] = exact_decimal(lattice_->scale[axis], lattice_->offset[axis]);
+    }
+  }
+
+  void write(std::span<const Point<3>> points,
+             std::span<const PointAttributes> /*attributes*/) override {
+    for (const Point<3>& p : points) {
+      for (int axis = 0; axis < coordinates_; ++axis) {
+        if (axis > 0) text_.push_back(separator_);
+        append(axis, p[axis]);
+      }
+      text_.push_back('\n');
+      if (text_.size() >= kFlushAt) flush();
+    }
+    written_ += points.size();
+  }
+
+  void finish() override {
+    check_written(*file_, count_, written_);
+    flush();
+    file_->commit();
+  }
+
+ private:
+  void append(int axis, double value) {
+    constexpr double kLargestExact = 9007199254740992.0;
+    const std::optional<Decimal>& decimal = decimal_[axis];
+    if (decimal && std::abs(value) < kLargestExact && value == std::floor(value)) {
+      append_decimal(static_cast<std::int64_t>(value) + decimal->shift, decimal->decimals);
+    } else {
+      const double world = lattice_ ? lattice_->to_world(axis, value) : value;
+      fmt::format_to(std::back_inserter(text_), FMT_COMPILE("{}"), world);
+    }
+  }
+
+  /// Prints value / 10^decimals.
+  void append_decimal(std::int64_t value, int decimals) {
+    if (value < 0) text_.push_back('-');
+    const std::int64_t magnitude = std::abs(value);
+    const fmt::format_int whole(magnitude / kPowersOfTen[decimals]);
+    text_.append(whole.data(), whole.data() + whole.size());
+    if (decimals == 0) return;
+    text_.push_back('.');
+    const fmt::format_int digits(magnitude % kPowersOfTen[decimals]);
+    for (std::size_t i = digits.size(); i < static_cast<std::size_t>(decimals); ++i) {
+      text_.push_back('0');
+    }
+    text_.append(digits.data(), digits.data() + digits.size());
+  }
+
+  void flush() {
+    file_->write(as_bytes_of({text_.data(), text_.size()}));
+    text_.clear();
+  }
+
+  std::unique_ptr<OutputFile> file_;
+  std::optional<Lattice> lattice_;
+  std::array<std::optional<Decimal>, 3> decimal_;  // by axis
+  std::optional<std::uint64_t> count_;
+  std::uint64_t written_ = 0;
+  int coordinates_;
+  char separator_;
+  fmt::memory_buffer text_;
+};
+
+}  // namespace
+
+std::unique_ptr<PointWriter> open_text_writer(std::unique_ptr<OutputFile> file,
+                                              const PointWriterOptions& options, char separator) {
+  return std::make_unique<TextWriter>(std::move(file), options, separator);
+}
+
+}  // namespace spillway::detail

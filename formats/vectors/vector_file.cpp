@@ -1,0 +1,55 @@
+#include "formats/vectors/vector_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "formats/gdal/gdal.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+/// What belongs to a vector file beside itself: parts, indices and journals. Those of an older file
+/// of that name would make nonsense of the new one.
+constexpr std::array<std::string_view, 8> kPartExtensions = {".shx", ".dbf", ".prj", ".cpg",
+                                                             ".qix", ".sbn", ".sbx", ".qpj"};
+constexpr std::array<std::string_view, 3> kJournalEnds = {"-wal", "-shm", "-journal"};
+
+/// The layer's name for a file of that stem. GDAL's GeoPackages take any name, but none that begins
+/// with one of these signs.
+std::string layer_name(std::string stem) {
+  constexpr std::string_view kNotFirst = "`~!@#$%^&*()+-={}|[]\\:\";'<>?,./";
+  const std::size_t end = std::min(stem.find_first_not_of(kNotFirst), stem.size());
+  std::fill_n(stem.begin(), end, '_');
+  return stem;
+}
+
+}  // namespace
+
+VectorFile::VectorFile(VectorLayerOptions options) : output_(options.path) {
+  options.name = output_.name();
+  options.layer = layer_name(output_.target().stem().string());
+  options.path = output_.path();
+  if (options.driver == "ESRI Shapefile" && options.path.find('\\') != std::string::npos) {
+    throw Error(fmt::format(
+        "cannot write {}: its path has a backslash, which shapefiles cannot be written to; choose "
+        "another name or folder",
+        options.name));
+  }
+  layer_ = gdal().create_layer(options);
+}
+
+void VectorFile::finish() {
+  layer_->finish();
+  layer_.reset();
+  const std::span<const std::string_view> parts(kPartExtensions);
+  bytes_ =
+      output_.finish(kJournalEnds, output_.target().extension() == ".shp" ? parts : parts.first(0));
+}
+
+}  // namespace spillway::detail

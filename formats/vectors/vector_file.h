@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "formats/disk/private_output.h"
+#include "formats/gdal/vector_layer.h"
+
+namespace spillway::detail {
+
+/// A vector file (GeoPackage, Shapefile, GeoJSON) being written. GDAL writes it into a private
+/// folder beside the target; finish() gives all its files (a shapefile is five) their names. If
+/// destroyed without, or after a signal, nothing is left.
+class VectorFile {
+ public:
+  /// Begins the file `options.path` with a layer that is named after it; name and layer of the
+  /// options are set here. Throws Error if it cannot be created.
+  explicit VectorFile(VectorLayerOptions options);
+
+  [[nodiscard]] VectorLayer& layer() { return *layer_; }
+
+  /// Completes the file. What was there of that name is replaced, with the files that belong to it.
+  void finish();
+
+  /// Bytes of all files; 0 before finish().
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  PrivateOutput output_;
+  std::unique_ptr<VectorLayer> layer_;  ///< writes to output_, so it goes first
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace spillway::detail

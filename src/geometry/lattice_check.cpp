@@ -1,0 +1,96 @@
+#include "src/geometry/lattice_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+bool is_exact_on(int axis, const Lattice& lattice, const Box<3>& integers, int dimension) {
+  const double lo = integers.lo[axis];
+  const double hi = integers.hi[axis];
+  return axis < dimension ? lattice.keeps_apart(axis, lo, hi) : lattice.is_finite(axis, lo, hi);
+}
+
+[[noreturn]] void fail(const std::string& name, const Lattice& lattice, const Box<3>& integers,
+                       int axis, std::string_view remedy) {
+  const std::string map = fmt::format("{}: {} is an integer times {} plus {}", name, "xyz"[axis],
+                                      lattice.scale[axis], lattice.offset[axis]);
+  const double at_lo = lattice.to_world(axis, integers.lo[axis]);
+  const double at_hi = lattice.to_world(axis, integers.hi[axis]);
+  if (!std::isfinite(at_hi - at_lo)) {
+    throw Error(fmt::format("{}, which is more than a number holds; {}", map, remedy));
+  }
+  const double far = std::max(std::abs(at_lo), std::abs(at_hi));
+  throw Error(fmt::format(
+      "{}, but numbers as large as {:.6g} are {:.3g} apart, so that neighbours would "
+      "become one point; {}",
+      map, far, std::nextafter(far, std::numeric_limits<double>::infinity()) - far, remedy));
+}
+
+}  // namespace
+
+bool is_exact(const Lattice& lattice, const Box<3>& integers, int dimension) {
+  if (integers.empty()) return true;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!is_exact_on(axis, lattice, integers, dimension)) return false;
+  }
+  return true;
+}
+
+void check_lattice(const std::string& name, const Lattice& lattice, const Box<3>& integers,
+                   int dimension, std::string_view remedy) {
+  if (integers.empty()) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!is_exact_on(axis, lattice, integers, dimension))
+      fail(name, lattice, integers, axis, remedy);
+  }
+}
+
+double exact_up_to(const Lattice& lattice, int dimension) {
+  for (double most = 0x1p53; most >= 1; most /= 2) {
+    if (is_exact(lattice, {{-most, -most, -most}, {most, most, most}}, dimension)) return most;
+  }
+  return 0;
+}
+
+/// Without a comparison, so that several are looked at in one step: the bits of numbers are in the
+/// order of their sizes, and the sum reaches the highest bit if one is larger.
+bool any_beyond(std::span<const Point<3>> points, double most) {
+  constexpr std::uint64_t kLargestBits = std::numeric_limits<std::int64_t>::max();
+  const std::uint64_t up_to_highest = kLargestBits - std::bit_cast<std::uint64_t>(most);
+  std::uint64_t sums = 0;
+  for (const Point<3>& point : points) {
+    for (const double coordinate : point) {
+      sums |= std::bit_cast<std::uint64_t>(std::abs(coordinate)) + up_to_highest;
+    }
+  }
+  return sums > kLargestBits;
+}
+
+Box<3> box_around(std::span<const Point<3>> points) {
+  Box<3> box;
+  for (const Point<3>& point : points) box.expand(point);
+  return box;
+}
+
+Box<3> integers_of(const Lattice& lattice, const Box<3>& world) {
+  Box<3> integers;
+  if (world.empty()) return integers;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double at_lo = (world.lo[axis] - lattice.offset[axis]) / lattice.scale[axis];
+    const double at_hi = (world.hi[axis] - lattice.offset[axis]) / lattice.scale[axis];
+    integers.lo[axis] = std::floor(std::min(at_lo, at_hi)) - 1;  // a scale may be negative
+    integers.hi[axis] = std::ceil(std::max(at_lo, at_hi)) + 1;
+  }
+  return integers;
+}
+
+}  // namespace spillway::detail

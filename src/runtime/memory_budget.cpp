@@ -1,0 +1,83 @@
+#include "src/runtime/memory_budget.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr std::uint64_t kLargestDefault = 2048 * kMiB;
+
+/// The number in a control group's file; the largest there is if it says "max" or is not there.
+std::uint64_t control_group_limit(const char* path) {
+  std::ifstream file(path);
+  std::uint64_t bytes = 0;
+  return file >> bytes ? bytes : ~std::uint64_t{0};
+}
+
+std::uint64_t available_memory() {
+  const auto machine = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                       static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return std::min({machine, control_group_limit("/sys/fs/cgroup/memory.max"),
+                   control_group_limit("/sys/fs/cgroup/memory/memory.limit_in_bytes")});
+}
+
+}  // namespace
+
+std::uint64_t default_memory_limit(unsigned processes) {
+  return std::min(kLargestDefault, available_memory() / 4 / processes);
+}
+
+std::uint64_t parse_memory_size(const std::string& text) {
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [unit, fault] = std::from_chars(text.data(), end, number, std::chars_format::fixed);
+  std::string name(unit, end);
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  const std::size_t power = name.empty() ? 0 : std::string_view("KMGT").find(name[0]) + 1;
+  const bool known =
+      name.empty() || name == "B" ||
+      (power > 0 && (name.size() == 1 || name.substr(1) == "B" || name.substr(1) == "IB"));
+  const double bytes = name == "B" ? number : std::ldexp(number, static_cast<int>(10 * power));
+  if (fault != std::errc() || !known || !(bytes >= 1) || bytes > 0x1p62) {
+    throw UsageError(fmt::format("\"{}\" is no size; write it as 512M or 2G", text));
+  }
+  return static_cast<std::uint64_t>(bytes);
+}
+
+std::string memory_size_text(std::uint64_t bytes) {
+  const double mebibytes = static_cast<double>(bytes) / kMiB;
+  return mebibytes < 1024 ? fmt::format("{:.4g} MiB", mebibytes)
+                          : fmt::format("{:.4g} GiB", mebibytes / 1024);
+}
+
+void MemoryBudget::take(std::uint64_t bytes, const char* purpose) {
+  const std::uint64_t used = used_ += bytes;
+  if (used <= limit_) return;
+  used_ -= bytes;
+  const double parts = static_cast<double>(whole_) / static_cast<double>(limit_);
+  const auto size = [parts](std::uint64_t least) {
+    return fmt::format("{:.0f}M", std::floor(static_cast<double>(least) * parts / kMiB) + 1);
+  };
+  const std::uint64_t perhaps = used + used / 4;
+  std::string advice = size(perhaps) + " may be enough";
+  if (enough_ > perhaps) {
+    advice += fmt::format(", {} is", size(enough_));
+  } else if (enough_ >= used) {
+    advice = size(enough_) + " is enough";
+  }
+  throw Error(fmt::format("{} of memory are too little for {}; --memory {}",
+                          memory_size_text(whole_), purpose, advice));
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,85 @@
+#include "stream/checker/checker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/error.h"
+#include "src/geometry/canonical_hash.h"
+#include "stream/checker/mesh_proof.h"
+#include "stream/checker/stream_proof.h"
+
+namespace spillway::detail {
+namespace {
+
+void require_dimension(int dimension) {
+  if (dimension != 2 && dimension != 3) {
+    throw Error(
+        fmt::format("a mesh of dimension {} cannot be checked: only 2 and 3 can", dimension));
+  }
+}
+
+template <int D>
+Point<D> output_point(const Point<3>& p) {
+  Point<D> result;
+  std::copy_n(p.begin(), D, result.begin());
+  return result;
+}
+
+template <int D>
+std::uint64_t hash_of(const Mesh& mesh) {
+  CanonicalHash<D> hash;
+  for (std::size_t s = 0; s + D < mesh.corners.size(); s += D + 1) {
+    std::array<Point<D>, D + 1> simplex;
+    for (int i = 0; i <= D; ++i) {
+      const std::uint64_t vertex = mesh.corners[s + i];
+      if (vertex >= mesh.vertices.size()) {
+        throw Error(fmt::format("{} {} names vertex {}, but the mesh has {} vertices",
+                                Words<D>::kSimplex, s / (D + 1), vertex, mesh.vertices.size()));
+      }
+      simplex[i] = output_point<D>(mesh.vertices[vertex]);
+    }
+    hash.add(simplex);
+  }
+  return hash.value();
+}
+
+CheckReport read_stream(MeshStreamReader& reader, const CheckOptions& options, StreamTask task) {
+  require_dimension(reader.header().dimension);
+  CheckReport report;
+  if (reader.header().dimension == 2) {
+    prove_stream<2>(reader, options, task, report);
+  } else {
+    prove_stream<3>(reader, options, task, report);
+  }
+  return report;
+}
+
+}  // namespace
+
+CheckReport check_mesh(const Mesh& mesh, const CheckOptions& options) {
+  require_dimension(mesh.header.dimension);
+  CheckReport report;
+  report.vertices = mesh.vertices.size();
+  report.simplices = mesh.corners.size() / mesh.corners_per_simplex();
+  if (mesh.header.dimension == 2) {
+    prove_mesh<2>(mesh, options, report);
+  } else {
+    prove_mesh<3>(mesh, options, report);
+  }
+  return report;
+}
+
+CheckReport check_mesh_stream(MeshStreamReader& reader, const CheckOptions& options) {
+  return read_stream(reader, options, StreamTask::kProve);
+}
+
+CheckReport count_mesh_stream(MeshStreamReader& reader, const CheckOptions& options) {
+  return read_stream(reader, options, StreamTask::kCount);
+}
+
+std::uint64_t canonical_hash(const Mesh& mesh) {
+  require_dimension(mesh.header.dimension);
+  return mesh.header.dimension == 2 ? hash_of<2>(mesh) : hash_of<3>(mesh);
+}
+
+}  // namespace spillway::detail

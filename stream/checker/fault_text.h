@@ -1,0 +1,96 @@
+#pragma once
+// The words of a proof: how faults name simplices, facets and vertices, and how they are counted.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "src/geometry/point.h"
+#include "stream/checker/checker.h"
+
+namespace spillway::detail {
+
+/// The words for a simplex and its facets.
+template <int D>
+struct Words;
+template <>
+struct Words<2> {
+  static constexpr const char* kSimplex = "triangle";
+  static constexpr const char* kSimplices = "triangles";
+  static constexpr const char* kFacet = "edge";
+  static constexpr const char* kRidge = "vertex";
+};
+template <>
+struct Words<3> {
+  static constexpr const char* kSimplex = "tetrahedron";
+  static constexpr const char* kSimplices = "tetrahedra";
+  static constexpr const char* kFacet = "facet";
+  static constexpr const char* kRidge = "edge";
+};
+
+/// A vertex as faults name it: its number and its output coordinates.
+template <int D>
+struct NamedVertex {
+  std::uint64_t number;
+  Point<D> point;
+};
+
+/// "vertex 7 (1.5, 2)".
+template <int D>
+std::string vertex_text(const NamedVertex<D>& vertex) {
+  return fmt::format("vertex {} ({})", vertex.number, fmt::join(vertex.point, ", "));
+}
+
+/// "5, 7 at (0, 0), (1, 0)".
+template <int D, std::size_t K>
+std::string list_text(const std::array<NamedVertex<D>, K>& vertices) {
+  std::string numbers;
+  std::string points;
+  for (const auto& vertex : vertices) {
+    const char* comma = numbers.empty() ? "" : ", ";
+    numbers += fmt::format("{}{}", comma, vertex.number);
+    points += fmt::format("{}({})", comma, fmt::join(vertex.point, ", "));
+  }
+  return fmt::format("{} at {}", numbers, points);
+}
+
+/// "triangle 3 (vertices 5, 6, 7 at (0, 0), (1, 0), (0, 1))".
+template <int D>
+std::string simplex_text(std::uint64_t number, const std::array<NamedVertex<D>, D + 1>& vertices) {
+  return fmt::format("{} {} (vertices {})", Words<D>::kSimplex, number, list_text<D>(vertices));
+}
+
+/// Adds faults to a report, described as long as there are few.
+class Faults {
+ public:
+  Faults(CheckReport& report, std::size_t most) : report_(report), most_(most) {}
+
+  template <typename... Args>
+  void add(fmt::format_string<Args...> format, Args&&... args) {
+    ++report_.fault_count;
+    if (report_.faults.size() < most_) {
+      report_.faults.push_back(fmt::format(format, std::forward<Args>(args)...));
+    }
+  }
+
+  /// Adds those of another report, in their order.
+  void add(const CheckReport& other) {
+    report_.fault_count += other.fault_count;
+    for (const std::string& fault : other.faults) {
+      if (report_.faults.size() < most_) report_.faults.push_back(fault);
+    }
+  }
+
+  [[nodiscard]] std::uint64_t count() const { return report_.fault_count; }
+
+ private:
+  CheckReport& report_;
+  std::size_t most_;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,61 @@
+#include "stream/checker/open_vertices.h"
+
+#include <fmt/format.h>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+
+template <int D>
+void OpenVertices<D>::enter(const MeshBlock& block, const std::vector<bool>& finalized_here,
+                            std::vector<Point<D>>& points, std::vector<std::uint32_t>& slots) {
+  slots.clear();
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    slots.push_back(add(points[v], !finalized_here[v]));
+  }
+  for (const std::uint64_t number : block.imported) {
+    Importable* found = importable_.find({number, 0});
+    if (found == nullptr) {
+      throw Error(
+          fmt::format("the mesh stream uses vertex {}, which has not come yet or comes no "
+                      "more; write the file again",
+                      number));
+    }
+    slots.push_back(found->slot);
+    points.push_back(vertices_[found->slot].point);
+    if (finalized_here[slots.size() - 1]) importable_.erase(found);
+  }
+}
+
+template <int D>
+std::uint32_t OpenVertices<D>::add(const Point<D>& point, bool importable) {
+  if (free_.empty()) {
+    if (vertices_.size() == Importable::kEmpty) {
+      throw Error(fmt::format("the mesh stream has {} vertices open at a time, too many to check",
+                              vertices_.size()));
+    }
+    free_.push_back(static_cast<std::uint32_t>(vertices_.size()));
+    vertices_.emplace_back();
+  }
+  const std::uint32_t slot = free_.back();
+  free_.pop_back();
+  vertices_[slot] = {.point = point, .number = announced_++, .holders = 0};
+  if (importable) importable_.insert({vertices_[slot].number, slot});
+  return slot;
+}
+
+template <int D>
+void OpenVertices<D>::finalize(std::uint32_t slot) {
+  Vertex& vertex = vertices_[slot];
+  if (vertex.finalized) {
+    throw Error(fmt::format("the mesh stream finalizes vertex {} twice; write the file again",
+                            vertex.number));
+  }
+  vertex.finalized = true;
+  if (vertex.holders == 0) free_.push_back(slot);
+}
+
+template class OpenVertices<2>;
+template class OpenVertices<3>;
+
+}  // namespace spillway::detail

@@ -1,0 +1,53 @@
+#include "stream/checker/stream_coordinates.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spillway::detail {
+
+template <int D>
+StreamCoordinates<D>::StreamCoordinates(const MeshStreamHeader& header,
+                                        const std::optional<Lattice>& input_lattice)
+    : lattice_(header.lattice ? header.lattice : input_lattice),
+      blocks_hold_integers_(header.lattice.has_value()),
+      on_lattice_(lattice_ && lattice_->isotropic(D)) {}
+
+template <int D>
+int StreamCoordinates<D>::axis_off_lattice(const Point<3>& in_block) const {
+  if (!lattice_) return -1;
+  for (int k = 0; k < D; ++k) {
+    const bool is_on = blocks_hold_integers_ ? in_block[k] == std::trunc(in_block[k])
+                                             : lattice_->to_integer(k, in_block[k]).has_value();
+    if (!is_on) return k;
+  }
+  return -1;
+}
+
+template <int D>
+Point<D> StreamCoordinates<D>::for_predicates(const Point<3>& in_block) const {
+  Point<D> point;
+  std::copy_n(in_block.begin(), D, point.begin());
+  if (blocks_hold_integers_ == on_lattice_) return point;
+  for (int k = 0; k < D; ++k) {
+    if (blocks_hold_integers_) {
+      point[k] = lattice_->to_world(k, point[k]);
+    } else {
+      const double nearest = std::round((point[k] - lattice_->offset[k]) / lattice_->scale[k]);
+      point[k] = lattice_->to_integer(k, point[k]).value_or(nearest);
+    }
+  }
+  return point;
+}
+
+template <int D>
+Point<D> StreamCoordinates<D>::to_output(const Point<D>& point) const {
+  if (!on_lattice_) return point;
+  Point<D> result;
+  for (int k = 0; k < D; ++k) result[k] = lattice_->to_world(k, point[k]);
+  return result;
+}
+
+template class StreamCoordinates<2>;
+template class StreamCoordinates<3>;
+
+}  // namespace spillway::detail

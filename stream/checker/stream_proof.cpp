@@ -1,0 +1,338 @@
+#include "stream/checker/stream_proof.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "src/geometry/canonical_hash.h"
+#include "src/parallel/parallel.h"
+#include "stream/checker/mesh_proof.h"
+#include "stream/checker/open_vertices.h"
+#include "stream/checker/probing_table.h"
+
+namespace spillway::detail {
+namespace {
+
+// A facet that one simplex has so far. 24 bytes.
+template <int D>
+struct OpenFacet {
+  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0} >> 2;
+
+  std::array<std::uint32_t, D> facet{};  // slots, sorted
+  std::uint32_t apex = 0;                // slot
+  std::uint64_t simplex : 62 = kEmpty;
+  std::uint64_t odd : 1 = 0;       // as SortedFacet says
+  std::uint64_t positive : 1 = 0;  // whether the simplex is
+
+  [[nodiscard]] bool empty() const { return simplex == kEmpty; }
+  [[nodiscard]] bool same_key(const OpenFacet& other) const { return facet == other.facet; }
+  [[nodiscard]] std::uint64_t scattered() const {
+    std::uint64_t key = std::uint64_t{facet[0]} << 32 | facet[1];
+    if constexpr (D == 3) key = scatter(key) + facet[2];
+    return scatter(key);
+  }
+};
+
+// Blocks that are examined at once.
+template <int D>
+struct Batch {
+  std::vector<StreamBlock<D>> blocks;
+  std::size_t count = 0;  // so many of them are in use, the first ones
+};
+
+template <int D>
+class StreamProof {
+ public:
+  StreamProof(MeshStreamReader& reader, const CheckOptions& options, StreamTask task,
+              CheckReport& report)
+      : reader_(reader),
+        options_(options),
+        task_(task),
+        report_(report),
+        faults_(report, options.most_faults),
+        coordinates_(reader.header(), options.input_lattice) {}
+
+  void run() {
+    Batch<D> now;
+    Batch<D> next;
+    read(now);
+    while (now.count > 0) {
+      TaskGroup group;
+      group.run([this, &now] {
+        parallel_for(now.count, 1, [&](std::size_t b, std::size_t, std::size_t) {
+          now.blocks[b].examine(coordinates_, options_, task_);
+        });
+      });
+      read(next);
+      group.wait();
+      for (std::size_t b = 0; b < now.count; ++b) join(now.blocks[b]);
+      if (options_.progress) options_.progress(simplices_joined_, reader_.fraction_read());
+      std::swap(now, next);
+    }
+    report_.vertices = vertices_.announced();
+    report_.simplices = simplices_joined_;
+    report_.hull_facets = facets_.size();
+    report_.peak_live_vertices = vertices_.peak();
+    if (task_ == StreamTask::kProve) conclude();
+    compare_totals();
+  }
+
+ private:
+  // A batch has at least kManyCorners of many small blocks, or kEnoughBlocks of middling ones.
+  static constexpr std::size_t kManyCorners = std::size_t{1} << 14;
+  static constexpr std::size_t kEnoughBlocks = 8;
+  static constexpr std::size_t kMostCorners = std::size_t{1} << 20;
+
+  template <typename... Args>
+  void prove(fmt::format_string<Args...> format, Args&&... args) {
+    report_.proved.push_back(fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  void read(Batch<D>& batch) {
+    batch.count = 0;
+    std::size_t corners = 0;
+    while (corners < kManyCorners || (batch.count < kEnoughBlocks && corners < kMostCorners)) {
+      if (batch.count == batch.blocks.size()) batch.blocks.emplace_back();
+      StreamBlock<D>& block = batch.blocks[batch.count];
+      if (!reader_.read(block.block)) return;
+      enter(block);
+      ++batch.count;
+      corners += block.block.corners.size() + block.block.vertices.size();
+    }
+  }
+
+  // Gives a block's vertices their slots and coordinates.
+  void enter(StreamBlock<D>& block) {
+    const MeshBlock& mesh = block.block;
+    block.first_vertex = vertices_.announced();
+    block.first_simplex = simplices_entered_;
+    simplices_entered_ += block.simplices();
+    block.finalized.assign(mesh.vertices.size() + mesh.imported.size(), false);
+    for (const std::uint32_t vertex : mesh.finalized) block.finalized[vertex] = true;
+    block.points.clear();
+    for (const Point<3>& vertex : mesh.vertices) {
+      const Point<D> point = coordinates_.for_predicates(vertex);
+      const int axis = coordinates_.axis_off_lattice(vertex);
+      if (axis >= 0) report_off_lattice(block.first_vertex + block.points.size(), vertex, axis);
+      block.points.push_back(point);
+      if (options_.vertex) options_.vertex(coordinates_.block_to_output(vertex));
+    }
+    vertices_.enter(mesh, block.finalized, block.points, block.slots);
+  }
+
+  void report_off_lattice(std::uint64_t number, const Point<3>& vertex, int axis) {
+    if (task_ == StreamTask::kCount) return;
+    ++report_.off_lattice;
+    const Lattice& lattice = *coordinates_.lattice();
+    NamedVertex<D> named{number, {}};
+    std::copy_n(coordinates_.block_to_output(vertex).begin(), D, named.point.begin());
+    faults_.add("{} is off the lattice: its {} is no integer * {} + {}", vertex_text<D>(named),
+                "xyz"[axis], lattice.scale[axis], lattice.offset[axis]);
+  }
+
+  // Adds an examined block to those before it.
+  void join(const StreamBlock<D>& block) {
+    faults_.add(block.found);
+    report_.canonical_hash += block.canonical_hash;
+    simplices_joined_ += block.simplices();
+    inner_ += block.inner_facets;
+    not_delaunay_ += block.not_delaunay;
+    not_positive_ += block.not_positive;
+    for (std::size_t v = 0; v < block.slots.size(); ++v) {
+      if (block.used[v]) vertices_[block.slots[v]].used = true;
+    }
+    for (const std::uint32_t facet : block.open) match(block, facet);
+    report_.peak_open_facets = std::max<std::uint64_t>(report_.peak_open_facets, facets_.size());
+    for (const std::uint32_t vertex : block.block.finalized) {
+      const std::uint32_t slot = block.slots[vertex];
+      require_used(vertices_[slot]);
+      vertices_.finalize(slot);
+    }
+  }
+
+  void require_used(const typename OpenVertices<D>::Vertex& vertex) {
+    if (vertex.used || task_ == StreamTask::kCount) return;
+    ++unused_;
+    faults_.add("{} is in no {}", vertex_text<D>(named(vertex)), Words<D>::kSimplex);
+  }
+
+  // A facet of the block meets the one that earlier blocks left open, or is open itself.
+  void match(const StreamBlock<D>& block, std::uint32_t number) {
+    const std::size_t s = number / (D + 1);
+    const int opposite = static_cast<int>(number % (D + 1));
+    std::array<std::uint32_t, D + 1> slots;
+    for (int i = 0; i <= D; ++i) slots[i] = block.slots[block.block.corners[s * (D + 1) + i]];
+    const SortedFacet<D> facet(slots.data(), opposite);
+    OpenFacet<D> entry;
+    entry.facet = facet.vertices;
+    entry.apex = slots[opposite];
+    entry.simplex = block.first_simplex + s;
+    entry.odd = facet.odd ? 1 : 0;
+    entry.positive = block.positive[s] ? 1 : 0;
+    OpenFacet<D>* older = facets_.find(entry);
+    if (older == nullptr) {
+      for (const std::uint32_t slot : slots) vertices_.hold(slot);
+      facets_.insert(entry);
+      return;
+    }
+    if (task_ == StreamTask::kProve && older->apex == entry.apex) {
+      // The older one stays, as if it were alone.
+      if (last_twin_ != entry.simplex) {
+        faults_.add("{} has the same vertices as {} {}", block.text(s, coordinates_),
+                    Words<D>::kSimplex, std::uint64_t{older->simplex});
+      }
+      last_twin_ = entry.simplex;
+      return;
+    }
+    if (task_ == StreamTask::kProve) prove_facet(block, s, entry, *older);
+    for (const std::uint32_t slot : older->facet) vertices_.release(slot);
+    vertices_.release(older->apex);
+    facets_.erase(older);
+  }
+
+  void prove_facet(const StreamBlock<D>& block, std::size_t s, const OpenFacet<D>& facet,
+                   const OpenFacet<D>& older) {
+    if (facet.positive == 0 || older.positive == 0) return;
+    if (facet.odd == older.odd) {
+      faults_.add("{} and {} overlap: they lie on the same side of their common {}", text(older),
+                  block.text(s, coordinates_), Words<D>::kFacet);
+      return;
+    }
+    ++inner_;
+    const auto& apex = vertices_[older.apex];
+    const char* fault = apex_fault<D>(block.simplex(s), apex.point, options_);
+    if (fault == nullptr) return;
+    ++not_delaunay_;
+    faults_.add("{} is not Delaunay: {} of {} {} its circumsphere", block.text(s, coordinates_),
+                vertex_text<D>(named(apex)), text(older), fault);
+  }
+
+  [[nodiscard]] NamedVertex<D> named(const typename OpenVertices<D>::Vertex& vertex) const {
+    return {vertex.number, coordinates_.to_output(vertex.point)};
+  }
+  [[nodiscard]] std::string text(const OpenFacet<D>& facet) const {
+    std::array<NamedVertex<D>, D + 1> names;
+    for (int i = 0; i < D; ++i) names[i] = named(vertices_[facet.facet[i]]);
+    names[D] = named(vertices_[facet.apex]);
+    return simplex_text<D>(facet.simplex, names);
+  }
+
+  // What holds once all blocks have come, and whether the boundary closes them.
+  void conclude() {
+    vertices_.for_each_not_finalized([this](const auto& vertex) { require_used(vertex); });
+    if (simplices_joined_ == 0) faults_.add("the mesh has no {}", Words<D>::kSimplices);
+    if (coordinates_.lattice() && report_.off_lattice == 0) {
+      prove("all {} vertices are on the lattice", report_.vertices);
+      report_.on_lattice = coordinates_.on_lattice();
+    }
+    if (unused_ == 0) prove("all {} vertices are used", report_.vertices);
+    if (not_positive_ == 0) {
+      prove("all {} {} are positively oriented", report_.simplices, Words<D>::kSimplices);
+    }
+    const bool matched = faults_.count() == report_.off_lattice + unused_ + not_delaunay_;
+    if (!matched) return;
+    prove("every {} is in two {} or on the boundary", Words<D>::kFacet, Words<D>::kSimplices);
+    if (not_delaunay_ == 0) {
+      prove("all {} inner {}s are locally Delaunay{}{}", inner_, Words<D>::kFacet,
+            options_.any_delaunay ? "" : ", ties broken canonically",
+            report_.on_lattice ? ", on the integers of the lattice" : "");
+    }
+    const std::uint64_t before = faults_.count();
+    check_boundary();
+    if (faults_.count() == before) {
+      prove("the {} boundary {}s form one convex surface: the {} cover the hull exactly once",
+            report_.hull_facets, Words<D>::kFacet, Words<D>::kSimplices);
+      if (unused_ == 0) prove("no two vertices are equal, as that would cover some place twice");
+    }
+  }
+
+  // Makes a mesh of the simplices at the boundary, for the proof that meshes in memory have.
+  void check_boundary() {
+    std::vector<OpenFacet<D>> facets;
+    facets_.for_each([&](const OpenFacet<D>& facet) { facets.push_back(facet); });
+    std::sort(facets.begin(), facets.end(), [this](const auto& a, const auto& b) {
+      return std::pair(std::uint64_t{a.simplex}, vertices_[a.apex].number) <
+             std::pair(std::uint64_t{b.simplex}, vertices_[b.apex].number);
+    });
+    Mesh mesh;
+    mesh.header.dimension = D;
+    MeshNumbers numbers;
+    std::vector<Point<D>> points;
+    std::unordered_map<std::uint32_t, std::uint64_t> number_of_slot;
+    const auto vertex_of = [&](std::uint32_t slot) {
+      const auto [it, is_new] = number_of_slot.try_emplace(slot, points.size());
+      if (is_new) {
+        const NamedVertex<D> vertex = named(vertices_[slot]);
+        numbers.vertices.push_back(vertex.number);
+        points.push_back(vertices_[slot].point);
+        mesh.vertices.emplace_back();
+        std::copy(vertex.point.begin(), vertex.point.end(), mesh.vertices.back().begin());
+      }
+      return it->second;
+    };
+    std::vector<BoundaryFacet<D>> boundary;
+    for (const OpenFacet<D>& facet : facets) {
+      BoundaryFacet<D> outwards;
+      std::transform(facet.facet.begin(), facet.facet.end(), outwards.vertices.begin(), vertex_of);
+      if (facet.odd != 0) std::swap(outwards.vertices[0], outwards.vertices[1]);
+      outwards.simplex = boundary.size();
+      boundary.push_back(outwards);
+      std::swap(outwards.vertices[0], outwards.vertices[1]);
+      mesh.corners.insert(mesh.corners.end(), outwards.vertices.begin(), outwards.vertices.end());
+      mesh.corners.push_back(vertex_of(facet.apex));
+      numbers.simplices.push_back(facet.simplex);
+    }
+    MeshView<D> view(mesh, &numbers);
+    view.points() = std::move(points);
+    prove_boundary<D>(view, boundary, faults_);
+  }
+
+  // The trailer says what was found.
+  void compare_totals() {
+    if (!reader_.has_hash()) return;
+    const MeshTotals& totals = reader_.totals();
+    const std::uint64_t before = faults_.count();
+    const auto compare = [this](const char* what, std::uint64_t found, std::uint64_t promised) {
+      if (found != promised) {
+        faults_.add("the mesh has {} {}, but its trailer says {}", found, what, promised);
+      }
+    };
+    compare("vertices", report_.vertices, totals.vertices);
+    compare(Words<D>::kSimplices, report_.simplices, totals.simplices);
+    compare("hull facets", report_.hull_facets, totals.hull_facets);
+    if (report_.canonical_hash != totals.canonical_hash) {
+      faults_.add("the mesh has the hash {}, but its trailer says {}",
+                  hash_to_hex(report_.canonical_hash), hash_to_hex(totals.canonical_hash));
+    }
+    if (faults_.count() == before) prove("numbers and hash are those of the trailer");
+  }
+
+  MeshStreamReader& reader_;
+  const CheckOptions& options_;
+  const StreamTask task_;
+  CheckReport& report_;
+  Faults faults_;
+  const StreamCoordinates<D> coordinates_;
+  OpenVertices<D> vertices_;
+  ProbingTable<OpenFacet<D>> facets_;
+  std::uint64_t simplices_entered_ = 0;          // of blocks that have been read
+  std::uint64_t simplices_joined_ = 0;           // of blocks that join() has seen
+  std::uint64_t inner_ = 0;                      // facets with two positive simplices
+  std::uint64_t not_delaunay_ = 0;               // of these
+  std::uint64_t not_positive_ = 0;               // simplices
+  std::uint64_t unused_ = 0;                     // vertices
+  std::uint64_t last_twin_ = ~std::uint64_t{0};  // the last simplex reported as one
+};
+
+}  // namespace
+
+template <int D>
+void prove_stream(MeshStreamReader& reader, const CheckOptions& options, StreamTask task,
+                  CheckReport& report) {
+  with_threads(options.threads == 0 ? available_threads() : options.threads,
+               [&] { StreamProof<D>(reader, options, task, report).run(); });
+}
+
+template void prove_stream<2>(MeshStreamReader&, const CheckOptions&, StreamTask, CheckReport&);
+template void prove_stream<3>(MeshStreamReader&, const CheckOptions&, StreamTask, CheckReport&);
+
+}  // namespace spillway::detail

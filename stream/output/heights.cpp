@@ -1,0 +1,96 @@
+#include "stream/output/heights.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace spillway::detail {
+namespace {
+
+using Height = std::pair<double, std::uint64_t>;  // z and place in the order of the input
+
+/// Where a point stands in the input.
+std::uint64_t rank_of(VertexId place, std::span<const std::uint64_t> order) {
+  return order.empty() ? place : order[place];
+}
+
+/// `sign` is 1 for the lowest, -1 for the highest.
+void take_extreme(std::span<const Duplicate> duplicates, double sign,
+                  std::span<VertexId> input_index, std::span<const double> heights,
+                  std::span<const std::uint64_t> order) {
+  for (const Duplicate& duplicate : duplicates) {
+    VertexId& kept = input_index[duplicate.kept];
+    const VertexId other = input_index[duplicate.dropped];
+    if (Height(sign * heights[other], rank_of(other, order)) <
+        Height(sign * heights[kept], rank_of(kept, order))) {
+      kept = other;
+    }
+  }
+}
+
+/// Keeps the identity of the first.
+void take_mean(std::span<const Duplicate> duplicates, std::span<VertexId> input_index,
+               std::span<double> heights, std::span<const std::uint64_t> order) {
+  std::vector<Duplicate> by_vertex(duplicates.begin(), duplicates.end());
+  const auto kept_before = [](const Duplicate& a, const Duplicate& b) { return a.kept < b.kept; };
+  std::sort(by_vertex.begin(), by_vertex.end(), kept_before);
+  std::vector<double> stack;
+  for (auto group = by_vertex.begin(); group != by_vertex.end();) {
+    const auto end = std::upper_bound(group, by_vertex.end(), *group, kept_before);
+    VertexId& kept = input_index[group->kept];
+    VertexId first = kept;
+    stack.assign(1, heights[kept]);
+    for (; group != end; ++group) {
+      const VertexId other = input_index[group->dropped];
+      stack.push_back(heights[other]);
+      if (rank_of(other, order) < rank_of(first, order)) first = other;
+    }
+    kept = first;
+    std::sort(stack.begin(), stack.end());
+    heights[kept] =
+        std::accumulate(stack.begin(), stack.end(), 0.0) / static_cast<double>(stack.size());
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& height_choice_names() {
+  static const std::vector<std::string> names = {"first", "lowest", "highest", "mean"};
+  return names;
+}
+
+HeightChoice height_choice_by_name(const std::string& name) {
+  const auto& names = height_choice_names();
+  return static_cast<HeightChoice>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+void keep_first(std::span<const Duplicate> duplicates, std::span<VertexId> input_index,
+                std::span<const std::uint64_t> order) {
+  if (order.empty()) return;
+  for (const Duplicate& duplicate : duplicates) {
+    VertexId& kept = input_index[duplicate.kept];
+    const VertexId other = input_index[duplicate.dropped];
+    if (order[other] < order[kept]) kept = other;
+  }
+}
+
+void choose_heights(std::span<const Duplicate> duplicates, HeightChoice choice,
+                    std::span<VertexId> input_index, std::span<double> heights,
+                    std::span<const std::uint64_t> order) {
+  switch (choice) {
+    case HeightChoice::kFirst:
+      keep_first(duplicates, input_index, order);
+      break;
+    case HeightChoice::kLowest:
+      take_extreme(duplicates, 1, input_index, heights, order);
+      break;
+    case HeightChoice::kHighest:
+      take_extreme(duplicates, -1, input_index, heights, order);
+      break;
+    case HeightChoice::kMean:
+      take_mean(duplicates, input_index, heights, order);
+      break;
+  }
+}
+
+}  // namespace spillway::detail

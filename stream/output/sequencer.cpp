@@ -1,0 +1,121 @@
+#include "stream/output/sequencer.h"
+
+#include <utility>
+
+namespace spillway::detail {
+
+template <int D>
+Sequencer<D>::Sequencer(MeshStreamWriter& writer, const OutputOptions& output, StageTimes& times)
+    : writer_(writer), times_(times), counts_facets_(output.max_edge.has_value()) {}
+
+template <int D>
+void Sequencer<D>::open_slot(std::uint32_t slot, std::uint32_t blocks) {
+  const std::lock_guard lock(mutex_);
+  if (blocks_.size() <= slot) blocks_.resize(slot + 1);
+  blocks_[slot] = blocks;
+}
+
+template <int D>
+void Sequencer<D>::submit(BlockPlace place, MeshBlock mesh, std::vector<StreamPlace> imported,
+                          const CanonicalHash<D>& hash) {
+  const std::uint64_t vertices = mesh.vertices.size();
+  const std::uint64_t simplices = mesh.corners.size() / (D + 1);
+  Waiting waiting{std::move(mesh), std::move(imported), {}, vertices, simplices};
+  if (counts_facets_) waiting.corners = waiting.mesh.corners;
+  {
+    const StageTimer timer(times_, Stage::kEncode);
+    writer_.prepare(waiting.mesh);
+  }
+  waiting.bytes = waiting.mesh.bytes() + waiting.imported.size() * sizeof(StreamPlace) +
+                  waiting.corners.size() * sizeof(std::uint32_t);
+  std::unique_lock lock(mutex_);
+  hash_.add(hash);
+  waiting_bytes_ += waiting.bytes;
+  waiting_.emplace(place, std::move(waiting));
+  if (!writing_) write_what_is_due(lock);
+}
+
+/// One thread writes at a time; the others go on, and leave it what they have submitted. After an
+/// error nothing is written any more.
+template <int D>
+void Sequencer<D>::write_what_is_due(std::unique_lock<std::mutex>& lock) {
+  writing_ = true;
+  for (auto due = waiting_.find(next_); due != waiting_.end(); due = waiting_.find(next_)) {
+    Waiting turn = std::move(due->second);
+    waiting_.erase(due);
+    lock.unlock();
+    const std::uint64_t bytes = turn.bytes;
+    write(std::move(turn));
+    lock.lock();
+    waiting_bytes_ -= bytes;
+    if (++next_.block == blocks_[next_.slot]) next_ = {next_.slot + 1, 0};
+    turned_.notify_all();
+  }
+  writing_ = false;
+}
+
+template <int D>
+void Sequencer<D>::wait_for_room(std::uint64_t bytes, std::uint32_t slot) {
+  std::unique_lock lock(mutex_);
+  turned_.wait(lock, [&] { return given_up_ || waiting_bytes_ <= bytes || next_.slot >= slot; });
+}
+
+template <int D>
+void Sequencer<D>::give_up() {
+  const std::lock_guard lock(mutex_);
+  given_up_ = true;
+  turned_.notify_all();
+}
+
+template <int D>
+void Sequencer<D>::write(Waiting&& waiting) {
+  const StageTimer timer(times_, Stage::kWrite);
+  if (first_vertex_.size() <= next_.slot) first_vertex_.resize(next_.slot + 1);
+  first_vertex_[next_.slot].push_back(vertices_);
+  MeshBlock& mesh = waiting.mesh;
+  mesh.imported.reserve(waiting.imported.size());
+  for (const StreamPlace& place : waiting.imported) {
+    mesh.imported.push_back(number_of_written(place));
+  }
+  if (counts_facets_) {
+    for (std::size_t i = 0; i < waiting.corners.size(); i += D + 1) {
+      std::array<std::uint64_t, D + 1> corners;
+      for (int k = 0; k <= D; ++k) {
+        const std::uint32_t v = waiting.corners[i + k];
+        corners[k] = v < waiting.vertices ? vertices_ + v : mesh.imported[v - waiting.vertices];
+      }
+      open_facets_.add(corners);
+    }
+  }
+  vertices_ += waiting.vertices;
+  simplices_ += waiting.simplices;
+  const bool empty = waiting.vertices == 0 && waiting.simplices == 0 && mesh.imported.empty();
+  if (!empty) writer_.write(std::move(mesh));
+}
+
+template <int D>
+std::uint64_t Sequencer<D>::number_of_written(const StreamPlace& place) const {
+  return first_vertex_[place.block.slot][place.block.block] + place.vertex;
+}
+
+template <int D>
+std::uint64_t Sequencer<D>::number_of(const StreamPlace& place) const {
+  const std::lock_guard lock(mutex_);
+  return number_of_written(place);
+}
+
+template <int D>
+MeshTotals Sequencer<D>::totals() const {
+  const std::lock_guard lock(mutex_);
+  MeshTotals totals;
+  totals.vertices = vertices_;
+  totals.simplices = simplices_;
+  totals.hull_facets = open_facets_.count();
+  totals.canonical_hash = hash_.value();
+  return totals;
+}
+
+template class Sequencer<2>;
+template class Sequencer<3>;
+
+}  // namespace spillway::detail

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <vector>
+
+#include "formats/meshes/common/mesh_stream.h"
+#include "src/geometry/canonical_hash.h"
+#include "src/runtime/stage_times.h"
+#include "stream/output/open_facets.h"
+#include "stream/output/output_options.h"
+#include "stream/output/stream_place.h"
+
+namespace spillway::detail {
+
+/// Brings the blocks of leaves and merges, which are ready in any order, into the stream in the
+/// order of their places, and numbers the vertices.
+template <int D>
+class Sequencer {
+ public:
+  /// `writer` and `times` must outlive it.
+  Sequencer(MeshStreamWriter& writer, const OutputOptions& output, StageTimes& times);
+
+  /// Tells how many blocks a slot has, at least one; once for every slot, in any order.
+  void open_slot(std::uint32_t slot, std::uint32_t blocks);
+
+  /// Takes what settle() made for one block; each comes once, from any thread. What can be done
+  /// before its turn is done in the calling thread.
+  void submit(BlockPlace place, MeshBlock mesh, std::vector<StreamPlace> imported,
+              const CanonicalHash<D>& hash);
+
+  /// Waits until at most so many bytes of blocks wait for their turn, or until it is the turn of
+  /// `slot`, whose blocks nobody else will bring.
+  void wait_for_room(std::uint64_t bytes, std::uint32_t slot);
+
+  /// Ends all waiting, now and later, for a run that has failed.
+  void give_up();
+
+  /// The number that a vertex has got in the stream; its block has been written.
+  [[nodiscard]] std::uint64_t number_of(const StreamPlace& place) const;
+
+  /// The facets of one simplex only, where simplices are left out; once all blocks are written.
+  [[nodiscard]] const OpenFacets<D>& open_facets() const { return open_facets_; }
+
+  /// Vertices, simplices, hash and, where simplices were left out, hull facets of all blocks.
+  [[nodiscard]] MeshTotals totals() const;
+
+ private:
+  struct Waiting {
+    MeshBlock mesh;
+    std::vector<StreamPlace> imported;
+    std::vector<std::uint32_t> corners;  ///< the mesh's, if facets are counted
+    std::uint64_t vertices = 0;  ///< that the block announces; the mesh may be encoded already
+    std::uint64_t simplices = 0;
+    std::uint64_t bytes = 0;
+  };
+
+  void write_what_is_due(std::unique_lock<std::mutex>& lock);
+  void write(Waiting&& waiting);
+  [[nodiscard]] std::uint64_t number_of_written(const StreamPlace& place) const;
+
+  MeshStreamWriter& writer_;
+  StageTimes& times_;
+  mutable std::mutex mutex_;
+  std::condition_variable turned_;
+  std::map<BlockPlace, Waiting> waiting_;
+  std::uint64_t waiting_bytes_ = 0;
+  BlockPlace next_{0, 0};
+  std::vector<std::uint32_t> blocks_;                     ///< by slot; 0 where not known yet
+  std::vector<std::vector<std::uint64_t>> first_vertex_;  ///< by slot and block, as written
+  std::uint64_t vertices_ = 0;
+  std::uint64_t simplices_ = 0;
+  CanonicalHash<D> hash_;
+  bool counts_facets_;
+  bool given_up_ = false;
+  bool writing_ = false;  ///< somebody is, or an error has ended it
+  OpenFacets<D> open_facets_;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,81 @@
+#include "stream/plan/memory_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+/// What memory is needed for, by dimension; measured, see docs/performance.md.
+struct Costs {
+  std::size_t leaf_bytes;     ///< a point: triangulation of a leaf, and what is made of it
+  std::size_t tile_bytes;     ///< a point: two loaded tiles and output that waits for its turn
+  std::size_t good_leaf;      ///< leaves larger than this are no faster
+  std::size_t small_leaf;     ///< leaves smaller than this lose too much to merging
+  std::size_t enough_leaves;  ///< so many are enough for every thread
+  double buffer_share;        ///< of the limit: for points that wait to be spilled
+  double leaf_share;          ///< of the limit: for a leaf of one thread
+  double leaves_share;        ///< of the limit: for those of all threads
+  std::uint64_t least_limit;  ///< below this nothing works well
+};
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr Costs kPlane{.leaf_bytes = 400,
+                       .tile_bytes = 108,
+                       .good_leaf = 32'768,
+                       .small_leaf = 4'096,
+                       .enough_leaves = 16,
+                       .buffer_share = 0.4,
+                       .leaf_share = 0.08,
+                       .leaves_share = 0.4,
+                       .least_limit = 32 * kMiB};
+constexpr Costs kSpace{.leaf_bytes = 800,
+                       .tile_bytes = 224,
+                       .good_leaf = 196'608,
+                       .small_leaf = 16'384,
+                       .enough_leaves = 8,
+                       .buffer_share = 0.3,
+                       .leaf_share = 0.135,
+                       .leaves_share = 0.45,
+                       .least_limit = 96 * kMiB};
+
+constexpr double kTileShare = 0.4;
+constexpr double kWaitingShare = 0.1;
+constexpr std::size_t kBufferedPointBytes = 24;
+
+const Costs& costs_of(int dimension) { return dimension == 2 ? kPlane : kSpace; }
+
+std::size_t share(std::uint64_t limit, double part, std::size_t bytes_each) {
+  return static_cast<std::size_t>(static_cast<double>(limit) * part) / bytes_each;
+}
+
+}  // namespace
+
+MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads) {
+  const Costs& costs = costs_of(dimension);
+  if (limit < costs.least_limit) {
+    throw UsageError(fmt::format("--memory is too small: {} MiB are the least that will do{}",
+                                 costs.least_limit / kMiB,
+                                 dimension == 3 ? " in three dimensions" : ""));
+  }
+  MemoryPlan plan;
+  plan.buffered_points = share(limit, costs.buffer_share, kBufferedPointBytes);
+  plan.tile_capacity = share(limit, kTileShare, costs.tile_bytes);
+  plan.leaf_size = std::min(
+      {costs.good_leaf, share(limit, costs.leaf_share, costs.leaf_bytes), plan.tile_capacity});
+  plan.waiting_bytes = share(limit, kWaitingShare, 1);
+  const std::size_t most = share(limit, costs.leaves_share, costs.leaf_bytes * plan.leaf_size);
+  plan.threads = static_cast<unsigned>(std::clamp<std::size_t>(most, 1, wanted_threads));
+  return plan;
+}
+
+std::size_t leaf_size_for(std::uint64_t points, int dimension, const MemoryPlan& plan) {
+  const Costs& costs = costs_of(dimension);
+  return std::clamp<std::size_t>(points / costs.enough_leaves,
+                                 std::min(costs.small_leaf, plan.leaf_size), plan.leaf_size);
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "formats/meshes/common/mesh_stream.h"
+#include "src/geometry/lattice.h"
+#include "src/terrain/isolines.h"
+#include "stream/sinks/line_joiner.h"
+
+namespace spillway::detail {
+
+struct ContourOptions {
+  Levels levels = Levels::every(1, 0);
+  std::optional<Lattice> lattice;    ///< of the vertices to come
+  std::optional<double> max_edge{};  ///< leave out triangles with a longer edge, in output units
+  std::uint64_t memory = 0;          ///< bytes for points of lines that are still open
+};
+
+/// Draws the isolines of a mesh of triangles as its blocks come. Of the mesh only vertices that are
+/// still to come again stay in memory, of the lines only what may still grow.
+class ContourWriter : public MeshStreamWriter {
+ public:
+  /// Receives each whole line, in output coordinates.
+  using Sink = std::function<void(std::span<const Point<2>> points, double height)>;
+
+  ContourWriter(ContourOptions options, Sink sink, ScratchFolder& scratch);
+
+  void write(MeshBlock&& block) override;
+  void finish(const MeshTotals& totals) override;
+  [[nodiscard]] std::uint64_t bytes_written() const override { return 0; }
+
+  [[nodiscard]] std::uint64_t lines() const { return joiner_.lines(); }
+  /// The least and the greatest height that came; in reverse order if none did.
+  [[nodiscard]] double lowest() const { return lowest_; }
+  [[nodiscard]] double highest() const { return highest_; }
+  /// Triangles with too long an edge.
+  [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
+  [[nodiscard]] std::uint64_t spilled_bytes() const { return joiner_.spilled_bytes(); }
+
+ private:
+  [[nodiscard]] Corner placed(std::uint64_t number, const Point<3>& vertex) const;
+  [[nodiscard]] std::vector<Corner> corners_of(const MeshBlock& block) const;
+  [[nodiscard]] bool too_long(const std::array<Corner, 3>& corners) const;
+
+  const ContourOptions options_;
+  LineJoiner joiner_;
+  std::vector<IsoSegment> segments_;
+  std::unordered_map<std::uint64_t, Point<3>> live_;  ///< vertices to come again, placed
+  std::uint64_t announced_ = 0;
+  double lowest_ = std::numeric_limits<double>::infinity();
+  double highest_ = -std::numeric_limits<double>::infinity();
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace spillway::detail

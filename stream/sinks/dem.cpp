@@ -1,0 +1,378 @@
+#include "stream/sinks/dem.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include "src/error.h"
+#include "src/geometry/longest_edge.h"
+#include "src/parallel/parallel.h"
+#include "src/runtime/memory_budget.h"
+
+namespace spillway::detail {
+namespace {
+
+static_assert(RasterStore::kSide == kRasterTile, "tiles are written as they are kept");
+
+/// Triangles and vertices that one task takes.
+constexpr std::size_t kTrianglesAtATime = 4096;
+constexpr std::size_t kVerticesAtATime = 1 << 16;
+
+/// Triangles that reach over more tiles are painted tile by tile.
+constexpr std::uint64_t kTilesOfASmallTriangle = 4;
+
+/// What GDAL and the store note of a tile of one band.
+constexpr std::uint64_t kIndexBytes = 64;
+
+PixelRule rule_of(DemProduct product) {
+  switch (product) {
+    case DemProduct::kHeight:
+      return PixelRule::kEqual;
+    case DemProduct::kDensity:
+      return PixelRule::kSum;
+    default:
+      return PixelRule::kPreferred;
+  }
+}
+
+/// Tiles that have pixels of a window; 0 if it is empty.
+std::uint64_t tiles_in(const PixelWindow& window) {
+  if (window.empty()) return 0;
+  const auto tiles = [](std::uint32_t begin, std::uint32_t end) {
+    return std::uint64_t{(end - 1) / kRasterTile} - begin / kRasterTile + 1;
+  };
+  return tiles(window.row_begin, window.row_end) * tiles(window.column_begin, window.column_end);
+}
+
+/// Decided, but nothing: it must be told from what is still undecided.
+constexpr float kUndefined = std::numeric_limits<float>::infinity();
+
+/// What is the same all over a triangle; nothing for what is not.
+float value_of(DemProduct product, const Gradient& gradient, const Point<3>& light) {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  if (product == DemProduct::kSlope) value = slope_of(gradient);
+  if (product == DemProduct::kAspect) value = aspect_of(gradient);
+  if (product == DemProduct::kHillshade) value = hillshade_of(gradient, light);
+  return std::isnan(value) ? kUndefined : static_cast<float>(value);
+}
+
+/// The values that readers take for nodata, and what is written in their place. GDAL compares
+/// floats but for some roundings (its ARE_REAL_EQUAL()).
+struct NodataNeighbourhood {
+  explicit NodataNeighbourhood(float nodata) : lowest(nodata), highest(nodata) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const auto is_taken = [nodata](float value) {
+      constexpr double kShare = 2.0 * std::numeric_limits<float>::epsilon();
+      return std::abs(double{value} - nodata) < kShare * std::abs(double{value} + nodata);
+    };
+    while (is_taken(std::nextafter(lowest, -kInfinity))) {
+      lowest = std::nextafter(lowest, -kInfinity);
+    }
+    while (is_taken(std::nextafter(highest, kInfinity))) {
+      highest = std::nextafter(highest, kInfinity);
+    }
+    replacement = std::nextafter(highest, kInfinity);
+    if (std::isinf(replacement)) replacement = std::nextafter(lowest, -kInfinity);
+  }
+
+  float lowest;
+  float highest;
+  float replacement;  ///< the next value that is told from nodata
+};
+
+}  // namespace
+
+/// What one task needs while it paints.
+struct Dem::Work {
+  Work(RasterStore& store, std::size_t products) : hand(store), values(products) {}
+  RasterStore::Hand hand;
+  std::vector<PixelRun> runs;
+  std::vector<float> values;  ///< of the triangle, by product; those that vary in it unused
+};
+
+const std::vector<std::string>& dem_product_names() {
+  static const std::vector<std::string> names = {"height", "slope", "aspect", "hillshade",
+                                                 "density"};
+  return names;
+}
+
+Dem::Dem(DemOptions options, const std::optional<Lattice>& lattice, ScratchFolder& scratch)
+    : options_(std::move(options)),
+      lattice_(lattice),
+      on_lattice_(lattice && lattice->scale[0] > 0 && lattice->scale[1] > 0),
+      light_direction_(direction_of(options_.light)),
+      scratch_(scratch) {
+  const std::uint64_t least = RasterStore::least_memory(options_.products.size(), options_.threads);
+  if (options_.memory < least) {
+    throw UsageError(
+        fmt::format("--memory is too small: of it {} are for pixels, and {} threads "
+                    "with {} products need {}",
+                    memory_size_text(options_.memory), options_.threads, options_.products.size(),
+                    memory_size_text(least)));
+  }
+}
+
+Box<2> Dem::in_output(const Box<2>& extent) const {
+  Box<2> box;
+  for (const Point<2>& corner : {extent.lo, extent.hi}) {
+    box.expand(lattice_
+                   ? Point<2>{lattice_->to_world(0, corner[0]), lattice_->to_world(1, corner[1])}
+                   : corner);
+  }
+  return box;
+}
+
+void Dem::begin(const Box<2>& extent) { begin(choose_grid(options_.grid, in_output(extent))); }
+
+void Dem::begin(const PixelGrid& grid) {
+  grid_ = grid;
+  tiles_across_ = (grid_.columns + kRasterTile - 1) / kRasterTile;
+  tiles_down_ = (grid_.rows + kRasterTile - 1) / kRasterTile;
+  const std::uint64_t index = PixelCentres::bytes(grid_) + std::uint64_t{tiles_across_} *
+                                                               tiles_down_ * kIndexBytes *
+                                                               options_.products.size();
+  if (index > options_.memory / 2) {
+    throw UsageError(
+        fmt::format("a raster of {} x {} pixels needs {} for its index alone; give "
+                    "more --memory, a coarser --resolution or smaller --bounds",
+                    grid_.columns, grid_.rows, memory_size_text(index)));
+  }
+  centres_.emplace(grid_, on_lattice_ ? lattice_ : std::nullopt);
+  std::vector<PixelRule> rules;
+  for (const DemProduct product : options_.products) rules.push_back(rule_of(product));
+  store_.emplace(std::move(rules), options_.memory - index, scratch_);
+}
+
+Point<3> Dem::placed(const Point<3>& vertex) const {
+  if (!lattice_) return vertex;
+  if (!on_lattice_) return lattice_->to_world(vertex);
+  return {vertex[0], vertex[1], lattice_->to_world(2, vertex[2])};
+}
+
+std::uint64_t Dem::tile_number(std::uint32_t row, std::uint32_t column) const {
+  return std::uint64_t{row / kRasterTile} * tiles_across_ + column / kRasterTile;
+}
+
+void Dem::paint(std::span<const Point<3>> vertices, std::span<const std::uint32_t> corners) {
+  struct Large {
+    Triangle canonical;
+    PixelWindow window;
+  };
+  std::vector<VertexPlace> places(vertices.size());
+  std::mutex mutex;
+  std::vector<Large> large;  // guarded by mutex
+  const auto place_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) places[v] = place_of(*centres_, vertices[v]);
+  };
+  const auto paint_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
+    Work work(*store_, options_.products.size());
+    for (std::size_t t = begin; t < end; ++t) {
+      const std::uint32_t* const v = &corners[3 * t];
+      if (v[0] >= vertices.size() || v[1] >= vertices.size() || v[2] >= vertices.size()) continue;
+      const PixelWindow window = window_of(places[v[0]], places[v[1]], places[v[2]]);
+      if (window.empty() && !options_.max_edge) continue;
+      const Triangle canonical =
+          in_canonical_order({vertices[v[0]], vertices[v[1]], vertices[v[2]]});
+      if (options_.max_edge && has_longer_edge<2>(in_output(canonical), *options_.max_edge)) {
+        ++left_out_;
+        continue;
+      }
+      if (options_.outline && !window.empty()) options_.outline(in_output(canonical));
+      if (tiles_in(window) > kTilesOfASmallTriangle) {
+        const std::lock_guard lock(mutex);
+        large.push_back({canonical, window});
+      } else {
+        paint_pixels(canonical, window, work);
+      }
+    }
+  };
+  // Isolated: the caller may hold what another of its tasks would wait for.
+  isolated([&] {
+    parallel_for(vertices.size(), kVerticesAtATime, place_some);
+    parallel_for(corners.size() / 3, kTrianglesAtATime, paint_some);
+    for (const auto& [canonical, window] : large) paint_large(canonical, window);
+  });
+}
+
+Triangle Dem::in_output(const Triangle& placed) const {
+  Triangle triangle = placed;
+  if (on_lattice_) {
+    for (Point<3>& p : triangle)
+      p = {lattice_->to_world(0, p[0]), lattice_->to_world(1, p[1]), p[2]};
+  }
+  return triangle;
+}
+
+/// Paints a triangle of many tiles: each tile is held once, and many threads work on it.
+void Dem::paint_large(const Triangle& canonical, const PixelWindow& whole) {
+  const std::uint32_t first_row = whole.row_begin / kRasterTile;
+  const std::uint32_t first_column = whole.column_begin / kRasterTile;
+  const std::size_t across = (whole.column_end - 1) / kRasterTile - first_column + 1;
+  const std::size_t down = (whole.row_end - 1) / kRasterTile - first_row + 1;
+  parallel_for(across * down, 1, [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
+    Work work(*store_, options_.products.size());
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto row = static_cast<std::uint32_t>((first_row + t / across) * kRasterTile);
+      const auto column = static_cast<std::uint32_t>((first_column + t % across) * kRasterTile);
+      paint_pixels(
+          canonical,
+          {std::max(row, whole.row_begin), std::min(row + kRasterTile, whole.row_end),
+           std::max(column, whole.column_begin), std::min(column + kRasterTile, whole.column_end)},
+          work);
+    }
+  });
+}
+
+void Dem::paint_pixels(const Triangle& canonical, const PixelWindow& window, Work& work) {
+  find_pixels(*centres_, canonical, window, work.runs);
+  if (work.runs.empty()) return;
+  const Point<2> scale =
+      on_lattice_ ? Point<2>{lattice_->scale[0], lattice_->scale[1]} : Point<2>{1, 1};
+  const TrianglePlane plane(canonical, scale);
+  for (std::size_t b = 0; b < work.values.size(); ++b) {
+    work.values[b] = value_of(options_.products[b], plane.gradient(), light_direction_);
+  }
+  for (const PixelRun& run : work.runs) paint_run(run, plane, work);
+}
+
+void Dem::paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work) {
+  const double y = centres_->y()[run.row];
+  const std::span<const double> x = centres_->x();
+  for (std::uint32_t begin = run.begin; begin < run.end;) {
+    const std::uint32_t end = std::min(run.end, (begin / kRasterTile + 1) * kRasterTile);
+    float* pixels = work.hand.tile(tile_number(run.row, begin)) +
+                    run.row % kRasterTile * kRasterTile + begin % kRasterTile;
+    for (std::size_t b = 0; b < options_.products.size(); ++b) {
+      const DemProduct product = options_.products[b];
+      if (product == DemProduct::kHeight && run.place == PixelPlace::kInside) {
+        for (std::uint32_t c = begin; c < end; ++c) {
+          set_pixel(pixels[c - begin], static_cast<float>(plane.inside(x[c], y)));
+        }
+      } else if (product == DemProduct::kHeight) {
+        for (std::uint32_t c = begin; c < end; ++c) {
+          set_pixel(pixels[c - begin], static_cast<float>(plane.at(run.place, x[c], y)));
+        }
+      } else if (product != DemProduct::kDensity) {
+        for (std::uint32_t c = begin; c < end; ++c) {
+          put_pixel(pixels[c - begin], work.values[b], PixelRule::kPreferred, run.owned);
+        }
+      }
+      pixels += RasterStore::kTilePixels;
+    }
+    begin = end;
+  }
+}
+
+void Dem::count(std::span<const Point<3>> vertices) {
+  const auto found =
+      std::find(options_.products.begin(), options_.products.end(), DemProduct::kDensity);
+  if (found == options_.products.end()) return;
+  const auto band = static_cast<std::size_t>(found - options_.products.begin());
+  const auto count_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
+    Work work(*store_, options_.products.size());
+    for (const Point<3>& vertex : vertices.subspan(begin, end - begin)) {
+      const auto column =
+          column_of(grid_, on_lattice_ ? lattice_->to_world(0, vertex[0]) : vertex[0]);
+      const auto row = row_of(grid_, on_lattice_ ? lattice_->to_world(1, vertex[1]) : vertex[1]);
+      if (!column || !row) continue;
+      float* const pixels = work.hand.tile(tile_number(*row, *column));
+      put_pixel(pixels[band * RasterStore::kTilePixels + *row % kRasterTile * kRasterTile +
+                       *column % kRasterTile],
+                1, PixelRule::kSum, true);
+    }
+  };
+  isolated([&] { parallel_for(vertices.size(), kVerticesAtATime, count_some); });
+}
+
+RasterOptions Dem::raster_options() const {
+  RasterOptions raster;
+  raster.grid.pixels = grid_;
+  for (const DemProduct product : options_.products) {
+    raster.bands.push_back(dem_product_names()[static_cast<std::size_t>(product)]);
+    // The mean of 359 and 1 is no direction.
+    if (product == DemProduct::kAspect) raster.averaged_overviews = false;
+  }
+  raster.nodata = options_.nodata;
+  raster.threads = options_.threads;
+  raster.memory = options_.memory;
+  return raster;
+}
+
+/// How much of a tile is in the raster.
+Dem::TileSize Dem::size_of_tile(std::uint64_t number) const {
+  const auto row = static_cast<std::uint32_t>(number / tiles_across_ * kRasterTile);
+  const auto column = static_cast<std::uint32_t>(number % tiles_across_ * kRasterTile);
+  return {std::min(kRasterTile, grid_.rows - row), std::min(kRasterTile, grid_.columns - column)};
+}
+
+/// Takes a tile from the store and makes of it what is written.
+void Dem::finish_tile(std::uint64_t number, std::span<const std::vector<std::byte>> others,
+                      std::vector<float>& pixels) {
+  store_->take(number, pixels, others);
+  const auto [rows, columns] = size_of_tile(number);
+  std::uint64_t with_data = 0;
+  const NodataNeighbourhood nodata(options_.nodata);
+  for (std::size_t b = 0; b < options_.products.size(); ++b) {
+    const bool density = options_.products[b] == DemProduct::kDensity;
+    const auto band =
+        std::span(pixels).subspan(b * RasterStore::kTilePixels, RasterStore::kTilePixels);
+    for (std::size_t i = 0; i < band.size(); ++i) {
+      float& pixel = band[i];
+      if (density && std::isnan(pixel)) pixel = 0;
+      const bool is_in = i / kRasterTile < rows && i % kRasterTile < columns;
+      if (!is_in || !std::isfinite(pixel)) {
+        pixel = options_.nodata;
+        continue;
+      }
+      if (b == 0) ++with_data;
+      if (pixel >= nodata.lowest && pixel <= nodata.highest) pixel = nodata.replacement;
+      pixel += 0.0F;  // -0 becomes 0
+    }
+  }
+  pixels_with_data_ += with_data;
+}
+
+void Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
+                const OtherParts& others) {
+  const std::uint64_t tiles = std::uint64_t{tiles_across_} * tiles_down_;
+  const std::size_t slots = options_.threads + 2;
+  struct Slot {
+    std::uint64_t number = 0;
+    std::vector<std::vector<std::byte>> others;
+    std::vector<float> pixels;
+  };
+  std::vector<Slot> in_work(slots);
+  std::uint64_t next = 0;
+  std::uint64_t done = 0;
+  const auto source = [&](std::size_t slot) {
+    if (next == tiles) return false;
+    if (others) in_work[slot].others = others(next);
+    in_work[slot].number = next++;
+    return true;
+  };
+  const auto take = [&](std::size_t slot) {
+    finish_tile(in_work[slot].number, in_work[slot].others, in_work[slot].pixels);
+  };
+  const auto write_tile = [&](std::size_t slot) {
+    const std::uint64_t number = in_work[slot].number;
+    const std::vector<float>& pixels = in_work[slot].pixels;
+    for (std::size_t b = 0; b < options_.products.size(); ++b) {
+      raster.write_tile(
+          b, static_cast<std::uint32_t>(number % tiles_across_),
+          static_cast<std::uint32_t>(number / tiles_across_),
+          std::span(pixels).subspan(b * RasterStore::kTilePixels, RasterStore::kTilePixels));
+    }
+    const auto [rows, columns] = size_of_tile(number);
+    done += std::uint64_t{rows} * columns;
+    progress(done);
+  };
+  const std::vector<PipelineStage> stages = {{.in_order = false, .work = take},
+                                             {.in_order = true, .work = write_tile}};
+  run_pipeline(slots, source, stages);
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,128 @@
+#pragma once
+// Rasters of a triangulated terrain, made while its triangles pass by.
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/gdal/raster.h"
+#include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
+#include "src/terrain/grid_choice.h"
+#include "src/terrain/pixel_centres.h"
+#include "src/terrain/surface.h"
+#include "stream/sinks/raster_store.h"
+
+namespace spillway::detail {
+
+/// What a pixel can tell of the terrain at its centre.
+enum class DemProduct : std::uint8_t {
+  kHeight,     ///< of the triangle there
+  kSlope,      ///< its steepness in degrees
+  kAspect,     ///< where it falls to, in degrees from north; nothing where it is level
+  kHillshade,  ///< its brightness, 0 to 255
+  kDensity,    ///< vertices of the mesh in the pixel
+};
+
+/// "height", "slope", ...: in the order of DemProduct.
+const std::vector<std::string>& dem_product_names();
+
+struct DemOptions {
+  std::vector<DemProduct> products{DemProduct::kHeight};  ///< the bands
+  GridRequest grid{};
+  Light light{};
+  std::optional<double> max_edge{};  ///< leave out triangles with a longer edge, in output units
+  float nodata = -9999;
+  std::uint64_t memory = 0;  ///< for pixels; above it they go to the disk
+  unsigned threads = 1;      ///< of which each may have a hand on the pixels
+  /// Told of every triangle that may be seen, once, corners in output coordinates and in canonical
+  /// order; by many threads. Those in whose box no pixel has its centre are passed over.
+  std::function<void(const Triangle&)> outline{};
+};
+
+/// The raster while it is made. Every pixel is a function of the triangles at its centre, so that
+/// neither their order nor threads matter.
+class Dem {
+ public:
+  /// `lattice` is that of the vertices to come. Throws UsageError if the memory is too small.
+  Dem(DemOptions options, const std::optional<Lattice>& lattice, ScratchFolder& scratch);
+
+  /// Lays the grid, given the box around all vertices (as they come, on the lattice if there is
+  /// one). To be called once, before what follows. Throws UsageError if the raster is too large.
+  void begin(const Box<2>& extent);
+  /// Likewise, with a grid that was chosen elsewhere.
+  void begin(const PixelGrid& grid);
+
+  /// A box around vertices as they come, in output coordinates.
+  [[nodiscard]] Box<2> in_output(const Box<2>& extent) const;
+
+  /// A vertex as it comes, in the coordinates in which triangles are painted: x and y on the
+  /// lattice, z in output units.
+  [[nodiscard]] Point<3> placed(const Point<3>& vertex) const;
+
+  /// Paints triangles, three numbers of placed vertices each; those with numbers beyond these are
+  /// left out. By any number of threads, and shared out among more.
+  void paint(std::span<const Point<3>> vertices, std::span<const std::uint32_t> corners);
+
+  /// Counts placed vertices for the density.
+  void count(std::span<const Point<3>> vertices);
+
+  [[nodiscard]] const PixelGrid& grid() const { return grid_; }
+  [[nodiscard]] RasterOptions raster_options() const;
+
+  /// What another Dem of the same grid has of a tile; called tile by tile, in order.
+  using OtherParts = std::function<std::vector<std::vector<std::byte>>(std::uint64_t tile)>;
+
+  /// Writes all tiles, row by row, and forgets them. `progress` is told how many of the raster's
+  /// pixels are written: a pixel with all its bands counts once. Of other Dems of the same grid,
+  /// which have painted other triangles, `others` gives what they have.
+  void write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
+             const OtherParts& others = nullptr);
+
+  /// For another Dem of the same grid: the tiles that are not empty, in ascending order, and one of
+  /// them, which is forgotten.
+  [[nodiscard]] std::vector<std::uint64_t> tiles() const { return store_->tiles(); }
+  std::vector<std::byte> take_part(std::uint64_t tile) { return store_->take_part(tile); }
+
+  /// Pixels of the first band that have a value; after write().
+  [[nodiscard]] std::uint64_t pixels_with_data() const { return pixels_with_data_; }
+  /// Triangles with too long an edge.
+  [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
+  [[nodiscard]] std::uint64_t spilled_bytes() const { return store_->spilled_bytes(); }
+
+ private:
+  struct Work;
+  struct TileSize {
+    std::uint32_t rows;
+    std::uint32_t columns;
+  };
+
+  [[nodiscard]] Triangle in_output(const Triangle& placed) const;
+  void paint_pixels(const Triangle& canonical, const PixelWindow& window, Work& work);
+  void paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work);
+  void paint_large(const Triangle& canonical, const PixelWindow& whole);
+  void finish_tile(std::uint64_t number, std::span<const std::vector<std::byte>> others,
+                   std::vector<float>& pixels);
+  [[nodiscard]] TileSize size_of_tile(std::uint64_t number) const;
+  [[nodiscard]] std::uint64_t tile_number(std::uint32_t row, std::uint32_t column) const;
+
+  const DemOptions options_;
+  const std::optional<Lattice> lattice_;
+  const bool on_lattice_;  ///< triangles are painted on it
+  const Point<3> light_direction_;
+  ScratchFolder& scratch_;
+  PixelGrid grid_;
+  std::uint32_t tiles_across_ = 0;
+  std::uint32_t tiles_down_ = 0;
+  std::optional<PixelCentres> centres_;
+  std::optional<RasterStore> store_;
+  std::atomic<std::uint64_t> pixels_with_data_ = 0;
+  std::atomic<std::uint64_t> left_out_ = 0;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,232 @@
+#include "stream/sinks/line_joiner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "src/delaunay/hash.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+/// Fewer points of a line than these are not worth a place on the disk.
+constexpr std::size_t kLeastStored = 16;
+
+/// Where a ring must begin to come first in lexicographic order of its whole sequence of points:
+/// at its least point, and where it visits this several times, at the visit that goes on least.
+/// Two beginnings race; the one that loses rules out all that it has passed (Shiloach, "Fast
+/// canonization of circular strings", 1981).
+std::size_t least_beginning(std::span<const Point<2>> ring) {
+  const std::size_t size = ring.size();
+  std::size_t one = 0;
+  std::size_t other = 1;
+  for (std::size_t equal = 0; one < size && other < size && equal < size;) {
+    const auto at = [&](std::size_t begin) {
+      const std::size_t place = begin + equal;
+      return ring[place < size ? place : place - size];
+    };
+    if (at(one) == at(other)) {
+      ++equal;
+      continue;
+    }
+    (at(other) < at(one) ? one : other) += equal + 1;
+    if (one == other) ++other;
+    equal = 0;
+  }
+  return std::min(one, other);
+}
+
+}  // namespace
+
+std::size_t CrossingHash::operator()(const Crossing& crossing) const {
+  return mix64(crossing.edge[0] ^
+               mix64(crossing.edge[1] ^ mix64(static_cast<std::uint64_t>(crossing.level))));
+}
+
+LineJoiner::LineJoiner(Sink sink, std::uint64_t memory, ScratchFolder& scratch)
+    : sink_(std::move(sink)), most_points_(memory / sizeof(Point<2>)), scratch_(scratch) {}
+
+LineJoiner::Number LineJoiner::new_line() {
+  if (free_.empty()) {
+    open_.emplace_back();
+    return static_cast<Number>(open_.size() - 1);
+  }
+  const Number number = free_.back();
+  free_.pop_back();
+  return number;
+}
+
+void LineJoiner::forget(Number number) {
+  open_[number] = {};
+  free_.push_back(number);
+}
+
+void LineJoiner::add(const IsoSegment& segment) {
+  ++segments_since_release_;
+  const auto before = ends_.find(segment.from);
+  const auto behind = begins_.find(segment.to);
+  if (before == ends_.end() && behind == begins_.end()) {
+    begin_line(segment);
+  } else if (behind == begins_.end()) {
+    const Number number = before->second;
+    ends_.erase(before);
+    open_[number].end = segment.to;
+    append(open_[number].back, segment.to_point);
+    enter(ends_, segment.to, number);
+  } else if (before == ends_.end()) {
+    const Number number = behind->second;
+    begins_.erase(behind);
+    open_[number].begin = segment.from;
+    append(open_[number].front, segment.from_point);
+    enter(begins_, segment.from, number);
+  } else {
+    const Number first = before->second;
+    const Number second = behind->second;
+    ends_.erase(before);
+    begins_.erase(behind);
+    if (first == second) {
+      append(open_[first].back, segment.to_point);
+      give_out(std::move(open_[first]));
+    } else {
+      join(open_[first], std::move(open_[second]));
+      ends_[open_[first].end] = first;
+    }
+    forget(second);
+  }
+  if (points_in_memory_ > most_points_) spill();
+}
+
+void LineJoiner::begin_line(const IsoSegment& segment) {
+  const Number number = new_line();
+  Line& line = open_[number];
+  line.begin = segment.from;
+  line.end = segment.to;
+  append(line.back, segment.from_point);
+  append(line.back, segment.to_point);
+  enter(begins_, line.begin, number);
+  enter(ends_, line.end, number);
+}
+
+void LineJoiner::append(std::vector<Point<2>>& points, const Point<2>& point) {
+  points.push_back(point);
+  ++points_in_memory_;
+}
+
+void LineJoiner::enter(OpenEnds& ends, const Crossing& crossing, Number number) {
+  if (ends.emplace(crossing, number).second) return;
+  throw Error(
+      fmt::format("the triangles at the edge from vertex {} to {} do not fit together: check "
+                  "the mesh",
+                  crossing.edge[0], crossing.edge[1]));
+}
+
+/// Turns the points at the front into a piece like others.
+void LineJoiner::gather_front(Line& line) {
+  if (line.front.empty()) return;
+  std::reverse(line.front.begin(), line.front.end());
+  line.middle.push_front({std::exchange(line.front, {}), 0, 0});
+}
+
+void LineJoiner::join(Line& first, Line&& second) {
+  first.middle.push_back({std::exchange(first.back, {}), 0, 0});
+  gather_front(second);
+  if (first.middle.size() >= second.middle.size()) {
+    std::move(second.middle.begin(), second.middle.end(), std::back_inserter(first.middle));
+  } else {
+    std::move(first.middle.rbegin(), first.middle.rend(), std::front_inserter(second.middle));
+    first.middle = std::move(second.middle);
+  }
+  first.back = std::move(second.back);
+  first.end = second.end;
+}
+
+void LineJoiner::release(const std::function<bool(const Crossing&)>& is_final) {
+  if (segments_since_release_ < open_.size() - free_.size()) return;
+  segments_since_release_ = 0;
+  for (auto at = ends_.begin(); at != ends_.end();) {
+    const Number number = at->second;
+    Line& line = open_[number];
+    if (!is_final(line.end) || !is_final(line.begin)) {
+      ++at;
+      continue;
+    }
+    at = ends_.erase(at);
+    begins_.erase(line.begin);
+    give_out(std::move(line));
+    forget(number);
+  }
+}
+
+void LineJoiner::finish() {
+  segments_since_release_ = open_.size();
+  release([](const Crossing&) { return true; });
+}
+
+void LineJoiner::store(Piece& piece) {
+  if (piece.points.size() < kLeastStored) return;
+  if (!file_) file_ = scratch_.create("lines");
+  piece.offset = file_->size();
+  piece.stored = piece.points.size();
+  file_->append(std::as_bytes(std::span(piece.points)));
+  points_in_memory_ -= piece.stored;
+  piece.points = {};
+}
+
+void LineJoiner::spill() {
+  for (Line& line : open_) {
+    gather_front(line);
+    if (!line.back.empty()) line.middle.push_back({std::exchange(line.back, {}), 0, 0});
+    // Small neighbours become one piece, so that joined lines do not stay in crumbs.
+    std::deque<Piece> pieces;
+    for (Piece& piece : line.middle) {
+      if (!pieces.empty() && pieces.back().stored == 0 && piece.stored == 0) {
+        std::vector<Point<2>>& points = pieces.back().points;
+        points.insert(points.end(), piece.points.begin(), piece.points.end());
+      } else {
+        pieces.push_back(std::move(piece));
+      }
+    }
+    for (Piece& piece : pieces) store(piece);
+    line.middle = std::move(pieces);
+  }
+  // What cannot go stays; the next time is when as much has come again.
+  most_points_ = std::max(most_points_, 2 * points_in_memory_);
+}
+
+std::vector<Point<2>> LineJoiner::points_of(Line&& line) {
+  points_in_memory_ -= line.front.size() + line.back.size();
+  gather_front(line);
+  line.middle.push_back({std::move(line.back), 0, 0});
+  std::vector<Point<2>> points;
+  for (Piece& piece : line.middle) {
+    if (piece.stored > 0) {
+      const std::size_t begin = points.size();
+      points.resize(begin + piece.stored);
+      file_->read(piece.offset, std::as_writable_bytes(std::span(points).subspan(begin)));
+    } else {
+      points.insert(points.end(), piece.points.begin(), piece.points.end());
+    }
+  }
+  return points;
+}
+
+void LineJoiner::give_out(Line&& line) {
+  for (const Piece& piece : line.middle) points_in_memory_ -= piece.points.size();
+  const std::int64_t level = line.begin.level;
+  std::vector<Point<2>> points = points_of(std::move(line));
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 2) return;  // a summit just as high as the level
+  if (points.front() == points.back()) {
+    points.pop_back();
+    const auto begin = static_cast<std::ptrdiff_t>(least_beginning(points));
+    std::rotate(points.begin(), points.begin() + begin, points.end());
+    points.push_back(points.front());
+  }
+  ++lines_;
+  sink_(points, level);
+}
+
+}  // namespace spillway::detail

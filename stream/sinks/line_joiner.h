@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "formats/disk/scratch_folder.h"
+#include "src/terrain/isolines.h"
+
+namespace spillway::detail {
+
+struct CrossingHash {
+  std::size_t operator()(const Crossing& crossing) const;
+};
+
+/// Joins segments to whole lines. Segments come in any order; each runs with higher ground to its
+/// left, so lines only ever join end to beginning. A line is given out when it closes, or when both
+/// its ends lie where nothing more can come. Points of lines that are still open go to the disk
+/// when they outgrow their memory.
+class LineJoiner {
+ public:
+  /// Receives a whole line, without repeated points. One that ends with the point that it begins
+  /// with is closed, and has of all beginnings the one whose sequence of points is the least in
+  /// lexicographic order: so it begins at its least point.
+  using Sink = std::function<void(std::span<const Point<2>> points, std::int64_t level)>;
+
+  /// `memory`: bytes for points of open lines. `scratch` must outlive it.
+  LineJoiner(Sink sink, std::uint64_t memory, ScratchFolder& scratch);
+
+  /// Throws Error if the segment's triangle does not fit to those before it.
+  void add(const IsoSegment& segment);
+
+  /// Gives out lines that cannot grow any more: those whose both ends lie on edges of which
+  /// `is_final` says that no triangle will come to them. Worth a call now and then: it costs as
+  /// much as there are open lines, and does nothing before as many segments have come again.
+  void release(const std::function<bool(const Crossing&)>& is_final);
+
+  /// Gives out all that is left.
+  void finish();
+
+  [[nodiscard]] std::uint64_t lines() const { return lines_; }
+  [[nodiscard]] std::uint64_t spilled_bytes() const { return file_ ? file_->size() : 0; }
+
+ private:
+  /// Consecutive points of a line, in memory or on the disk.
+  struct Piece {
+    std::vector<Point<2>> points;
+    std::uint64_t offset = 0;  ///< in the file
+    std::uint64_t stored = 0;  ///< points there, if not in memory
+  };
+  struct Line {
+    Crossing begin;
+    Crossing end;
+    std::vector<Point<2>> front;  ///< the first points, from the last to the first
+    std::deque<Piece> middle;
+    std::vector<Point<2>> back;  ///< the last points
+  };
+  using Number = std::uint32_t;
+
+  using OpenEnds = std::unordered_map<Crossing, Number, CrossingHash>;
+
+  Number new_line();
+  void begin_line(const IsoSegment& segment);
+  void append(std::vector<Point<2>>& points, const Point<2>& point);
+  static void enter(OpenEnds& ends, const Crossing& crossing, Number number);
+  void join(Line& first, Line&& second);
+  static void gather_front(Line& line);
+  void give_out(Line&& line);
+  void forget(Number number);
+  void spill();
+  void store(Piece& piece);
+  [[nodiscard]] std::vector<Point<2>> points_of(Line&& line);
+
+  Sink sink_;
+  std::uint64_t most_points_;
+  ScratchFolder& scratch_;
+  std::unique_ptr<ScratchFile> file_;
+  std::vector<Line> open_;
+  std::vector<Number> free_;
+  OpenEnds begins_;  ///< lines by where they begin
+  OpenEnds ends_;    ///< and by where they end
+  std::uint64_t points_in_memory_ = 0;
+  std::uint64_t segments_since_release_ = 0;
+  std::uint64_t lines_ = 0;
+};
+
+}  // namespace spillway::detail

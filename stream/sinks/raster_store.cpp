@@ -1,0 +1,263 @@
+#include "stream/sinks/raster_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "formats/blocks/block.h"
+#include "formats/bytes/bytes.h"
+
+namespace spillway::detail {
+namespace {
+
+// A part on the disk is a block (docs/formats-blocks.md) of this kind: the number of runs; of each,
+// its first pixel and its length; then the pixels of all runs.
+constexpr std::uint32_t kRasterPart = 0x52545344;
+
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+
+/// Tiles that the store should have room for besides those in hands.
+constexpr std::size_t kLeastIdleTiles = 8;
+
+struct Run {
+  std::uint32_t begin;
+  std::uint32_t length;
+};
+
+std::vector<Run> runs_of(std::span<const float> pixels) {
+  std::vector<Run> runs;
+  const auto count = static_cast<std::uint32_t>(pixels.size());
+  for (std::uint32_t i = 0; i < count;) {
+    if (std::isnan(pixels[i])) {
+      ++i;
+      continue;
+    }
+    const std::uint32_t begin = i;
+    while (i < count && !std::isnan(pixels[i])) ++i;
+    runs.push_back({begin, i - begin});
+  }
+  return runs;
+}
+
+std::vector<std::byte> encode(std::span<const float> pixels, std::span<const Run> runs) {
+  std::vector<std::byte> content;
+  const auto add = [&content](std::span<const std::byte> bytes) {
+    content.insert(content.end(), bytes.begin(), bytes.end());
+  };
+  content.reserve(sizeof(std::uint32_t) + runs.size_bytes() + pixels.size_bytes());
+  const auto count = static_cast<std::uint32_t>(runs.size());
+  add(std::as_bytes(std::span(&count, 1)));
+  add(std::as_bytes(runs));
+  for (const Run& run : runs) add(std::as_bytes(pixels.subspan(run.begin, run.length)));
+  std::vector<std::byte> block;
+  append_block(block, kRasterPart, content);
+  return block;
+}
+
+// Whether the value of a kPreferred pixel is only provisional, as no preferred one has come, is
+// marked by the sign bit. Values have no signs, so it is free; what they bring in it is cleared.
+float as_preferred(float value) { return std::copysign(value, 1.0F); }
+float as_provisional(float value) { return std::copysign(value, -1.0F); }
+bool is_provisional(float pixel) { return std::signbit(pixel); }
+
+/// Floats count one by one up to here.
+constexpr float kLargestSum = 0x1p24F;
+
+/// What becomes of a pixel that holds `old` when `value` comes.
+float combined(float old, float value, PixelRule rule) {
+  if (std::isnan(old)) return value;
+  switch (rule) {
+    case PixelRule::kEqual:
+      return value;
+    case PixelRule::kPreferred:
+      if (!is_provisional(value)) return value;
+      // Of two provisional values the smaller one: their marks are minuses.
+      return is_provisional(old) ? std::max(old, value) : old;
+    case PixelRule::kSum:
+      return std::min(old + value, kLargestSum);
+  }
+  return value;
+}
+
+}  // namespace
+
+void put_pixel(float& pixel, float value, PixelRule rule, bool preferred) {
+  if (rule == PixelRule::kEqual || (rule == PixelRule::kPreferred && preferred)) {
+    set_pixel(pixel, rule == PixelRule::kPreferred ? as_preferred(value) : value);
+    return;
+  }
+  const std::atomic_ref<float> shared(pixel);
+  const float coming = rule == PixelRule::kPreferred ? as_provisional(value) : value;
+  float old = shared.load(std::memory_order_relaxed);
+  while (
+      !shared.compare_exchange_weak(old, combined(old, coming, rule), std::memory_order_relaxed)) {
+  }
+}
+
+RasterStore::RasterStore(std::vector<PixelRule> bands, std::uint64_t memory, ScratchFolder& scratch)
+    : bands_(std::move(bands)),
+      most_tiles_(memory / (tile_floats() * sizeof(float))),
+      scratch_(scratch) {}
+
+std::uint64_t RasterStore::least_memory(std::size_t bands, unsigned threads) {
+  return bands * kTilePixels * sizeof(float) * (kTilesInHand * threads + kLeastIdleTiles);
+}
+
+void RasterStore::Hand::release() {
+  for (Held& held : held_) {
+    if (held.pixels != nullptr) store_.let_go(held.number);
+    held = {};
+  }
+}
+
+float* RasterStore::Hand::take_up(std::uint64_t number) {
+  Held& held = held_[next_++ % kTilesInHand];
+  if (held.pixels != nullptr) store_.let_go(std::exchange(held, {}).number);
+  held = {number, store_.hold(number)};
+  return held.pixels;
+}
+
+float* RasterStore::hold(std::uint64_t number) {
+  std::unique_lock lock(mutex_);
+  if (const auto found = tiles_.find(number);
+      found == tiles_.end() || found->second.pixels.empty()) {
+    std::vector<float> pixels = empty_tile(lock);
+    Tile& tile = tiles_[number];
+    if (tile.pixels.empty()) {
+      tile.pixels = std::move(pixels);
+      ++tile.hands;
+      return tile.pixels.data();
+    }
+    --in_memory_;  // another thread has come first
+  }
+  Tile& tile = tiles_[number];
+  if (tile.hands++ == 0) idle_.erase(tile.place);
+  return tile.pixels.data();
+}
+
+void RasterStore::let_go(std::uint64_t number) {
+  const std::lock_guard lock(mutex_);
+  Tile& tile = tiles_[number];
+  if (--tile.hands == 0) tile.place = idle_.insert(idle_.end(), number);
+}
+
+/// Memory for one more tile, counted: that of the longest unused one if there are enough.
+std::vector<float> RasterStore::empty_tile(std::unique_lock<std::mutex>& lock) {
+  std::vector<float> pixels;
+  if (in_memory_ < most_tiles_ || idle_.empty()) {
+    ++in_memory_;
+    lock.unlock();
+    pixels.assign(tile_floats(), kNothing);
+  } else {
+    const std::uint64_t number = idle_.front();
+    idle_.pop_front();
+    pixels = std::exchange(tiles_[number].pixels, {});
+    lock.unlock();
+    append(number, pixels);
+    std::fill(pixels.begin(), pixels.end(), kNothing);
+  }
+  lock.lock();
+  return pixels;
+}
+
+void RasterStore::append(std::uint64_t number, std::span<const float> pixels) {
+  const std::vector<Run> runs = runs_of(pixels);
+  if (runs.empty()) return;
+  const std::vector<std::byte> block = encode(pixels, runs);
+  Part part{0, static_cast<std::uint32_t>(block.size())};
+  {
+    const std::lock_guard lock(file_mutex_);
+    if (!file_) file_ = scratch_.create("raster");
+    part.offset = file_->size();
+    file_->append(block);
+  }
+  const std::lock_guard lock(mutex_);
+  tiles_[number].parts.push_back(part);
+}
+
+/// What is provisional stays so.
+void RasterStore::take_as_it_is(std::uint64_t number, std::vector<float>& pixels) {
+  std::vector<Part> parts;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = tiles_.find(number);
+    if (found == tiles_.end()) {
+      pixels.clear();
+    } else {
+      Tile& tile = found->second;
+      if (!tile.pixels.empty()) {
+        idle_.erase(tile.place);
+        --in_memory_;
+      }
+      pixels = std::move(tile.pixels);
+      parts = std::move(tile.parts);
+      tiles_.erase(found);
+    }
+  }
+  if (pixels.empty()) pixels.assign(tile_floats(), kNothing);
+  for (const Part& part : parts) {
+    std::vector<std::byte> bytes(part.bytes);
+    file_->read(part.offset, bytes);
+    add_part(bytes, fmt::format("{}, byte {}", file_->name(), part.offset), pixels);
+  }
+}
+
+void RasterStore::take(std::uint64_t number, std::vector<float>& pixels,
+                       std::span<const std::vector<std::byte>> others) {
+  take_as_it_is(number, pixels);
+  for (const std::vector<std::byte>& part : others) {
+    add_part(part, "pixels from another rank", pixels);
+  }
+  for (std::size_t b = 0; b < bands_.size(); ++b) {
+    if (bands_[b] != PixelRule::kPreferred) continue;
+    for (float& pixel : std::span(pixels).subspan(b * kTilePixels, kTilePixels)) {
+      pixel = as_preferred(pixel);
+    }
+  }
+}
+
+std::vector<std::byte> RasterStore::take_part(std::uint64_t number) {
+  std::vector<float> pixels;
+  take_as_it_is(number, pixels);
+  return encode(pixels, runs_of(pixels));
+}
+
+std::vector<std::uint64_t> RasterStore::tiles() const {
+  std::vector<std::uint64_t> numbers;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [number, tile] : tiles_) numbers.push_back(number);
+  }
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+/// Adds what one part has to a tile.
+void RasterStore::add_part(std::span<const std::byte> part, const std::string& where,
+                           std::vector<float>& pixels) const {
+  const BlockHead head = decode_block_head(part.first<kBlockHeadSize>(), where);
+  std::vector<std::byte> content;
+  decode_block(head, part.subspan(kBlockHeadSize), content, where);
+  const auto count = load<std::uint32_t>(content.data());
+  const std::byte* run = content.data() + sizeof(count);
+  const std::byte* value = run + count * sizeof(Run);
+  for (std::uint32_t r = 0; r < count; ++r, run += sizeof(Run)) {
+    const auto [begin, length] = load<Run>(run);
+    for (std::uint32_t i = begin; i < begin + length; ++i, value += sizeof(float)) {
+      pixels[i] = combined(pixels[i], load<float>(value), bands_[i / kTilePixels]);
+    }
+  }
+}
+
+std::uint64_t RasterStore::spilled_bytes() const {
+  const std::lock_guard lock(file_mutex_);
+  return file_ ? file_->size() : 0;
+}
+
+}  // namespace spillway::detail

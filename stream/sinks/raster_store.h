@@ -1,0 +1,130 @@
+#pragma once
+// The pixels of a raster that may be larger than the memory.
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "formats/disk/scratch_folder.h"
+
+namespace spillway::detail {
+
+/// What is in a pixel of one band. Nothing is not-a-number. All else is put there by put_pixel(),
+/// and what comes out in the end does not depend on the order.
+enum class PixelRule : std::uint8_t {
+  kEqual,      ///< whatever is put there is equal
+  kPreferred,  ///< values from 0 (-0 is 0); the preferred one if there is one, else the smallest
+  kSum,        ///< all of them added; whole numbers, 2^24 at most
+};
+
+/// Puts a value into a pixel; so may other threads at the same time.
+void put_pixel(float& pixel, float value, PixelRule rule, bool preferred);
+
+/// The same for kEqual.
+inline void set_pixel(float& pixel, float value) {
+  std::atomic_ref<float>(pixel).store(value, std::memory_order_relaxed);
+}
+
+/// A raster in tiles of kSide x kSide pixels, each with all bands. When they take too much memory,
+/// those that have not been used for the longest time go to the disk, with the pixels that they
+/// have so far; used again, they begin empty, and all parts are put together at the end. So nothing
+/// is read back before, and a pixel is written once as a rule.
+class RasterStore {
+ public:
+  static constexpr std::uint32_t kSide = 256;
+  static constexpr std::size_t kTilePixels = std::size_t{kSide} * kSide;
+
+  /// Tiles that one thread holds at a time.
+  static constexpr std::size_t kTilesInHand = 4;
+
+  /// Tiles that fit in `memory` bytes are kept; those in hands are, in any case.
+  RasterStore(std::vector<PixelRule> bands, std::uint64_t memory, ScratchFolder& scratch);
+
+  /// The least memory that gives so many threads a hand and the store some room.
+  static std::uint64_t least_memory(std::size_t bands, unsigned threads);
+
+  /// A few tiles that stay in memory while one thread writes to them.
+  class Hand {
+   public:
+    explicit Hand(RasterStore& store) : store_(store) {}
+    ~Hand() { release(); }
+    Hand(const Hand&) = delete;
+    Hand& operator=(const Hand&) = delete;
+
+    /// The pixels of a tile, row by row, band after band, until so many others are asked for.
+    float* tile(std::uint64_t number) {
+      for (const Held& held : held_) {
+        if (held.pixels != nullptr && held.number == number) return held.pixels;
+      }
+      return take_up(number);
+    }
+
+    void release();
+
+   private:
+    struct Held {
+      std::uint64_t number = 0;
+      float* pixels = nullptr;
+    };
+    float* take_up(std::uint64_t number);
+
+    RasterStore& store_;
+    std::array<Held, kTilesInHand> held_{};
+    std::size_t next_ = 0;  ///< to be let go of
+  };
+
+  /// Takes a tile out of the store, all parts put together, also `others`, which take_part() of
+  /// stores like this one has given; nothing but not-a-number if it has none. When no hand holds
+  /// it. May be called by many threads.
+  void take(std::uint64_t number, std::vector<float>& pixels,
+            std::span<const std::vector<std::byte>> others = {});
+
+  /// Takes a tile out of the store, for another one.
+  std::vector<std::byte> take_part(std::uint64_t number);
+
+  /// The tiles that have been written to, in ascending order.
+  [[nodiscard]] std::vector<std::uint64_t> tiles() const;
+
+  [[nodiscard]] std::uint64_t spilled_bytes() const;
+
+ private:
+  struct Part {
+    std::uint64_t offset = 0;
+    std::uint32_t bytes = 0;
+  };
+  struct Tile {
+    std::vector<float> pixels;  ///< empty while not in memory
+    unsigned hands = 0;
+    std::list<std::uint64_t>::iterator place;  ///< in idle_, while in memory and in no hand
+    std::vector<Part> parts;                   ///< on the disk
+  };
+
+  float* hold(std::uint64_t number);
+  void let_go(std::uint64_t number);
+  std::vector<float> empty_tile(std::unique_lock<std::mutex>& lock);
+  [[nodiscard]] std::size_t tile_floats() const { return bands_.size() * kTilePixels; }
+  void append(std::uint64_t number, std::span<const float> pixels);
+  void take_as_it_is(std::uint64_t number, std::vector<float>& pixels);
+  void add_part(std::span<const std::byte> part, const std::string& where,
+                std::vector<float>& pixels) const;
+
+  const std::vector<PixelRule> bands_;
+  const std::size_t most_tiles_;
+  ScratchFolder& scratch_;
+  mutable std::mutex mutex_;  ///< guards the next three
+  std::unordered_map<std::uint64_t, Tile> tiles_;
+  std::list<std::uint64_t> idle_;  ///< in memory, in no hand; the longest unused first
+  std::size_t in_memory_ = 0;
+  mutable std::mutex file_mutex_;  ///< guards file_ while it grows; taken without mutex_
+  std::unique_ptr<ScratchFile> file_;
+};
+
+}  // namespace spillway::detail

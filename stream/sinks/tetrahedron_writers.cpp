@@ -1,0 +1,102 @@
+#include "stream/sinks/tetrahedron_writers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+#include "src/geometry/longest_edge.h"
+
+namespace spillway::detail {
+namespace {
+
+Point<3> difference(const Point<3>& a, const Point<3>& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+double volume(const std::array<Point<3>, 4>& corners) {
+  const Point<3> a = difference(corners[1], corners[0]);
+  const Point<3> b = difference(corners[2], corners[0]);
+  const Point<3> c = difference(corners[3], corners[0]);
+  return std::abs(a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
+                  a[2] * (b[0] * c[1] - b[1] * c[0])) /
+         6;
+}
+
+}  // namespace
+
+void TetrahedronWriter::write(MeshBlock&& block) {
+  std::vector<std::uint64_t> numbers;
+  std::vector<Point<3>> vertices;
+  for (const Point<3>& vertex : block.vertices) {
+    numbers.push_back(announced_++);
+    vertices.push_back(lattice_ ? lattice_->to_world(vertex) : vertex);
+    extent_.expand(vertices.back());
+  }
+  for (const std::uint64_t number : block.imported) {
+    numbers.push_back(number);
+    vertices.push_back(live_.at(number));
+  }
+  for (std::size_t c = 0; c < block.corners.size(); c += 4) {
+    std::array<std::uint64_t, 4> of{};
+    Corners corners{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      of[i] = numbers[block.corners[c + i]];
+      corners[i] = vertices[block.corners[c + i]];
+    }
+    if (max_edge_ && has_longer_edge<3>(corners, *max_edge_)) {
+      ++left_out_;
+    } else {
+      add(of, corners);
+    }
+  }
+  std::vector<bool> finalized(vertices.size());
+  for (const std::uint32_t v : block.finalized) {
+    finalized[v] = true;
+    live_.erase(numbers[v]);
+    retire(numbers[v], vertices[v]);
+  }
+  for (std::size_t v = 0; v < block.vertices.size(); ++v) {
+    if (!finalized[v]) live_.emplace(numbers[v], vertices[v]);
+  }
+}
+
+void TetrahedronWriter::finish(const MeshTotals& /*totals*/) {
+  for (const auto& [number, vertex] : live_) retire(number, vertex);
+  live_.clear();
+}
+
+void HullWriter::add(const std::array<std::uint64_t, 4>& numbers,
+                     const std::array<Point<3>, 4>& /*corners*/) {
+  open_.add(numbers);
+}
+
+void HullWriter::retire(std::uint64_t number, const Point<3>& vertex) {
+  retired_.emplace(number, vertex);
+  if (retired_.size() > std::max<std::size_t>(most_retired_, open_.count())) {
+    forget_inner_vertices();
+    most_retired_ = std::max(most_retired_, 2 * retired_.size());
+  }
+}
+
+void HullWriter::forget_inner_vertices() {
+  std::unordered_set<std::uint64_t> outer;
+  for (const auto& facet : open_) outer.insert(facet.begin(), facet.end());
+  std::erase_if(retired_, [&outer](const auto& vertex) { return !outer.contains(vertex.first); });
+}
+
+std::vector<std::array<Point<3>, 3>> HullWriter::facets() const {
+  std::vector<std::array<Point<3>, 3>> facets;
+  facets.reserve(open_.count());
+  for (const auto& facet : open_) {
+    facets.push_back({retired_.at(facet[0]), retired_.at(facet[1]), retired_.at(facet[2])});
+  }
+  return facets;
+}
+
+void SliceWriter::add(const std::array<std::uint64_t, 4>& /*numbers*/,
+                      const std::array<Point<3>, 4>& corners) {
+  const PlaneCut found = cut(corners, plane_);
+  if (found.count > 0) cuts_.push_back({found, static_cast<float>(std::cbrt(volume(corners)))});
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,121 @@
+#include "stream/source/common_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace spillway::detail {
+namespace {
+
+/// The largest integers of a LAS file and of any source, and the largest that a lattice may make of
+/// either.
+constexpr double kLargest32Bit = 0x1p31;
+constexpr double kLargestInput = 0x1p53;
+constexpr double kLargest = 0x1p52;
+/// Scales are multiples of this part of the smallest one, at most.
+constexpr std::int64_t kMostParts = 1000;
+constexpr double kScaleTolerance = 0x1p-51;
+/// How far an error of the scale may carry the largest integer, in steps of that scale.
+constexpr double kLargestError = kLargest32Bit * kScaleTolerance;
+constexpr double kStepTolerance = 1e-6;
+constexpr double kMostStepTolerance = 1e-3;
+
+/// How many parts `unit` has to be cut into, so that `scale` is a number of parts; 0 if too many.
+std::int64_t parts_of(double unit, double scale) {
+  for (std::int64_t parts = 1; parts <= kMostParts; ++parts) {
+    const double multiple = scale / unit * static_cast<double>(parts);
+    if (std::abs(multiple - std::round(multiple)) <= 4 * kScaleTolerance * multiple) return parts;
+  }
+  return 0;
+}
+
+/// The largest number of which all scales are multiples.
+std::optional<double> common_step(const std::set<double>& scales) {
+  const double unit = *scales.begin();
+  std::int64_t parts = 1;
+  for (const double scale : scales) {
+    const std::int64_t these = parts_of(unit, scale);
+    if (these == 0) return std::nullopt;
+    parts = std::lcm(parts, these);
+    if (parts > kMostParts) return std::nullopt;
+  }
+  return unit / static_cast<double>(parts);
+}
+
+/// Brings some axes of all lattices to one scale; false if that cannot be.
+bool join_axes(std::span<const Lattice> lattices, std::span<const double> largest,
+               std::span<const int> axes, CommonLattice& common) {
+  std::set<double> scales;
+  for (const Lattice& lattice : lattices) {
+    for (const int k : axes) scales.insert(std::abs(lattice.scale[k]));
+  }
+  const std::optional<double> step = common_step(scales);
+  if (!step) return false;
+  for (const int k : axes) {
+    double base = lattices.front().offset[k];
+    for (const Lattice& lattice : lattices) base = std::min(base, lattice.offset[k]);
+    common.lattice.scale[k] = *step;
+    common.lattice.offset[k] = base;
+    for (std::size_t i = 0; i < lattices.size(); ++i) {
+      const double scale = lattices[i].scale[k];
+      const double offset = lattices[i].offset[k];
+      const double factor = std::round(scale / *step);
+      const double steps = (offset - base) / *step;
+      const double shift = std::round(steps);
+      const double last_place = std::numeric_limits<double>::epsilon() *
+                                std::max(std::abs(offset), std::abs(base)) / *step;
+      const double tolerance = std::max(kStepTolerance, std::min(last_place, kMostStepTolerance));
+      const double integer = largest.empty() ? kLargest32Bit : largest[i];
+      const double scale_tolerance =
+          std::min(kScaleTolerance, kLargestError / integer) * std::abs(scale);
+      const bool whole = std::abs(std::fma(factor, *step, -scale)) <= scale_tolerance &&
+                         std::abs(steps - shift) <= tolerance;
+      const bool moves = factor != 1 || shift != 0;
+      const bool fits = integer * std::abs(factor) + std::abs(shift) <= kLargest;
+      if (!whole || (moves && !fits)) return false;
+      common.maps[i].factor[k] = factor;
+      common.maps[i].shift[k] = shift;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+double largest_integer(const PointHeader& header) {
+  if (header.format != "spp") return kLargest32Bit;
+  if (!header.lattice || !header.extent) return kLargestInput;
+  double largest = kLargest32Bit;
+  for (int k = 0; k < 3; ++k) {
+    for (const double end : {header.extent->lo[k], header.extent->hi[k]}) {
+      const double steps = (end - header.lattice->offset[k]) / header.lattice->scale[k];
+      largest = std::max(largest, std::ceil(std::abs(steps)) + 1);
+    }
+  }
+  return std::min(largest, kLargestInput);
+}
+
+std::optional<CommonLattice> find_common_lattice(std::span<const Lattice> lattices, int dimension,
+                                                 std::span<const double> largest) {
+  constexpr std::array kAxes = {0, 1, 2};
+  const std::span<const int> axes(kAxes);
+  CommonLattice common;
+  common.maps.resize(lattices.size());
+  if (!join_axes(lattices, largest, axes.first(dimension), common)) return std::nullopt;
+  if (dimension == 2 && !join_axes(lattices, largest, axes.last(1), common)) {
+    common.heights = false;
+    common.lattice.scale[2] = 1;
+    common.lattice.offset[2] = 0;
+    for (LatticeMap& map : common.maps) {
+      map.factor[2] = 1;
+      map.shift[2] = 0;
+    }
+  }
+  return common;
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,78 @@
+#include "stream/source/point_filter.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+
+bool ReturnFilter::keeps(const PointAttributes& point) const {
+  const bool known = point.return_number > 0 && point.return_count > 0;
+  const bool is_first = point.return_number <= 1;
+  const bool is_last = !known || point.return_number >= point.return_count;
+  return (first && is_first) || (last && is_last) || (single && is_first && is_last) ||
+         (point.return_number < numbers.size() && numbers[point.return_number]);
+}
+
+PointCounts& PointCounts::operator+=(const PointCounts& other) {
+  read += other.read;
+  withheld += other.withheld;
+  every += other.every;
+  classes += other.classes;
+  returns += other.returns;
+  bounds += other.bounds;
+  thinned += other.thinned;
+  return *this;
+}
+
+std::string describe(const PointCounts& counts) {
+  std::string text = fmt::format("{} points read", counts.read);
+  const std::array<std::pair<std::uint64_t, const char*>, 6> dropped = {
+      {{counts.withheld, "withheld"},
+       {counts.every, "left out by --every"},
+       {counts.classes, "of other classes"},
+       {counts.returns, "of other returns"},
+       {counts.bounds, "outside --bounds"},
+       {counts.thinned, "thinned"}}};
+  for (const auto& [count, why] : dropped) {
+    if (count > 0) text += fmt::format(", {} {}", count, why);
+  }
+  return text + fmt::format(", {} kept", counts.kept());
+}
+
+void refuse_empty_input(const PointCounts& counts) {
+  if (counts.read == 0) throw Error("the input has no points");
+  throw Error("the filters leave no points: " + describe(counts));
+}
+
+void apply_filter(const PointFilter& filter, const std::optional<Lattice>& lattice,
+                  PointBlock& block, PointCounts& counts) {
+  std::size_t kept = 0;
+  const bool attributes = !block.attributes.empty();
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    if (filter.every > 1 && block.index[i] % filter.every != 0) {
+      ++counts.every;
+    } else if (filter.classes && !filter.classes->test(block.attributes[i].classification)) {
+      ++counts.classes;
+    } else if (filter.returns && !filter.returns->keeps(block.attributes[i])) {
+      ++counts.returns;
+    } else if (filter.bounds &&
+               !filter.bounds->contains(lattice ? lattice->to_world(block.points[i])
+                                                : block.points[i])) {
+      ++counts.bounds;
+    } else {
+      block.points[kept] = block.points[i];
+      block.index[kept] = block.index[i];
+      if (attributes) block.attributes[kept] = block.attributes[i];
+      ++kept;
+    }
+  }
+  block.points.resize(kept);
+  block.index.resize(kept);
+  block.attributes.resize(attributes ? kept : 0);
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "formats/points/common/point_reader.h"
+#include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
+
+namespace spillway::detail {
+
+/// Which returns of a pulse are wanted; any that is named here. A return of unknown number or count
+/// passes for first and last.
+struct ReturnFilter {
+  bool first = false;
+  bool last = false;
+  bool single = false;        ///< the only return of its pulse
+  std::bitset<16> numbers{};  ///< bit n: return n
+
+  bool operator==(const ReturnFilter&) const = default;
+
+  [[nodiscard]] bool keeps(const PointAttributes& point) const;
+};
+
+/// What is kept of the points that are read, each for itself. In the order of the members; a point
+/// is counted where it is dropped first.
+struct PointFilter {
+  std::uint64_t every = 1;  ///< records 0, n, 2n, ... of each input
+  std::optional<std::bitset<256>> classes{};
+  std::optional<ReturnFilter> returns{};
+  std::optional<Box<3>> bounds{};  ///< in output coordinates, closed
+
+  [[nodiscard]] bool active() const { return every > 1 || needs_attributes() || bounds; }
+  [[nodiscard]] bool needs_attributes() const { return classes || returns; }
+};
+
+/// What became of the records of the inputs.
+struct PointCounts {
+  std::uint64_t read = 0;      ///< all of them
+  std::uint64_t withheld = 0;  ///< dropped since flagged so, ...
+  std::uint64_t every = 0;
+  std::uint64_t classes = 0;
+  std::uint64_t returns = 0;
+  std::uint64_t bounds = 0;
+  std::uint64_t thinned = 0;  ///< ... or since another one stands for their cell
+
+  PointCounts& operator+=(const PointCounts& other);
+  bool operator==(const PointCounts&) const = default;
+
+  [[nodiscard]] std::uint64_t dropped() const {
+    return withheld + every + classes + returns + bounds + thinned;
+  }
+  [[nodiscard]] std::uint64_t kept() const { return read - dropped(); }
+};
+
+/// One line: "500 points read, 12 withheld, 300 outside --bounds, 188 kept".
+std::string describe(const PointCounts& counts);
+
+/// Throws Error: there are no points, or none are left of those that were read.
+[[noreturn]] void refuse_empty_input(const PointCounts& counts);
+
+/// Takes out of `block` what the filter drops, and counts it. The points are integers of `lattice`,
+/// if there is one, and the index is still that of their own input.
+void apply_filter(const PointFilter& filter, const std::optional<Lattice>& lattice,
+                  PointBlock& block, PointCounts& counts);
+
+}  // namespace spillway::detail

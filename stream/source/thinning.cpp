@@ -1,0 +1,267 @@
+#include "stream/source/thinning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "src/delaunay/hash.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+/// Most files that the points of a pass are put aside to.
+constexpr std::size_t kParts = 16;
+constexpr std::size_t kBuffers =
+    kParts * PointBuffer::kPiece * (sizeof(Point<3>) + sizeof(std::uint64_t));
+/// A candidate, and its share of a table that is a quarter to half full.
+constexpr std::size_t kBytesPerCell = 64;
+constexpr std::size_t kFewestCells = 1024;
+constexpr std::size_t kMostCells = std::size_t{1} << 30;
+constexpr std::size_t kFewestSlots = 1024;
+constexpr std::size_t kBlockPoints = 65536;
+constexpr double kLargestCell = 4503599627370496.0;  // 2^52: numbers of cells are exact
+
+/// Bits of a key below the index: class, return number, return count, flags.
+constexpr int kAttributeBits = 20;
+
+std::uint64_t key_of(std::uint64_t index, const PointAttributes& attributes) {
+  if (index >> (64 - kAttributeBits) != 0) {
+    throw Error(fmt::format("--thin: {} records are too many; thin parts of them", index));
+  }
+  return index << kAttributeBits | static_cast<std::uint64_t>(attributes.classification) << 12 |
+         (attributes.return_number & 15U) << 8 | (attributes.return_count & 15U) << 4 |
+         (attributes.flags & 15U);
+}
+
+PointAttributes attributes_of(std::uint64_t key) {
+  PointAttributes attributes;
+  attributes.classification = static_cast<std::uint8_t>(key >> 12);
+  attributes.return_number = key >> 8 & 15U;
+  attributes.return_count = key >> 4 & 15U;
+  attributes.flags = key & 15U;
+  return attributes;
+}
+
+std::uint64_t hash_of(const std::array<double, 3>& cell) {
+  std::uint64_t hash = 0;
+  for (const double number : cell) {
+    hash = mix64(hash + static_cast<std::uint64_t>(static_cast<std::int64_t>(number)));
+  }
+  return hash;
+}
+
+}  // namespace
+
+Thinning::Thinning(const ThinningOptions& options, ScratchFolder& scratch)
+    : options_(options),
+      scratch_(scratch),
+      capacity_(std::clamp<std::size_t>(
+          (options.memory - std::min<std::uint64_t>(options.memory, kBuffers)) / kBytesPerCell,
+          kFewestCells, kMostCells)),
+      slots_(kFewestSlots),
+      parts_(kParts) {
+  const bool columns =
+      options.choice == ThinChoice::kLowest || options.choice == ThinChoice::kHighest;
+  if (columns) options_.dimension = 2;
+  candidates_.reserve(capacity_);
+}
+
+Point<3> Thinning::world(const Point<3>& point) const {
+  return options_.lattice ? options_.lattice->to_world(point) : point;
+}
+
+Thinning::Cell Thinning::cell_of(const Point<3>& world) const {
+  Cell cell{};
+  for (int k = 0; k < options_.dimension; ++k) {
+    cell[k] = std::floor(world[k] / options_.cell);
+    if (!(std::abs(cell[k]) <= kLargestCell)) {
+      throw Error(
+          fmt::format("--thin: cells of {} are too small to count up to a coordinate of "
+                      "{}; choose larger ones",
+                      options_.cell, world[k]));
+    }
+  }
+  return cell;
+}
+
+/// Whether `a` is to be kept rather than `b`, both of one cell.
+bool Thinning::better(const Candidate& a, const Candidate& b) const {
+  const auto rank = [this](const Candidate& candidate) {
+    const Point<3> place = world(candidate.point);
+    if (options_.choice == ThinChoice::kLowest) return place[2];
+    if (options_.choice == ThinChoice::kHighest) return -place[2];
+    double squared_distance = 0;
+    if (options_.choice == ThinChoice::kCenter) {
+      const Cell cell = cell_of(place);
+      for (int k = 0; k < options_.dimension; ++k) {
+        const double away = place[k] - (cell[k] + 0.5) * options_.cell;
+        squared_distance += away * away;
+      }
+    }
+    return squared_distance;
+  };
+  const double rank_a = rank(a);
+  const double rank_b = rank(b);
+  return rank_a != rank_b ? rank_a < rank_b : a.key < b.key;
+}
+
+void Thinning::add(const PointBlock& block) {
+  attributes_ |= !block.attributes.empty();
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    const PointAttributes attributes =
+        block.attributes.empty() ? PointAttributes{} : block.attributes[i];
+    offer({block.points[i], key_of(block.index[i], attributes)});
+  }
+}
+
+void Thinning::offer(const Candidate& candidate) {
+  const Cell cell = cell_of(world(candidate.point));
+  const std::uint64_t hash = hash_of(cell);
+  const auto short_hash = static_cast<std::uint32_t>(hash);
+  std::size_t place = short_hash & (slots_.size() - 1);
+  for (; slots_[place].number != 0; place = (place + 1) & (slots_.size() - 1)) {
+    if (slots_[place].hash != short_hash) continue;
+    Candidate& other = candidates_[slots_[place].number - 1];
+    if (cell_of(world(other.point)) != cell) continue;
+    if (better(candidate, other)) other = candidate;
+    ++dropped_;
+    return;
+  }
+  if (candidates_.size() == capacity_) {
+    put_aside(candidate, hash);
+    return;
+  }
+  candidates_.push_back(candidate);
+  if (level_ > 0) met_.push_back(candidate.key);
+  slots_[place] = {short_hash, static_cast<std::uint32_t>(candidates_.size())};
+  if (2 * candidates_.size() > slots_.size()) grow();
+}
+
+void Thinning::grow() {
+  const std::vector<Slot> before = std::exchange(slots_, std::vector<Slot>(2 * slots_.size()));
+  for (const Slot& slot : before) {
+    if (slot.number == 0) continue;
+    std::size_t place = slot.hash & (slots_.size() - 1);
+    while (slots_[place].number != 0) place = (place + 1) & (slots_.size() - 1);
+    slots_[place] = slot;
+  }
+}
+
+/// Cells that share a file in one pass are spread over all files in the next.
+void Thinning::put_aside(const Candidate& candidate, std::uint64_t hash) {
+  if (level_ == 0) {
+    ++put_aside_;
+  } else {
+    --done_;
+  }
+  Part& part = parts_[mix64(hash + level_) % parts_.size()];
+  part.buffer.append(std::span(&candidate.point, 1), std::span(&candidate.key, 1));
+  if (part.buffer.size() == PointBuffer::kPiece) write(part);
+}
+
+void Thinning::write(Part& part) {
+  if (!part.file) part.file = scratch_.create("thinning");
+  std::vector<std::byte> bytes;
+  for (TileBlock block : encode_points(part.buffer, bytes)) {
+    block.offset += part.file->size();
+    part.blocks.push_back(block);
+  }
+  part.file->append(bytes);
+}
+
+/// From now on all candidates are final.
+void Thinning::end_pass() {
+  passing_ = false;
+  std::vector<Slot>().swap(slots_);
+  for (Part& part : parts_) {
+    if (part.buffer.size() > 0) write(part);
+    part.level = level_ + 1;
+    if (part.file) waiting_.push_back(std::move(part));
+  }
+  parts_.clear();
+}
+
+void Thinning::run_pass(Part part) {
+  candidates_.clear();
+  met_.clear();
+  slots_.assign(kFewestSlots, {});
+  std::size_t count = 0;
+  for (const TileBlock& block : part.blocks) count += block.points;
+  parts_.resize(std::min(kParts, count / capacity_ + 1));  // such that theirs find room
+  level_ = part.level;
+  passing_ = true;
+  PointBlock points;
+  std::vector<std::byte> bytes;
+  for (const TileBlock& block : part.blocks) {
+    bytes.resize(block.size);
+    part.file->read(block.offset, bytes);
+    decode_points(bytes, fmt::format("{}, byte {}", part.file->name(), block.offset), points);
+    done_ += points.size();  // but for those that are put aside again
+    for (std::size_t i = 0; i < points.size(); ++i) offer({points.points[i], points.index[i]});
+    options_.progress.update(done_, put_aside_);
+  }
+}
+
+/// Thins the points of all files. All their cells were met after those that had found room.
+void Thinning::work_off_files() {
+  capacity_ -= capacity_ / (kBytesPerCell / sizeof(std::uint64_t));  // for met_
+  kept_.emplace(options_.memory, scratch_);
+  while (!waiting_.empty()) {
+    Part part = std::move(waiting_.back());
+    waiting_.pop_back();
+    run_pass(std::move(part));
+    end_pass();
+    kept_->begin_run();
+    for (std::size_t begin = 0; begin < candidates_.size(); begin += PointBuffer::kPiece) {
+      sorted_.clear();
+      for (std::size_t i = begin; i < std::min(candidates_.size(), begin + PointBuffer::kPiece);
+           ++i) {
+        sorted_.push_back({met_[i], candidates_[i].key, candidates_[i].point});
+      }
+      kept_->append(sorted_);
+    }
+  }
+  std::vector<Candidate>().swap(candidates_);
+  std::vector<std::uint64_t>().swap(met_);
+}
+
+/// Whether there are candidates to give, after new ones have taken the place of those given.
+bool Thinning::has_more() {
+  if (given_ < candidates_.size()) return true;
+  given_ = 0;
+  candidates_.clear();
+  const bool has_files = !waiting_.empty();
+  if (has_files) {
+    options_.progress.begin();
+    work_off_files();
+  }
+  const bool more = kept_ && kept_->next(sorted_, PointBuffer::kPiece);
+  if (has_files) options_.progress.end(put_aside_);
+  if (more) {
+    for (const RunPoint& p : sorted_) candidates_.push_back({p.point, p.key});
+    return true;
+  }
+  std::vector<Candidate>().swap(candidates_);
+  return false;
+}
+
+bool Thinning::next(PointBlock& block) {
+  block.clear();
+  if (passing_) end_pass();
+  while (block.size() < kBlockPoints && has_more()) {
+    const std::size_t end = std::min(candidates_.size(), given_ + kBlockPoints - block.size());
+    for (; given_ < end; ++given_) {
+      const Candidate& candidate = candidates_[given_];
+      block.points.push_back(candidate.point);
+      block.index.push_back(candidate.key >> kAttributeBits);
+      if (attributes_) block.attributes.push_back(attributes_of(candidate.key));
+    }
+  }
+  return block.size() > 0;
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,81 @@
+#pragma once
+// How points lie in a tile's file: blocks (formats/block.h) of up to some ten thousand points, each
+// a count and the columns x, y, z and, where wanted, the index (formats/columns.h).
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/points/common/point_reader.h"
+#include "src/delaunay/working_memory.h"
+#include "src/geometry/point.h"
+#include "stream/tiles/point_buffer.h"
+
+namespace spillway::detail {
+
+/// The points of a tile, ready to be triangulated, in the order in which they were read.
+template <int D>
+struct TilePoints {
+  std::vector<Point<D>> points;
+  std::vector<double> heights;       ///< D = 2: z, one a point
+  std::vector<std::uint64_t> index;  ///< one a point, or none
+
+  void resize(std::size_t count, bool with_index) {
+    resize(points, count);
+    if constexpr (D == 2) resize(heights, count);
+    if (with_index) resize(index, count);
+  }
+  /// Puts a point into a place.
+  void set(std::size_t place, const Point<3>& point) {
+    if constexpr (D == 2) {
+      points[place] = {point[0], point[1]};
+      heights[place] = point[2];
+    } else {
+      points[place] = point;
+    }
+  }
+
+ private:
+  template <typename T>
+  static void resize(std::vector<T>& values, std::size_t count) {
+    values.reserve(count);
+    ask_for_huge_pages(values.data(), count * sizeof(T));
+    values.resize(count);
+  }
+};
+
+/// What a point takes in it, with an index, and with its number while it is triangulated.
+constexpr std::uint64_t kLoadedPointBytes =
+    sizeof(Point<3>) + sizeof(std::uint64_t) + sizeof(std::uint32_t);
+
+/// Where a block lies in a tile's file, and how many points it holds.
+struct TileBlock {
+  std::uint64_t offset = 0;
+  std::size_t size = 0;
+  std::size_t points = 0;
+};
+
+/// Appends a buffer's points to `bytes` as blocks, one a piece, and lets go of them. The blocks'
+/// offsets are counted from the beginning of `bytes`.
+std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes);
+
+/// Appends one block of points, at most PointBuffer::kPiece. `index` has one entry a point, or
+/// none.
+void append_points(std::vector<std::byte>& bytes, std::span<const Point<3>> points,
+                   std::span<const std::uint64_t> index);
+
+/// Appends any number of points, as blocks one after the other.
+void append_all_points(std::vector<std::byte>& bytes, std::span<const Point<3>> points,
+                       std::span<const std::uint64_t> index);
+
+/// Replaces `points` by those of one block, given by its bytes. Throws Error, beginning with
+/// `where`, if the block is corrupt.
+void decode_points(std::span<const std::byte> block, const std::string& where, PointBlock& points);
+
+/// Likewise, by what append_all_points() wrote.
+void decode_all_points(std::span<const std::byte> blocks, const std::string& where,
+                       PointBlock& points);
+
+}  // namespace spillway::detail

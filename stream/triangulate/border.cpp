@@ -1,0 +1,231 @@
+#include "stream/triangulate/border.h"
+
+#include <algorithm>
+#include <numeric>
+#include <type_traits>
+#include <utility>
+
+#include "src/delaunay/delaunay.h"
+#include "src/delaunay/divide.h"
+#include "src/delaunay/schedule.h"
+#include "src/delaunay/simplex_index.h"
+#include "src/parallel/parallel.h"
+#include "src/runtime/memory_budget.h"
+#include "stream/tiles/tile_tree.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+/// Memory for each point of a border while it is triangulated, measured; and where the border is
+/// all there is, as for points of a sphere: then the parts of that triangulation have borders as
+/// large.
+template <int D>
+constexpr std::uint64_t kMergeBytes = D == 2 ? 320 : 900;
+template <int D>
+constexpr std::uint64_t kAllBorderMergeBytes = D == 2 ? 320 : 1400;
+
+/// Memory for each point of a border, where there are so many simplices for each of them: all there
+/// can be in the plane, and more than there usually are in space.
+template <int D>
+constexpr std::uint64_t kBorderBytes = sizeof(BorderVertex<D>) +
+                                       (D == 2 ? 2 : 8) * sizeof(std::array<VertexId, D + 1>);
+
+template <int D, typename Tree>
+class Merge {
+  using Corners = std::array<VertexId, D + 1>;
+  using ExposedIndex = SimplexIndex<D + 1>;
+
+ public:
+  Merge(std::span<Border<D>> children, std::span<const Tree* const> trees, MemoryBudget& budget)
+      : children_(children), trees_(trees), budget_(budget) {}
+
+  MergedBorder<D> run(Task& task) {
+    task.after.resize(3);
+    std::uint64_t bytes = 0;
+    for (const Border<D>& child : children_) bytes += child.bytes();
+    const MemoryLease copy(budget_, bytes, "the merge of borders");
+    find_exposed(task.after[0]);
+    const bool most = 2 * border_vertices_.size() > points_below();
+    const MemoryLease lease(
+        budget_, border_vertices_.size() * (most ? kAllBorderMergeBytes<D> : kMergeBytes<D>),
+        "the triangulation of a border");
+    triangulate(task.after[1]);
+    accept(task.after[2]);
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t points_below() const {
+    std::uint64_t points = 0;
+    for (const Tree* tree : trees_) {
+      if constexpr (std::is_same_v<Tree, Part<D>>) {
+        points += tree->size();
+      } else {
+        points += tree->points;
+      }
+    }
+    return points;
+  }
+
+  /// Numbers all vertices, sorts the children's simplices into those that a sibling may change and
+  /// those that stay, and collects the vertices to be triangulated.
+  void find_exposed(Task& task) {
+    task.kind = "border";
+    const Stopwatch watch(task.seconds);
+    auto& vertices = result_.border.vertices;
+    first_vertex_.assign(1, 0);
+    for (const Border<D>& child : children_) {
+      first_vertex_.push_back(first_vertex_.back() + static_cast<VertexId>(child.vertices.size()));
+      result_.border.dimension = std::max(result_.border.dimension, child.dimension);
+    }
+    vertices.reserve(first_vertex_.back());
+    std::vector<bool> wanted(first_vertex_.back());
+    for (std::size_t c = 0; c < children_.size(); ++c) {
+      Border<D> child = std::exchange(children_[c], {});
+      open_.push_back(child.open());
+      const std::vector<std::uint8_t> exposed = exposed_simplices(child, c);
+      for (std::size_t s = 0; s < child.simplices.size(); ++s) {
+        Corners corners = child.simplices[s];
+        for (VertexId& v : corners) {
+          if (v == kInfiniteVertex) continue;
+          v += first_vertex_[c];
+          if (exposed[s] != 0) wanted[v] = true;
+        }
+        (exposed[s] != 0 ? exposed_ : result_.border.simplices).push_back(corners);
+      }
+      if (child.open()) {
+        std::fill(wanted.begin() + first_vertex_[c], wanted.begin() + first_vertex_[c + 1], true);
+      }
+      vertices.insert(vertices.end(), child.vertices.begin(), child.vertices.end());
+    }
+    for (VertexId v = 0; v < wanted.size(); ++v) {
+      if (wanted[v]) border_vertices_.push_back(v);
+    }
+    result_.tested = result_.border.simplices.size();
+    result_.retriangulated = border_vertices_.size();
+    task.points = border_vertices_.size();
+    task.pieces = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
+  }
+
+  [[nodiscard]] std::vector<std::uint8_t> exposed_simplices(const Border<D>& child,
+                                                            std::size_t c) const {
+    const std::vector<Point<D>> points = child.positions();
+    std::vector<std::uint8_t> exposed(child.simplices.size());
+    parallel_for(exposed.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for_each_region<D>(
+          end - begin, [&](std::size_t s) { return child.simplices[begin + s]; }, points,
+          [&](std::size_t s, const ConflictRegion<D>& region) {
+            for (std::size_t other = 0; other < trees_.size() && exposed[begin + s] == 0; ++other) {
+              if (other != c && region.may_meet_leaf(*trees_[other])) exposed[begin + s] = 1;
+            }
+          });
+    });
+    return exposed;
+  }
+
+  void triangulate(Task& task) {
+    BlockArray<Point<D>> points(border_vertices_.size());
+    std::transform(border_vertices_.begin(), border_vertices_.end(), points.begin(),
+                   [&](VertexId v) { return result_.border.vertices[v].position; });
+    mesh_ = border_delaunay<D>(std::move(points), task);
+    result_.border.dimension = std::max(result_.border.dimension, mesh_.dimension);
+  }
+
+  void accept(Task& task) {
+    task.kind = "accept";
+    task.points = border_vertices_.size();
+    const Stopwatch watch(task.seconds);
+    const ExposedIndex index(exposed_);
+    std::vector<VertexId> number(mesh_.input_index.size());
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      number[v] = border_vertices_[mesh_.input_index[v]];
+    }
+    for (const SimplexBlock<D>& block : mesh_.blocks) {
+      const std::span simplices(block.simplices.data(), block.simplices.size());
+      std::vector<std::vector<Corners>> accepted(grain_count(simplices.size(), kGrain));
+      parallel_for(simplices.size(), kGrain,
+                   [&](std::size_t g, std::size_t begin, std::size_t end) {
+                     for (std::size_t first = begin; first < end; first += ExposedIndex::kBatch) {
+                       const std::size_t count = std::min(ExposedIndex::kBatch, end - first);
+                       append_accepted(simplices.subspan(first, count), number, index, accepted[g]);
+                     }
+                   });
+      auto& result = result_.border.simplices;
+      for (const auto& some : accepted) result.insert(result.end(), some.begin(), some.end());
+    }
+    task.pieces = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
+  }
+
+  /// Of a batch of the mesh's simplices, appends those to be accepted. `number` has the mesh's
+  /// vertices in the numbering of the merge.
+  void append_accepted(std::span<const Simplex<D>> batch, const std::vector<VertexId>& number,
+                       const ExposedIndex& index, std::vector<Corners>& accepted) const {
+    std::array<Corners, ExposedIndex::kBatch> candidates;
+    std::size_t count = 0;
+    for (const Simplex<D>& simplex : batch) {
+      if (simplex.removed()) continue;
+      Corners corners = simplex.vertices;
+      for (VertexId& v : corners) v = v == kInfiniteVertex ? v : number[v];
+      if (is_new(corners)) {
+        accepted.push_back(corners);
+      } else {
+        candidates[count++] = corners;
+      }
+    }
+    const auto found = index.find(std::span(candidates).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (found[i] != ExposedIndex::kNotFound) accepted.push_back(candidates[i]);
+    }
+  }
+
+  /// Whether a simplex spans children or lies in an open one.
+  [[nodiscard]] bool is_new(const Corners& corners) const {
+    VertexId lowest = kInfiniteVertex;
+    VertexId highest = 0;
+    for (const VertexId v : corners) {
+      lowest = std::min(lowest, v);
+      highest = std::max(highest, v == kInfiniteVertex ? 0 : v);
+    }
+    std::size_t child = 0;
+    while (lowest >= first_vertex_[child + 1]) ++child;
+    return highest >= first_vertex_[child + 1] || open_[child];
+  }
+
+  std::span<Border<D>> children_;
+  std::span<const Tree* const> trees_;
+  MemoryBudget& budget_;
+  std::vector<VertexId> first_vertex_;  ///< by child, and one more
+  std::vector<bool> open_;              ///< by child
+  std::vector<Corners> exposed_;
+  std::vector<VertexId> border_vertices_;
+  Triangulation<D> mesh_;
+  MergedBorder<D> result_;
+};
+
+}  // namespace
+
+template <int D>
+std::uint64_t enough_memory(std::uint64_t points) {
+  return points * (kLoadedPointBytes + 2 * kBorderBytes<D> + kAllBorderMergeBytes<D>);
+}
+
+template <int D, typename Tree>
+MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
+                              MemoryBudget& budget, Task& task) {
+  return Merge<D, Tree>(children, trees, budget).run(task);
+}
+
+template std::uint64_t enough_memory<2>(std::uint64_t);
+template std::uint64_t enough_memory<3>(std::uint64_t);
+template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const Part<2>* const>,
+                                       MemoryBudget&, Task&);
+template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const Part<3>* const>,
+                                       MemoryBudget&, Task&);
+template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const TileNode<2>* const>,
+                                       MemoryBudget&, Task&);
+template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const TileNode<3>* const>,
+                                       MemoryBudget&, Task&);
+
+}  // namespace spillway::detail

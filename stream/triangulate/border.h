@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "src/delaunay/finality.h"
+#include "src/geometry/point.h"
+#include "stream/output/stream_place.h"
+
+namespace spillway::detail {
+
+class MemoryBudget;
+struct Task;
+
+template <int D>
+struct BorderVertex {
+  Point<D> position;
+  double height = 0;              ///< D = 2: z
+  std::uint64_t input_index = 0;  ///< if vertices carry it
+  StreamPlace place;
+};
+
+/// What is left in memory of a part whose final simplices have been written: the simplices that
+/// points elsewhere may still change, and their vertices.
+template <int D>
+struct Border {
+  int dimension = -1;  ///< of the affine hull of all the part's points
+  std::vector<BorderVertex<D>> vertices;
+  std::vector<std::array<VertexId, D + 1>> simplices;  ///< of numbers of `vertices`
+
+  /// Whether the part has no simplices and gives all its points to the merge above, since they span
+  /// fewer than D dimensions.
+  [[nodiscard]] bool open() const { return dimension < D; }
+  [[nodiscard]] std::vector<Point<D>> positions() const {
+    std::vector<Point<D>> positions(vertices.size());
+    for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = vertices[v].position;
+    return positions;
+  }
+  [[nodiscard]] std::uint64_t bytes() const {
+    return vertices.size() * sizeof(vertices[0]) + simplices.size() * sizeof(simplices[0]);
+  }
+};
+
+/// The simplices of a merge, in one numbering of the vertices of all its children.
+template <int D>
+struct MergedBorder {
+  Border<D> border;
+  std::size_t tested = 0;            ///< so many simplices in front are known not to be final
+  std::uint64_t retriangulated = 0;  ///< points of the triangulation of the borders
+};
+
+/// Bytes of memory that are enough to triangulate so many points, even if all of them stay in the
+/// border to the end. In space that holds for borders of up to 8 simplices a point.
+template <int D>
+std::uint64_t enough_memory(std::uint64_t points);
+
+/// Makes one of the borders of parts that are children of one node. `trees[c]` is child c's tree of
+/// boxes (Part or TileNode). The vertices of simplices that a sibling may change, and all vertices
+/// of open children, are triangulated; of that, simplices are accepted that span children, or that
+/// their own child has in its border, facing the same way (Funke, Sanders 2017, Algorithm 1). All
+/// others of the children are kept as they are.
+/// Leases the memory of that from `budget`; throws Error if there is not enough.
+template <int D, typename Tree>
+MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
+                              MemoryBudget& budget, Task& task);
+
+}  // namespace spillway::detail

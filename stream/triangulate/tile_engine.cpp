@@ -1,0 +1,238 @@
+#include "stream/triangulate/tile_engine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "src/delaunay/base_case.h"
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+
+namespace spillway::detail {
+namespace {
+
+/// Tiles that are triangulated beside each other. Two, so that there is something to do while the
+/// last merges of one tile leave threads idle; the next one is being read meanwhile.
+constexpr std::size_t kTilesAtATime = 2;
+
+}  // namespace
+
+template <int D>
+TileEngine<D>::TileEngine(const ExpectedPoints& expected, MeshStreamWriter& writer,
+                          ScratchFolder& scratch, MemoryBudget& budget,
+                          const StreamOptions& options)
+    : options_(options),
+      budget_(budget),
+      plan_(plan_memory(budget.limit(), D, options.threads)),
+      planned_tile_(plan_.tile_capacity),
+      tile_options_(tile_options(expected.lattice)),
+      counts_(budget),
+      tree_(tree_options(expected), scratch, counts_.times),
+      sequencer_(writer, tile_options_.output, counts_.times) {}
+
+template <int D>
+TileOptions TileEngine<D>::tile_options(const std::optional<Lattice>& lattice) const {
+  TileOptions tile;
+  tile.division = options_.division;
+  tile.children = options_.children;
+  tile.heights = options_.heights;
+  tile.budget = &budget_;
+  tile.output = {lattice, options_.max_edge, options_.input_index};
+  return tile;
+}
+
+template <int D>
+TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
+  if (options_.tile_capacity > 0) plan_.tile_capacity = options_.tile_capacity;
+  if (options_.buffered_points > 0) plan_.buffered_points = options_.buffered_points;
+  const bool index = options_.input_index || expected.ordered_by_index;
+  if (index) plan_.buffered_points = plan_.buffered_points * 3 / 4;
+  return {.dimension = D,
+          .capacity = plan_.tile_capacity,
+          .buffered_points = plan_.buffered_points,
+          .expected = expected.count,
+          .extent = expected.extent,
+          .index = index};
+}
+
+template <int D>
+void TileEngine<D>::spill(const PointFeed& feed) {
+  const Stopwatch watch(figures_.read_seconds);
+  const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(Point<3>),
+                            "points that wait to be spilled");
+  tree_.fill({.fetch = feed.fetch, .decode = [&](SourcePiece& piece, PointBlock& block) {
+                feed.decode(piece, block);
+                span_.add(block.points);
+              }});
+}
+
+template <int D>
+std::uint64_t TileEngine<D>::divide_large() {
+  const Stopwatch watch(figures_.divide_seconds);
+  const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(Point<3>),
+                            "points that wait to be spilled");
+  return figures_.divided_points = tree_.divide_large(options_.progress);
+}
+
+template <int D>
+Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& outside) {
+  const Stopwatch watch(figures_.triangulate_seconds);
+  tile_options_.leaf_size =
+      options_.leaf_size > 0 ? options_.leaf_size : leaf_size_for(tree_.points(), D, plan_);
+  add_node(root, nullptr, outside, figures_.tasks);
+  figures_.tiles = tiles_.size();
+  figures_.final_by_level.resize(nodes_.back()->level);
+  TaskGroup lanes;
+  // Isolated, since a merge that took up the other lane while it waits could end up waiting for
+  // room in the sequencer, which only it can make.
+  const auto lane = [this] { isolated([this] { work_off_tiles(); }); };
+  for (std::size_t other = 1; other < kTilesAtATime; ++other) lanes.run(lane);
+  lane();
+  lanes.wait();
+  return std::move(nodes_.back()->border);
+}
+
+template <int D>
+typename TileEngine<D>::Node* TileEngine<D>::add_node(const TileNode<D>& tiles, Node* parent,
+                                                      const Outside<D>& outside, Task& task) {
+  auto node = std::make_unique<Node>();
+  node->tiles = &tiles;
+  node->parent = parent;
+  node->outside = outside;
+  node->task = &task;
+  node->children_missing = tiles.children.size();
+  task.kind = "node";
+  task.points = tiles.points;
+  task.children.resize(tiles.children.size());
+  for (std::size_t c = 0; c < tiles.children.size(); ++c) {
+    Outside<D> others = outside;
+    for (std::size_t o = 0; o < tiles.children.size(); ++o) {
+      if (o != c) others.push_back(&tiles.children[o]);
+    }
+    node->children.push_back(add_node(tiles.children[c], node.get(), others, task.children[c]));
+    node->level = std::max(node->level, node->children.back()->level + 1);
+  }
+  node->slot = static_cast<std::uint32_t>(nodes_.size());
+  if (tiles.children.empty()) tiles_.push_back(node.get());
+  nodes_.push_back(std::move(node));
+  return nodes_.back().get();
+}
+
+/// Takes tiles in order as long as there are any; after the last child of a merge, does that too.
+/// Of a tile that is larger than planned, of equal points or by --tile, only what others may have
+/// is leased.
+template <int D>
+void TileEngine<D>::work_off_tiles() {
+  try {
+    for (;;) {
+      TilePoints<D> points;
+      Node* node = take_tile(points);
+      if (node == nullptr) return;
+      {
+        const MemoryLease lease(
+            budget_, std::min(points.points.size(), planned_tile_) * kLoadedPointBytes, "a tile");
+        node->border = triangulate_tile<D>(
+            std::move(points), node->outside, tile_options_, sequencer_, counts_, node->slot,
+            [&] { report_progress(); }, *node->task);
+      }
+      for (node = node->parent; node != nullptr && --node->children_missing == 0;
+           node = node->parent) {
+        merge_node(*node);
+      }
+    }
+  } catch (...) {
+    failed_ = true;
+    sequencer_.give_up();
+    const std::lock_guard lock(take_mutex_);
+    if (reading_ahead_.valid()) reading_ahead_.wait();  // the tree that it reads from may go now
+    throw;
+  }
+}
+
+/// The next tile and its points; null at the end, or if the run has failed. What is on the disk
+/// of it has been read ahead, and the reading of the one after it begins.
+template <int D>
+typename TileEngine<D>::Node* TileEngine<D>::take_tile(TilePoints<D>& points) {
+  StoredTile stored;
+  Node* node = nullptr;
+  {
+    const std::lock_guard lock(take_mutex_);
+    if (taken_ == tiles_.size() || failed_) return nullptr;
+    node = tiles_[taken_++];
+    sequencer_.wait_for_room(plan_.waiting_bytes, node->slot);
+    stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.read(*node->tiles);
+    if (taken_ < tiles_.size()) {
+      reading_ahead_ = std::async(
+          std::launch::async, [this, next = tiles_[taken_]->tiles] { return tree_.read(*next); });
+    }
+  }
+  points = tree_.template decode<D>(std::move(stored));
+  if (replace_indices_) replace_indices_(points.index);
+  return node;
+}
+
+template <int D>
+void TileEngine<D>::merge_node(Node& node) {
+  std::vector<Border<D>> borders;
+  for (Node* child : node.children) borders.push_back(std::exchange(child->border, {}));
+  std::uint64_t final_simplices = 0;
+  node.border = merge_tiles<D>(borders, *node.tiles, node.outside, tile_options_, sequencer_,
+                               counts_, node.slot, final_simplices, *node.task);
+  const std::lock_guard lock(figures_mutex_);
+  figures_.final_by_level[node.level - 1] += final_simplices;
+}
+
+/// Nothing of this is for the sequencer: `place` is one of a stream of many processes.
+template <int D>
+Settled<D> TileEngine<D>::merge(std::span<Border<D>> children, const TileNode<D>& node,
+                                const Outside<D>& outside, BlockPlace place, Task& task) {
+  TileOptions options = tile_options_;
+  options.output.imported_vertices = true;
+  return merge_borders_of<D>(children, node, outside, options, counts_, place, task);
+}
+
+template <int D>
+void TileEngine<D>::take_in(const Border<D>& border) {
+  counts_.borders.add(border.simplices.size(), border.bytes());
+}
+
+template <int D>
+void TileEngine<D>::hand_over(const Border<D>& border) {
+  counts_.borders.remove(border.simplices.size(), border.bytes());
+}
+
+template <int D>
+void TileEngine<D>::report_progress() const {
+  const std::uint64_t done = counts_.points;
+  options_.progress(done, static_cast<double>(done) / static_cast<double>(tree_.points()));
+}
+
+template <int D>
+StreamFigures TileEngine<D>::figures() {
+  figures_.threads = plan_.threads;
+  figures_.totals = sequencer_.totals();
+  figures_.totals.points = tree_.points();
+  figures_.totals.duplicates = counts_.duplicates;
+  if (!options_.max_edge) figures_.totals.hull_facets = counts_.hull_facets;
+  figures_.left_out = counts_.left_out;
+  figures_.leaves = counts_.leaves;
+  figures_.tile_capacity = plan_.tile_capacity;
+  figures_.leaf_size = tile_options_.leaf_size;
+  figures_.spilled_points = tree_.points_written();
+  figures_.spilled_bytes = tree_.bytes_written();
+  figures_.final_in_leaves = counts_.final_in_leaves;
+  figures_.final_in_tiles = counts_.final_in_tiles;
+  figures_.retriangulated = counts_.retriangulated;
+  figures_.border_simplices = counts_.borders.most_simplices();
+  figures_.border_bytes = counts_.borders.most_bytes();
+  for (std::size_t s = 0; s < kStageNames.size(); ++s) {
+    figures_.stage_seconds[s] = counts_.times.seconds(static_cast<Stage>(s));
+  }
+  return std::move(figures_);
+}
+
+template class TileEngine<2>;
+template class TileEngine<3>;
+
+}  // namespace spillway::detail

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "formats/disk/scratch_folder.h"
+#include "formats/meshes/common/mesh_stream.h"
+#include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
+#include "src/runtime/memory_budget.h"
+#include "stream/output/sequencer.h"
+#include "stream/output/stream_place.h"
+#include "stream/plan/memory_plan.h"
+#include "stream/plan/stream_options.h"
+#include "stream/tiles/point_span.h"
+#include "stream/tiles/tile_tree.h"
+#include "stream/triangulate/tile_triangulation.h"
+
+namespace spillway::detail {
+
+/// What is known of the points to come.
+struct ExpectedPoints {
+  std::optional<Lattice> lattice;
+  std::optional<std::uint64_t> count;  ///< about how many
+  std::optional<Box<3>> extent;        ///< where they will lie
+  bool ordered_by_index = false;       ///< they come in any order, with an index that tells
+};
+
+/// Takes the points of one process from the feed to the border that is left of them: spill(), then
+/// divide_large(), then triangulate(), all inside of with_threads(threads()).
+template <int D>
+class TileEngine {
+ public:
+  /// All but `expected` must outlive it.
+  TileEngine(const ExpectedPoints& expected, MeshStreamWriter& writer, ScratchFolder& scratch,
+             MemoryBudget& budget, const StreamOptions& options);
+
+  [[nodiscard]] unsigned threads() const { return plan_.threads; }
+  [[nodiscard]] StageTimes& times() { return counts_.times; }
+
+  /// Deals all points of the feed into tiles.
+  void spill(const PointFeed& feed);
+
+  /// After spill(): points of tiles that are too large, and are to be divided before nodes(); and
+  /// their division, which returns how many points were dealt again.
+  [[nodiscard]] std::uint64_t points_to_divide() const { return tree_.points_to_divide(); }
+  std::uint64_t divide_large();
+
+  /// What the points of the feed span.
+  [[nodiscard]] const PointSpan<D>& span() const { return span_; }
+
+  /// Calls this for the indices of each tile's points when it is loaded: to put others there, which
+  /// need not be known before.
+  void replace_indices(std::function<void(std::span<std::uint64_t> index)> replace) {
+    replace_indices_ = std::move(replace);
+  }
+
+  [[nodiscard]] std::uint64_t points() const { return tree_.points(); }
+
+  /// The tree of tiles; nothing if there are no points.
+  [[nodiscard]] std::optional<TileNode<D>> nodes() const { return tree_.template nodes<D>(); }
+
+  /// Triangulates the tiles of `root`, one by one, and merges them. What nothing `outside` can
+  /// change has gone to the writer when it returns; the rest is returned.
+  Border<D> triangulate(const TileNode<D>& root, const Outside<D>& outside);
+
+  /// Merges borders of children of `node`, which need not be tiles of this process, as block
+  /// `place` of a stream. Counts what has been settled, but writes nothing.
+  Settled<D> merge(std::span<Border<D>> children, const TileNode<D>& node,
+                   const Outside<D>& outside, BlockPlace place, Task& task);
+
+  /// A border that came from elsewhere, for merge(); and one that goes elsewhere.
+  void take_in(const Border<D>& border);
+  void hand_over(const Border<D>& border);
+
+  /// The number in the writer's stream of a vertex that has been announced there.
+  [[nodiscard]] std::uint64_t number_of(const StreamPlace& place) const {
+    return sequencer_.number_of(place);
+  }
+  /// The open facets of the writer's stream, where simplices are left out.
+  [[nodiscard]] const OpenFacets<D>& open_facets() const { return sequencer_.open_facets(); }
+
+  /// Of all that has been done; to be called once, at the end.
+  [[nodiscard]] StreamFigures figures();
+
+ private:
+  /// A tile, or a merge of tiles. Its place in nodes_, which is post-order, is its slot of the
+  /// stream.
+  struct Node {
+    const TileNode<D>* tiles = nullptr;
+    Node* parent = nullptr;
+    Outside<D> outside;
+    Task* task = nullptr;
+    std::uint32_t slot = 0;
+    std::size_t level = 0;  ///< merges below, at most
+    std::vector<Node*> children;
+    std::atomic<std::size_t> children_missing = 0;
+    Border<D> border;
+  };
+
+  [[nodiscard]] TileOptions tile_options(const std::optional<Lattice>& lattice) const;
+  TileTreeOptions tree_options(const ExpectedPoints& expected);
+  Node* add_node(const TileNode<D>& tiles, Node* parent, const Outside<D>& outside, Task& task);
+  void work_off_tiles();
+  Node* take_tile(TilePoints<D>& points);
+  void merge_node(Node& node);
+  void report_progress() const;
+
+  const StreamOptions& options_;
+  MemoryBudget& budget_;
+  MemoryPlan plan_;
+  const std::size_t planned_tile_;  ///< points of a tile, unless --tile is given
+  TileOptions tile_options_;
+  StreamCounts counts_;
+  PointSpan<D> span_;
+  TileTree tree_;
+  Sequencer<D> sequencer_;
+  std::vector<std::unique_ptr<Node>> nodes_;  ///< in post-order
+  std::vector<Node*> tiles_;                  ///< those of nodes_ without children, in order
+  std::function<void(std::span<std::uint64_t>)> replace_indices_;
+  std::mutex take_mutex_;  ///< guards the next three
+  std::size_t taken_ = 0;
+  std::future<StoredTile> reading_ahead_;
+  std::atomic<bool> failed_ = false;
+  std::mutex figures_mutex_;  ///< guards the next one
+  StreamFigures figures_;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "src/delaunay/divide.h"
+#include "src/delaunay/schedule.h"
+#include "src/runtime/memory_budget.h"
+#include "src/runtime/stage_times.h"
+#include "stream/output/heights.h"
+#include "stream/output/sequencer.h"
+#include "stream/output/stream_place.h"
+#include "stream/tiles/tile_tree.h"
+#include "stream/triangulate/border.h"
+#include "stream/triangulate/settle.h"
+
+namespace spillway::detail {
+
+/// How tiles are triangulated.
+struct TileOptions {
+  std::size_t leaf_size = 0;
+  DivisionScheme division = DivisionScheme::kLongestExtent;
+  unsigned children = 2;
+  HeightChoice heights = HeightChoice::kFirst;
+  OutputOptions output;
+  MemoryBudget* budget = nullptr;  ///< for the triangulations of borders
+};
+
+/// How much of borders is in memory, and the most there was. It grows with the input: the budget
+/// refuses what outgrows it.
+class ResidentBorders {
+ public:
+  explicit ResidentBorders(MemoryBudget& budget) : budget_(budget) {}
+  ~ResidentBorders() { budget_.give_back(bytes_); }
+  ResidentBorders(const ResidentBorders&) = delete;
+  ResidentBorders& operator=(const ResidentBorders&) = delete;
+
+  void add(std::uint64_t simplices, std::uint64_t bytes) {
+    budget_.take(bytes, "the border between tiles");
+    raise(most_simplices_, simplices_ += simplices);
+    raise(most_bytes_, bytes_ += bytes);
+  }
+  void remove(std::uint64_t simplices, std::uint64_t bytes) {
+    simplices_ -= simplices;
+    bytes_ -= bytes;
+    budget_.give_back(bytes);
+  }
+  [[nodiscard]] std::uint64_t most_simplices() const { return most_simplices_; }
+  [[nodiscard]] std::uint64_t most_bytes() const { return most_bytes_; }
+
+ private:
+  static void raise(std::atomic<std::uint64_t>& most, std::uint64_t now) {
+    std::uint64_t seen = most;
+    while (seen < now && !most.compare_exchange_weak(seen, now)) {
+    }
+  }
+
+  MemoryBudget& budget_;
+  std::atomic<std::uint64_t> simplices_ = 0;
+  std::atomic<std::uint64_t> bytes_ = 0;
+  std::atomic<std::uint64_t> most_simplices_ = 0;
+  std::atomic<std::uint64_t> most_bytes_ = 0;
+};
+
+/// What is counted on the way, by many threads.
+struct StreamCounts {
+  explicit StreamCounts(MemoryBudget& budget) : borders(budget) {}
+
+  StageTimes times;
+  ResidentBorders borders;
+  std::atomic<std::uint64_t> points = 0;  ///< that have been through a leaf
+  std::atomic<std::uint64_t> duplicates = 0;
+  std::atomic<std::uint64_t> hull_facets = 0;
+  std::atomic<std::uint64_t> left_out = 0;
+  std::atomic<std::uint64_t> final_in_leaves = 0;  ///< simplices, infinite ones included
+  std::atomic<std::uint64_t> final_in_tiles = 0;   ///< in merges inside tiles
+  std::atomic<std::uint64_t> leaves = 0;
+  std::atomic<std::uint64_t> retriangulated = 0;  ///< points in triangulations of borders
+};
+
+/// Where everything else is: the roots of the trees of boxes that are not this tile's.
+template <int D>
+using Outside = std::vector<const TileNode<D>*>;
+
+/// Triangulates a loaded tile: divides it into leaves, works them off in order by all threads, and
+/// merges what is left of them; everything that is final goes to `sequencer`, as the blocks of
+/// `slot`. Returns what is not final. `progress` is called after each leaf, by any thread.
+template <int D>
+Border<D> triangulate_tile(TilePoints<D> tile, const Outside<D>& outside,
+                           const TileOptions& options, Sequencer<D>& sequencer,
+                           StreamCounts& counts, std::uint32_t slot,
+                           const std::function<void()>& progress, Task& task);
+
+/// Merges the borders of a node of the tree over tiles and settles what is final now, as block
+/// `place`; counts it, but writes nothing.
+template <int D>
+Settled<D> merge_borders_of(std::span<Border<D>> children, const TileNode<D>& node,
+                            const Outside<D>& outside, const TileOptions& options,
+                            StreamCounts& counts, BlockPlace place, Task& task);
+
+/// The same, and sends what is final to `sequencer`, as the one block of `slot`. Adds the number of
+/// simplices that became final to `final_simplices`.
+template <int D>
+Border<D> merge_tiles(std::span<Border<D>> children, const TileNode<D>& node,
+                      const Outside<D>& outside, const TileOptions& options,
+                      Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t slot,
+                      std::uint64_t& final_simplices, Task& task);
+
+}  // namespace spillway::detail

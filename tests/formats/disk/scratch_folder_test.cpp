@@ -1,0 +1,189 @@
+#include "formats/disk/scratch_folder.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+#include <vector>
+
+#include "formats/bytes/bytes.h"
+#include "formats/disk/unfinished_files.h"
+#include "tests/formats/point_test_helpers.h"
+
+namespace spillway::detail::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class Scratch : public ::testing::Test {
+ protected:
+  Scratch() {
+    std::string name = ::testing::TempDir() + "scratch_test_XXXXXX";
+    parent_ = ::mkdtemp(name.data());
+  }
+  ~Scratch() override { fs::remove_all(parent_); }
+
+  [[nodiscard]] std::unique_ptr<ScratchFolder> folder(
+      std::optional<std::uint64_t> cap = std::nullopt) const {
+    return make_scratch_folder(parent_, cap);
+  }
+
+  fs::path parent_;
+};
+
+std::string content(const ScratchFile& file, std::uint64_t offset, std::size_t size) {
+  std::vector<std::byte> buffer(size);
+  file.read(offset, buffer);
+  return std::string(as_text(buffer));
+}
+
+TEST_F(Scratch, WhatIsAppendedIsRead) {
+  const auto scratch = folder();
+  const auto first = scratch->create("tile");
+  const auto second = scratch->create("tile");
+  first->append(as_bytes_of("hello "));
+  second->append(as_bytes_of("other"));
+  first->append(as_bytes_of("world"));
+  EXPECT_EQ(first->size(), 11U);
+  EXPECT_EQ(content(*first, 0, 11), "hello world");
+  EXPECT_EQ(content(*first, 4, 5), "o wor");
+  EXPECT_EQ(content(*second, 0, 5), "other");
+  EXPECT_EQ(fs::path(first->name()).filename().string().substr(0, 4), "tile");
+}
+
+TEST_F(Scratch, TheFolderIsPrivateAndMadeWithTheFirstFile) {
+  const auto scratch = folder();
+  EXPECT_TRUE(fs::is_empty(parent_));
+  const auto file = scratch->create("tile");
+  const fs::path made = fs::path(file->name()).parent_path();
+  EXPECT_EQ(made.parent_path(), parent_);
+  EXPECT_THAT(made.filename().string(), StartsWith("spillway-"));
+  EXPECT_EQ(fs::status(made).permissions(), fs::perms::owner_all);
+}
+
+TEST_F(Scratch, NothingIsLeft) {
+  auto scratch = folder();
+  auto first = scratch->create("tile");
+  const auto second = scratch->create("tile");
+  first->append(as_bytes_of("x"));
+  const std::string name = first->name();
+  first.reset();
+  EXPECT_FALSE(fs::exists(name));
+  EXPECT_TRUE(fs::exists(second->name()));
+  scratch.reset();
+  EXPECT_TRUE(fs::is_empty(parent_));
+}
+
+TEST_F(Scratch, ASignalRemovesTheFolder) {
+  const auto scratch = folder();
+  const auto file = scratch->create("tile");
+  file->append(as_bytes_of("x"));
+  EXPECT_EXIT(
+      {
+        remove_unfinished_files();
+        _exit(0);
+      },
+      ::testing::ExitedWithCode(0), "");
+  EXPECT_TRUE(fs::is_empty(parent_));
+}
+
+TEST_F(Scratch, CountsBytes) {
+  const auto scratch = folder();
+  auto first = scratch->create("a");
+  first->append(as_bytes_of("12345"));
+  first.reset();
+  const auto second = scratch->create("b");
+  second->append(as_bytes_of("123"));
+  EXPECT_EQ(scratch->bytes_written(), 8U);
+  EXPECT_EQ(scratch->peak_bytes(), 5U);
+}
+
+TEST_F(Scratch, CountsBytesOfManyThreads) {
+  const auto scratch = folder();
+  std::vector<std::thread> threads;
+  threads.reserve(4);
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 50; ++i) scratch->create("tile")->append(as_bytes_of("0123456789"));
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(scratch->bytes_written(), 2000U);
+  EXPECT_LE(scratch->peak_bytes(), 40U);
+}
+
+TEST_F(Scratch, TheCapHoldsForWhatIsThere) {
+  const auto scratch = folder(10);
+  auto first = scratch->create("a");
+  const auto second = scratch->create("b");
+  first->append(as_bytes_of("123456"));
+  second->append(as_bytes_of("1234"));
+  EXPECT_THAT(error_of([&] { second->append(as_bytes_of("5")); }),
+              AllOf(HasSubstr("cannot write " + second->name()), HasSubstr("10 bytes"),
+                    HasSubstr("raise --max-tmp")));
+  EXPECT_EQ(second->size(), 4U);
+  first.reset();
+  second->append(as_bytes_of("56789"));
+  EXPECT_EQ(content(*second, 0, 9), "123456789");
+}
+
+TEST_F(Scratch, AFullDiskIsAnError) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "/dev/full is not there";
+  const auto scratch = folder();
+  const auto file = scratch->create("tile");
+  fs::remove(file->name());
+  fs::create_symlink("/dev/full", file->name());
+  EXPECT_THAT(error_of([&] { file->append(as_bytes_of("x")); }),
+              AllOf(HasSubstr("cannot write " + file->name() + ": No space left on device"),
+                    HasSubstr("free some space"), HasSubstr("--tmpdir")));
+}
+
+TEST_F(Scratch, AFileThatShrankIsAnError) {
+  const auto scratch = folder();
+  const auto file = scratch->create("tile");
+  file->append(as_bytes_of("12345"));
+  fs::resize_file(file->name(), 3);
+  EXPECT_THAT(error_of([&] { content(*file, 1, 4); }),
+              AllOf(HasSubstr("cannot read " + file->name()), HasSubstr("ends at byte 3")));
+  fs::remove(file->name());
+  EXPECT_THAT(error_of([&] { content(*file, 1, 4); }), HasSubstr("No such file or directory"));
+  EXPECT_THAT(error_of([&] { file->append(as_bytes_of("x")); }),
+              HasSubstr("No such file or directory"));
+}
+
+TEST_F(Scratch, AMissingParentIsAnError) {
+  const auto scratch = make_scratch_folder(parent_ / "none", std::nullopt);
+  EXPECT_THAT(error_of([&] { scratch->create("tile"); }),
+              AllOf(HasSubstr((parent_ / "none").string() + ": No such file or directory"),
+                    HasSubstr("--tmpdir")));
+}
+
+TEST_F(Scratch, MoreFilesThanDescriptors) {
+  rlimit old{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &old), 0);
+  const rlimit few{32, old.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  const auto scratch = folder();
+  std::vector<std::unique_ptr<ScratchFile>> files;
+  for (int i = 0; i < 100; ++i) {
+    files.push_back(scratch->create("tile"));
+    files.back()->append(as_bytes_of(std::to_string(100 + i)));
+  }
+  EXPECT_EQ(content(*files[42], 0, 3), "142");
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &old), 0);
+}
+
+TEST_F(Scratch, TheDefaultParentIsTheEnvironmentS) {
+  ASSERT_EQ(::setenv("TMPDIR", parent_.c_str(), 1), 0);
+  const auto file = make_scratch_folder("", std::nullopt)->create("tile");
+  EXPECT_EQ(fs::path(file->name()).parent_path().parent_path(), parent_);
+  ASSERT_EQ(::unsetenv("TMPDIR"), 0);
+}
+
+}  // namespace
+}  // namespace spillway::detail::testing

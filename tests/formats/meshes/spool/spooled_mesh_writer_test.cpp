@@ -1,0 +1,116 @@
+#include "formats/meshes/spooled_mesh_writer.h"
+#include "formats/meshes/create_mesh.h"
+
+#include "tests/formats/meshes/stream_test_helpers.h"
+
+namespace spillway::detail::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr MeshFormat kAll[] = {MeshFormat::kPly, MeshFormat::kPlyAscii, MeshFormat::kObj,
+                               MeshFormat::kOff, MeshFormat::kVtu,      MeshFormat::kNpy,
+                               MeshFormat::kGlb, MeshFormat::kLandXml};
+
+bool triangles_only(MeshFormat format) {
+  return format == MeshFormat::kObj || format == MeshFormat::kOff || format == MeshFormat::kGlb ||
+         format == MeshFormat::kLandXml;
+}
+
+/// The files of a mesh that is written with a spool of `memory` bytes before it goes to the disk.
+std::map<std::string, std::string> spooled(const StreamedMesh& mesh, MeshFormat format,
+                                           std::size_t memory, bool expect_disk) {
+  FaultyFileSystem files;
+  const auto scratch = make_scratch_folder("", std::nullopt);
+  const auto writer = open_spooled_mesh_writer(
+      create_mesh_files(files, "a.x", format, mesh.header.dimension, mesh.header.has_input_index),
+      mesh.header, *scratch, memory);
+  EXPECT_FALSE(files.parts.empty()) << "a folder that cannot be written to is to be noticed early";
+  write_blocks(*writer, mesh);
+  EXPECT_EQ(scratch->bytes_written() > 0, expect_disk);
+  std::size_t size = 0;
+  for (const auto& [name, content] : files.files) size += content.size();
+  EXPECT_EQ(writer->bytes_written(), size);
+  return files.files;
+}
+
+/// The files of the same mesh written at once, simplices in the order of the stream.
+std::map<std::string, std::string> direct(const StreamedMesh& mesh, MeshFormat format) {
+  FaultyFileSystem files;
+  files.files["a.spm"] = stream_bytes(mesh, MeshFormat::kSpm);
+  const Mesh whole = read_mesh(files, "a.spm");
+  files.files.clear();
+  write_mesh(files, "a.x", format, whole);
+  return files.files;
+}
+
+TEST(SpooledMeshWriter, WritesWhatTheMeshWriterDoes) {
+  for (const MeshFormat format : kAll) {
+    for (const int dimension : {2, 3}) {
+      if (dimension == 3 && triangles_only(format)) continue;
+      StreamedMesh mesh = strip(dimension, 500, 60);
+      mesh.header.crs = "EPSG:25832";
+      if (!triangles_only(format)) add_input_index(mesh);
+      const auto expected = direct(mesh, format);
+      EXPECT_EQ(spooled(mesh, format, kSpoolMemory, false), expected);
+      EXPECT_EQ(spooled(mesh, format, 1000, true), expected);
+      EXPECT_EQ(spooled(mesh, format, 0, true), expected);
+    }
+  }
+}
+
+TEST(SpooledMeshWriter, NothingAtAll) {
+  for (const MeshFormat format : kAll) {
+    EXPECT_EQ(spooled({}, format, kSpoolMemory, false), direct({}, format));
+  }
+}
+
+TEST(SpooledMeshWriter, RefusesTotalsThatAreNotWhatCame) {
+  FaultyFileSystem files;
+  StreamedMesh mesh = strip(2, 10, 5);
+  ++mesh.totals.vertices;
+  const auto scratch = make_scratch_folder("", std::nullopt);
+  const auto writer =
+      open_mesh_stream_writer(files, "a.ply", MeshFormat::kPly, mesh.header, *scratch);
+  EXPECT_THAT(error_of([&] { write_blocks(*writer, mesh); }),
+              HasSubstr("cannot write a.ply: 11 vertices"));
+  EXPECT_TRUE(files.files.empty());
+}
+
+TEST(SpooledMeshWriter, LeavesNothingBehind) {
+  FaultyFileSystem files;
+  const auto scratch = make_scratch_folder("", std::nullopt);
+  for (const MeshFormat format : kAll) {
+    open_mesh_stream_writer(files, "a.x", format, {}, *scratch).reset();
+  }
+  EXPECT_TRUE(files.files.empty());
+  EXPECT_TRUE(files.parts.empty());
+}
+
+TEST(SpooledMeshWriter, RefusesAtOnceWhatTheFormatDoesNotHold) {
+  FaultyFileSystem files;
+  const auto scratch = make_scratch_folder("", std::nullopt);
+  MeshStreamHeader header;
+  header.dimension = 3;
+  const auto error = [&](const std::string& path, MeshFormat format) {
+    return error_of([&] { open_mesh_stream_writer(files, path, format, header, *scratch); });
+  };
+  EXPECT_THAT(error("a.obj", MeshFormat::kObj), HasSubstr("holds no tetrahedra"));
+  EXPECT_THAT(error("-", MeshFormat::kNpy), HasSubstr("standard output cannot take an npy mesh"));
+  header.dimension = 2;
+  header.has_input_index = true;
+  EXPECT_THAT(error("a.off", MeshFormat::kOff), HasSubstr("holds no input index"));
+  EXPECT_EQ(files.count(Call::kCreate), 0);
+}
+
+TEST(SpooledMeshWriter, AFullDiskIsReported) {
+  const StreamedMesh mesh = strip(2, 500, 60);
+  const auto scratch = make_scratch_folder("", std::uint64_t{1000});
+  FaultyFileSystem files;
+  const auto writer = open_spooled_mesh_writer(
+      create_mesh_files(files, "a.ply", MeshFormat::kPly, 2, false), mesh.header, *scratch, 100);
+  EXPECT_THAT(error_of([&] { write_blocks(*writer, mesh); }), HasSubstr("--max-tmp"));
+}
+
+}  // namespace
+}  // namespace spillway::detail::testing

@@ -1,0 +1,218 @@
+// Triangles in GeoPackage and Shapefile, written and read by GDAL on the machine's disk.
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "formats/disk/unfinished_files.h"
+#include "formats/gdal/gdal.h"
+#include "tests/formats/meshes/export_test_helpers.h"
+
+namespace spillway::detail::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+
+/// A folder of the test's own, gone with all that is in it.
+class TestFolder {
+ public:
+  TestFolder() {
+    std::string path = (fs::temp_directory_path() / "mesh_export_XXXXXX").string();
+    if (::mkdtemp(path.data()) == nullptr) throw Error("no temporary folder");
+    path_ = path;
+  }
+  ~TestFolder() { fs::remove_all(path_); }
+  TestFolder(const TestFolder&) = delete;
+  TestFolder& operator=(const TestFolder&) = delete;
+
+  [[nodiscard]] std::string file(const std::string& name) const { return path_ / name; }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(path_)) {
+      names.push_back(entry.path().filename());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+ private:
+  fs::path path_;
+};
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// All of them counter-clockwise, as readers of files make them that say nothing about the turn.
+std::vector<Triangle> upright(std::vector<Triangle> triangles) {
+  for (Triangle& t : triangles) {
+    const double area =
+        (t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0]);
+    if (area < 0) std::swap(t[1], t[2]);
+  }
+  return triangles;
+}
+
+TEST(VectorMesh, KeepsTrianglesCrsAndLattice) {
+  TestFolder folder;
+  for (const char* const name : {"tin.gpkg", "tin.shp"}) {
+    StreamedMesh mesh = strip(2, 200, 8);
+    mesh.header.crs = "EPSG:32632";
+    write_stream(disk(), folder.file(name), mesh);
+    const Mesh read = read_mesh(disk(), folder.file(name));
+    EXPECT_TRUE(is_mesh(disk(), folder.file(name)));
+    EXPECT_TRUE(gdal().same_crs(read.header.crs, "EPSG:32632"));
+    EXPECT_EQ(read.header.lattice,
+              std::string(name) == "tin.gpkg" ? mesh.header.lattice : std::nullopt);
+    EXPECT_EQ(read.header.vertices, 200U);
+    EXPECT_EQ(upright(triangles_of(mesh)), triangles_of(read));
+  }
+  EXPECT_THAT(folder.names(), ElementsAre("tin.dbf", "tin.gpkg", "tin.prj", "tin.shp", "tin.shx"));
+}
+
+TEST(VectorMesh, CounterClockwiseTrianglesStaySo) {
+  TestFolder folder;
+  const StreamedMesh mesh = kilometre("");
+  for (const char* const name : {"tin.gpkg", "tin.shp"}) {
+    write_stream(disk(), folder.file(name), mesh);
+    const Mesh read = read_mesh(disk(), folder.file(name));
+    EXPECT_EQ(read.header.crs, "");
+    expect_near(triangles_of(mesh), triangles_of(read), 0);
+  }
+}
+
+TEST(VectorMesh, MoreThanOneTransactionIsWritten) {
+  TestFolder folder;
+  const StreamedMesh mesh = strip(2, 100'100, 5000);
+  write_stream(disk(), folder.file("tin.gpkg"), mesh);
+  EXPECT_EQ(read_mesh(disk(), folder.file("tin.gpkg")).header.simplices, 100'098U);
+}
+
+TEST(VectorMesh, ReplacesAnOlderFileWithAllThatBelongsToIt) {
+  TestFolder folder;
+  StreamedMesh mesh = strip(2, 20, 8);
+  mesh.header.crs = "EPSG:32632";
+  write_stream(disk(), folder.file("tin.shp"), mesh);
+  std::ofstream(folder.file("tin.qix")) << "index of the old file";
+  std::ofstream(folder.file("tin.gpkg-journal")) << "journal of an old file";
+  mesh.header.crs.clear();
+  write_stream(disk(), folder.file("tin.shp"), mesh);
+  write_stream(disk(), folder.file("tin.gpkg"), mesh);
+  EXPECT_EQ(read_mesh(disk(), folder.file("tin.shp")).header.crs, "");
+  EXPECT_THAT(folder.names(), ElementsAre("tin.dbf", "tin.gpkg", "tin.shp", "tin.shx"));
+}
+
+TEST(VectorMesh, FailuresLeaveNothing) {
+  TestFolder folder;
+  for (const char* const name : {"tin.gpkg", "tin.shp"}) {
+    StreamedMesh mesh = strip(2, 20, 8);
+    mesh.totals.simplices = 7;
+    EXPECT_THAT(error_of([&] { write_stream(disk(), folder.file(name), mesh); }),
+                AllOf(HasSubstr(name), HasSubstr("7 triangles were promised")));
+    mesh.header.crs = "nonsense";
+    EXPECT_THAT(error_of([&] { write_stream(disk(), folder.file(name), mesh); }),
+                HasSubstr("is no coordinate system"));
+    EXPECT_THAT(
+        error_of([&] { write_stream(disk(), folder.file(std::string("no/") + name), mesh); }),
+        HasSubstr("no first"));
+  }
+  EXPECT_THAT(folder.names(), ElementsAre());
+}
+
+TEST(VectorMesh, UnfinishedFoldersAreRemovedAfterASignal) {
+  TestFolder folder;
+  StreamedMesh mesh = strip(2, 20, 8);
+  const auto scratch = make_scratch_folder("", std::nullopt);
+  const auto writer = open_mesh_stream_writer(disk(), folder.file("tin.shp"), MeshFormat::kShp,
+                                              mesh.header, *scratch);
+  writer->write(std::move(mesh.blocks[0]));
+  EXPECT_THAT(folder.names(), ElementsAre(MatchesRegex("tin.shp.*.part")));
+  EXPECT_EXIT(
+      {
+        remove_unfinished_files();
+        _exit(0);
+      },
+      ::testing::ExitedWithCode(0), "");
+  EXPECT_THAT(folder.names(), ElementsAre());
+}
+
+TEST(VectorMesh, AReplacedFileKeepsItsPermissions) {
+  TestFolder folder;
+  for (const std::string name : {"tin.gpkg", "tin.shp"}) {
+    write_stream(disk(), folder.file(name), strip(2, 20, 8));
+    fs::permissions(folder.file(name), fs::perms::owner_read | fs::perms::owner_write);
+    write_stream(disk(), folder.file(name), strip(2, 20, 8));
+  }
+  for (const std::string name : {"tin.gpkg", "tin.shp", "tin.shx", "tin.dbf"}) {
+    EXPECT_EQ(static_cast<unsigned>(fs::status(folder.file(name)).permissions()), 0600U) << name;
+  }
+}
+
+TEST(VectorMesh, NamesMayBeLong) {
+  TestFolder folder;
+  const std::string stem(240, 'n');
+  for (const std::string extension : {".gpkg", ".shp"}) {
+    write_stream(disk(), folder.file(stem + extension), strip(2, 20, 8));
+    EXPECT_TRUE(fs::exists(folder.file(stem + extension)));
+  }
+}
+
+TEST(VectorMesh, BadFilesAreErrorsThatNameThem) {
+  TestFolder folder;
+  write_stream(disk(), folder.file("tin.gpkg"), strip(2, 50, 8));
+  write_stream(disk(), folder.file("tin.shp"), strip(2, 50, 8));
+  const auto error = [&](const char* name) {
+    return error_of([&] { read_mesh(disk(), folder.file(name)); });
+  };
+  fs::resize_file(folder.file("tin.gpkg"), fs::file_size(folder.file("tin.gpkg")) / 2);
+  EXPECT_THAT(error("tin.gpkg"), HasSubstr("tin.gpkg"));
+  fs::resize_file(folder.file("tin.shp"), 500);
+  EXPECT_THAT(error("tin.shp"), HasSubstr("tin.shp"));
+  fs::remove(folder.file("tin.shx"));
+  EXPECT_THAT(error("tin.shp"), HasSubstr("tin.shp"));
+}
+
+TEST(VectorMesh, OnlyTrianglesAreRead) {
+  TestFolder folder;
+  VectorLayerOptions options;
+  options.path = options.name = folder.file("contours.gpkg");
+  options.driver = "GPKG";
+  options.layer = "contours";
+  options.lines = true;
+  const auto layer = gdal().create_layer(options);
+  layer->add_line(std::vector<Point<3>>{{0, 0, 5}, {1, 0, 5}, {1, 1, 5}}, 5);
+  layer->finish();
+  EXPECT_THAT(error_of([&] { read_mesh(disk(), options.path); }),
+              HasSubstr("feature 1: it is a LINESTRING, and only triangles are read"));
+}
+
+TEST(VectorMesh, ContoursAsGeoJsonHaveTheirElevation) {
+  TestFolder folder;
+  VectorLayerOptions options;
+  options.path = options.name = folder.file("contours.geojson");
+  options.driver = "GeoJSON";
+  options.layer = "contours";
+  options.lines = true;
+  options.crs = "EPSG:32632";
+  const auto layer = gdal().create_layer(options);
+  layer->add_line(std::vector<Point<3>>{{0, 0, 2.5}, {1, 0, 2.5}}, 2.5);
+  layer->finish();
+  const nlohmann::json json = nlohmann::json::parse(content_of(options.path));
+  EXPECT_EQ(json["features"][0]["properties"]["elevation"], 2.5);
+  EXPECT_EQ(json["features"][0]["geometry"]["coordinates"][1], nlohmann::json({1.0, 0.0, 2.5}));
+  EXPECT_THAT(json["crs"].dump(), HasSubstr("32632"));
+}
+
+}  // namespace
+}  // namespace spillway::detail::testing

@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "formats/inputs/open_points.h"
+#include "tests/formats/point_test_helpers.h"
+#include "tests/formats/points/las/las_file.h"
+
+namespace spillway::detail::testing {
+namespace {
+
+using ::testing::ElementsAre;
+
+/// (minor version, point format)
+class LasFormats : public ::testing::TestWithParam<std::tuple<int, int>> {
+ protected:
+  LasFormats() {
+    file_.minor = std::get<0>(GetParam());
+    file_.point_format = std::get<1>(GetParam());
+  }
+  LasFile file_;
+};
+
+TEST_P(LasFormats, GivesIntegersAndDropsWithheldPoints) {
+  const AllPoints all = read_content("a.las", file_.bytes());
+  EXPECT_THAT(all.points, ElementsAre(Point<3>{1, 2, 3}, Point<3>{7, -8, 9}));
+  EXPECT_THAT(all.index, ElementsAre(0, 2));
+  EXPECT_EQ(all.withheld, 1U);
+}
+
+TEST_P(LasFormats, KeepsWithheldPointsOnDemand) {
+  const AllPoints all = read_content("a.las", file_.bytes(), {"", true});
+  EXPECT_THAT(all.points, ElementsAre(Point<3>{1, 2, 3}, Point<3>{-4, 5, -6}, Point<3>{7, -8, 9}));
+  EXPECT_EQ(all.withheld, 0U);
+}
+
+TEST_P(LasFormats, StepsOverExtraBytes) {
+  file_.extra_bytes = 5;
+  EXPECT_THAT(read_content("a.las", file_.bytes()).points,
+              ElementsAre(Point<3>{1, 2, 3}, Point<3>{7, -8, 9}));
+}
+
+TEST_P(LasFormats, TellsWhatTheHeaderSays) {
+  const PointHeader header = read_content("a.las", file_.bytes()).header;
+  EXPECT_EQ(header.name, "a.las");
+  EXPECT_EQ(header.format, "las");
+  EXPECT_EQ(header.version, fmt::format("1.{}", file_.minor));
+  EXPECT_EQ(header.point_format, file_.point_format);
+  EXPECT_EQ(header.coordinates, 3);
+  EXPECT_EQ(header.count, 3U);
+  EXPECT_EQ(header.lattice, (Lattice{file_.scale, file_.offset}));
+  EXPECT_EQ(header.extent, (Box<3>{{10, 30, 50}, {20, 40, 60}}));
+  EXPECT_EQ(header.software, "by hand");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LasFormats,
+                         ::testing::Combine(::testing::Range(0, 5), ::testing::Range(0, 11)));
+
+TEST(LasReader, TakesTheLongCountWhereItIsGiven) {
+  LasFile file;
+  file.minor = 4;
+  file.point_format = 6;
+  EXPECT_EQ(read_content("a.las", file.bytes()).header.count, 3U);
+}
+
+TEST(LasReader, TakesTheLegacyCountWhereTheLongOneIsZero) {
+  LasFile file;
+  file.minor = 4;
+  std::string bytes = file.bytes();
+  put(bytes, 247, std::uint64_t{0});
+  EXPECT_EQ(read_content("a.las", bytes).points.size(), 2U);
+}
+
+TEST(LasReader, IgnoresWhatFollowsThePoints) {
+  EXPECT_EQ(read_content("a.las", LasFile().bytes() + std::string(1000, 'E')).points.size(), 2U);
+}
+
+TEST(LasReader, ReadsSeveralBlocks) {
+  LasFile file;
+  file.records.clear();
+  for (int i = 0; i < 150000; ++i) file.records.push_back({i, 2 * i, -i, i % 3 == 0});
+  const AllPoints all = read_content("a.las", file.bytes());
+  ASSERT_EQ(all.points.size(), 100000U);
+  EXPECT_EQ(all.withheld, 50000U);
+  EXPECT_EQ(all.index[99999], 149999U);
+  EXPECT_EQ(all.points[99999], (Point<3>{149999, 299998, -149999}));
+}
+
+TEST(LasReader, PassesOverBlocksThatAreWithheldAltogether) {
+  LasFile file;
+  file.records.assign(70000, {1, 1, 1, true});
+  file.records.push_back({2, 2, 2});
+  const AllPoints all = read_content("a.las", file.bytes());
+  EXPECT_THAT(all.points, ElementsAre(Point<3>{2, 2, 2}));
+  EXPECT_THAT(all.index, ElementsAre(70000));
+}
+
+TEST(LasReader, ReadsAPipe) {
+  FaultyFileSystem files;
+  files.seekable = false;
+  files.files["-"] = LasFile().bytes();
+  const AllPoints all = read_all_points(files, "-");
+  EXPECT_EQ(all.header.format, "las");
+  EXPECT_EQ(all.points.size(), 2U);
+}
+
+TEST(LasReader, TellsHowFarItIs) {
+  LasFile file;
+  file.records.assign(100000, {1, 1, 1});
+  FaultyFileSystem files;
+  files.files["a.las"] = file.bytes();
+  const auto reader = open_point_reader(files, "a.las", {});
+  EXPECT_EQ(reader->fraction_read(), 0.0);
+  PointBlock block;
+  reader->read(block);
+  EXPECT_NEAR(*reader->fraction_read(), 0.655, 0.001);
+  reader->read(block);
+  EXPECT_EQ(reader->fraction_read(), 1.0);
+}
+
+TEST(LasReader, HoldsNoPoints) {
+  LasFile file;
+  file.records.clear();
+  EXPECT_TRUE(read_content("a.las", file.bytes()).points.empty());
+}
+
+TEST(LasReader, LeavesOutBoundsThatAreNone) {
+  std::string bytes = LasFile().bytes();
+  put(bytes, 179, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(read_content("a.las", bytes).header.extent);
+  put(bytes, 179, 9.0);  // the largest x is below the least
+  EXPECT_FALSE(read_content("a.las", bytes).header.extent);
+}
+
+std::string geotiff_keys(const std::vector<std::array<std::uint16_t, 4>>& keys) {
+  std::string content =
+      bytes_of(std::array<std::uint16_t, 4>{1, 1, 0, static_cast<std::uint16_t>(keys.size())});
+  for (const auto& key : keys) content += bytes_of(key);
+  return content;
+}
+
+std::string crs_of(std::vector<LasFile::Vlr> vlrs) {
+  LasFile file;
+  file.vlrs = std::move(vlrs);
+  return read_content("a.las", file.bytes()).header.crs;
+}
+
+TEST(LasCoordinateSystem, WktRecord) {
+  EXPECT_EQ(crs_of({{"LASF_Projection", 2112, std::string("PROJCS[\n\"a\"]\0\0", 14)}}),
+            "PROJCS[ \"a\"]");
+}
+
+TEST(LasCoordinateSystem, ProjectedGeotiffCodeBeforeGeographic) {
+  EXPECT_EQ(crs_of({{"LASF_Projection", 34735,
+                     geotiff_keys({{1024, 0, 1, 1}, {2048, 0, 1, 4326}, {3072, 0, 1, 25832}})}}),
+            "EPSG:25832");
+}
+
+TEST(LasCoordinateSystem, GeographicGeotiffCode) {
+  EXPECT_EQ(crs_of({{"LASF_Projection", 34735, geotiff_keys({{2048, 0, 1, 4326}})}}), "EPSG:4326");
+}
+
+TEST(LasCoordinateSystem, UserDefinedGeotiffCodeIsNone) {
+  EXPECT_EQ(crs_of({{"LASF_Projection", 34735, geotiff_keys({{3072, 0, 1, 32767}})}}), "");
+}
+
+TEST(LasCoordinateSystem, WktBeforeGeotiff) {
+  EXPECT_EQ(crs_of({{"LASF_Projection", 2112, "GEOGCS[]"},
+                    {"LASF_Projection", 34735, geotiff_keys({{2048, 0, 1, 4326}})}}),
+            "GEOGCS[]");
+}
+
+TEST(LasCoordinateSystem, RecordsOfOthersAreNone) {
+  EXPECT_EQ(crs_of({{"somebody", 2112, "GEOGCS[]"}}), "");
+}
+
+TEST(LasCoordinateSystem, TruncatedGeotiffKeys) {
+  EXPECT_EQ(crs_of({{"LASF_Projection", 34735, geotiff_keys({{2048, 0, 1, 4326}}).substr(0, 13)}}),
+            "");
+}
+
+}  // namespace
+}  // namespace spillway::detail::testing

@@ -1,0 +1,139 @@
+#include "formats/points/point_format.h"
+#include "formats/points/create_points.h"
+
+#include "formats/points/common/point_writer.h"
+#include "tests/formats/point_test_helpers.h"
+#include "tests/formats/points/las/las_file.h"
+#include "tests/formats/points/laz/laz_encoder/laz_file.h"
+#include "tests/formats/points/laz/laz_encoder/random_records.h"
+
+namespace spillway::detail::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(PointFormatChoice, ExtensionInAnyCase) {
+  EXPECT_EQ(point_format_of_path("dir.txt/A.LAS"), PointFormat::kLas);
+  EXPECT_EQ(point_format_of_path("a.npy"), PointFormat::kNpy);
+  EXPECT_EQ(point_format_of_path("a.Spp"), PointFormat::kSpp);
+  for (const char* name :
+       {"a.txt", "a.xyz", "a.csv", "a.asc", "a.xyz.gz", "a.csv.bz2", "a.zst", "a.txt.lz4"}) {
+    EXPECT_EQ(point_format_of_path(name), PointFormat::kText) << name;
+  }
+  EXPECT_FALSE(point_format_of_path("a.dat"));
+  EXPECT_FALSE(point_format_of_path("las"));
+  EXPECT_FALSE(point_format_of_path("-"));
+}
+
+TEST(PointFormatChoice, OptionBeforeExtension) {
+  EXPECT_EQ(read_content("a.las", "1 2 3\n", {"text", false}).header.format, "text");
+}
+
+TEST(PointFormatChoice, FirstBytesBeforeExtension) {
+  FaultyFileSystem files;
+  for (const char* name : {"a.npy", "a.spp"}) {
+    PointWriterOptions options;
+    options.count = 1;
+    const auto writer = open_point_writer(files, name, options);
+    writer->write(std::vector<Point<3>>(1), {});
+    writer->finish();
+  }
+  const std::string laz = make_laz_file({}, RandomRecords{0, 0, 5, 3}.make()).bytes();
+  for (const char* name : {"a.txt", "a.csv", "a.npy", "a.spp", "a.las", "a.xyz.gz"}) {
+    EXPECT_EQ(read_content(name, LasFile().bytes()).header.format, "las") << name;
+    EXPECT_EQ(read_content(name, laz).header.format, "laz") << name;
+    EXPECT_EQ(read_content(name, files.files.at("a.npy")).header.format, "npy") << name;
+    EXPECT_EQ(read_content(name, files.files.at("a.spp")).header.format, "spp") << name;
+  }
+}
+
+TEST(PointFormatChoice, ExtensionWhereTheFirstBytesSayNothing) {
+  EXPECT_THAT(error_of_content("a.npy", "1 2 3\n"), HasSubstr("no npy file"));
+  EXPECT_THAT(error_of_content("a.las", "1 2 3\n"), HasSubstr("no LAS file"));
+}
+
+TEST(PointFormatChoice, TextInAnotherEncoding) {
+  EXPECT_THAT(error_of_content("a.txt", std::string("\xff\xfe"
+                                                    "1\0 \0002\0\n\0",
+                                                    10)),
+              HasSubstr("this is text in UTF-16; save it in UTF-8"));
+}
+
+TEST(PointFormatChoice, MeshesAreRefusedWhateverTheirNames) {
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n";
+  const std::string rest = "property float y\n";
+  const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
+  for (const char* name : {"a.ply", "a.txt", "a.las", "-"}) {
+    EXPECT_THAT(error_of_content(name, head + rest + faces + "end_header\n"),
+                HasSubstr("this is a mesh (PLY), not points"));
+  }
+  EXPECT_THAT(error_of_content("a.txt", "<?xml version=\"1.0\"?>\n<LandXML>"),
+              HasSubstr("a mesh (LandXML)"));
+  EXPECT_THAT(error_of_content("a.txt", "<?xml version=\"1.0\"?>\n<gpx>"),
+              HasSubstr("this is XML, from which points are not read"));
+}
+
+/// A PLY file without faces is points, but none that are read.
+TEST(PointFormatChoice, PlyPointsAreNoMesh) {
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n";
+  for (const std::string faces : {"", "element face 0\nproperty list uchar int vertex_indices\n"}) {
+    const std::string ply = head + "property float y\n" + faces + "end_header\n1 2\n";
+    for (const char* name : {"a.ply", "a.txt", "-"}) {
+      const std::string error = error_of_content(name, ply);
+      EXPECT_THAT(error, HasSubstr("this is a cloud of points, and Spillway does not read points "
+                                   "from PLY; convert it to LAS, text or npy"));
+      EXPECT_THAT(error, Not(HasSubstr("mesh")));
+    }
+  }
+}
+
+TEST(PointFormatChoice, ContentWhereTheNameSaysNothing) {
+  EXPECT_EQ(read_content("a.dat", LasFile().bytes()).header.format, "las");
+  EXPECT_EQ(read_content("a.dat", "1 2 3\n").header.format, "text");
+}
+
+TEST(PointFormatChoice, UnknownContent) {
+  EXPECT_THAT(error_of_content("a.dat", std::string("\x7f"
+                                                    "ELF\0\0\0",
+                                                    7)),
+              HasSubstr("a.dat: unknown format"));
+}
+
+TEST(PointFormatChoice, UnknownOption) {
+  EXPECT_THAT(error_of_content("a.las", "", {"shp", false}),
+              HasSubstr("choose las, laz, copc, text, npy or spp"));
+}
+
+TEST(PointFormatChoice, OutputWithoutKnownFormat) {
+  FaultyFileSystem files;
+  EXPECT_THROW(open_point_writer(files, "-", {}), UsageError);
+  EXPECT_THROW(open_point_writer(files, "a.dat", {}), UsageError);
+  EXPECT_THROW(open_point_writer(files, "a.laz", {}), UsageError);
+  EXPECT_THROW(open_point_writer(files, "a.xyz.gz", {}), UsageError);
+  PointWriterOptions laz;
+  laz.format = "laz";
+  EXPECT_THROW(open_point_writer(files, "-", laz), UsageError);
+  EXPECT_EQ(files.count(Call::kCreate), 0);
+}
+
+TEST(PointFormatChoice, PipeThatNeedsTheCountBeforehand) {
+  FaultyFileSystem files;
+  files.seekable = false;
+  PointWriterOptions options;
+  options.lattice = Lattice{};
+  for (const char* name : {"a.las", "a.npy"}) {
+    EXPECT_THAT(error_of([&] { open_point_writer(files, name, options); }),
+                HasSubstr("not known beforehand; write text or spp"));
+    EXPECT_TRUE(files.parts.empty());
+  }
+  for (const char* name : {"a.txt", "a.spp"}) {
+    const auto writer = open_point_writer(files, name, options);
+    writer->write(std::vector<Point<3>>(2), {});
+    writer->finish();
+    EXPECT_EQ(read_all_points(files, name).points.size(), 2U);
+  }
+}
+
+}  // namespace
+}  // namespace spillway::detail::testing

@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include "formats/inputs/open_points.h"
+#include "tests/formats/point_test_helpers.h"
+
+namespace spillway::detail::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr Point<3> kFirst{1.5, -2, 3e2};
+constexpr Point<3> kSecond{4, 5, 6};
+
+/// The points of a text of that content.
+std::vector<Point<3>> points_of(const std::string& content) {
+  return read_content("a.txt", content).points;
+}
+
+TEST(TextReader, EverySeparator) {
+  for (const char* text :
+       {"1.5 -2 3e2\n4 5 6\n", "1.5\t-2\t3e2\n4\t5\t6\n", "1.5,-2,3e2\n4,5,6\n",
+        "1.5;-2;3e2\n4;5;6\n", "1.5, -2, 3e2\n4 , 5 , 6\n", "  1.5   -2 \t 3e2  \n\t4 5 6\t\n"}) {
+    EXPECT_THAT(points_of(text), ElementsAre(kFirst, kSecond)) << text;
+  }
+}
+
+TEST(TextReader, LineEnds) {
+  EXPECT_THAT(points_of("1.5 -2 3e2\r\n4 5 6\r\n"), ElementsAre(kFirst, kSecond));
+  EXPECT_THAT(points_of("1.5 -2 3e2\n4 5 6"), ElementsAre(kFirst, kSecond));
+}
+
+TEST(TextReader, CommentsAndBlankLines) {
+  EXPECT_THAT(points_of("# a\n// b\n% c\n\n  # d\n1.5 -2 3e2\n\n  \r\n#e\n4 5 6 # f\n\n"),
+              ElementsAre(kFirst, kSecond));
+}
+
+TEST(TextReader, ByteOrderMark) {
+  EXPECT_THAT(points_of("\xef\xbb\xbf"
+                        "1.5 -2 3e2\n"),
+              ElementsAre(kFirst));
+}
+
+TEST(TextReader, TwoColumns) {
+  const AllPoints all = read_content("a.txt", "1 2\n3 4 # comment\n5 6 7\n");
+  EXPECT_EQ(all.header.coordinates, 2);
+  EXPECT_THAT(all.points, ElementsAre(Point<3>{1, 2, 0}, Point<3>{3, 4, 0}, Point<3>{5, 6, 0}));
+}
+
+TEST(TextReader, ExtraColumnsAreIgnored) {
+  const AllPoints all = read_content("a.txt", "1.5 -2 3e2 255 tree\n4 5 6\n");
+  EXPECT_EQ(all.header.coordinates, 3);
+  EXPECT_THAT(all.points, ElementsAre(kFirst, kSecond));
+}
+
+TEST(TextReader, HeaderNamesColumns) {
+  EXPECT_THAT(points_of("id,Y,X,class,Z\na1,-2,1.5,2,3e2\nb2,5,4,2,6\n"),
+              ElementsAre(kFirst, kSecond));
+  EXPECT_THAT(points_of("\"lat\";\"lon\";\"height\"\n\"-2\";\"1.5\";\"3e2\"\n"),
+              ElementsAre(kFirst));
+  EXPECT_THAT(points_of("name x y z\n\"a, b c\" 1.5 -2 3e2\n"), ElementsAre(kFirst));
+}
+
+TEST(TextReader, HeaderNamesTwoColumns) {
+  const AllPoints all = read_content("a.csv", "x,y,intensity\n1,2,3\n");
+  EXPECT_EQ(all.header.coordinates, 2);
+  EXPECT_THAT(all.points, ElementsAre(Point<3>{1, 2, 0}));
+}
+
+TEST(TextReader, NumbersAreTheNearestDoubles) {
+  EXPECT_THAT(points_of("+0.1 1e-310 123456789012345678901234567890\n"),
+              ElementsAre(Point<3>{0.1, 1e-310, 123456789012345678901234567890.0}));
+}
+
+TEST(TextReader, NoPoints) {
+  for (const char* text : {"", "\n\n", "# only a comment", "x y z\n"}) {
+    EXPECT_TRUE(points_of(text).empty()) << text;
+  }
+}
+
+TEST(TextReader, HugeCoordinatesAreFinite) {
+  EXPECT_THAT(points_of("1e308 1e308 1e308\n"), ElementsAre(Point<3>{1e308, 1e308, 1e308}));
+}
+
+TEST(TextReader, SeveralBlocksAndChunks) {
+  std::string text;
+  for (int i = 0; i < 200000; ++i) text += fmt::format("{} {}.25 {}\n", i, i, -i);
+  FaultyFileSystem files;
+  files.seekable = false;
+  files.files["-"] = text;
+  const AllPoints all = read_all_points(files, "-");
+  ASSERT_EQ(all.points.size(), 200000U);
+  for (int i = 0; i < 200000; ++i) {
+    ASSERT_EQ(all.points[i], (Point<3>{double(i), i + 0.25, double(-i)}));
+    ASSERT_EQ(all.index[i], static_cast<std::uint64_t>(i));
+  }
+}
+
+TEST(TextReader, TellsHowFarItIs) {
+  FaultyFileSystem files;
+  files.files["a.txt"] = "1 2 3\n";
+  const auto reader = open_point_reader(files, "a.txt", {});
+  PointBlock block;
+  reader->read(block);
+  EXPECT_EQ(reader->fraction_read(), 1.0);
+  files.seekable = false;
+  EXPECT_FALSE(open_point_reader(files, "a.txt", {})->fraction_read());
+}
+
+std::string text_error(const std::string& content) { return error_of_content("a.txt", content); }
+
+TEST(TextCorruption, NotANumber) {
+  EXPECT_THAT(text_error("1 2 3\n# c\n4 x 6\n"),
+              HasSubstr("a.txt: line 3, column 2 is no number: \"x\""));
+  EXPECT_THAT(text_error("1 2 3\n4 5 6m\n"), HasSubstr("line 2"));
+  EXPECT_THAT(text_error("1 2 3\n4 5 0x6\n"), HasSubstr("line 2"));
+  EXPECT_THAT(text_error("1 2 3\n4 5 \"6\n"), HasSubstr("line 2"));
+  EXPECT_THAT(text_error("1 2 3\n4 +-5 6\n"), HasSubstr("line 2"));
+}
+
+TEST(TextCorruption, NotANumberInTheFirstLine) {
+  EXPECT_THAT(text_error("1 2 three\n4 5 6\n"), HasSubstr("line 1"));
+  EXPECT_THAT(text_error("1 zwei 3\n4 5 6\n"), HasSubstr("line 1"));
+}
+
+TEST(TextCorruption, TwoHeaderLines) {
+  EXPECT_THAT(text_error("x y z\nm m m\n1 2 3\n"), HasSubstr("line 2"));
+}
+
+TEST(TextCorruption, OnlyWords) {
+  EXPECT_THAT(text_error("hello world\n"),
+              HasSubstr("line 1 is a header whose columns are \"hello\", \"world\": no columns "
+                        "are named as x and y"));
+}
+
+TEST(TextCorruption, MissingColumn) {
+  EXPECT_THAT(text_error("1 2 3\n4 5\n"), HasSubstr("line 2, column 3 is missing"));
+  EXPECT_THAT(text_error("1 2\n4\n"), HasSubstr("line 2, column 2 is missing"));
+  EXPECT_THAT(text_error("1.5\n"), HasSubstr("line 1, column 2 is missing"));
+  EXPECT_THAT(text_error("id,x,y\n7,8\n"), HasSubstr("line 2"));
+}
+
+TEST(TextCorruption, EmptyField) {
+  EXPECT_THAT(text_error("1,2,3\n4,,6\n"), HasSubstr("line 2"));
+  EXPECT_THAT(text_error(",1,2,3\n"), HasSubstr("line 1"));
+}
+
+TEST(TextCorruption, NumberOutOfRange) {
+  EXPECT_THAT(text_error("1 2 3\n1e999 2 3\n"), HasSubstr("line 2"));
+}
+
+TEST(TextCorruption, NotFinite) {
+  EXPECT_THAT(text_error("# c\n1 2 3\n4 nan 6\n"), HasSubstr("point 1 in line 3 is not finite"));
+  EXPECT_THAT(text_error("1 2 -inf\n"), HasSubstr("point 0 in line 1 is not finite"));
+  EXPECT_THAT(text_error("infinity 2 3\n"), HasSubstr("point 0 in line 1 is not finite"));
+}
+
+TEST(TextCorruption, CarriageReturnsAlone) {
+  EXPECT_THAT(text_error("1 2 3\r4 5 6\r"), HasSubstr("line 1"));
+  EXPECT_THAT(text_error("1 2 3 a\r4 5 6 a\r"), HasSubstr("line 1"));
+}
+
+TEST(TextCorruption, EndlessLine) {
+  EXPECT_THAT(text_error("1 2 3\n" + std::string(3000000, ' ')),
+              HasSubstr("line 2 is longer than"));
+}
+
+TEST(TextCorruption, BinaryData) {
+  EXPECT_THAT(text_error(std::string("\0\1\2\3\n\0\1\2\3\n", 10)), HasSubstr("this is no text"));
+  EXPECT_THAT(text_error(std::string(600, '\n') + "1 2 3\n\1\2 3\n"),
+              AllOf(HasSubstr("line 602"), HasSubstr("\"??\"")));
+}
+
+/// Lines without anything in them may be many, but not without end.
+TEST(TextCorruption, EndlessBlankLinesAndComments) {
+  const std::string lines = std::string(9000000, '\n') + "1 2 3\n" + std::string(9000000, '\n');
+  EXPECT_EQ(points_of(lines).size(), 1U);
+  EXPECT_THAT(text_error(std::string(17000000, '\n') + "1 2 3\n"),
+              HasSubstr("lines with nothing to read"));
+  EXPECT_THAT(text_error("1 2 3\n" + std::string(17000000, '\n')),
+              HasSubstr("lines with nothing to read"));
+}
+
+TEST(TextCorruption, LongLinesAreShortenedInMessages) {
+  EXPECT_LT(text_error("1 2 3\n" + std::string(100000, 'x')).size(), 200U);
+}
+
+TEST(TextCorruption, UnreadableTail) { EXPECT_THAT(text_error("1 2 3\n4 5"), HasSubstr("line 2")); }
+
+}  // namespace
+}  // namespace spillway::detail::testing

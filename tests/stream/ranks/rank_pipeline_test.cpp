@@ -1,0 +1,140 @@
+// The contract over ranks: whatever their number, all of them together make the triangulation that
+// one process makes.
+
+#include <gtest/gtest.h>
+
+#include "src/delaunay/delaunay.h"
+#include "src/generators/generators.h"
+#include "tests/generators/family_cases.h"
+#include "tests/stream/ranks/rank_runner.h"
+
+namespace spillway::detail {
+namespace {
+
+using distributed::world;
+
+/// Rank 0's points of a triangulation in memory, as sorted input indices, sorted.
+template <int D>
+std::vector<std::array<VertexId, D + 1>> expected_simplices(const std::vector<Point<D>>& points) {
+  const Triangulation<D> mesh = delaunay<D>(points, {.threads = 1});
+  std::vector<std::array<VertexId, D + 1>> simplices;
+  mesh.for_each_simplex([&](SimplexId, const Simplex<D>& simplex) {
+    if (simplex.infinite()) return;
+    auto& indices = simplices.emplace_back();
+    for (int k = 0; k <= D; ++k) indices[k] = mesh.input_index[simplex.vertices[k]];
+    std::sort(indices.begin(), indices.end());
+  });
+  std::sort(simplices.begin(), simplices.end());
+  return simplices;
+}
+
+template <int D>
+void expect_one_mesh(const GeneratorOptions& generate, std::size_t files,
+                     const StreamOptions& options) {
+  SCOPED_TRACE(testing::Message() << generate.count << " points in " << files << " files, tiles of "
+                                  << options.tile_capacity);
+  const std::vector<Point<D>> points = generate_points<D>(generate);
+  const auto expected = expected_simplices<D>(points);
+  if (expected.empty()) return;  // refused, by one rank: tested by the command
+  std::vector<std::string> paths;
+  if (world().rank() == 0) paths = write_shared_points<D>(points, files);
+  world().barrier();
+  const RankRunResult run = run_over_ranks<D>(paths, options);
+  const WholeMesh<D> mesh = gather_mesh<D>(run);
+  EXPECT_EQ(run.mesh.totals.points, points.size());
+  EXPECT_EQ(run.mesh.totals.vertices + run.mesh.totals.duplicates, points.size());
+  EXPECT_EQ(run.mesh.totals.simplices, expected.size());
+  if (world().rank() == 0) {
+    EXPECT_TRUE(mesh.simplices == expected)
+        << mesh.simplices.size() << " simplices, " << expected.size() << " expected";
+    const StreamRun alone = [&] {
+      const std::string path = write_points<D>(points);
+      StreamRun one = run_stream<D>(path, {.threads = 1});
+      std::filesystem::remove(path);
+      return one;
+    }();
+    EXPECT_EQ(run.mesh.totals, alone.figures.totals);
+    for (const std::string& path : paths) std::filesystem::remove(path);
+  }
+}
+
+void expect_one_mesh(const FamilyCase& family, std::uint64_t count, std::uint64_t seed,
+                     std::size_t files, const StreamOptions& options) {
+  const GeneratorOptions generate{family.family, count, family.dimension, seed};
+  if (family.dimension == 2) {
+    expect_one_mesh<2>(generate, files, options);
+  } else {
+    expect_one_mesh<3>(generate, files, options);
+  }
+}
+
+class MeshOfRanks : public testing::TestWithParam<FamilyCase> {};
+
+TEST_P(MeshOfRanks, EqualsThatOfOneProcessForSmallSets) {
+  for (const std::uint64_t count : {3, 4, 5, 7, 12, 30, 100}) {
+    expect_one_mesh(GetParam(), count, 1, 3, {.threads = 1, .tile_capacity = 20, .leaf_size = 8});
+  }
+}
+
+TEST_P(MeshOfRanks, EqualsThatOfOneProcessForManyTilesThatSpill) {
+  const bool dense = GetParam().dimension == 3 && GetParam().family == Family::kLines;
+  const std::uint64_t count = dense ? 200 : GetParam().dimension == 2 ? 4'000 : 1'200;
+  expect_one_mesh(GetParam(), count, 2, 11,
+                  {.threads = 1, .tile_capacity = 90, .buffered_points = 200, .leaf_size = 30});
+  expect_one_mesh(GetParam(), count, 3, 2, {.threads = 2});
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, MeshOfRanks, testing::ValuesIn(all_family_cases()),
+                         family_case_name);
+
+TEST(RanksInThePipeline, GetAboutAsManyPointsEachAlsoOfSkewedSets) {
+  for (const Family family : {Family::kNormal, Family::kClusters, Family::kTerrain}) {
+    const auto points = generate_points<2>({family, 40'000, 2, 5});
+    std::vector<std::string> paths;
+    if (world().rank() == 0) paths = write_shared_points<2>(points, 9);
+    world().barrier();
+    const RankRunResult run = run_over_ranks<2>(paths, {.threads = 1});
+    const double even = 40'000.0 / world().size();
+    EXPECT_NEAR(static_cast<double>(run.mesh.figures.totals.points), even, 0.1 * even);
+    for (const std::string& path : paths) std::filesystem::remove(path);
+  }
+}
+
+TEST(RanksInThePipeline, CountOpenFacetsOfAllTogetherWhereLongEdgesAreLeftOut) {
+  const auto points = generate_points<2>({Family::kUniform, 3'000, 2, 5});
+  std::vector<std::string> paths;
+  if (world().rank() == 0) paths = write_shared_points<2>(points, 5);
+  world().barrier();
+  const StreamOptions options{
+      .threads = 1, .tile_capacity = 200, .leaf_size = 50, .max_edge = 0.03};
+  const RankRunResult run = run_over_ranks<2>(paths, options);
+  const std::string path = write_points<2>(points);
+  const StreamRun alone = run_stream<2>(path, options);
+  std::filesystem::remove(path);
+  EXPECT_GT(run.mesh.left_out, 0U);
+  EXPECT_EQ(run.mesh.left_out, alone.figures.left_out);
+  EXPECT_EQ(run.mesh.totals, alone.figures.totals);
+  for (const std::string& p : paths) std::filesystem::remove(p);
+}
+
+TEST(RanksInThePipeline, SayWhatTheySentAndMerged) {
+  const auto points = generate_points<2>({Family::kUniform, 20'000, 2, 5});
+  std::vector<std::string> paths;
+  if (world().rank() == 0) paths = write_shared_points<2>(points, 8);
+  world().barrier();
+  const RankRunResult run = run_over_ranks<2>(paths, {.threads = 1});
+  std::vector<std::uint64_t> sums = {run.mesh.exchanged_points, run.mesh.border_simplices_sent,
+                                     run.mesh.merges.size()};
+  std::uint64_t received = 0;
+  for (const MergeFigures& merge : run.mesh.merges) received += merge.received_simplices;
+  sums.push_back(received);
+  world().reduce(sums, distributed::Reduction::kSum);
+  const auto others = static_cast<std::uint64_t>(world().size() - 1);
+  EXPECT_EQ(sums[2], others) << "merges between ranks";
+  EXPECT_EQ(sums[1], sums[3]) << "border simplices sent and received";
+  EXPECT_EQ(sums[0] > 0, others > 0);
+  for (const std::string& path : paths) std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace spillway::detail

@@ -1,0 +1,265 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "formats/disk/scratch_folder.h"
+#include "src/error.h"
+#include "src/terrain/isolines.h"
+#include "stream/sinks/contour_writer.h"
+#include "stream/sinks/line_joiner.h"
+
+namespace spillway::detail {
+namespace {
+
+using Line = std::vector<Point<2>>;
+
+struct Contours {
+  std::multimap<double, Line> lines;  ///< by height
+  std::uint64_t spilled = 0;
+};
+
+/// Triangles of a square grid over [0, n] x [0, n], heights given by a function; as blocks of so
+/// many triangles, in an order given by a seed.
+template <typename Height>
+Contours contours_of_grid(int n, const Height& height, double interval, std::size_t block_size,
+                          unsigned seed, std::uint64_t memory = 1 << 20) {
+  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  Contours result;
+  ContourWriter writer(
+      {.levels = Levels::every(interval, 0), .lattice = {}, .memory = memory},
+      [&](std::span<const Point<2>> points, double level) {
+        result.lines.emplace(level, Line(points.begin(), points.end()));
+      },
+      *scratch);
+  const auto vertex = [&](int x, int y) { return static_cast<std::uint32_t>(y * (n + 1) + x); };
+  MeshBlock vertices;
+  for (int y = 0; y <= n; ++y) {
+    for (int x = 0; x <= n; ++x) vertices.vertices.push_back({1.0 * x, 1.0 * y, height(x, y)});
+  }
+  const std::size_t count = vertices.vertices.size();
+  writer.write(std::move(vertices));
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (int y = 0; y < n; ++y) {
+    for (int x = 0; x < n; ++x) {
+      triangles.push_back({vertex(x, y), vertex(x + 1, y), vertex(x + 1, y + 1)});
+      triangles.push_back({vertex(x, y), vertex(x + 1, y + 1), vertex(x, y + 1)});
+    }
+  }
+  std::shuffle(triangles.begin(), triangles.end(), std::mt19937(seed));
+  std::vector<std::size_t> uses(count);
+  for (const auto& triangle : triangles) {
+    for (const std::uint32_t v : triangle) ++uses[v];
+  }
+  for (std::size_t begin = 0; begin < triangles.size(); begin += block_size) {
+    MeshBlock block;
+    std::map<std::uint32_t, std::uint32_t> short_number;
+    for (std::size_t t = begin; t < std::min(triangles.size(), begin + block_size); ++t) {
+      for (const std::uint32_t v : triangles[t]) {
+        const auto added =
+            short_number.emplace(v, static_cast<std::uint32_t>(block.imported.size()));
+        if (added.second) block.imported.push_back(v);
+        block.corners.push_back(added.first->second);
+        if (--uses[v] == 0) block.finalized.push_back(added.first->second);
+      }
+    }
+    writer.write(std::move(block));
+  }
+  writer.finish({});
+  result.spilled = writer.spilled_bytes();
+  return result;
+}
+
+std::vector<std::pair<double, Line>> sorted(const Contours& contours) {
+  std::vector<std::pair<double, Line>> lines(contours.lines.begin(), contours.lines.end());
+  std::sort(lines.begin(), lines.end());
+  return lines;
+}
+
+double area(const Line& line) {
+  double twice = 0;
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    twice += line[i][0] * line[i + 1][1] - line[i + 1][0] * line[i][1];
+  }
+  return twice / 2;
+}
+
+double cone(double x, double y) { return 20 - std::hypot(x - 20, y - 20); }
+
+TEST(Contours, OfAConeAreClosedRingsThatTurnLeftAroundTheSummit) {
+  const Contours contours = contours_of_grid(40, cone, 3, 50, 1);
+  std::set<double> closed;
+  for (const auto& [height, line] : contours.lines) {
+    if (line.front() != line.back()) continue;
+    EXPECT_TRUE(closed.insert(height).second) << "two rings at " << height;
+    const double radius = 20 - height;
+    EXPECT_NEAR(area(line), M_PI * radius * radius, 0.1 * area(line) + 0.2) << height;
+    EXPECT_EQ(line.front(), *std::min_element(line.begin(), line.end()));
+  }
+  EXPECT_THAT(closed, testing::IsSupersetOf({3.0, 6.0, 9.0, 12.0, 15.0, 18.0}));
+}
+
+TEST(Contours, DoNotDependOnTheOrderOfTrianglesOrBlocks) {
+  const auto wavy = [](double x, double y) { return 7 * std::sin(x / 5) * std::cos(y / 7); };
+  const auto expected = sorted(contours_of_grid(50, wavy, 0.5, 100000, 1));
+  EXPECT_GT(expected.size(), 50U);
+  for (const std::size_t block_size : {1U, 7U, 400U}) {
+    EXPECT_EQ(sorted(contours_of_grid(50, wavy, 0.5, block_size, 2)), expected) << block_size;
+  }
+}
+
+TEST(Contours, OfATiltedPlaneRunFromHullToHullAtTheRightPlace) {
+  const Contours contours = contours_of_grid(
+      10, [](double x, double) { return x + 0.25; }, 1, 9, 3);
+  EXPECT_EQ(contours.lines.size(), 10U);
+  for (const auto& [height, line] : contours.lines) {
+    EXPECT_NE(line.front(), line.back());
+    for (const Point<2>& point : line) EXPECT_NEAR(point[0], height - 0.25, 1e-12);
+    EXPECT_GT(line.front()[1], line.back()[1]) << "higher ground is to the left";
+  }
+}
+
+TEST(Contours, ExactlyAtVerticesHaveNoGapsAndNoRepeatedPoints) {
+  const Contours contours = contours_of_grid(
+      20, [](double x, double y) { return std::floor((x + y) / 4); }, 1, 13, 4);
+  EXPECT_FALSE(contours.lines.empty());
+  for (const auto& [height, line] : contours.lines) {
+    EXPECT_EQ(std::adjacent_find(line.begin(), line.end()), line.end());
+    for (const Point<2>& end : {line.front(), line.back()}) {
+      if (line.front() == line.back()) break;
+      EXPECT_TRUE(end[0] == 0 || end[0] == 20 || end[1] == 0 || end[1] == 20)
+          << "an open line ends inside, at " << end[0] << ", " << end[1];
+    }
+  }
+}
+
+TEST(Contours, GoThroughTheDiskWhenTheyOutgrowTheirMemory) {
+  const auto in_memory = contours_of_grid(40, cone, 0.1, 100000, 5, 1 << 24);
+  const auto spilled = contours_of_grid(40, cone, 0.1, 64, 5, 16 * 1024);
+  EXPECT_GT(spilled.spilled, 0U);
+  EXPECT_EQ(in_memory.spilled, 0U);
+  EXPECT_EQ(spilled.lines.size(), in_memory.lines.size());
+  EXPECT_TRUE(std::ranges::is_permutation(spilled.lines, in_memory.lines));
+}
+
+/// The least sequence of all that a ring has, by trying every beginning.
+Line least_rotation(const Line& ring) {
+  Line least(ring.begin(), ring.end() - 1);
+  Line turned = least;
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+    least = std::min(least, turned);
+  }
+  least.push_back(least.front());
+  return least;
+}
+
+TEST(Contours, ThatMeetThemselvesAreTheSameInEveryOrder) {
+  std::size_t meetings_at_the_beginning = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    // Few whole heights, zeros of both signs among them: levels pass through vertices everywhere.
+    std::mt19937 random(seed);
+    std::map<std::pair<double, double>, double> heights;
+    const auto height = [&](double x, double y) {
+      const auto [found, is_new] = heights.try_emplace({x, y});
+      if (is_new) {
+        found->second = static_cast<double>(random() % 4) - 2;
+        if (found->second == 0 && random() % 2 == 0) found->second = -0.0;
+      }
+      return found->second;
+    };
+    const auto expected = sorted(contours_of_grid(15, height, 1, 100000, 0));
+    for (const auto& [level, line] : expected) {
+      if (line.front() != line.back()) continue;
+      EXPECT_EQ(line, least_rotation(line));
+      if (std::count(line.begin(), line.end(), line.front()) > 2) ++meetings_at_the_beginning;
+    }
+    for (const std::size_t block_size : {1U, 7U, 100U}) {
+      const std::uint64_t memory = block_size == 7 ? 512 : 1 << 20;
+      ASSERT_EQ(sorted(contours_of_grid(15, height, 1, block_size, seed + 1, memory)), expected)
+          << seed << ", " << block_size;
+    }
+  }
+  EXPECT_GT(meetings_at_the_beginning, 20U);
+}
+
+TEST(Contours, OfOnlyLevelGroundAreNone) {
+  EXPECT_TRUE(contours_of_grid(
+                  5, [](double, double) { return 2.0; }, 1, 3, 6)
+                  .lines.empty());
+}
+
+TEST(Levels, CountALevelOnlyAboveTheLowerEnd) {
+  const Levels levels = Levels::every(0.1, 0);
+  const Levels::Range range = levels.between(levels.height(3), levels.height(6));
+  EXPECT_EQ(range.first, 4);
+  EXPECT_EQ(range.end, 7);
+  const Levels list = Levels::of_list({5, 1, 3, 3});
+  EXPECT_EQ(list.between(1, 5).first, 1);
+  EXPECT_EQ(list.between(1, 5).end, 3);
+  EXPECT_EQ(list.height(2), 5);
+}
+
+TEST(Levels, RefuseAnIntervalThatHeightsCannotTellApart) {
+  for (const double interval : {1e-300, 1e-22, 1e-9}) {
+    const Levels levels = Levels::every(interval, 1e9);
+    EXPECT_THROW(static_cast<void>(levels.between(1e9, 1e9)), Error) << interval;
+  }
+}
+
+TEST(Levels, HaveNoMinusZero) {
+  EXPECT_FALSE(std::signbit(Levels::of_list({-0.0}).height(0)));
+  EXPECT_FALSE(std::signbit(Levels::every(0.5, -0.0).height(0)));
+}
+
+TEST(Levels, RefuseWhatMakesNoSense) {
+  EXPECT_THROW(Levels::every(0, 0), UsageError);
+  EXPECT_THROW(Levels::every(-1, 0), UsageError);
+  EXPECT_THROW(Levels::every(NAN, 0), UsageError);
+  EXPECT_THROW(Levels::of_list({}), UsageError);
+  EXPECT_THROW(static_cast<void>(Levels::every(1e-300, 0).between(5, 6)), Error);
+}
+
+TEST(LineJoiner, AFigureEightThroughItsLeastPointBeginsAlikeInEveryOrder) {
+  // Two loops from (0, 0); also one in which both loops are alike for some points.
+  for (const Line& ring : {Line{{0, 0}, {2, 1}, {2, 2}, {0, 0}, {2, -2}, {2, -1}},
+                           Line{{0, 0}, {1, 0}, {2, 5}, {0, 0}, {1, 0}, {2, 4}},
+                           Line{{0, 0}, {1, 0}, {0, 0}, {1, 0}}, Line{{0, 0}, {1, 0}}}) {
+    std::vector<IsoSegment> segments;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const std::size_t next = (i + 1) % ring.size();
+      segments.push_back({{{i, 100}, 0}, {{next, 100}, 0}, ring[i], ring[next]});
+    }
+    Line closed = ring;
+    closed.push_back(ring.front());
+    std::mt19937 random(4);
+    for (int turn = 0; turn < 50; ++turn) {
+      std::shuffle(segments.begin(), segments.end(), random);
+      const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+      std::vector<Line> lines;
+      LineJoiner joiner([&](std::span<const Point<2>> points,
+                            std::int64_t) { lines.emplace_back(points.begin(), points.end()); },
+                        1 << 20, *scratch);
+      for (const IsoSegment& segment : segments) joiner.add(segment);
+      joiner.finish();
+      EXPECT_EQ(lines, std::vector<Line>(1, least_rotation(closed)));
+    }
+  }
+}
+
+TEST(LineJoiner, RefusesTrianglesThatDoNotFitTogether) {
+  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  LineJoiner joiner([](auto, auto) {}, 1 << 20, *scratch);
+  const IsoSegment segment{{{1, 2}, 0}, {{2, 3}, 0}, {0, 0}, {1, 1}};
+  joiner.add(segment);
+  EXPECT_THROW(joiner.add(segment), Error);
+}
+
+}  // namespace
+}  // namespace spillway::detail

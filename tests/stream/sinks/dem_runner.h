@@ -1,0 +1,111 @@
+#pragma once
+// Makes rasters in memory, of points through the pipeline or of triangles as they are.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "src/parallel/parallel.h"
+#include "stream/sinks/dem.h"
+#include "stream/sinks/dem_writer.h"
+#include "tests/stream/stream_runner.h"
+#include "tests/terrain/terrain_mesh.h"
+
+namespace spillway::detail::testing {
+
+inline constexpr std::uint64_t kMemory = std::uint64_t{64} << 20;
+
+/// Keeps what is written, band by band.
+class KeepingRaster : public Raster {
+ public:
+  KeepingRaster(const PixelGrid& grid, std::size_t count)
+      : grid_(grid), bands(count, std::vector<float>(std::size_t{grid.columns} * grid.rows)) {}
+
+  void write_tile(std::size_t band, std::uint32_t tile_column, std::uint32_t tile_row,
+                  std::span<const float> pixels) override {
+    ASSERT_EQ(pixels.size(), RasterStore::kTilePixels);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const std::size_t column = tile_column * kRasterTile + i % kRasterTile;
+      const std::size_t row = tile_row * kRasterTile + i / kRasterTile;
+      if (column < grid_.columns && row < grid_.rows) {
+        bands[band][row * grid_.columns + column] = pixels[i];
+      }
+    }
+  }
+  void finish() override {}
+
+ private:
+  PixelGrid grid_;
+
+ public:
+  std::vector<std::vector<float>> bands;
+};
+
+struct Rastered {
+  PixelGrid grid;
+  std::vector<std::vector<float>> bands;
+  std::uint64_t with_data = 0;
+  std::uint64_t spilled = 0;
+};
+
+inline Rastered finished(Dem& dem, const DemOptions& options) {
+  KeepingRaster raster(dem.grid(), options.products.size());
+  dem.write(raster, [](std::uint64_t) {});
+  return {dem.grid(), std::move(raster.bands), dem.pixels_with_data(), dem.spilled_bytes()};
+}
+
+/// Points through the whole pipeline.
+inline Rastered raster_of(const std::vector<Point<3>>& points, DemOptions options,
+                          StreamOptions stream = {}) {
+  if (options.memory == 0) options.memory = kMemory;
+  options.threads = stream.threads;
+  const std::string path = write_points<3>(points);
+  PointSource source(disk(), {path}, {.dimension = 2});
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  MemoryBudget budget(kMemory);
+  Dem dem(options, source.lattice(), *scratch);
+  stream.extent_known = [&dem](const Box<2>& extent, std::uint64_t) { dem.begin(extent); };
+  DemWriter writer(dem);
+  (void)triangulate_stream<2>(source, writer, *scratch, budget, stream);
+  return finished(dem, options);
+}
+
+/// Triangles as they are, without any pipeline; so many at a time.
+inline Rastered raster_of(const std::vector<Triangle>& triangles, const PixelGrid& grid,
+                          DemOptions options, std::size_t at_a_time = 1 << 20) {
+  if (options.memory == 0) options.memory = kMemory;
+  options.grid.given = grid;
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  Dem dem(options, std::nullopt, *scratch);
+  dem.begin(Box<2>{});
+  with_threads(options.threads, [&] {
+    for (std::size_t begin = 0; begin < triangles.size(); begin += at_a_time) {
+      std::vector<Point<3>> vertices;
+      std::vector<std::uint32_t> corners;
+      for (std::size_t t = begin; t < std::min(triangles.size(), begin + at_a_time); ++t) {
+        for (const Point<3>& corner : triangles[t]) {
+          corners.push_back(static_cast<std::uint32_t>(vertices.size()));
+          vertices.push_back(corner);
+        }
+      }
+      dem.paint(vertices, corners);
+    }
+  });
+  return finished(dem, options);
+}
+
+inline std::vector<Point<3>> with_heights(const std::vector<Point<2>>& points,
+                                          const HeightOf& height) {
+  std::vector<Point<3>> result;
+  for (const Point<2>& p : points) result.push_back({p[0], p[1], height(p[0], p[1])});
+  return result;
+}
+
+inline const DemOptions kAllProducts{.products = {DemProduct::kHeight, DemProduct::kSlope,
+                                                  DemProduct::kAspect, DemProduct::kHillshade,
+                                                  DemProduct::kDensity}};
+
+}  // namespace spillway::detail::testing

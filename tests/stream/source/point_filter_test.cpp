@@ -1,0 +1,110 @@
+// What each filter keeps, which of them counts a point that several would drop.
+
+#include "stream/source/point_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace spillway::detail {
+namespace {
+
+PointAttributes return_of(std::uint8_t number, std::uint8_t count) {
+  PointAttributes attributes;
+  attributes.return_number = number;
+  attributes.return_count = count;
+  return attributes;
+}
+
+TEST(ReturnFilter, FirstLastAndSingle) {
+  const ReturnFilter first{.first = true};
+  const ReturnFilter last{.last = true};
+  const ReturnFilter single{.single = true};
+  EXPECT_TRUE(first.keeps(return_of(1, 3)));
+  EXPECT_FALSE(first.keeps(return_of(2, 3)));
+  EXPECT_TRUE(last.keeps(return_of(3, 3)));
+  EXPECT_FALSE(last.keeps(return_of(2, 3)));
+  EXPECT_TRUE(single.keeps(return_of(1, 1)));
+  EXPECT_FALSE(single.keeps(return_of(1, 2)));
+  EXPECT_FALSE(single.keeps(return_of(2, 2)));
+}
+
+TEST(ReturnFilter, AnUnknownReturnIsFirstAndLast) {
+  for (const ReturnFilter& filter :
+       {ReturnFilter{.first = true}, ReturnFilter{.last = true}, ReturnFilter{.single = true}}) {
+    EXPECT_TRUE(filter.keeps(return_of(0, 0)));
+  }
+  EXPECT_FALSE(ReturnFilter{.numbers = 1 << 1}.keeps(return_of(0, 0)));
+}
+
+TEST(ReturnFilter, NumbersAreAnyOfTheList) {
+  const ReturnFilter filter{.numbers = 1 << 2 | 1 << 15};
+  EXPECT_TRUE(filter.keeps(return_of(2, 2)));
+  EXPECT_TRUE(filter.keeps(return_of(15, 15)));
+  EXPECT_FALSE(filter.keeps(return_of(1, 2)));
+}
+
+/// Points (i, 0, 10 i) of class i and of return 1 + i % 2 of 2.
+PointBlock twelve_points() {
+  PointBlock block;
+  for (std::uint8_t i = 0; i < 12; ++i) {
+    block.points.push_back({1.0 * i, 0, 10.0 * i});
+    block.index.push_back(100 + i);
+    block.attributes.push_back(return_of(1 + i % 2, 2));
+    block.attributes.back().classification = i;
+  }
+  return block;
+}
+
+PointCounts apply(const PointFilter& filter, PointBlock& block,
+                  const std::optional<Lattice>& lattice = std::nullopt) {
+  PointCounts counts;
+  counts.read = block.size();
+  apply_filter(filter, lattice, block, counts);
+  EXPECT_EQ(counts.kept(), block.size());
+  EXPECT_EQ(block.index.size(), block.size());
+  return counts;
+}
+
+TEST(PointFilter, EachPointIsCountedWhereItIsDroppedFirst) {
+  PointFilter filter;
+  filter.every = 2;                                  // 0, 2, ... 10 stay
+  filter.classes = std::bitset<256>("11111111100");  // without 0
+  filter.returns = ReturnFilter{.first = true};      // all of these
+  filter.bounds = Box<3>{{4, 0, 0}, {8, 0, 1000}};   // without 2, 10
+  PointBlock block = twelve_points();
+  const PointCounts counts = apply(filter, block);
+  EXPECT_EQ(counts, (PointCounts{.read = 12, .every = 6, .classes = 1, .bounds = 2}));
+  EXPECT_EQ(block.index, (std::vector<std::uint64_t>{104, 106, 108}));
+  EXPECT_EQ(block.attributes[1].classification, 6);
+  EXPECT_EQ(describe(counts),
+            "12 points read, 6 left out by --every, 1 of other classes, 2 outside --bounds, 3 "
+            "kept");
+}
+
+TEST(PointFilter, EveryCountsRecordsNotPointsThatWereKept) {
+  PointBlock block = twelve_points();
+  apply({.every = 5}, block);
+  EXPECT_EQ(block.index, (std::vector<std::uint64_t>{100, 105, 110}));
+}
+
+TEST(PointFilter, BoundsAreClosedAndInOutputCoordinates) {
+  constexpr double kAll = std::numeric_limits<double>::infinity();
+  const Lattice lattice{{0.5, 0.5, 0.1}, {1000, 0, 0}};
+  PointBlock plane = twelve_points();
+  apply({.bounds = Box<3>{{1001, 0, -kAll}, {1002, 0, kAll}}}, plane, lattice);
+  EXPECT_EQ(plane.index, (std::vector<std::uint64_t>{102, 103, 104}));
+  PointBlock space = twelve_points();
+  apply({.bounds = Box<3>{{1001, 0, 3}, {1002, 0, 3}}}, space, lattice);
+  EXPECT_EQ(space.index, std::vector<std::uint64_t>{103});
+}
+
+TEST(PointCounts, AddUp) {
+  PointCounts sum{.read = 5, .withheld = 1};
+  sum += {.read = 7, .returns = 2, .thinned = 3};
+  EXPECT_EQ(sum.kept(), 6U);
+  EXPECT_EQ(describe(sum), "12 points read, 1 withheld, 2 of other returns, 3 thinned, 6 kept");
+}
+
+}  // namespace
+}  // namespace spillway::detail

@@ -1,0 +1,299 @@
+// `convert` of points: every format to every other, what LAS holds besides coordinates, rounding,
+// pipes and filters.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/tools/command_runner.h"
+#include "tests/tools/inputs/las_samples.h"
+
+namespace spillway::detail::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::vector<std::string> kFormats = {"las", "xyz", "csv", "npy", "spp"};
+
+TEST(ConvertPoints, KeepsLatticePointsWhateverTheFormats) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 3000 -o in.las\n"
+      "spillway convert -q in.las -o in.npy");
+  for (const std::string& there : kFormats) {
+    work.succeed(fmt::format("spillway convert -q in.las -o there.{}", there));
+    for (const std::string& back : kFormats) {
+      // Text has decimals, so its doubles may differ in the last bit: the lattice takes them back.
+      work.succeed(fmt::format(
+          "spillway convert -q there.{} -o back.{} --scale 0.01 --offset 500000,4100000,0\n"
+          "spillway convert -q back.{} -o back.las --scale 0.01 --offset 500000,4100000,0\n"
+          "spillway convert -q back.las -o back.npy\n"
+          "cmp in.npy back.npy",
+          there, back, back));
+    }
+  }
+}
+
+TEST(ConvertPoints, KeepsEveryBitOfDoubles) {
+  const Workspace work;
+  work.succeed("spillway generate -q uniform --dim 3 -n 3000 -o in.npy");
+  for (const std::string format : {"xyz", "csv", "npy", "spp"}) {
+    work.succeed(
+        fmt::format("spillway convert -q in.npy -o there.{0}\n"
+                    "spillway convert -q there.{0} -o back.npy\n"
+                    "cmp in.npy back.npy",
+                    format));
+  }
+}
+
+TEST(ConvertPoints, KeepsTwoColumns) {
+  const Workspace work;
+  work.write("in.txt", "1 2.5\n-3 4\n");
+  for (const std::string format : {"npy", "spp", "csv"}) {
+    work.succeed(
+        fmt::format("spillway convert -q in.txt -o there.{0}\n"
+                    "spillway convert -q there.{0} -o back.txt\n"
+                    "cmp in.txt back.txt",
+                    format));
+  }
+  const Result las = work.run("spillway convert in.txt -o flat.las --scale 0.5");
+  EXPECT_THAT(las.err, HasSubstr("no z: in LAS it is 0"));
+  EXPECT_EQ(work.succeed("spillway convert -q flat.las -o - --output-format text"),
+            "1 2.5 0\n-3 4 0\n");
+}
+
+/// A LAS 1.2 file of one point of class 2, the second return of three, withheld.
+std::string las_of_one_point() {
+  std::string las(247, '\0');
+  const auto put = [&](std::size_t at, const auto& value) {
+    las.replace(at, sizeof(value), reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  las.replace(0, 4, "LASF");
+  put(24, std::uint8_t{1});
+  put(25, std::uint8_t{2});
+  put(94, std::uint16_t{227});
+  put(96, std::uint32_t{227});
+  put(105, std::uint16_t{20});
+  put(107, std::uint32_t{1});
+  for (std::size_t axis = 0; axis < 3; ++axis) put(131 + 8 * axis, 0.01);
+  put(227 + 12, std::uint16_t{77});  // intensity
+  put(227 + 14, std::uint8_t{2 | (3 << 3)});
+  put(227 + 15, std::uint8_t{2 | 0x80});
+  return las;
+}
+
+TEST(ConvertPoints, KeepsAttributesAndTellsWhatItDrops) {
+  const Workspace work;
+  work.write("in.las", las_of_one_point());
+  const Result there = work.run(
+      "spillway convert in.las -o there.las --keep-withheld "
+      "--las-version 1.4");
+  EXPECT_EQ(there.exit_code, 0) << there.err;
+  EXPECT_THAT(there.err,
+              AllOf(HasSubstr("not kept: intensity, scan flags, scan angle, user data, point "
+                              "source\n"),
+                    Not(HasSubstr("rounded"))));
+  EXPECT_EQ(work.info("there.las")["version"], "1.4");
+  EXPECT_EQ(work.read("there.las").substr(375 + 14, 3), "\x32\x04\x02");
+  work.succeed("spillway convert -q there.las -o back.las --keep-withheld --las-version 1.2");
+  EXPECT_EQ(work.read("back.las").substr(227 + 14, 2), "\x1a\x82");
+  EXPECT_THAT(
+      work.run("spillway convert in.las -o out.xyz --keep-withheld").err,
+      HasSubstr("not kept: classes, returns, flags, intensity, scan flags, scan angle, user "
+                "data, point source\n"));
+  EXPECT_THAT(work.run("spillway convert -q in.las -o out.xyz --keep-withheld").err, "");
+  EXPECT_THAT(work.run("spillway convert in.las -o out.xyz").err, HasSubstr("1 withheld"));
+}
+
+/// A LAS 1.4 file of that point format, with extra bytes in its records.
+std::string las_of_format(int point_format, std::size_t extra_bytes) {
+  testing::LasFile las = scattered_las(0, 5);
+  las.minor = 4;
+  las.point_format = point_format;
+  las.extra_bytes = extra_bytes;
+  return las.bytes();
+}
+
+TEST(ConvertPoints, TellsWhatTheInputAtHandHas) {
+  const Workspace work;
+  const std::string all = "intensity, scan flags, scan angle, user data, point source";
+  const std::vector<std::string> more = {
+      "",
+      ", GPS time",
+      ", colour",
+      ", GPS time, colour",
+      ", GPS time, waveforms",
+      ", GPS time, colour, waveforms",
+      ", scanner channel, GPS time",
+      ", scanner channel, GPS time, colour",
+      ", scanner channel, GPS time, colour, near infrared",
+      ", scanner channel, GPS time, waveforms",
+      ", scanner channel, GPS time, colour, near infrared, waveforms"};
+  for (int format = 0; format <= 10; ++format) {
+    work.write("in.las", las_of_format(format, 0));
+    EXPECT_THAT(work.run("spillway convert in.las -o out.las").err,
+                HasSubstr("not kept: " + all + more[format] + "\n"));
+    work.write("in.las", las_of_format(format, 3));
+    EXPECT_THAT(work.run("spillway convert in.las -o out.las").err,
+                HasSubstr(more[format] + ", extra bytes\n"));
+  }
+  work.write("a.las", las_of_format(1, 0));
+  work.write("b.las", las_of_format(2, 0));
+  EXPECT_THAT(work.run("spillway convert a.las b.las -o out.las").err,
+              HasSubstr("not kept: " + all + ", GPS time, colour\n"));
+}
+
+TEST(ConvertPoints, TextNpyAndSppHaveNothingToLose) {
+  const Workspace work;
+  work.write("in.txt", "1 2 3\n4 5 6\n7 9 9\n");
+  work.succeed("spillway convert -q in.txt -o in.npy; spillway convert -q in.txt -o in.spp");
+  for (const char* const input : {"in.txt", "in.npy", "in.spp"}) {
+    EXPECT_THAT(work.run(std::string("spillway convert ") + input + " -o out.las").err,
+                Not(HasSubstr("not kept")));
+  }
+}
+
+TEST(ConvertPoints, ChoosesVersion14ForItsPointFormats) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 100 -o old.las\n"
+      "spillway generate -q terrain -n 100 -o new.las --las-version 1.4\n"
+      "spillway convert -q old.las -o from_old.las\n"
+      "spillway convert -q new.las -o from_new.las");
+  EXPECT_EQ(work.info("from_old.las")["version"], "1.2");
+  EXPECT_EQ(work.info("from_new.las")["version"], "1.4");
+}
+
+TEST(ConvertPoints, TellsHowFarRoundingMovedCoordinates) {
+  const Workspace work;
+  work.write("in.txt", "500000.1234 4000000.5678 10.00049\n500001 4000001 11\n");
+  const Result automatic = work.run("spillway convert in.txt -o out.las");
+  EXPECT_EQ(automatic.exit_code, 0);
+  EXPECT_THAT(automatic.err, AllOf(HasSubstr("rounded to multiples of 0.001 from 0, 4000000, 0 on"),
+                                   HasSubstr("moved them by 0.00049 at most")));
+  work.succeed("spillway convert -q in.txt -o out.las --scale 0.01,0.01,0.1 --offset 500000,4e6,0");
+  EXPECT_EQ(work.succeed("spillway convert -q out.las -o - --output-format text"),
+            "500000.12 4000000.57 10.0\n500001.00 4000001.00 11.0\n");
+  EXPECT_EQ(work.run("spillway convert -q in.txt -o out.las --scale 0").exit_code, 2);
+  EXPECT_EQ(work.run("spillway convert -q in.txt -o out.las --scale 1,2").exit_code, 2);
+}
+
+TEST(ConvertPoints, ChoosesAFineScaleForDegrees) {
+  const Workspace work;
+  work.write("in.txt", "-81.1234567 28.7654321 12.5\n");
+  work.succeed("spillway convert -q in.txt -o out.las");
+  EXPECT_EQ(work.succeed("spillway convert -q out.las -o - --output-format text"),
+            "-81.1234567 28.7654321 12.500\n");
+}
+
+TEST(ConvertPoints, NamesThePointThatIntegersDoNotReach) {
+  const Workspace work;
+  work.write("in.txt", "1 2 3\n4 5 6\n1 1e7 3\n");
+  const Result result = work.run("spillway convert in.txt -o out.las --scale 0.001 --offset 0");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("cannot write out.las: point 2 is at (1, 10000000, 3)"),
+                                HasSubstr("choose another --scale or --offset")));
+  EXPECT_EQ(work.names(), std::vector<std::string>{"in.txt"});
+}
+
+TEST(ConvertPoints, GivesAPipeWhatAFileWouldHold) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 100000 -o in.las\n"
+      "spillway convert -q in.las -o out.npy\n"
+      "spillway convert -q in.las -o out.las");
+  for (const std::string format : {"npy", "las"}) {
+    work.succeed(
+        fmt::format("spillway convert -q - -o - --output-format {0} < in.las > piped.{0}\n"
+                    "cmp out.{0} piped.{0}\n"
+                    "cat in.las | spillway convert -q - -o - --tmpdir . | "
+                    "spillway convert -q - -o - --output-format {0} --tmpdir . | cat > piped.{0}",
+                    format));
+  }
+  work.succeed(
+      "cmp out.npy piped.npy\n"
+      "spillway convert -q piped.las -o again.npy\n"
+      "cmp out.npy again.npy");
+  EXPECT_EQ(work.info("piped.las")["extent"], work.info("in.las")["extent"]);
+  EXPECT_EQ(work.names(), (std::vector<std::string>{"again.npy", "in.las", "out.las", "out.npy",
+                                                    "piped.las", "piped.npy"}));
+}
+
+TEST(ConvertPoints, JoinsAndFiltersInputs) {
+  const Workspace work;
+  work.write("a.txt", "1 2 3\n4 5 6\n");
+  work.write("b.csv", "7,8,9\n10,11,12\n");
+  EXPECT_EQ(work.succeed("spillway convert -q a.txt b.csv -o - --output-format text"),
+            "1 2 3\n4 5 6\n7 8 9\n10 11 12\n");
+  EXPECT_EQ(work.succeed("spillway convert -q '?.*' -o - --output-format text --bounds 2,2,8,8"),
+            "4 5 6\n7 8 9\n");
+  work.succeed("spillway convert -q . -o all.las --scale 1 --every 2");
+  EXPECT_EQ(work.info("all.las")["points"], 2);
+}
+
+TEST(ConvertPoints, KeepsTheCoordinateSystem) {
+  const std::string sample = shared_file("autzen_trim.las").string();
+  if (sample.empty()) GTEST_SKIP() << "no sample data";
+  const Workspace work;
+  work.succeed(
+      fmt::format("spillway convert -q '{}' -o out.las --keep-withheld\n"
+                  "spillway convert -q '{}' -o out.npy --keep-withheld\n"
+                  "spillway convert -q out.las -o back.npy --keep-withheld\n"
+                  "cmp out.npy back.npy\n"
+                  "spillway convert -q out.las -o later.las --las-version 1.4",
+                  sample, sample));
+  const auto crs = nlohmann::json::parse(
+      work.succeed(fmt::format("spillway info -q --json '{}'", sample)))["crs"];
+  EXPECT_EQ(work.info("out.las")["crs"], crs);
+  EXPECT_FALSE(work.info("later.las")["crs"].is_null());
+  EXPECT_THAT(work.run(fmt::format("spillway convert '{}' -o out.xyz", sample)).err,
+              HasSubstr("colour, coordinate system\n"));
+}
+
+TEST(ConvertPoints, RefusesWhatItCannotDoAndLeavesNothing) {
+  const Workspace work;
+  work.write("in.txt", "1 2 3\n");
+  EXPECT_THAT(work.run("spillway convert in.txt -o out.laz").err, HasSubstr("LAZ is read, not"));
+  EXPECT_EQ(work.run("spillway convert in.txt -o out.laz").exit_code, 2);
+  EXPECT_EQ(work.run("spillway generate terrain -n 9 -o out.laz").exit_code, 2);
+  EXPECT_THAT(work.run("spillway convert in.txt -o out.ply").err, HasSubstr("these are points"));
+  EXPECT_EQ(work.run("spillway convert in.txt -o out.dat").exit_code, 2);
+  work.succeed("spillway generate -q uniform -n 9 | spillway triangulate -q - -o mesh.spm");
+  EXPECT_EQ(work.run("spillway convert mesh.spm -o out.ply --every 2").exit_code, 2);
+  EXPECT_EQ(work.run("spillway convert mesh.spm -o out.ply --scale 1").exit_code, 2);
+  EXPECT_THAT(work.run("spillway convert -q in.txt -o /dev/full").err, HasSubstr("cannot tell"));
+  EXPECT_THAT(work.run("spillway convert -q in.txt -o /dev/full --output-format las").err,
+              HasSubstr("No space left on device"));
+  EXPECT_EQ(work.names(), (std::vector<std::string>{"in.txt", "mesh.spm"}));
+}
+
+/// What `convert -v` says of its memory, in MiB.
+double peak_memory(const Result& result) {
+  const std::string label = "peak memory ";
+  const std::size_t at = result.err.find(label);
+  EXPECT_NE(at, std::string::npos) << result.err;
+  return std::stod(result.err.substr(at + label.size())) / (1 << 20);
+}
+
+TEST(ConvertPoints, TakesNoMoreMemoryForMorePoints) {
+  constexpr double kSlack = 24;  // what 3 million points would take is 70 MiB at least
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 2e5 -o few.spp\n"
+      "spillway generate -q terrain -n 3e6 -o many.spp");
+  for (const std::string step : {"spillway convert -v {0}.spp -o {0}.las",
+                                 "spillway convert -v {0}.las -o - --output-format npy > {0}.npy",
+                                 "spillway convert -v {0}.npy -o {0}.las"}) {
+    const double few = peak_memory(work.run(fmt::format(fmt::runtime(step), "few")));
+    EXPECT_LT(peak_memory(work.run(fmt::format(fmt::runtime(step), "many"))), few + kSlack) << step;
+  }
+  EXPECT_EQ(work.info("many.las")["points"], 3000000);
+}
+
+}  // namespace
+}  // namespace spillway::detail::test

@@ -1,0 +1,388 @@
+// The command under mpirun: the same triangulation for any number of ranks, from all kinds of
+// inputs; and a job that ends at once, cleanly, when one of them cannot go on.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/tools/command_runner.h"
+#include "tests/tools/report/progress_lines.h"
+
+namespace spillway::detail::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Containers run tests as root, which mpirun refuses unless it is told twice.
+const std::string kMpirun =
+    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " SPILLWAY_MPIRUN
+    " --oversubscribe --bind-to none";
+
+/// A command line that runs so many ranks.
+std::string ranks(int count, const std::string& arguments) {
+  return fmt::format("{} -n {} {} {}", kMpirun, count, SPILLWAY_COMMAND, arguments);
+}
+
+/// The mesh that one process makes, and the same of ranks.
+class RanksOfTheCommand : public testing::Test {
+ protected:
+  void expect_same_mesh(int count, const std::string& arguments, const std::string& name = "b.spm",
+                        const std::string& before = "") const {
+    SCOPED_TRACE(fmt::format("{} ranks, {}", count, arguments));
+    work_.succeed(fmt::format("{}spillway triangulate -q {} -o a.spm", before, arguments));
+    work_.succeed(before + ranks(count, fmt::format("triangulate -q {} -o {}", arguments, name)));
+    const auto alone = work_.info("a.spm");
+    const auto together = work_.info(name);
+    for (const char* figure : {"vertices", "simplices", "hull_facets", "canonical_hash"}) {
+      EXPECT_EQ(alone.at(figure), together.at(figure)) << figure;
+    }
+  }
+
+  /// The lines of a mesh's vertices: coordinates and index, sorted.
+  [[nodiscard]] std::multiset<std::string> vertex_lines(const std::string& name) const {
+    work_.succeed(fmt::format("spillway convert -q {} -o v.ply --output-format ply-ascii", name));
+    std::istringstream text(work_.read("v.ply"));
+    std::multiset<std::string> lines;
+    std::uint64_t vertices = 0;
+    std::string line;
+    while (std::getline(text, line) && line != "end_header") {
+      if (line.starts_with("element vertex ")) vertices = std::stoull(line.substr(15));
+    }
+    for (std::uint64_t v = 0; v < vertices && std::getline(text, line); ++v) lines.insert(line);
+    return lines;
+  }
+
+  Workspace work_;
+};
+
+TEST_F(RanksOfTheCommand, EndEachPhaseOfTheProgressWithTheTotalsOfAll) {
+  work_.succeed(
+      "spillway generate -q terrain -n 200000 -o in.las\n"
+      "spillway convert -q in.las -o in.txt");
+  const auto run = [&](const std::string& command) {
+    SCOPED_TRACE(command);
+    const Result result = work_.run(command + " --stats run.json --progress json");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return ended_phases(result.err);
+  };
+  using Phases = std::vector<EndedPhase>;
+  for (const int count : {1, 2, 3}) {
+    for (const std::string arguments : {"in.las -o a.spm", "in.las --every 2 -o a.spm",
+                                        "in.las --thin 4 -o a.spm", "- -o a.spm < in.txt"}) {
+      const Phases phases = run(ranks(count, "triangulate " + arguments));
+      const auto stats = nlohmann::json::parse(work_.read("run.json"));
+      EXPECT_EQ(phases, (Phases{{"read", 200000, "points"},
+                                {"triangulate", stats["points"], "points"},
+                                {"write", stats["simplices"], "triangles"}}))
+          << count << ' ' << arguments;
+    }
+  }
+  work_.succeed("spillway generate -q terrain -n 2500000 -o many.spp");
+  const Phases divided =
+      run(ranks(2, "triangulate - --tile 20000 --memory 32M -o a.spm < many.spp"));
+  const auto stats = nlohmann::json::parse(work_.read("run.json"));
+  EXPECT_GT(stats["divided_points"], 0);
+  EXPECT_EQ(divided, (Phases{{"read", 2500000, "points"},
+                             {"divide", stats["divided_points"], "points"},
+                             {"triangulate", 2500000, "points"},
+                             {"write", stats["simplices"], "triangles"}}));
+  const Phases dem = run(ranks(2, "dem in.las --resolution 5 -o a.tif"));
+  const auto raster = nlohmann::json::parse(work_.read("run.json"))["raster"];
+  const std::uint64_t pixels = raster["columns"].get<int>() * raster["rows"].get<int>();
+  EXPECT_EQ(dem, (Phases{{"read", 200000, "points"},
+                         {"triangulate", 200000, "points"},
+                         {"write", pixels, "pixels"}}));
+}
+
+TEST_F(RanksOfTheCommand, GiveTheSameMeshForAnyNumberOfThem) {
+  work_.succeed("spillway generate -q terrain -n 300000 -o in.las");
+  for (const int count : {1, 2, 3, 4, 5, 8}) expect_same_mesh(count, "in.las");
+  work_.succeed("spillway check -q b.spm --points in.las");
+  work_.succeed("spillway generate -q uniform --dim 3 -n 60000 -o space.npy");
+  for (const int count : {2, 3, 5}) expect_same_mesh(count, "space.npy --dim 3");
+  work_.succeed("spillway check -q b.spm --points space.npy");
+}
+
+TEST_F(RanksOfTheCommand, ShareTextCompressedTextPipesListsAndFilteredInputs) {
+  work_.succeed(
+      "spillway generate -q terrain -n 200000 -o one.las && "
+      "spillway generate -q terrain --seed 2 -n 90000 -o two.las && "
+      "spillway convert -q one.las -o one.txt && gzip -k one.txt && "
+      "printf 'one.las\\ntwo.las\\n' > list");
+  for (const int count : {2, 3}) {
+    for (const char* input :
+         {"one.txt", "one.txt.gz", "@list", "one.las two.las one.txt.gz", "one.las --thin 3:lowest",
+          "one.las --every 3", "one.txt --every 3", "two.las one.las --max-edge 30"}) {
+      expect_same_mesh(count, input);
+    }
+    expect_same_mesh(count, "-", "b.spm", "cat one.las | ");
+    expect_same_mesh(count, "two.las -", "b.spm", "cat one.txt | ");
+  }
+}
+
+TEST_F(RanksOfTheCommand, GiveEachVertexTheSameHeightAndIndexAsOneProcess) {
+  // Many points of equal x and y, in files of which each is a piece of the exchange.
+  work_.succeed(
+      "for i in 1 2 3 4 5; do spillway generate -q duplicates -n 3000 --seed $i -o p$i.npy && "
+      "spillway convert -q p$i.npy -o p$i.txt && "
+      "awk -v i=$i '{ print $1, $2, NR * 5 + i }' p$i.txt > z$i.txt; done");
+  for (const char* choice : {"first", "lowest", "highest", "mean"}) {
+    expect_same_mesh(
+        3, fmt::format("z1.txt z2.txt z3.txt z4.txt z5.txt --id --duplicates {}", choice));
+    EXPECT_EQ(vertex_lines("a.spm"), vertex_lines("b.spm")) << choice;
+  }
+}
+
+TEST_F(RanksOfTheCommand, WriteOneFileInAnyFormatOrToAPipe) {
+  work_.succeed("spillway generate -q terrain -n 100000 -o in.las");
+  for (const char* name : {"b.spm", "b.ply", "b.vtu", "b.obj"}) {
+    expect_same_mesh(3, "in.las", name);
+    work_.succeed(fmt::format("spillway check -q {} --points in.las", name));
+  }
+  work_.succeed(ranks(2, "triangulate -q in.las -o - > piped.spm"));
+  EXPECT_EQ(work_.info("piped.spm").at("canonical_hash"), work_.info("a.spm").at("canonical_hash"));
+}
+
+TEST_F(RanksOfTheCommand, MakeTheSameRasterToTheByte) {
+  work_.succeed("spillway generate -q terrain -n 200000 -o in.las");
+  const std::string options =
+      "-q in.las --resolution 0.4 --product height,slope,aspect,hillshade,density";
+  work_.succeed(fmt::format("spillway dem {} -o a.tif", options));
+  for (const int count : {1, 2, 5}) {
+    work_.succeed(ranks(count, fmt::format("dem {} -o b.tif", options)));
+    EXPECT_EQ(work_.read("a.tif"), work_.read("b.tif")) << count << " ranks";
+  }
+}
+
+TEST_F(RanksOfTheCommand, WorkWithFewerPointsThanThereAreOfThem) {
+  work_.write("four.txt", "0 0 1\n1 0 2\n0 1 3\n1 1 4\n");
+  expect_same_mesh(8, "four.txt");
+}
+
+TEST_F(RanksOfTheCommand, KeepTilesOnDisksOfTheirOwn) {
+  work_.succeed("mkdir one two && spillway generate -q terrain -n 1500000 -o in.las");
+  const std::string common = "triangulate -q --memory 32M in.las -o b.spm --stats s.json";
+  work_.succeed(fmt::format("{0} -n 1 {1} {2} --tmpdir one : -n 1 {1} {2} --tmpdir two", kMpirun,
+                            SPILLWAY_COMMAND, common));
+  const auto stats = nlohmann::json::parse(work_.read("s.json"));
+  for (const auto& rank : stats.at("ranks").at("each")) EXPECT_GT(rank.at("spilled_bytes"), 0);
+  EXPECT_TRUE(fs::is_empty(work_.folder() / "one"));
+  EXPECT_TRUE(fs::is_empty(work_.folder() / "two"));
+  work_.succeed("spillway triangulate -q in.las -o a.spm");
+  EXPECT_EQ(work_.info("a.spm").at("canonical_hash"), work_.info("b.spm").at("canonical_hash"));
+}
+
+TEST_F(RanksOfTheCommand, TellWhatWasSentAndMergedByEach) {
+  work_.succeed("spillway generate -q terrain -n 300000 -o in.las");
+  work_.succeed(ranks(4, "triangulate -q in.las -o b.spm --stats s.json"));
+  const auto ranks_of_run = nlohmann::json::parse(work_.read("s.json")).at("ranks");
+  EXPECT_EQ(ranks_of_run.at("count"), 4);
+  EXPECT_GT(ranks_of_run.at("point_bytes_sent_per_point"), 0);
+  EXPECT_GT(ranks_of_run.at("border_bytes_sent_per_border_simplex"), 0);
+  ASSERT_EQ(ranks_of_run.at("each").size(), 4U);
+  std::size_t merges = 0;
+  std::uint64_t points = 0;
+  for (const auto& rank : ranks_of_run.at("each")) {
+    merges += rank.at("merges").size();
+    points += rank.at("points").get<std::uint64_t>();
+  }
+  EXPECT_EQ(merges, 3U);
+  EXPECT_EQ(points, 300'000U);
+}
+
+/// What mpirun itself adds is not looked at: the message comes once, and nothing is left.
+class RanksThatFail : public RanksOfTheCommand {
+ protected:
+  void expect_failure(const std::string& command, const std::string& message,
+                      int exit_code = 1) const {
+    const auto before = work_.names();
+    const Result result = work_.run(command);
+    EXPECT_EQ(result.exit_code, exit_code) << command << "\n" << result.err;
+    const std::size_t first = result.err.find("spillway: error: ");
+    EXPECT_NE(first, std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("spillway: error: ", first + 1), std::string::npos) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(message));
+    EXPECT_EQ(work_.names(), before) << command;
+  }
+};
+
+TEST_F(RanksThatFail, SayOnceWhatIsWrongWithInputOptionsAndOutput) {
+  work_.write("line.txt", "0 0\n1 1\n2 2\n5 5\n");
+  work_.write("none.txt", "\n");
+  work_.write("bad.txt", "0 0\n1 0\n0 x\n");
+  work_.succeed(
+      "spillway generate -q terrain -n 90000 -o in.las && head -c 900000 in.las > cut.las");
+  expect_failure(ranks(3, "triangulate -q line.txt -o b.ply"), "lie on one line");
+  expect_failure(ranks(3, "triangulate -q none.txt -o b.ply"), "no points");
+  expect_failure(ranks(3, "triangulate -q bad.txt -o b.ply"), "bad.txt");
+  expect_failure(ranks(3, "triangulate -q missing.las -o b.ply"), "cannot open missing.las");
+  expect_failure(ranks(3, "triangulate -q cut.las -o b.ply"), "cut.las");
+  expect_failure(ranks(3, "triangulate -q in.las -o nowhere/b.ply"), "create the folder nowhere");
+  expect_failure(ranks(3, "triangulate -q in.las -o b.ply --tmpdir nowhere"), "--tmpdir");
+  expect_failure(ranks(3, "triangulate -q in.las -o b.ply --max-edge 0.0001"), "nothing is left");
+  expect_failure(ranks(3, "triangulate -q in.las"), "--output", 2);
+  expect_failure(ranks(3, "triangulate -q in.las -o b.ply --simulate-cores 1,2"), "mpirun", 2);
+  expect_failure(ranks(3, "info in.las"), "start it without mpirun", 2);
+  expect_failure("spillway triangulate -q in.las -o b.ply --parts", "start it with mpirun", 2);
+}
+
+TEST_F(RanksThatFail, RefuseDegenerateInputsInBothDimensions) {
+  std::string plane;
+  std::string equal;
+  for (int i = 0; i < 60; ++i) {
+    plane += fmt::format("{} {} 5\n", i % 7, i * i % 11);
+    equal += "3 4 5\n";
+  }
+  work_.write("plane.txt", plane);
+  work_.write("equal.txt", equal);
+  work_.write("one.txt", "1 2 3\n");
+  expect_failure(ranks(8, "triangulate -q plane.txt --dim 3 -o b.ply"), "lie in one plane");
+  expect_failure(ranks(8, "triangulate -q equal.txt -o b.ply"), "only 1 distinct point");
+  expect_failure(ranks(5, "triangulate -q equal.txt --dim 3 -o b.ply"), "only 1 distinct point");
+  expect_failure(ranks(8, "triangulate -q one.txt -o b.ply"), "only 1 distinct point");
+  // Much more than the borders of such points could have.
+  work_.succeed(
+      "spillway generate -q collinear -n 400000 -o line.spp && "
+      "spillway generate -q coplanar --dim 3 -n 400000 -o plane.spp");
+  expect_failure(ranks(3, "triangulate -q line.spp --memory 32M -o b.ply"),
+                 "all 400000 points lie on one line");
+  expect_failure(ranks(3, "triangulate -q plane.spp --dim 3 --memory 96M -o b.ply"),
+                 "all 400000 points lie in one plane");
+}
+
+TEST_F(RanksThatFail, SayWhatIsWrongWithOneOfThem) {
+  work_.succeed("mkdir one two && spillway generate -q terrain -n 90000 -o in.las");
+  const auto both = [&](const std::string& first, const std::string& second) {
+    const std::string common = std::string(SPILLWAY_COMMAND) + " triangulate -q in.las -o b.spm ";
+    return fmt::format("{0} -n 1 {1} {2} : -n 1 {1} {3}", kMpirun, common, first, second);
+  };
+  expect_failure(both("--tmpdir one", "--tmpdir nowhere"), "--tmpdir: cannot write to nowhere");
+  expect_failure(both("", "--bogus"), "--bogus", 2);
+  for (const char* different :
+       {"--max-edge 30", "--id", "--dim 3", "--duplicates lowest", "--parts", "--every 2"}) {
+    expect_failure(both("", different), "other options", 2);
+  }
+  EXPECT_TRUE(fs::is_empty(work_.folder() / "one"));
+}
+
+TEST_F(RanksThatFail, TellWhichOfThemSeesAnotherFileOfTheSameName) {
+  work_.succeed(
+      "mkdir one two && spillway generate -q terrain -n 300000 -o one/in.las && "
+      "spillway generate -q terrain -n 300000 --seed 2 -o two/in.las");
+  const auto job = [&] {
+    return fmt::format("{0} -n 1 -wdir one {1} {2} : -n 1 -wdir two {1} {2}", kMpirun,
+                       SPILLWAY_COMMAND, "triangulate -q in.las -o ../b.spm");
+  };
+  expect_failure(job(), "in.las: rank 1 reads another file of this name");
+  // Another scale of z alone.
+  work_.succeed(
+      "cp one/in.las two/in.las && printf '\\001' |"
+      " dd of=two/in.las bs=1 seek=147 conv=notrunc status=none");
+  expect_failure(job(), "of the same size, but with other contents");
+  work_.succeed("head -c 6000000 one/in.las > two/in.las");
+  expect_failure(job(), "rank 1 reads another file of this name");
+  work_.succeed("cp one/in.las two/in.las && " + job());
+  EXPECT_EQ(work_.info("b.spm").at("points"), 300'000);
+}
+
+TEST_F(RanksThatFail, AskBeforeARasterOfManyPixelsForFewPoints) {
+  work_.write("far.txt", "0 0 1\n1 0 2\n0 1 3\n5000 5000 4\n");
+  expect_failure(ranks(2, "dem -q far.txt --resolution 1 -o b.tif"), "5000 x 5000 pixels");
+}
+
+TEST_F(RanksThatFail, RefuseMeshesForRasters) {
+  work_.succeed("spillway generate -q terrain -n 1000 -o in.las");
+  work_.succeed("spillway triangulate -q in.las -o mesh.ply");
+  expect_failure(ranks(2, "dem -q mesh.ply -o b.tif --resolution 1"), "is a mesh", 2);
+}
+
+/// Processes of a running job, found by an argument that only they have.
+std::vector<pid_t> processes_with(const std::string& argument) {
+  std::vector<pid_t> found;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::ifstream file(entry.path() / "cmdline", std::ios::binary);
+    const std::string line((std::istreambuf_iterator<char>(file)), {});
+    const bool is_rank = line.starts_with(SPILLWAY_COMMAND);
+    if (is_rank && line.find(argument) != std::string::npos) found.push_back(std::stoi(name));
+  }
+  return found;
+}
+
+/// A job that spills, disturbed so many milliseconds after its ranks have begun: while they read,
+/// triangulate, merge or write, as it happens.
+class RanksThatAreStopped : public RanksThatFail, public testing::WithParamInterface<int> {
+ protected:
+  void stop_job(int signal, const std::function<pid_t(const std::vector<pid_t>&)>& choose) const {
+    work_.succeed("mkdir tmp && spillway generate -q terrain -n 3000000 -o in.las");
+    const auto before = work_.names();
+    const std::string scratch = work_.folder() / "tmp";
+    Result result{};
+    std::jthread job([&] {
+      result =
+          work_.run(ranks(3, "triangulate -q --memory 32M in.las -o b.spm --tmpdir " + scratch));
+    });
+    std::vector<pid_t> processes;
+    while (processes.size() < 3) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      processes = processes_with(scratch);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(GetParam()));
+    if (const pid_t process = choose(processes); process > 0) kill(process, signal);
+    job.join();
+    if (work_.has("b.spm")) {  // done before mpirun had ended it: then it is complete
+      EXPECT_EQ(work_.info("b.spm").at("points"), 3'000'000);
+      std::filesystem::remove(work_.folder() / "b.spm");
+    } else {
+      EXPECT_NE(result.exit_code, 0);
+    }
+    EXPECT_EQ(work_.names(), before);
+    // What a killed one had on its disk nobody else can know of.
+    std::size_t folders_left = 0;
+    for ([[maybe_unused]] const auto& entry : fs::directory_iterator(scratch)) ++folders_left;
+    EXPECT_LE(folders_left, signal == SIGKILL ? 1U : 0U);
+  }
+};
+
+TEST_P(RanksThatAreStopped, ByTheDeathOfOneLeaveNothing) {
+  stop_job(SIGKILL, [](const std::vector<pid_t>& processes) { return processes[1]; });
+}
+
+TEST_P(RanksThatAreStopped, ByTheDeathOfTheFirstLeaveNothing) {
+  stop_job(SIGKILL, [](const std::vector<pid_t>& processes) {
+    return *std::min_element(processes.begin(), processes.end());
+  });
+}
+
+TEST_P(RanksThatAreStopped, ByAnInterruptOfMpirunLeaveNothing) {
+  stop_job(SIGINT, [](const std::vector<pid_t>& processes) {
+    std::ifstream status(fmt::format("/proc/{}/stat", processes[0]));
+    std::string word;
+    for (int i = 0; i < 3; ++i) status >> word;
+    pid_t parent = 0;  // nobody, if the job is done
+    status >> parent;
+    return parent;
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(AfterMilliseconds, RanksThatAreStopped, testing::Values(100, 900));
+
+}  // namespace
+}  // namespace spillway::detail::test

@@ -1,0 +1,195 @@
+#include "tools/batch/job_list.h"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "formats/bytes/bytes.h"
+#include "formats/bytes/input_source.h"
+#include "formats/bytes/whole_file.h"
+#include "formats/disk/extension.h"
+#include "formats/disk/file_system.h"
+#include "formats/points/point_format.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string read_text(const std::string& path) {
+  InputSource source(disk().open(path));
+  return std::string(as_text(read_whole(source)));
+}
+
+Json json_of(const toml::node& node) {
+  if (const auto* table = node.as_table()) {
+    Json json = Json::object();
+    for (const auto& [key, value] : *table) json[std::string(key.str())] = json_of(value);
+    return json;
+  }
+  if (const auto* array = node.as_array()) {
+    Json json = Json::array();
+    for (const toml::node& value : *array) json.push_back(json_of(value));
+    return json;
+  }
+  if (const auto value = node.value_exact<std::string>()) return *value;
+  if (const auto value = node.value_exact<std::int64_t>()) return *value;
+  if (const auto value = node.value_exact<double>()) return *value;
+  if (const auto value = node.value_exact<bool>()) return *value;
+  return nullptr;  // a date: refused like anything else that is no text, number or truth value
+}
+
+Json parse_list(const std::string& path) {
+  const std::string text = read_text(path);
+  if (extension_of(path) == "json") {
+    try {
+      return Json::parse(text);
+    } catch (const Json::parse_error& error) {
+      throw Error(fmt::format("{}, byte {}: this is no JSON; {}", path, error.byte, error.what()));
+    }
+  }
+  try {
+    return json_of(toml::parse(text));
+  } catch (const toml::parse_error& error) {
+    throw Error(fmt::format("{}, line {}: this is no TOML; {}", path, error.source().begin.line,
+                            error.description()));
+  }
+}
+
+class ListReader {
+ public:
+  explicit ListReader(const std::string& path)
+      : path_(path), folder_(std::filesystem::path(path).parent_path()) {}
+
+  std::vector<Job> read(const std::vector<std::string>& to, const JobOptions& options) {
+    const Json list = parse_list(path_);
+    where_ = path_;
+    expect_keys(list, {"to", "options", "jobs"});
+    Job defaults;
+    defaults.to = list.contains("to") ? texts(list["to"], "to") : to;
+    if (list.contains("options")) add_options(list["options"], defaults.options);
+    if (!list.contains("jobs") || !list["jobs"].is_array() || list["jobs"].empty()) {
+      fail("there is no list \"jobs\" with at least one job");
+    }
+    std::vector<Job> jobs;
+    for (const Json& entry : list["jobs"]) {
+      where_ = fmt::format("{}, job {}", path_, jobs.size() + 1);
+      jobs.push_back(read_job(entry, defaults));
+      for (const auto& [name, values] : options) jobs.back().options[name] = values;
+    }
+    return jobs;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("{}: {}", where_, what));
+  }
+
+  void expect_keys(const Json& object, const std::set<std::string>& known) const {
+    if (!object.is_object()) fail("this is no table of keys and values");
+    for (const auto& [key, value] : object.items()) {
+      if (!known.contains(key)) fail(fmt::format("the key \"{}\" is not known", key));
+    }
+  }
+
+  Job read_job(const Json& entry, const Job& defaults) const {
+    expect_keys(entry, {"name", "in", "to", "options"});
+    Job job = defaults;
+    if (!entry.contains("in")) fail("the key \"in\" is missing: it names the points");
+    for (const std::string& input : texts(entry["in"], "in")) {
+      const bool list = input.starts_with('@');
+      job.inputs.push_back(
+          fmt::format("{}{}", list ? "@" : "", (folder_ / input.substr(list ? 1 : 0)).string()));
+    }
+    if (job.inputs.empty()) fail("\"in\" is empty: it names the points");
+    if (entry.contains("to")) job.to = texts(entry["to"], "to");
+    if (job.to.empty()) fail("\"to\" is missing: it names the outputs, like [\"ply\"]");
+    if (entry.contains("options")) add_options(entry["options"], job.options);
+    job.name = entry.contains("name") ? text(entry["name"], "name")
+                                      : std::filesystem::path(job.inputs.front()).stem().string();
+    return job;
+  }
+
+  void add_options(const Json& object, JobOptions& options) const {
+    if (!object.is_object()) fail("\"options\" is no table of names and values");
+    for (const auto& [name, value] : object.items()) {
+      if (value.is_boolean()) {
+        options.erase(name);
+        if (value.get<bool>()) options[name] = {};
+      } else {
+        options[name] = texts(value, name);
+      }
+    }
+  }
+
+  std::vector<std::string> texts(const Json& value, const std::string& key) const {
+    std::vector<std::string> result;
+    if (!value.is_array()) return {text(value, key)};
+    for (const Json& element : value) result.push_back(text(element, key));
+    return result;
+  }
+
+  std::string text(const Json& value, const std::string& key) const {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number()) return value.dump();
+    fail(fmt::format("\"{}\" is neither text nor a number", key));
+  }
+
+  std::string path_;
+  std::filesystem::path folder_;
+  std::string where_;
+};
+
+/// Names become names of files, so each has to be one, and its own; inputs are files.
+void check_jobs(const std::vector<Job>& jobs) {
+  std::set<std::string> names;
+  for (const Job& job : jobs) {
+    if (std::find(job.inputs.begin(), job.inputs.end(), "-") != job.inputs.end()) {
+      throw UsageError(
+          fmt::format("{}: a job of a batch cannot read standard input: name a file", job.name));
+    }
+    if (job.name.empty() || job.name.starts_with('.') || job.name.find('/') != std::string::npos) {
+      throw Error(
+          fmt::format("\"{}\" cannot be the name of a job: its files are called so", job.name));
+    }
+    if (!names.insert(job.name).second) {
+      throw UsageError(
+          fmt::format("two jobs are called {}: give them names of their own in a list of "
+                      "jobs",
+                      job.name));
+    }
+  }
+}
+
+}  // namespace
+
+bool is_job_list(const std::string& path) {
+  const std::string extension = extension_of(path);
+  return extension == "json" || extension == "toml";
+}
+
+std::vector<Job> read_job_list(const std::string& path, const std::vector<std::string>& to,
+                               const JobOptions& options) {
+  std::vector<Job> jobs = ListReader(path).read(to, options);
+  check_jobs(jobs);
+  return jobs;
+}
+
+std::vector<Job> jobs_of_files(const std::vector<std::string>& files,
+                               const std::vector<std::string>& to, const JobOptions& options) {
+  std::vector<Job> jobs;
+  jobs.reserve(files.size());
+  for (const std::string& file : files) {
+    jobs.push_back({std::filesystem::path(file).stem().string(), {file}, to, options});
+  }
+  check_jobs(jobs);
+  return jobs;
+}
+
+}  // namespace spillway::detail

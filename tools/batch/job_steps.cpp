@@ -1,0 +1,226 @@
+#include "tools/batch/job_steps.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "formats/meshes/common/mesh_writer.h"
+#include "formats/meshes/mesh_format.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+/// What the first part of a kind like "slope.tif" stands for.
+struct Product {
+  std::string_view name;
+  std::string_view subcommand;
+  std::string_view option;  ///< and its value; may be empty
+  std::string_view value;
+};
+
+constexpr std::array kProducts = {Product{"dem", "dem", "", ""},
+                                  Product{"slope", "dem", "--product", "slope"},
+                                  Product{"aspect", "dem", "--product", "aspect"},
+                                  Product{"hillshade", "dem", "--product", "hillshade"},
+                                  Product{"density", "dem", "--product", "density"},
+                                  Product{"contour", "contour", "", ""},
+                                  Product{"render", "render", "", ""}};
+
+/// An option that a subcommand cannot do without, unless it has the other one.
+struct Needed {
+  std::string_view subcommand;
+  std::string_view option;
+  std::string_view other;
+  std::string_view meaning;
+};
+
+constexpr std::array kNeeded = {
+    Needed{"dem", "resolution", "like", "the side of a pixel"},
+    Needed{"contour", "interval", "levels", "the height between two contours"}};
+
+/// Options that a batch shares out among its jobs, or decides for them.
+constexpr std::array<std::string_view, 9> kShared = {
+    "threads", "memory", "tmpdir", "max-tmp", "progress", "quiet", "verbose", "output", "stats"};
+
+OutputKind kind_by_name(const Job& job, const std::string& name) {
+  const std::size_t dot = name.find('.');
+  if (dot == std::string::npos) {
+    try {
+      mesh_format("x." + name, "");
+    } catch (const UsageError&) {
+      throw UsageError(
+          fmt::format("{}: no output can be made as \"{}\"; a mesh is one of {}, "
+                      "anything else is named like dem.tif",
+                      job.name, name, fmt::join(mesh_format_names(), ", ")));
+    }
+    return {"triangulate", {}};
+  }
+  const std::string_view first = std::string_view(name).substr(0, dot);
+  const auto* const product = std::find_if(kProducts.begin(), kProducts.end(),
+                                           [&](const Product& p) { return p.name == first; });
+  if (product == kProducts.end()) {
+    std::vector<std::string_view> names;
+    for (const Product& known : kProducts) names.push_back(known.name);
+    throw UsageError(
+        fmt::format("{}: no output can be made as \"{}\"; before the dot stands one "
+                    "of {}",
+                    job.name, name, fmt::join(names, ", ")));
+  }
+  OutputKind kind{std::string(product->subcommand), {}};
+  if (!product->option.empty()) {
+    kind.arguments = {std::string(product->option), std::string(product->value)};
+  }
+  return kind;
+}
+
+/// The value of --product with which a raster of this kind is made.
+std::string products_of(const OutputKind& kind, const Job& job) {
+  if (!kind.arguments.empty()) return kind.arguments.back();
+  const auto given = job.options.find("product");
+  return given == job.options.end() ? "height" : fmt::format("{}", fmt::join(given->second, ","));
+}
+
+/// A path as the parser takes it for one: not for an option or a list, whatever it begins with.
+std::string path_argument(const std::string& path) {
+  const bool misleading = path.find_first_of("-[{") == 0;
+  return misleading ? "./" + path : path;
+}
+
+bool is_mesh_stream(const std::string& kind) { return kind == "spm"; }
+
+}  // namespace
+
+const std::vector<std::string>& job_subcommands() {
+  static const std::vector<std::string> names = {"triangulate", "dem", "contour", "render"};
+  return names;
+}
+
+JobPlanner::JobPlanner(const CLI::App& root, std::string folder, std::string scratch)
+    : root_(root), folder_(std::move(folder)), scratch_(std::move(scratch)) {}
+
+const CLI::Option* JobPlanner::option(const std::string& subcommand,
+                                      const std::string& name) const {
+  if (name == "help") return nullptr;  // no output comes of it
+  return root_.get_subcommand(subcommand)->get_option_no_throw("--" + name);
+}
+
+std::vector<JobStep> JobPlanner::plan(const Job& job) const {
+  std::vector<JobStep> steps;
+  std::vector<std::string> kinds = job.to;
+  for (auto kind = kinds.begin(); kind != kinds.end(); ++kind) {
+    if (std::find(kinds.begin(), kind, *kind) == kind) continue;
+    throw UsageError(fmt::format("{}: the output {} is there twice", job.name, *kind));
+  }
+  if (kinds.size() == 1) {
+    steps.push_back(step(job, kinds.front(), job.inputs, true));
+  } else {
+    const auto stream = std::find_if(kinds.begin(), kinds.end(), is_mesh_stream);
+    JobStep first = step(job, "spm", job.inputs, true);
+    if (stream != kinds.end()) {
+      kinds.erase(stream);
+    } else {
+      first.temporary = true;
+      first.output =
+          path_argument((std::filesystem::path(scratch_) / (job.name + ".spm")).string());
+      first.arguments[first.arguments.size() - 1] = first.output;
+    }
+    steps.push_back(first);
+    for (const std::string& kind : kinds) {
+      steps.push_back(step(job, kind, {first.output}, false));
+    }
+  }
+  check_options(job, steps);
+  return steps;
+}
+
+/// The output comes last, behind -o.
+JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
+                         const std::vector<std::string>& inputs, bool of_points) const {
+  OutputKind kind = kind_by_name(job, kind_name);
+  if (!of_points && kind.subcommand == "triangulate") kind.subcommand = "convert";
+  JobStep step;
+  step.arguments = {kind.subcommand};
+  for (const std::string& input : inputs) step.arguments.push_back(path_argument(input));
+  step.arguments.insert(step.arguments.end(), kind.arguments.begin(), kind.arguments.end());
+  for (const auto& [name, values] : job.options) {
+    if (!takes_option(job, kind, of_points, name)) continue;
+    step.options.push_back(name);
+    if (values.empty()) step.arguments.push_back("--" + name);
+    for (const std::string& value : values) {
+      step.arguments.push_back(fmt::format("--{}={}", name, value));
+    }
+  }
+  step.output =
+      path_argument((std::filesystem::path(folder_) / (job.name + "." + kind_name)).string());
+  step.arguments.insert(step.arguments.end(), {"-o", step.output});
+  return step;
+}
+
+/// Whether an option of a job has an effect on this step. What triangulate has concerns the points,
+/// and is nothing for a step that begins with a mesh, but that --force-crs is about --like, too.
+/// Where a job makes a raster, --bounds and --resolution are the raster's, whatever else it makes:
+/// they do not change the triangulation then.
+bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_points,
+                              const std::string& name) const {
+  const std::string& subcommand = kind.subcommand;
+  if (option(subcommand, name) == nullptr) return false;
+  if (subcommand == "dem") {
+    const std::string products = products_of(kind, job);
+    if (name == "product") return kind.arguments.empty();
+    if (name == "azimuth" || name == "altitude") {
+      return products.find("hillshade") != std::string::npos;
+    }
+    if (name == "force-crs" && job.options.contains("like")) return true;
+    if (products == "density" && (name == "max-edge" || name == "duplicates")) return false;
+  }
+  const bool makes_raster = std::any_of(
+      job.to.begin(), job.to.end(),
+      [&](const std::string& other) { return kind_by_name(job, other).subcommand == "dem"; });
+  if (makes_raster && (name == "bounds" || name == "resolution")) return subcommand == "dem";
+  return of_points || option("triangulate", name) == nullptr;
+}
+
+void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps) const {
+  for (const JobStep& step : steps) {
+    for (const Needed& needed : kNeeded) {
+      if (needed.subcommand != step.arguments.front() ||
+          job.options.contains(std::string(needed.option)) ||
+          job.options.contains(std::string(needed.other))) {
+        continue;
+      }
+      throw UsageError(fmt::format("{}: --{}, {}, is missing (or --{})", step.output, needed.option,
+                                   needed.meaning, needed.other));
+    }
+  }
+  for (const auto& [name, values] : job.options) {
+    if (std::find(kShared.begin(), kShared.end(), name) != kShared.end()) {
+      throw UsageError(fmt::format("{}: --{} is for all jobs together: give it to batch itself",
+                                   job.name, name));
+    }
+    const CLI::Option* known = nullptr;
+    for (const JobStep& step : steps) {
+      const bool used =
+          std::find(step.options.begin(), step.options.end(), name) != step.options.end();
+      if (used && known == nullptr) known = option(step.arguments.front(), name);
+    }
+    if (known == nullptr) {
+      throw UsageError(
+          fmt::format("{}: none of its outputs has a use for the option --{}", job.name, name));
+    }
+    // The parser would take the next argument for it.
+    const bool wants_value = known->get_expected_min() > 0;
+    const bool empty = std::find(values.begin(), values.end(), "") != values.end();
+    if (empty || (wants_value && values.empty())) {
+      throw UsageError(
+          fmt::format("{}: --{} has no value: give one, or leave it away", job.name, name));
+    }
+  }
+}
+
+}  // namespace spillway::detail

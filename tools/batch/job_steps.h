@@ -1,0 +1,56 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/batch/job_list.h"
+
+namespace spillway::detail {
+
+/// A kind of output: what makes it, and how.
+struct OutputKind {
+  std::string subcommand;
+  std::vector<std::string> arguments;
+};
+
+/// One run of a subcommand within a job.
+struct JobStep {
+  std::vector<std::string> arguments;  ///< the subcommand first
+  std::vector<std::string> options;    ///< the names of those of the job's options that it takes
+  std::string output;                  ///< the file it makes
+  bool temporary = false;              ///< `output` only serves the steps behind
+};
+
+/// What a job is made of.
+class JobPlanner {
+ public:
+  /// `root` has all subcommands; outputs go to `folder`, what is only needed meanwhile to
+  /// `scratch`.
+  JobPlanner(const CLI::App& root, std::string folder, std::string scratch);
+
+  /// The steps of a job, in order: a single output is made of the points at once, several are made
+  /// of one triangulation. Throws UsageError that names the job for a kind of output or an option
+  /// that there is not.
+  [[nodiscard]] std::vector<JobStep> plan(const Job& job) const;
+
+  /// The option that a subcommand knows by this long name, or null.
+  [[nodiscard]] const CLI::Option* option(const std::string& subcommand,
+                                          const std::string& name) const;
+
+ private:
+  [[nodiscard]] JobStep step(const Job& job, const std::string& kind,
+                             const std::vector<std::string>& inputs, bool of_points) const;
+  [[nodiscard]] bool takes_option(const Job& job, const OutputKind& kind, bool of_points,
+                                  const std::string& name) const;
+  void check_options(const Job& job, const std::vector<JobStep>& steps) const;
+
+  const CLI::App& root_;
+  std::string folder_;
+  std::string scratch_;
+};
+
+/// The subcommands whose options a job may have.
+const std::vector<std::string>& job_subcommands();
+
+}  // namespace spillway::detail

@@ -1,0 +1,350 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <deque>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "formats/disk/scratch_folder.h"
+#include "formats/disk/unfinished_files.h"
+#include "src/distributed/ranks.h"
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "tools/batch/child_process.h"
+#include "tools/batch/job_log.h"
+#include "tools/batch/job_record.h"
+#include "tools/batch/job_steps.h"
+#include "tools/commands/command.h"
+#include "tools/options/command_options.h"
+#include "tools/options/input_list.h"
+#include "tools/report/json_text.h"
+#include "tools/report/text_output.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  spillway batch 'tiles/*.laz' --output-dir meshes --to ply\n"
+    "  spillway batch 'tiles/*.laz' --output-dir out --to spm,dem.tif --keep-class 2 --resolution "
+    "1\n"
+    "  spillway batch jobs.toml --output-dir out -j 4 --memory 8G --resume\n"
+    "Each job has a log, NAME.log, and a record, NAME.status.json, beside its outputs. A failed "
+    "one\n"
+    "does not stop the others. docs/batch.md describes lists of jobs.";
+
+/// A job needs so much memory to be worth starting.
+constexpr std::uint64_t kLeastMemory = std::uint64_t{128} << 20;
+
+struct BatchOptions {
+  std::vector<std::string> sources;
+  std::string folder;
+  std::vector<std::string> to;
+  unsigned at_a_time = 0;
+  unsigned threads = 0;
+  bool resume = false;
+  MemoryOptions memory;
+  ReportOptions report;
+  /// The options for the jobs' steps, as batch's own parser has them.
+  std::map<std::string, std::vector<std::string>> passed_values;
+  std::map<std::string, bool> passed_flags;
+
+  [[nodiscard]] JobOptions passed_on() const {
+    JobOptions options;
+    for (const auto& [name, values] : passed_values) {
+      if (!values.empty()) options[name] = values;
+    }
+    for (const auto& [name, given] : passed_flags) {
+      if (given) options[name] = {};
+    }
+    return options;
+  }
+};
+
+/// Takes every option of the subcommands that make outputs, those apart that batch decides on.
+void add_options_of_subcommands(const CLI::App& root, CLI::App& app, BatchOptions& options) {
+  for (const std::string& subcommand : job_subcommands()) {
+    for (const CLI::Option* option : root.get_subcommand(subcommand)->get_options()) {
+      if (option->get_lnames().empty()) continue;
+      const std::string& name = option->get_lnames().front();
+      const std::string flag = "--" + name;
+      const bool own = name == "help" || name == "output" || name == "stats" ||
+                       name == "simulate-cores" || name == "output-format";
+      if (own || app.get_option_no_throw(flag) != nullptr) continue;
+      CLI::Option* passed = nullptr;
+      if (option->get_expected_max() == 0) {
+        passed = app.add_flag(flag, options.passed_flags[name], option->get_description());
+      } else {
+        passed = app.add_option(flag, options.passed_values[name], option->get_description());
+        passed->expected(1)->type_name(option->get_type_name());
+      }
+      passed->group("Passed on to the jobs");
+    }
+  }
+}
+
+/// A folder for what only serves the jobs, below that of `options`.
+std::string make_scratch(const MemoryOptions& options) {
+  try {
+    return make_temporary_folder(scratch_parent(options.scratch_parent), "spillway-batch-");
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}; choose another folder with --tmpdir", error.what()));
+  }
+}
+
+/// Makes the folder of the outputs. Throws Error if that cannot be done, or nothing can be written
+/// there.
+void make_output_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw Error(fmt::format("--output-dir: cannot create the folder {}: {}; choose another one",
+                            folder, error.message()));
+  }
+  if (::access((folder + "/.").c_str(), W_OK | X_OK) != 0) {
+    throw Error(fmt::format(
+        "--output-dir: cannot write to {}: {}; choose another folder, or change its permissions",
+        folder, std::generic_category().message(errno)));
+  }
+}
+
+class Batch {
+ public:
+  Batch(const CLI::App& root, const BatchOptions& options)
+      : root_(root),
+        options_(options),
+        progress_(make_progress(options.report)),
+        free_threads_(
+            static_cast<int>(options.threads == 0 ? available_threads() : options.threads)),
+        free_memory_(memory_limit(options.memory)),
+        temporary_(make_scratch(options.memory)) {}
+
+  ~Batch() { remove_temporary_folder(temporary_); }
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
+
+  int run() {
+    const auto start = Clock::now();
+    distributed::forget_launch();  // each job is a process on its own
+    prepare();
+    progress_.begin("batch", "jobs");
+    while (!waiting_.empty() || !running_.empty()) {
+      while (!waiting_.empty() && running_.size() < at_a_time()) start_next();
+      if (!running_.empty()) finish_step(wait_for_any_child());
+      progress_.update(ended_, static_cast<double>(ended_) / static_cast<double>(runs_.size()));
+    }
+    progress_.end(ended_);
+    return summarize(std::chrono::duration<double>(Clock::now() - start).count());
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// A job whose steps are being done, and what it holds of the common budget.
+  struct Running {
+    JobRun* run = nullptr;
+    std::shared_ptr<JobLog> log;  ///< null if it could not be made
+    std::size_t step = 0;
+    int threads = 1;
+    std::uint64_t memory = 0;
+    Clock::time_point start;
+  };
+
+  /// Plans all jobs, so that a wrong word anywhere is told before any work.
+  void prepare() {
+    const JobPlanner planner(root_, options_.folder, temporary_);
+    const auto base = std::filesystem::path(options_.folder);
+    for (Job& job : jobs()) {
+      JobRun run;
+      run.steps = planner.plan(job);
+      for (const JobStep& step : run.steps) check_command_line(step.arguments);
+      run.log = base / (job.name + ".log");
+      run.record = base / (job.name + ".status.json");
+      run.job = std::move(job);
+      runs_.push_back(std::move(run));
+    }
+    make_output_folder(options_.folder);
+    for (JobRun& run : runs_) {
+      if (options_.resume && is_complete_and_unchanged(run)) {
+        run.status = "unchanged";
+        ++ended_;
+      } else {
+        waiting_.push_back(&run);
+      }
+    }
+    limit_ = options_.at_a_time == 0 ? static_cast<unsigned>(free_threads_) : options_.at_a_time;
+    limit_ =
+        std::min<std::uint64_t>(limit_, std::max<std::uint64_t>(1, free_memory_ / kLeastMemory));
+  }
+
+  [[nodiscard]] std::vector<Job> jobs() {
+    const auto passed_on = options_.passed_on();
+    if (options_.sources.size() == 1 && is_job_list(options_.sources.front())) {
+      return read_job_list(options_.sources.front(), options_.to, passed_on);
+    }
+    if (options_.to.empty()) throw UsageError("--to is missing: it names the outputs, like ply");
+    const auto notice = [this](std::string_view text) { progress_.say(text); };
+    return jobs_of_files(expand_inputs(options_.sources, notice), options_.to, passed_on);
+  }
+
+  [[nodiscard]] std::size_t at_a_time() const {
+    return std::min<std::uint64_t>(limit_, running_.size() + waiting_.size());
+  }
+
+  /// Gives the next job its share of what is free: as much as leaves the same for each that could
+  /// be started now.
+  void start_next() {
+    const std::size_t shares = at_a_time() - running_.size();
+    Running job;
+    job.run = waiting_.front();
+    waiting_.pop_front();
+    job.threads = std::max(1, free_threads_ / static_cast<int>(shares));
+    job.memory = free_memory_ / shares;
+    free_threads_ -= job.threads;
+    free_memory_ -= job.memory;
+    job.start = Clock::now();
+    job.run->status = "running";
+    try {
+      job.run->inputs = input_fingerprints(job.run->job);
+      job.log = std::make_shared<JobLog>(job.run->log);
+      start_step(job);
+    } catch (const std::exception& error) {
+      finish_job(job, error.what());
+    }
+  }
+
+  void start_step(const Running& job) {
+    std::vector<std::string> arguments = job.run->steps[job.step].arguments;
+    const CLI::App& subcommand = *root_.get_subcommand(arguments.front());
+    const auto add = [&](const std::string& option, const std::string& value) {
+      if (subcommand.get_option_no_throw("--" + option) != nullptr) {
+        arguments.push_back(fmt::format("--{}={}", option, value));
+      }
+    };
+    add("threads", std::to_string(job.threads));
+    add("memory", std::to_string(job.memory));
+    add("tmpdir", scratch_parent(options_.memory.scratch_parent));
+    add("progress", "none");
+    running_[start_child(arguments, job.log->descriptor()).id] = job;
+  }
+
+  void finish_step(const ChildEnd& end) {
+    const auto found = running_.find(end.id);
+    if (found == running_.end()) return;
+    Running job = found->second;
+    running_.erase(found);
+    if (end.exit_code != kExitDone) {
+      finish_job(job, reason_of(*job.log, end.exit_code));
+    } else if (++job.step == job.run->steps.size()) {
+      finish_job(job, "");
+    } else {
+      try {
+        start_step(job);
+      } catch (const std::exception& error) {
+        finish_job(job, error.what());
+      }
+    }
+  }
+
+  /// `error` is empty if all went well.
+  void finish_job(const Running& job, const std::string& error) {
+    free_threads_ += job.threads;
+    free_memory_ += job.memory;
+    JobRun& run = *job.run;
+    run.seconds = std::chrono::duration<double>(Clock::now() - job.start).count();
+    run.status = error.empty() ? "done" : "failed";
+    run.error = error;
+    std::error_code ignored;  // the whole folder is removed at the end
+    for (const JobStep& step : run.steps) {
+      if (step.temporary) std::filesystem::remove(step.output, ignored);
+    }
+    try {
+      save_record(run);
+    } catch (const std::exception& failure) {
+      run.status = "failed";
+      run.error = failure.what();
+    }
+    ++ended_;
+    progress_.say(fmt::format("[{}/{}] {}: {} in {:.1f} s{}", ended_, runs_.size(), run.job.name,
+                              run.status, run.seconds, run.error.empty() ? "" : ": " + run.error));
+  }
+
+  static std::string reason_of(const JobLog& log, int exit_code) {
+    if (exit_code > 128) return fmt::format("ended by signal {}", exit_code - 128);
+    const std::string last = log.last_line();
+    return last.empty() ? fmt::format("ended with exit code {}", exit_code) : last;
+  }
+
+  [[nodiscard]] std::size_t count(std::string_view status) const {
+    return static_cast<std::size_t>(std::count_if(
+        runs_.begin(), runs_.end(), [&](const JobRun& run) { return run.status == status; }));
+  }
+
+  int summarize(double seconds) {
+    const std::size_t failed = count("failed");
+    progress_.say(fmt::format("{} job{}: {} done, {} failed, {} unchanged, {:.1f} s", runs_.size(),
+                              runs_.size() == 1 ? "" : "s", count("done"), failed,
+                              count("unchanged"), seconds));
+    for (const JobRun& run : runs_) {
+      if (run.status == "failed") {
+        progress_.insist(fmt::format("failed: {} ({})", run.job.name, run.log));
+      }
+    }
+    return failed == 0 ? kExitDone : kExitFailed;
+  }
+
+  const CLI::App& root_;
+  const BatchOptions& options_;
+  Progress progress_;
+  std::vector<JobRun> runs_;
+  std::deque<JobRun*> waiting_;
+  std::map<pid_t, Running> running_;
+  std::uint64_t limit_ = 1;  ///< jobs at a time
+  int free_threads_;         ///< below 0 with more jobs than threads
+  std::uint64_t free_memory_;
+  std::size_t ended_ = 0;
+  std::string temporary_;
+};
+
+}  // namespace
+
+Subcommand add_batch(CLI::App& root) {
+  const auto options = std::make_shared<BatchOptions>();
+  CLI::App* app = root.add_subcommand("batch", "Do many jobs, one after the other or side by side");
+  app->footer(kExamples);
+  app->add_option("JOBS", options->sources,
+                  "A list of jobs (.json, .toml), or point files, globs, folders: a job each")
+      ->required();
+  app->add_option("--output-dir", options->folder, "Where outputs, logs and records go")
+      ->required()
+      ->type_name("DIR");
+  take_one_list(
+      app->add_option("--to", options->to, "Outputs of each job, like ply,dem.tif,hillshade.tif"))
+      ->type_name("KIND,...");
+  take_whole_number(
+      app->add_option("-j,--jobs", options->at_a_time, "Most jobs at a time; 0: one a thread"), 0,
+      kMostThreads)
+      ->type_name("N")
+      ->capture_default_str();
+  app->add_flag("--resume", options->resume, "Leave out jobs that are complete and unchanged");
+  take_whole_number(app->add_option("--threads", options->threads,
+                                    "Threads of all jobs together; 0: all there are"),
+                    0, kMostThreads)
+      ->type_name("N")
+      ->capture_default_str();
+  add_memory_options(*app, options->memory);
+  add_report_options(*app, options->report);
+  add_options_of_subcommands(root, *app, *options);
+  return {app, [options, &root] { return Batch(root, *options).run(); }};
+}
+
+}  // namespace spillway::detail

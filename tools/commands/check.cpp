@@ -1,0 +1,217 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/inputs/input_kind.h"
+#include "formats/inputs/open_mesh.h"
+#include "formats/inputs/open_mesh_stream.h"
+#include "formats/meshes/common/mesh_stream.h"
+#include "formats/meshes/common/mesh_writer.h"
+#include "formats/meshes/mesh_format.h"
+#include "src/geometry/canonical_hash.h"
+#include "stream/checker/checker.h"
+#include "tools/commands/command.h"
+#include "tools/commands/point_comparison.h"
+#include "tools/options/command_options.h"
+#include "tools/options/input_options.h"
+#include "tools/report/json_text.h"
+#include "tools/report/printable_text.h"
+#include "tools/report/text_output.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  spillway check tin.ply\n"
+    "  spillway check tin.ply --points north.las south.las\n"
+    "  spillway check of-another-program.obj --any-delaunay\n"
+    "  spillway triangulate survey.las -o - | spillway check -\n"
+    "A mesh stream (spm, sma) is proved while it is read, in memory for its open border only.\n"
+    "Exit code 0: proved. 1: refuted, with the first offending simplices, or not readable.";
+
+struct CheckCommandOptions {
+  const CLI::App* app = nullptr;
+  std::string mesh;
+  std::string mesh_format;
+  std::vector<std::string> points;
+  bool any_delaunay = false;
+  bool json = false;
+  unsigned threads = 0;
+  MemoryOptions memory;
+  InputOptions input;
+  ReportOptions report;
+};
+
+/// A mesh's report, and what else the command says of it.
+struct Outcome {
+  CheckReport report;
+  int dimension;
+};
+
+CheckOptions check_options(const CheckCommandOptions& options) {
+  CheckOptions result;
+  result.any_delaunay = options.any_delaunay;
+  result.threads = options.threads;
+  return result;
+}
+
+/// The input that the vertices are compared with, if any is given; its lattice is noted for the
+/// proof.
+class Comparison {
+ public:
+  Comparison(int dimension, const CheckCommandOptions& options, CheckOptions& how,
+             Progress& progress)
+      : progress_(progress) {
+    if (options.points.empty()) return;
+    const std::uint64_t memory = memory_limit(options.memory);
+    scratch_ = make_scratch_folder(options.memory);
+    source_ = make_point_source(disk(), options.points, options.input,
+                                {.dimension = dimension, .index = true, .memory = memory},
+                                *scratch_, progress);
+    how.input_lattice = source_->lattice();
+    points_.emplace(dimension, memory, *scratch_);
+    how.vertex = [this](const Point<3>& vertex) { points_->add_vertex(vertex); };
+  }
+  Comparison(const Comparison&) = delete;
+  Comparison& operator=(const Comparison&) = delete;
+
+  void run(const CheckOptions& how, CheckReport& report) {
+    if (!source_) return;
+    points_->compare(*source_, how, report, progress_);
+    if (source_->counts().dropped() > 0) progress_.say(describe(source_->counts()));
+  }
+
+ private:
+  Progress& progress_;
+  std::unique_ptr<ScratchFolder> scratch_;
+  std::unique_ptr<PointSource> source_;
+  std::optional<PointComparison> points_;
+};
+
+Outcome check_whole(ProbedInput& input, const CheckCommandOptions& options, Progress& progress) {
+  progress.begin("read mesh", "simplices");
+  const Mesh mesh = read_mesh(input, options.mesh, options.mesh_format);
+  progress.end(mesh.corners.size() / mesh.corners_per_simplex());
+  const int dimension = mesh.header.dimension;
+  CheckOptions how = check_options(options);
+  Comparison comparison(dimension, options, how, progress);
+  progress.begin("check", "simplices");
+  CheckReport report = check_mesh(mesh, how);
+  if (how.vertex) std::for_each(mesh.vertices.begin(), mesh.vertices.end(), how.vertex);
+  progress.end(report.simplices);
+  comparison.run(how, report);
+  return {report, dimension};
+}
+
+Outcome check_stream(ProbedInput& input, const CheckCommandOptions& options, Progress& progress) {
+  const auto reader = open_mesh_stream_reader(input, options.mesh, options.mesh_format);
+  const int dimension = reader->header().dimension;
+  CheckOptions how = check_options(options);
+  Comparison comparison(dimension, options, how, progress);
+  how.progress = [&progress](std::uint64_t simplices, std::optional<double> fraction) {
+    progress.update(simplices, fraction);
+  };
+  progress.begin("check", "simplices");
+  CheckReport report = check_mesh_stream(*reader, how);
+  progress.end(report.simplices);
+  comparison.run(how, report);
+  return {report, dimension};
+}
+
+/// Whether the mesh is to be read as a stream. A pipe always is: other formats need a file.
+bool is_stream(ProbedInput& input, const CheckCommandOptions& options) {
+  if (!options.mesh_format.empty()) {
+    const MeshFormat format = mesh_format(options.mesh, options.mesh_format);
+    return format == MeshFormat::kSpm || format == MeshFormat::kSma;
+  }
+  return input.is_pipe() || kind_of_input(input) == InputKind::kMeshStream;
+}
+
+std::string json_report(const Outcome& outcome, const CheckCommandOptions& options) {
+  const CheckReport& report = outcome.report;
+  nlohmann::ordered_json json;
+  json["name"] = options.mesh;
+  json["proved"] = report.fault_count == 0;
+  json["dimension"] = outcome.dimension;
+  json["vertices"] = report.vertices;
+  json["simplices"] = report.simplices;
+  json["hull_facets"] = report.hull_facets;
+  json["canonical_hash"] = hash_to_hex(report.canonical_hash);
+  json["on_lattice"] = report.on_lattice;
+  json["peak_live_vertices"] = report.peak_live_vertices;
+  json["peak_open_facets"] = report.peak_open_facets;
+  json["properties"] = report.proved;
+  json["fault_count"] = report.fault_count;
+  json["faults"] = report.faults;
+  return json_text(json) + "\n";
+}
+
+std::string text_report(const Outcome& outcome, const CheckCommandOptions& options) {
+  const CheckReport& report = outcome.report;
+  std::string text;
+  for (const std::string& line : report.proved) text += "proved: " + line + "\n";
+  for (const std::string& line : report.faults) text += "fault: " + printable(line) + "\n";
+  if (report.fault_count > report.faults.size()) {
+    text += fmt::format("fault: {} more\n", report.fault_count - report.faults.size());
+  }
+  if (report.off_lattice > 0) {
+    text +=
+        "hint: vertices off the lattice are what rounding leaves (text, glb, stl); check without "
+        "--points, or make the mesh of LAS or spp\n";
+  }
+  text += fmt::format("{} vertices, {} {}, {} hull facets, hash {}\n", report.vertices,
+                      report.simplices, outcome.dimension == 2 ? "triangles" : "tetrahedra",
+                      report.hull_facets, hash_to_hex(report.canonical_hash));
+  return text + fmt::format("{}: {} Delaunay triangulation of {}\n", printable(options.mesh),
+                            report.fault_count > 0 ? "NOT the"
+                            : options.any_delaunay ? "proved to be a"
+                                                   : "proved to be the",
+                            options.points.empty() ? "its vertices" : "the input's points");
+}
+
+int run(const CheckCommandOptions& options) {
+  if (options.points.empty()) {
+    refuse_given(*options.app, kInputOptionNames, "without --points");
+  }
+  Progress progress = make_progress(options.report, options.mesh == "-");
+  ProbedInput input(disk(), options.mesh);
+  const Outcome outcome = is_stream(input, options) ? check_stream(input, options, progress)
+                                                    : check_whole(input, options, progress);
+  write_text("-", options.json ? json_report(outcome, options) : text_report(outcome, options));
+  return outcome.report.fault_count == 0 ? kExitDone : kExitFailed;
+}
+
+}  // namespace
+
+Subcommand add_check(CLI::App& root) {
+  const auto options = std::make_shared<CheckCommandOptions>();
+  CLI::App* app = root.add_subcommand("check", "Prove that a mesh is a Delaunay triangulation");
+  options->app = app;
+  app->footer(kExamples);
+  app->add_option("MESH", options->mesh, "Mesh file; - is a mesh stream from a pipe")->required();
+  app->add_option("--points", options->points,
+                  "Prove, too, that the vertices are the distinct points of these files, in the "
+                  "plane by x and y, with heights that these have")
+      ->type_name("FILE");
+  app->add_flag("--any-delaunay", options->any_delaunay,
+                "Accept either way of splitting cocircular facets, for meshes of other programs");
+  app->add_flag("--json", options->json, "Print the report as one JSON object");
+  add_choice(*app, "--mesh-format", options->mesh_format, mesh_format_names(),
+             "Format of the mesh, where the name does not tell");
+  take_whole_number(app->add_option("--threads", options->threads,
+                                    "Threads to prove a mesh stream with; 0: all there are"),
+                    0, kMostThreads)
+      ->type_name("N")
+      ->capture_default_str();
+  add_memory_options(*app, options->memory);
+  add_input_options(*app, options->input);
+  add_report_options(*app, options->report);
+  return {app, [options] { return run(*options); }};
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,156 @@
+#include "tools/commands/dem_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "formats/gdal/gdal.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+double parse_resolution(const std::string& text) {
+  constexpr double kLargest = 1e100;
+  const auto resolution = parse_number(text);
+  if (!resolution || !(*resolution >= 1 / kLargest && *resolution <= kLargest)) {
+    throw UsageError(fmt::format("\"{}\" is no length; give a number above 0", text));
+  }
+  return *resolution;
+}
+
+float parse_nodata(const std::string& text) {
+  if (text == "nan" || text == "NaN") return std::numeric_limits<float>::quiet_NaN();
+  const auto value = parse_number(text);
+  if (!value || std::isinf(static_cast<float>(*value))) {
+    throw UsageError(fmt::format("\"{}\" is no value of a pixel; give a number or nan", text));
+  }
+  return static_cast<float>(*value) + 0.0F;  // -0 becomes 0
+}
+
+std::vector<DemProduct> parse_products(const std::string& text) {
+  const std::vector<std::string>& names = dem_product_names();
+  std::vector<DemProduct> products;
+  for (const std::string& name : CLI::detail::split(text, ',')) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      throw UsageError(fmt::format("\"{}\" is none; give {}, several separated by commas", name,
+                                   fmt::join(names, ", ")));
+    }
+    products.push_back(static_cast<DemProduct>(found - names.begin()));
+    if (std::count(products.begin(), products.end(), products.back()) > 1) {
+      throw UsageError(fmt::format("{} is there twice", name));
+    }
+  }
+  return products;
+}
+
+void check_products(const CLI::App& app, const std::vector<DemProduct>& products) {
+  const auto has = [&](DemProduct product) {
+    return std::find(products.begin(), products.end(), product) != products.end();
+  };
+  if (!has(DemProduct::kHillshade)) {
+    refuse_given(app, {"--azimuth", "--altitude"}, "without hillshade among the products");
+  }
+  if (products == std::vector{DemProduct::kDensity}) {
+    refuse_given(app, {"--duplicates", "--max-edge"}, "on density, which counts vertices");
+  }
+}
+
+Box<2> parse_raster_bounds(const std::string& text) {
+  const Box<3> box = parse_bounds(text);
+  if (std::isfinite(box.lo[2]) || !(box.lo[0] < box.hi[0] && box.lo[1] < box.hi[1])) {
+    throw UsageError(fmt::format("\"{}\" is no area; give xmin,ymin,xmax,ymax", text));
+  }
+  return {{box.lo[0], box.lo[1]}, {box.hi[0], box.hi[1]}};
+}
+
+}  // namespace
+
+void add_dem_options(CLI::App& app, DemCommandOptions& options) {
+  app.add_option("-o,--output", options.output, "GeoTIFF file")->required()->type_name("FILE");
+  add_terrain_options(app, options);
+  // These are filters of points there; here they say what the raster is like.
+  app.remove_option(app.get_option("--bounds"));
+  app.remove_option(app.get_option("--resolution"));
+  options.own_options = {"--bounds", "--resolution"};
+  const std::string group = "Raster";
+  take_parsed(
+      app.add_option("--resolution", options.resolution, "Side of a pixel, in units of x and y"),
+      parse_resolution)
+      ->type_name("R")
+      ->group(group);
+  take_parsed(app.add_option("--bounds", options.bounds, "Cover xmin,ymin,xmax,ymax [all points]"),
+              parse_raster_bounds)
+      ->type_name("BOX")
+      ->group(group);
+  app.add_flag("--force-size", options.force_size,
+               "Cover all points, though some may lie far away and pixels be very many")
+      ->group(group);
+  app.add_flag("--align", options.align, "Put edges of pixels on multiples of R")->group(group);
+  app.add_option("--like", options.like, "Put pixels where this raster has them")
+      ->type_name("FILE")
+      ->group(group)
+      // Its coordinate system is compared with that of a mesh, too.
+      ->each([&options](const std::string&) { options.own_options.emplace_back("--force-crs"); });
+  take_parsed(app.add_option(
+                  "--product", options.products,
+                  "height, slope, aspect, hillshade, density; several, with commas, become bands"),
+              parse_products)
+      ->type_name("LIST")
+      ->capture_default_str()
+      ->group(group);
+  take_number_between(
+      app.add_option("--azimuth", options.light.azimuth, "Where a hillshade's light comes from"), 0,
+      360)
+      ->type_name("DEGREES")
+      ->capture_default_str()
+      ->group(group);
+  take_number_between(
+      app.add_option("--altitude", options.light.altitude, "Its height above the horizon"), 0, 90)
+      ->type_name("DEGREES")
+      ->capture_default_str()
+      ->group(group);
+  take_parsed(app.add_option("--nodata", options.nodata, "Value of pixels without data"),
+              parse_nodata)
+      ->type_name("V")
+      ->capture_default_str()
+      ->group(group);
+  add_choice(app, "--compress", options.compression, {"deflate", "zstd", "none"},
+             "Compression of the file")
+      ->group(group);
+  app.add_flag("--cog", options.cloud_optimized, "Make it cloud optimized, with overviews")
+      ->group(group);
+  add_report_options(app, options.report);
+}
+
+DemOptions dem_options(const DemCommandOptions& options, RasterGrid& like) {
+  DemOptions dem;
+  if (!options.bounds.empty()) {
+    refuse_given(*options.app, {"--force-size"}, "with --bounds, which tells what to cover");
+  }
+  if (options.like.empty()) {
+    if (options.resolution.empty()) {
+      throw UsageError("--resolution R, the side of a pixel, is missing (or --like FILE)");
+    }
+    dem.grid.resolution = parse_resolution(options.resolution);
+    if (!options.bounds.empty()) dem.grid.bounds = parse_raster_bounds(options.bounds);
+    dem.grid.align = options.align;
+  } else {
+    refuse_given(*options.app, {"--resolution", "--bounds", "--align", "--force-size"},
+                 "with --like, which tells where all pixels lie");
+    like = gdal().read_raster_grid(options.like);
+    dem.grid.given = like.pixels;
+  }
+  dem.products = parse_products(options.products);
+  check_products(*options.app, dem.products);
+  dem.light = options.light;
+  dem.nodata = parse_nodata(options.nodata);
+  return dem;
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,148 @@
+#include "tools/options/input_list.h"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <string_view>
+#include <system_error>
+
+#include "formats/bytes/line_reader.h"
+#include "formats/disk/file_system.h"
+#include "formats/meshes/npy/npy_mesh.h"
+#include "formats/points/point_format.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What arguments stand for.
+struct Found {
+  std::vector<std::string> files;
+  std::size_t of_meshes = 0;  ///< files of npy meshes that were left out
+};
+
+void append_folder(const std::string& folder, Found& found) {
+  std::vector<std::string> names;
+  std::error_code fault;
+  for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end;
+       entry.increment(fault)) {
+    std::error_code unknown;
+    const std::string name = entry->path().string();
+    if (entry->path().filename().string().starts_with('.')) continue;  // hidden
+    if (!point_format_of_path(name) || entry->is_directory(unknown)) continue;
+    if (is_part_of_npy_mesh(disk(), name)) {
+      ++found.of_meshes;
+    } else {
+      names.push_back(name);
+    }
+  }
+  if (fault) throw Error(fmt::format("cannot read the folder {}: {}", folder, fault.message()));
+  if (names.empty()) {
+    throw Error(
+        fmt::format("{}: the folder has no point files (.las, .laz, .txt, .xyz, .csv, "
+                    ".asc, .npy, .spp){}; name files or a pattern",
+                    folder, found.of_meshes > 0 ? " but those of npy meshes" : ""));
+  }
+  std::sort(names.begin(), names.end());
+  found.files.insert(found.files.end(), names.begin(), names.end());
+}
+
+void append_name(const std::string& name, Found& found) {
+  std::error_code unknown;
+  if (fs::is_directory(name, unknown)) {
+    append_folder(name, found);
+  } else {
+    found.files.push_back(name);
+  }
+}
+
+void append_matches(const std::string& pattern, Found& found) {
+  glob_t matches{};
+  const std::unique_ptr<glob_t, void (*)(glob_t*)> owner(&matches, globfree);
+  const int result = glob(pattern.c_str(), GLOB_NOSORT, nullptr, &matches);
+  if (result == GLOB_NOSPACE) throw std::bad_alloc();
+  if (result != 0) throw Error(fmt::format("{}: no file has such a name", pattern));
+  std::vector<std::string> names(matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) append_name(name, found);
+}
+
+bool is_pattern(const std::string& argument) {
+  std::error_code unknown;
+  return argument.find_first_of("*?[") != std::string::npos && !fs::exists(argument, unknown);
+}
+
+bool is_list(const std::string& argument) { return argument.size() > 1 && argument.front() == '@'; }
+
+void append(const std::string& argument, Found& found) {
+  if (is_pattern(argument)) {
+    append_matches(argument, found);
+  } else {
+    append_name(argument, found);
+  }
+}
+
+std::string_view trimmed(std::string_view line) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const std::size_t begin = line.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return line.substr(begin, line.find_last_not_of(kBlanks) - begin + 1);
+}
+
+void append_list(const std::string& list, Found& found) {
+  std::error_code unknown;
+  if (list != "-" && !fs::exists(list, unknown)) {
+    throw Error(fmt::format(
+        "@{0} names a list of inputs, {0}, which is not there; a file called so is ./@{0}", list));
+  }
+  const auto file = disk().open(list);
+  LineReader lines(*file);
+  const fs::path folder = list == "-" ? fs::path() : fs::path(list).parent_path();
+  const std::size_t before = found.files.size();
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view name = trimmed(line);
+    if (name.empty() || name.front() == '#') continue;
+    if (name == "-" || name.front() == '@') {
+      throw Error(
+          fmt::format("{}, line {}: a list has names of files, folders and patterns, but "
+                      "this is {}",
+                      file->name(), lines.number(), quoted(name)));
+    }
+    append((folder / name).string(), found);
+  }
+  if (found.files.size() == before) throw Error(fmt::format("{}: the list is empty", file->name()));
+}
+
+}  // namespace
+
+bool stands_for_several(const std::string& argument) {
+  std::error_code unknown;
+  return is_list(argument) || is_pattern(argument) || fs::is_directory(argument, unknown);
+}
+
+std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments,
+                                       const std::function<void(std::string_view)>& notice) {
+  Found found;
+  for (const std::string& argument : arguments) {
+    if (is_list(argument)) {
+      append_list(argument.substr(1), found);
+    } else if (argument == "-") {
+      found.files.push_back(argument);
+    } else {
+      append(argument, found);
+    }
+  }
+  if (found.of_meshes > 0 && notice) {
+    notice(fmt::format("{} files of npy meshes in folders left out: they are not points",
+                       found.of_meshes));
+  }
+  return found.files;
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,43 @@
+#include "tools/options/point_output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "formats/gdal/gdal.h"
+#include "src/error.h"
+#include "tools/options/command_options.h"
+
+namespace spillway::detail {
+
+void add_las_version(CLI::App& app, PointOutput& output) {
+  add_choice(app, "--las-version", output.las_version, {"1.2", "1.4"},
+             "Version of LAS to write, with point format 0 or 6");
+}
+
+void check_las_version(const PointOutput& output, bool is_las) {
+  if (is_las || output.las_version.empty()) return;
+  throw UsageError(
+      fmt::format("--las-version is for LAS, and {} is none: leave it away", output.name()));
+}
+
+std::string format_name_of(const PointOutput& output) {
+  if (output.path != "-") return output.format;
+  const std::string format = output.format.empty() ? "spp" : output.format;
+  if (format != "text" && isatty(STDOUT_FILENO) != 0) {
+    throw UsageError(
+        "standard output is a terminal, and the points are no text; name a file with -o, pipe "
+        "them into another command, or ask for --output-format text");
+  }
+  return format;
+}
+
+std::string wkt_of_code(const std::string& crs) {
+  if (crs.empty() || crs.find('[') != std::string::npos) return "";
+  try {
+    return gdal().crs_to_wkt(crs);
+  } catch (const Error&) {  // LAS can tell the code alone too, or refuses it
+    return "";
+  }
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,112 @@
+#include "tools/options/triangulation_options.h"
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "src/delaunay/base_case.h"
+#include "src/distributed/ranks.h"
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "stream/output/heights.h"
+
+namespace spillway::detail {
+namespace {
+
+DivisionScheme division_by_name(const std::string& name) {
+  if (name == "cycling") return DivisionScheme::kCyclingAxis;
+  if (name == "constant") return DivisionScheme::kConstantAxis;
+  return DivisionScheme::kLongestExtent;
+}
+
+}  // namespace
+
+void add_triangulation_options(CLI::App& app, TriangulationOptions& options) {
+  options.app = &app;
+  add_choice(app, "--duplicates", options.duplicates, height_choice_names(),
+             "Which z a vertex of several points of equal x, y gets");
+  take_positive_number(app.add_option("--max-edge", options.max_edge,
+                                      "Leave out simplices with an edge longer than L"))
+      ->type_name("L");
+  add_input_options(app, options.input);
+  take_whole_number(
+      app.add_option("--threads", options.threads, "Threads to use; 0: all there are"), 0,
+      kMostThreads)
+      ->type_name("N")
+      ->capture_default_str();
+  add_memory_options(app, options.memory);
+  app.add_option("--stats", options.stats_path, "Write figures and the task tree of the run")
+      ->type_name("FILE");
+  take_whole_number(app.add_option("--base-case", options.base_case_size,
+                                   "Most points of one sequential base case (a leaf); 0: chosen by "
+                                   "number and memory"))
+      ->type_name("N")
+      ->capture_default_str();
+  take_whole_number(
+      app.add_option("--tile", options.tile_capacity,
+                     "Most points of a tile that is loaded at a time; 0: chosen by the memory"))
+      ->type_name("N")
+      ->capture_default_str();
+  add_choice(app, "--division", options.division, {"longest", "cycling", "constant"},
+             "Which axis the division of points cuts");
+  take_whole_number(
+      app.add_option("--children", options.children, "Parts that are merged at a time"), 2, 1024)
+      ->type_name("K")
+      ->capture_default_str();
+  add_choice(app, "--kernel", options.kernel, {"spillway", "cgal"},
+             "What triangulates base cases; both give the same mesh");
+}
+
+void check_duplicates(const TriangulationOptions& options, const std::string& dimension) {
+  if (dimension != "3") return;
+  refuse_given(*options.app, {"--duplicates"},
+               "with --dim 3, as it chooses a height for points of equal x and y");
+}
+
+void check_heights(const TriangulationOptions& options, const PointSource& source) {
+  if (source.has_heights()) return;
+  refuse_given(*options.app, {"--duplicates"}, "on points without z");
+}
+
+unsigned thread_count(const TriangulationOptions& options) {
+  if (options.threads > 0) return options.threads;
+  const unsigned available = available_threads();
+  // Ranks of one machine share its processors, unless each has been bound to some of its own.
+  const bool bound = available < static_cast<unsigned>(::sysconf(_SC_NPROCESSORS_ONLN));
+  const auto sharing = static_cast<unsigned>(distributed::launch().ranks_here);
+  return bound ? available : std::max(1U, available / sharing);
+}
+
+std::optional<double> max_edge(const TriangulationOptions& options) {
+  return parse_number(options.max_edge);
+}
+
+StreamOptions stream_options(const TriangulationOptions& options, Progress& progress) {
+  set_base_case_kernel(options.kernel == "cgal" ? BaseCaseKernel::kCgal : BaseCaseKernel::kOwn);
+  StreamOptions stream;
+  stream.threads = thread_count(options);
+  stream.tile_capacity = options.tile_capacity;
+  stream.leaf_size = options.base_case_size;
+  stream.division = division_by_name(options.division);
+  stream.children = options.children;
+  stream.heights = height_choice_by_name(options.duplicates);
+  stream.max_edge = max_edge(options);
+  stream.begin_phase = [&progress](const char* phase) { progress.begin(phase, "points"); };
+  stream.end_phase = [&progress](std::uint64_t points) { progress.end(points); };
+  stream.progress = [&progress](std::uint64_t points, std::optional<double> fraction) {
+    progress.update(points, fraction);
+  };
+  return stream;
+}
+
+void reuse_freed_memory(std::size_t kept) {
+  mallopt(M_MMAP_THRESHOLD, static_cast<int>(kept / 4));
+  mallopt(M_TRIM_THRESHOLD, static_cast<int>(kept));
+  // The allocator's other stores give memory back in spite of that.
+  mallopt(M_ARENA_MAX, 1);
+}
+
+}  // namespace spillway::detail

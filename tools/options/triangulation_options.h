@@ -1,0 +1,66 @@
+#pragma once
+// What subcommands that triangulate points have in common.
+
+#include <CLI/App.hpp>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "stream/pipeline.h"
+#include "tools/options/command_options.h"
+#include "tools/options/input_options.h"
+
+namespace spillway::detail {
+
+/// As on the command line.
+struct TriangulationOptions {
+  const CLI::App* app = nullptr;  ///< the subcommand
+  std::vector<std::string> inputs;
+  InputOptions input;
+  std::string duplicates = "first";
+  std::string max_edge;
+  unsigned threads = 0;
+  MemoryOptions memory;
+  std::string stats_path;
+  std::size_t base_case_size = 0;
+  std::size_t tile_capacity = 0;
+  std::string division = "longest";
+  unsigned children = 2;
+  std::string kernel = "spillway";
+  ReportOptions report;
+};
+
+/// All but IN and those of ReportOptions: --duplicates, --max-edge, the input's, --threads, the
+/// memory's, --stats, and how the work is divided.
+void add_triangulation_options(CLI::App& app, TriangulationOptions& options);
+
+/// Of these the names of those that have no effect where a mesh is read, beside those of
+/// add_input_options().
+inline constexpr std::array<std::string_view, 6> kTriangulationOptionNames = {
+    "--duplicates", "--base-case", "--tile", "--division", "--children", "--kernel"};
+
+/// Throws UsageError if --duplicates is given, though points of equal x and y are no duplicates:
+/// in three dimensions.
+void check_duplicates(const TriangulationOptions& options, const std::string& dimension);
+
+/// Throws UsageError if --duplicates is given for points without heights.
+void check_heights(const TriangulationOptions& options, const PointSource& source);
+
+/// The number of threads that --threads asks for.
+unsigned thread_count(const TriangulationOptions& options);
+
+/// The length that --max-edge gives; nothing if it is not given.
+std::optional<double> max_edge(const TriangulationOptions& options);
+
+/// The pipeline's options, phases and progress going to `progress`, which must outlive them.
+StreamOptions stream_options(const TriangulationOptions& options, Progress& progress);
+
+/// Buffers of some megabytes come and go with every leaf: taken from the system anew each time,
+/// they would cost a fifth of the run in page faults. So much memory stays with the process, in
+/// pieces of up to a quarter of it, in one store for all threads.
+void reuse_freed_memory(std::size_t kept = std::size_t{16} << 20);
+
+}  // namespace spillway::detail
