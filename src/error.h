@@ -43,6 +43,12 @@ class UsageError : public Error {
   using Error::Error;
 };
 
+/// The caller asked to stop before the work was done.
+class Interrupted : public Error {
+ public:
+  Interrupted() : Error("interrupted") {}
+};
+
 /// The reader at the other end of a pipe went away. Ends the run quietly.
 class ClosedPipe : public Error {
  public:

@@ -86,9 +86,9 @@ class Run {
 
   Triangulation<D> triangulate(std::size_t base_case_size, Task& task) && {
     task.before.resize(1);
-    const Part<D> root =
-        divide<D>(result_.points, result_.input_index,
-                  {base_case_size, options_.division, options_.children}, task.before.data());
+    const Part<D> root = divide<D>(
+        result_.points, result_.input_index,
+        {base_case_size, options_.division, options_.children, options_.stop}, task.before.data());
     result_.blocks.resize(root.block + 1);
     marks_.resize(root.block + 1);
     duplicates_.resize(root.block + 1);
@@ -106,6 +106,7 @@ class Run {
  private:
   /// `cell` is a box around the part that has nothing in common with the boxes of others beside it.
   PartSurface triangulate_part(const Part<D>& part, const Box<D>& cell, Task& task) {
+    if (options_.stop.stop_requested()) throw Interrupted();
     task.points = part.size();
     return part.leaf() ? triangulate_leaf(part, cell, task) : triangulate_node(part, cell, task);
   }
@@ -152,6 +153,7 @@ class Run {
       });
     }
     group.wait();
+    if (options_.stop.stop_requested()) throw Interrupted();
     PartSurface surface = merge<D>(
         result_, marks_, part, surfaces, part.block != root_block_,
         [this](BlockArray<Point<D>> points, std::size_t part_size, Task& border_task) {

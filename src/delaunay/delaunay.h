@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "src/delaunay/divide.h"
@@ -23,6 +24,8 @@ struct DelaunayOptions {
   /// threads at once.
   std::function<void(std::size_t points)> progress = nullptr;
   Task* tasks = nullptr;  ///< if set, receives the tree of tasks with their durations
+  /// Looked at before each task: once a stop is requested no further one begins.
+  std::stop_token stop{};
 };
 
 /// The Delaunay triangulation of all points, exact, ties broken as src/geometry/predicates.h says:
@@ -30,7 +33,7 @@ struct DelaunayOptions {
 /// Distributed Memory" (ALENEX 2017). Points must be finite. Equal points become one vertex,
 /// numbered as the first of them in the input. The simplices and their order depend on points,
 /// base_case_size, division and children, never on threads. Throws Error for more than kMaxVertices
-/// points.
+/// points, and Interrupted if a stop was requested in time.
 template <int D>
 Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOptions& options = {});
 

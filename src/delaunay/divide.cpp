@@ -9,6 +9,7 @@
 #include "src/delaunay/hilbert_order.h"
 #include "src/delaunay/schedule.h"
 #include "src/delaunay/working_memory.h"
+#include "src/error.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::detail {
@@ -46,6 +47,7 @@ class Divider {
 
   /// Divides `part` down to its leaves.
   void divide(Part<D>& part, std::size_t depth, Task& task) const {
+    if (options_.stop.stop_requested()) throw Interrupted();
     task.kind = "divide";
     task.points = part.size();
     if (part.size() <= options_.leaf_size || part.box.lo == part.box.hi) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "src/geometry/box.h"
@@ -22,7 +23,8 @@ enum class DivisionScheme {
 struct DivideOptions {
   std::size_t leaf_size = 0;  ///< parts of at most so many points are not divided further
   DivisionScheme scheme = DivisionScheme::kLongestExtent;
-  unsigned children = 2;  ///< parts made of one part at a time, at least 2
+  unsigned children = 2;   ///< parts made of one part at a time, at least 2
+  std::stop_token stop{};  ///< looked at before each part is divided
 };
 
 /// A node of the k-d tree over an array of points.
@@ -43,7 +45,8 @@ struct Part {
 /// from a sample, so equal points always stay together; a part is a leaf when it has at most
 /// leaf_size points or when all its points are equal. Where the scheme's axis has no extent the
 /// longest one is cut. The result doesn't depend on the number of threads. If `task` is set, it
-/// receives the tree of divisions with their durations.
+/// receives the tree of divisions with their durations. Throws Interrupted if a stop was
+/// requested in time.
 template <int D>
 Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
                const DivideOptions& options, Task* task = nullptr);

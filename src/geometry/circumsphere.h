@@ -10,6 +10,7 @@
 
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
+#include "src/geometry/strict_arithmetic.h"
 
 namespace spillway::detail {
 

@@ -19,6 +19,7 @@
 #include <array>
 
 #include "src/geometry/point.h"
+#include "src/geometry/strict_arithmetic.h"
 
 namespace spillway::detail {
 

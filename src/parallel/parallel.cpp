@@ -1,6 +1,5 @@
 #include "src/parallel/parallel.h"
 
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
@@ -14,6 +13,8 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+
+#include "src/parallel/thread_demand.h"
 
 namespace spillway::detail {
 namespace {
@@ -131,8 +132,7 @@ bool single_threaded() { return tbb::this_task_arena::max_concurrency() == 1; }
 unsigned available_threads() { return static_cast<unsigned>(tbb::info::default_concurrency()); }
 
 void with_threads(unsigned threads, const std::function<void()>& work) {
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  std::max(threads, available_threads()));
+  const ThreadDemand demand(threads);
   tbb::task_arena arena(static_cast<int>(threads));
   arena.execute([&] {
     start_threads(threads);

@@ -16,7 +16,8 @@ namespace spillway::detail {
 unsigned available_threads();
 
 /// Runs `work` with at most so many threads for all loops and groups inside. An exception of any
-/// worker is thrown here.
+/// worker is thrown here. Calls from several threads run beside each other, each with its own
+/// number.
 void with_threads(unsigned threads, const std::function<void()>& work);
 
 /// Tasks that run beside each other. Inside with_threads(1, ...), run() does the work at once.

@@ -1,0 +1,153 @@
+#pragma once
+// Delaunay triangulations of points in memory, in the plane and in space.
+
+#include <spillway/cells.h>
+#include <spillway/error.h>
+#include <spillway/export.h>
+#include <spillway/point_view.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+namespace spillway {
+
+/// How the work is done. Nothing of it changes the result.
+struct DelaunayOptions {
+  /// At most so many threads, the caller's among them, for the triangulation and later for queries
+  /// of many places at once. 0: as many as the process may use.
+  unsigned threads = 0;
+  /// If set, is told from time to time how many points of how many are done. Calls come from
+  /// several threads, one at a time; `done` never falls. What it throws ends the run and reaches
+  /// the caller.
+  std::function<void(std::size_t done, std::size_t total)> progress{};
+  /// A request to stop ends the run with ErrorCode::kInterrupted, soon but not at once: parts of
+  /// some hundred thousand points that have been begun are finished.
+  std::stop_token stop{};
+};
+
+/// A point that equals an earlier one of the input.
+template <class Index>
+struct Duplicate {
+  Index point;   ///< its number
+  Index vertex;  ///< the number of the first point with these coordinates, which stands for it
+  bool operator==(const Duplicate&) const = default;
+};
+
+/// The Delaunay triangulation of points in the plane (D = 2, cells are triangles) or in space
+/// (D = 3, cells are tetrahedra).
+///
+/// It is exact: no circumsphere of a cell has a point inside, without any tolerance. Where more
+/// than D+1 points lie on one sphere, and no other rule says which way to cut, symbolic
+/// perturbation decides (Devillers and Teillaud, "Perturbations for Delaunay and weighted Delaunay
+/// 3D triangulations", 2011), so there is one result for every set of points: the one that CGAL
+/// computes.
+///
+/// Vertices are the points under their numbers in the input, from 0. Of equal points the first is a
+/// vertex, the others are `duplicates()`. Cells are numbered from 0, always in the same way for the
+/// same input.
+///
+/// Objects can be moved, not copied. All members that are const may be called by many threads at
+/// once. Spans are valid for as long as the object is, also when it has been moved to another
+/// place. One that has been moved from may only be assigned to or destroyed.
+template <int D, class Index = std::int32_t>
+class Delaunay {
+ public:
+  /// Triangulates the points, of which a copy is kept. Throws Error:
+  ///   kInvalidArgument  a coordinate is infinite or not a number (the text has the point's
+  ///   number),
+  ///                     or there are more than 4,096 threads
+  ///   kDegenerateInput  there are no points, or all lie on one line (D = 3: one plane), as fewer
+  ///                     than D+1 do
+  ///   kTooLarge         more points or cells than an Index can number, or more than 4,294,967,293
+  ///                     points
+  ///   kInterrupted      options.stop asked for it
+  explicit Delaunay(PointView<D> points, const DelaunayOptions& options = {});
+  Delaunay(Delaunay&&) noexcept;
+  Delaunay& operator=(Delaunay&&) noexcept;
+  ~Delaunay();
+
+  /// Number of points, duplicates included.
+  [[nodiscard]] std::size_t point_count() const;
+  /// Number of distinct points.
+  [[nodiscard]] std::size_t vertex_count() const;
+  /// Number of triangles or tetrahedra; at least 1.
+  [[nodiscard]] std::size_t cell_count() const;
+
+  /// The points in the order of the input. Shape: point_count().
+  [[nodiscard]] std::span<const Point<D>> points() const;
+
+  /// The cells' vertices: those of cell c are the D+1 from c * (D+1) on, positively oriented: a
+  /// triangle's run counter-clockwise; of a tetrahedron the first three do, seen from the last.
+  /// Shape: cell_count() * (D+1).
+  [[nodiscard]] std::span<const Index> cell_vertices() const;
+
+  /// The cells' neighbours: the i-th one of cell c shares all its vertices with c but the i-th; -1
+  /// where c's facet lies on the hull. Shape: cell_count() * (D+1).
+  [[nodiscard]] std::span<const Index> cell_neighbours() const;
+
+  /// The same as a range of Cell, each with `vertices` and `neighbours`.
+  [[nodiscard]] Cells<D, Index> cells() const { return {cell_vertices(), cell_neighbours()}; }
+
+  /// The facets of the convex hull, D vertices each, seen from outside: an edge has the mesh on its
+  /// left, a triangle runs counter-clockwise. Points that lie in the midst of a side of the hull
+  /// are vertices of facets, too. Shape: number of facets * D.
+  [[nodiscard]] std::span<const Index> hull_facets() const;
+
+  /// The cell that has the hull facet, by number of facet; ascending. Shape: number of facets.
+  [[nodiscard]] std::span<const Index> hull_cells() const;
+
+  /// All points that equal an earlier one, ascending by `point`.
+  [[nodiscard]] std::span<const Duplicate<Index>> duplicates() const;
+
+  /// For each point the lowest number of a cell of which it is a vertex, -1 for duplicates.
+  /// Shape: point_count().
+  [[nodiscard]] std::span<const Index> vertex_cells() const;
+
+  /// The centre of the cell's circumsphere, within 2^-40 of its radius and half a unit in the last
+  /// place; infinite where it is beyond the largest double. Throws Error(kInvalidArgument) for a
+  /// number that no cell has.
+  [[nodiscard]] Point<D> circumcentre(Index cell) const;
+
+  /// Those of all cells, computed by several threads. Shape: cell_count().
+  [[nodiscard]] std::vector<Point<D>> circumcentres() const;
+
+  /// A number that depends on nothing but the set of cells, each the set of its vertices'
+  /// coordinates: the canonical hash, which the command prints as 16 hexadecimal digits.
+  [[nodiscard]] std::uint64_t canonical_hash() const;
+
+  /// The cell that has the place inside or on its boundary, the lowest number of several; -1
+  /// outside of the hull, and for coordinates that are not finite. Exact.
+  [[nodiscard]] Index locate(const Point<D>& place) const;
+  /// The same for many places, by several threads. Shape: places.size().
+  [[nodiscard]] std::vector<Index> locate(PointView<D> places) const;
+
+  /// The vertex nearest to the place, also outside of the hull, the lowest number of several at the
+  /// same distance; -1 for coordinates that are not finite. Exact.
+  [[nodiscard]] Index nearest_vertex(const Point<D>& place) const;
+  /// The same for many places, by several threads. Shape: places.size().
+  [[nodiscard]] std::vector<Index> nearest_vertex(PointView<D> places) const;
+
+  /// The value at each place of the function that is linear on every cell and has values[v] at
+  /// vertex v; not a number outside of the hull, and for coordinates that are not finite. At a
+  /// vertex it is that vertex's value; on a facet, those of other vertices are not looked at.
+  /// Values of duplicates are not used. Computed by several threads. Shape: places.size(). Throws
+  /// Error(kInvalidArgument) unless there is a value for every point.
+  [[nodiscard]] std::vector<double> interpolate(std::span<const double> values,
+                                                PointView<D> places) const;
+
+ private:
+  struct Mesh;
+  std::unique_ptr<const Mesh> mesh_;
+};
+
+extern template class SPILLWAY_API Delaunay<2, std::int32_t>;
+extern template class SPILLWAY_API Delaunay<3, std::int32_t>;
+extern template class SPILLWAY_API Delaunay<2, std::int64_t>;
+extern template class SPILLWAY_API Delaunay<3, std::int64_t>;
+
+}  // namespace spillway

@@ -1,0 +1,25 @@
+#include "src/geometry/circumcentre.h"
+
+#include <cmath>
+
+#include "src/geometry/circumsphere.h"
+#include "src/geometry/determinants.h"
+
+namespace spillway::detail {
+
+template <int D>
+Point<D> circumcentre(const std::array<Point<D>, D + 1>& simplex) {
+  constexpr double kAccuracy = 0x1p-41;  // half of what is promised: the bound is rounded itself
+  const CertifiedBall<D> ball = certified_ball<D>(simplex);
+  // The anchor lies on the sphere, so the radius is at least the length of `centre` less its error.
+  const double radius = std::sqrt(squared_length(ball.centre)) - 2 * ball.error;
+  if (!(ball.error <= kAccuracy * radius)) return exact_circumcentre<D>(simplex);
+  Point<D> centre;
+  for (int k = 0; k < D; ++k) centre[k] = ball.anchor[k] + ball.centre[k];
+  return centre;
+}
+
+template Point<2> circumcentre<2>(const std::array<Point<2>, 3>&);
+template Point<3> circumcentre<3>(const std::array<Point<3>, 4>&);
+
+}  // namespace spillway::detail

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "src/delaunay/block_array.h"
+#include "src/delaunay/triangulation.h"
+
+namespace spillway::detail {
+
+/// A triangulation as plain arrays of numbers: vertices by their place in the input, finite cells
+/// alone. The members are what the functions of the same names of spillway::Delaunay return.
+template <class Index>
+struct CellArrays {
+  BlockArray<Index> vertices;
+  BlockArray<Index> neighbours;
+  BlockArray<Index> hull_facets;
+  BlockArray<Index> hull_cells;
+  BlockArray<Index> vertex_cells;
+};
+
+template <typename T>
+std::span<const T> span_of(const BlockArray<T>& array) {
+  return {array.data(), array.size()};
+}
+
+/// Cells are numbered in the order of the triangulation's blocks, which does not depend on threads.
+/// An Index must be able to number them. Made by the threads of with_threads().
+template <int D, class Index>
+CellArrays<Index> make_cell_arrays(const Triangulation<D>& triangulation);
+
+/// The places of cell vertices in the order in which they are the facet opposite the i-th, seen
+/// from outside.
+template <int D>
+constexpr std::array<int, D> facet_places(int i) {
+  std::array<int, D> places{};
+  for (int j = 0, n = 0; j <= D; ++j) {
+    if (j != i) places[n++] = j;
+  }
+  if (i % 2 == 1) std::swap(places[D - 2], places[D - 1]);
+  return places;
+}
+
+}  // namespace spillway::detail

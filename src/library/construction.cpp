@@ -1,0 +1,174 @@
+#include "src/library/construction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include "src/delaunay/delaunay.h"
+#include "src/error.h"
+#include "src/library/query_order.h"
+#include "src/parallel/parallel.h"
+
+namespace spillway::detail {
+namespace {
+
+using PublicError = spillway::Error;
+
+constexpr std::size_t kGrain = std::size_t{1} << 14;
+constexpr unsigned kMostThreads = 4'096;
+
+template <class Index>
+constexpr std::size_t kMostNumbers = static_cast<std::size_t>(std::numeric_limits<Index>::max());
+
+/// A copy of the points; throws unless all are finite. Made by all threads.
+template <int D>
+BlockArray<Point<D>> copy_finite(const PointView<D>& points) {
+  BlockArray<Point<D>> copy(points.size());
+  std::atomic<std::size_t> bad = points.size();  // the first that is not finite
+  parallel_for(points.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      copy[i] = points[i];
+      if (is_finite<D>(copy[i])) continue;
+      std::size_t lowest = bad;
+      while (i < lowest && !bad.compare_exchange_weak(lowest, i)) {
+      }
+      return;
+    }
+  });
+  if (bad < points.size()) {
+    throw PublicError(ErrorCode::kInvalidArgument,
+                      fmt::format("point {} has a coordinate that is not finite: ({})", bad.load(),
+                                  fmt::join(points[bad], ", ")));
+  }
+  return copy;
+}
+
+/// Tells a program of progress, one call at a time, in ascending order.
+class ProgressTeller {
+ public:
+  ProgressTeller(const std::function<void(std::size_t, std::size_t)>& progress, std::size_t total)
+      : progress_(progress), total_(total) {}
+
+  void tell(std::size_t done) {
+    const std::lock_guard lock(mutex_);
+    if (done <= told_) return;
+    told_ = done;
+    progress_(done, total_);
+  }
+
+ private:
+  const std::function<void(std::size_t, std::size_t)>& progress_;
+  std::size_t total_;
+  std::mutex mutex_;
+  std::size_t told_ = 0;  // guarded by mutex_
+};
+
+template <int D>
+Triangulation<D> triangulate(std::span<const Point<D>> points,
+                             const spillway::DelaunayOptions& options, unsigned threads) {
+  ProgressTeller teller(options.progress, points.size());
+  detail::DelaunayOptions engine;
+  engine.threads = threads;
+  engine.stop = options.stop;
+  if (options.progress) engine.progress = [&](std::size_t done) { teller.tell(done); };
+  return delaunay<D>(points, engine);
+}
+
+/// Throws unless the points span D dimensions.
+void require_span(int dimension, int needed, std::size_t points) {
+  if (dimension == needed) return;
+  const std::string cell = needed == 2 ? "triangle" : "tetrahedron";
+  if (dimension < 0) {
+    throw PublicError(ErrorCode::kDegenerateInput,
+                      fmt::format("there are no points, so there is no {}", cell));
+  }
+  const char* const where = dimension == 0   ? "at one place"
+                            : dimension == 1 ? "on one line"
+                                             : "on one plane";
+  throw PublicError(ErrorCode::kDegenerateInput,
+                    fmt::format("all points ({}) lie {}: they span no {}", points, where, cell));
+}
+
+template <int D, class Index>
+std::vector<spillway::Duplicate<Index>> list_duplicates(const Triangulation<D>& triangulation) {
+  std::vector<spillway::Duplicate<Index>> duplicates;
+  duplicates.reserve(triangulation.duplicates.size());
+  for (const auto& [dropped, kept] : triangulation.duplicates) {
+    duplicates.push_back({static_cast<Index>(triangulation.input_index[dropped]),
+                          static_cast<Index>(triangulation.input_index[kept])});
+  }
+  std::sort(duplicates.begin(), duplicates.end(),
+            [](const auto& a, const auto& b) { return a.point < b.point; });
+  return duplicates;
+}
+
+/// Vertices are numbered along a curve, so that every so many of them are spread evenly.
+template <int D, class Index>
+StartTree<D, Index> make_starts(const Triangulation<D>& triangulation,
+                                const CellArrays<Index>& cells) {
+  std::vector<StartPoint<D, Index>> sample;
+  const std::size_t step = StartTree<D, Index>::kSampled;
+  sample.reserve(triangulation.points.size() / step + 1);
+  for (std::size_t v = 0; v < triangulation.points.size(); v += step) {
+    const Index cell = cells.vertex_cells[triangulation.input_index[v]];
+    if (cell >= 0) sample.push_back({triangulation.points[v], cell});
+  }
+  if (sample.empty()) {
+    const Index vertex = cells.vertices[0];
+    sample.push_back({triangulation.points[0], cells.vertex_cells[vertex]});
+  }
+  return StartTree<D, Index>(std::move(sample));
+}
+
+}  // namespace
+
+void require_numbers(std::size_t count, std::size_t most, const std::string& things) {
+  if (count <= most) return;
+  throw PublicError(ErrorCode::kTooLarge,
+                    fmt::format("{} {}: at most {} can be numbered", count, things, most));
+}
+
+template <int D, class Index>
+MeshData<D, Index> make_mesh(const PointView<D>& points, const spillway::DelaunayOptions& options) {
+  if (options.threads > kMostThreads) {
+    throw PublicError(
+        ErrorCode::kInvalidArgument,
+        fmt::format("{} threads: there may be at most {}", options.threads, kMostThreads));
+  }
+  require_numbers(points.size(), std::min(kMostNumbers<Index>, kMaxVertices), "points");
+  MeshData<D, Index> mesh;
+  mesh.threads = options.threads == 0 ? available_threads() : options.threads;
+  try {
+    if (options.stop.stop_requested()) throw Interrupted();
+    with_threads(mesh.threads, [&] { mesh.points = copy_finite<D>(points); });
+    const Triangulation<D> triangulation =
+        triangulate<D>(span_of(mesh.points), options, mesh.threads);
+    require_span(triangulation.dimension, D, points.size());
+    require_numbers(triangulation.finite_count(), kMostNumbers<Index>, "cells");
+    if (options.stop.stop_requested()) throw Interrupted();
+    with_threads(mesh.threads, [&] {
+      mesh.cells = make_cell_arrays<D, Index>(triangulation);
+      mesh.duplicates = list_duplicates<D, Index>(triangulation);
+      mesh.starts = make_starts<D, Index>(triangulation, mesh.cells);
+    });
+  } catch (const Interrupted&) {
+    throw PublicError(ErrorCode::kInterrupted, "the triangulation was interrupted");
+  }
+  return mesh;
+}
+
+template MeshData<2, std::int32_t> make_mesh<2>(const PointView<2>&,
+                                                const spillway::DelaunayOptions&);
+template MeshData<3, std::int32_t> make_mesh<3>(const PointView<3>&,
+                                                const spillway::DelaunayOptions&);
+template MeshData<2, std::int64_t> make_mesh<2>(const PointView<2>&,
+                                                const spillway::DelaunayOptions&);
+template MeshData<3, std::int64_t> make_mesh<3>(const PointView<3>&,
+                                                const spillway::DelaunayOptions&);
+
+}  // namespace spillway::detail

@@ -1,0 +1,41 @@
+#pragma once
+// From points of a program to the arrays of a mesh: what the constructor of spillway::Delaunay
+// does.
+
+#include <spillway/delaunay.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "src/delaunay/block_array.h"
+#include "src/library/cell_arrays.h"
+#include "src/library/mesh_view.h"
+#include "src/library/start_tree.h"
+
+namespace spillway::detail {
+
+/// All that a spillway::Delaunay has.
+template <int D, class Index>
+struct MeshData {
+  unsigned threads = 1;
+  BlockArray<Point<D>> points;
+  CellArrays<Index> cells;
+  std::vector<spillway::Duplicate<Index>> duplicates;
+  StartTree<D, Index> starts;
+
+  [[nodiscard]] MeshView<D, Index> view() const {
+    return {span_of(points), span_of(cells.vertices), span_of(cells.neighbours),
+            span_of(cells.vertex_cells)};
+  }
+};
+
+/// Throws spillway::Error as the constructor of spillway::Delaunay says.
+template <int D, class Index>
+MeshData<D, Index> make_mesh(const PointView<D>& points, const spillway::DelaunayOptions& options);
+
+/// Throws spillway::Error(kTooLarge) if there are more than `most` of these things.
+void require_numbers(std::size_t count, std::size_t most, const std::string& things);
+
+}  // namespace spillway::detail

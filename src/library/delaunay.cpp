@@ -1,0 +1,213 @@
+#include <spillway/delaunay.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include "src/geometry/canonical_hash.h"
+#include "src/geometry/circumcentre.h"
+#include "src/library/construction.h"
+#include "src/library/float_environment.h"
+#include "src/library/interpolation.h"
+#include "src/library/point_location.h"
+#include "src/library/query_order.h"
+#include "src/parallel/parallel.h"
+
+namespace spillway {
+namespace {
+
+constexpr std::size_t kCellGrain = std::size_t{1} << 14;
+
+/// For each place what answer(place, cell) says, `none` for places that are not finite. `cell` is
+/// where a search may begin; it is to be replaced by where it has ended.
+template <int D, class Index, typename Answer>
+std::vector<Answer> answer_all(
+    const detail::MeshData<D, Index>& mesh, const PointView<D>& places, Answer none,
+    const std::function<Answer(const Point<D>& place, Index& cell)>& answer) {
+  std::vector<Answer> answers(places.size(), none);
+  detail::for_each_near<D>(
+      places.size(), mesh.threads, [&](std::size_t i) { return places[i]; },
+      [&](std::span<const Point<D>> near, std::span<const std::size_t> numbers) {
+        Index cell = mesh.starts.find(near[0]);
+        for (std::size_t j = 0; j < near.size(); ++j) answers[numbers[j]] = answer(near[j], cell);
+      });
+  return answers;
+}
+
+}  // namespace
+
+template <int D, class Index>
+struct Delaunay<D, Index>::Mesh : detail::MeshData<D, Index> {};
+
+template <int D, class Index>
+Delaunay<D, Index>::Delaunay(PointView<D> points, const DelaunayOptions& options) {
+  const detail::FloatEnvironment environment;
+  mesh_ = std::make_unique<const Mesh>(detail::make_mesh<D, Index>(points, options));
+}
+
+template <int D, class Index>
+Delaunay<D, Index>::Delaunay(Delaunay&&) noexcept = default;
+template <int D, class Index>
+Delaunay<D, Index>& Delaunay<D, Index>::operator=(Delaunay&&) noexcept = default;
+template <int D, class Index>
+Delaunay<D, Index>::~Delaunay() = default;
+
+template <int D, class Index>
+std::size_t Delaunay<D, Index>::point_count() const {
+  return mesh_->points.size();
+}
+
+template <int D, class Index>
+std::size_t Delaunay<D, Index>::vertex_count() const {
+  return mesh_->points.size() - mesh_->duplicates.size();
+}
+
+template <int D, class Index>
+std::size_t Delaunay<D, Index>::cell_count() const {
+  return mesh_->cells.vertices.size() / (D + 1);
+}
+
+template <int D, class Index>
+std::span<const Point<D>> Delaunay<D, Index>::points() const {
+  return detail::span_of(mesh_->points);
+}
+
+template <int D, class Index>
+std::span<const Index> Delaunay<D, Index>::cell_vertices() const {
+  return detail::span_of(mesh_->cells.vertices);
+}
+
+template <int D, class Index>
+std::span<const Index> Delaunay<D, Index>::cell_neighbours() const {
+  return detail::span_of(mesh_->cells.neighbours);
+}
+
+template <int D, class Index>
+std::span<const Index> Delaunay<D, Index>::hull_facets() const {
+  return detail::span_of(mesh_->cells.hull_facets);
+}
+
+template <int D, class Index>
+std::span<const Index> Delaunay<D, Index>::hull_cells() const {
+  return detail::span_of(mesh_->cells.hull_cells);
+}
+
+template <int D, class Index>
+std::span<const Duplicate<Index>> Delaunay<D, Index>::duplicates() const {
+  return mesh_->duplicates;
+}
+
+template <int D, class Index>
+std::span<const Index> Delaunay<D, Index>::vertex_cells() const {
+  return detail::span_of(mesh_->cells.vertex_cells);
+}
+
+template <int D, class Index>
+Point<D> Delaunay<D, Index>::circumcentre(Index cell) const {
+  if (cell < 0 || static_cast<std::size_t>(cell) >= cell_count()) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("there is no cell {}: they number {}", cell, cell_count()));
+  }
+  const detail::FloatEnvironment environment;
+  return detail::circumcentre<D>(mesh_->view().corners(cell));
+}
+
+template <int D, class Index>
+std::vector<Point<D>> Delaunay<D, Index>::circumcentres() const {
+  const detail::FloatEnvironment environment;
+  const auto view = mesh_->view();
+  std::vector<Point<D>> centres(cell_count());
+  detail::with_threads(mesh_->threads, [&] {
+    detail::parallel_for(centres.size(), kCellGrain,
+                         [&](std::size_t, std::size_t begin, std::size_t end) {
+                           for (std::size_t c = begin; c < end; ++c) {
+                             const auto corners = view.corners(static_cast<Index>(c));
+                             centres[c] = detail::circumcentre<D>(corners);
+                           }
+                         });
+  });
+  return centres;
+}
+
+template <int D, class Index>
+std::uint64_t Delaunay<D, Index>::canonical_hash() const {
+  const auto view = mesh_->view();
+  const std::size_t cells = cell_count();
+  detail::CanonicalHash<D> hash;
+  std::mutex mutex;  // guards hash, a sum whose order does not matter
+  detail::with_threads(mesh_->threads, [&] {
+    detail::parallel_for(cells, kCellGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+      detail::CanonicalHash<D> some;
+      for (std::size_t c = begin; c < end; ++c) some.add(view.corners(static_cast<Index>(c)));
+      const std::lock_guard lock(mutex);
+      hash.add(some);
+    });
+  });
+  return hash.value();
+}
+
+template <int D, class Index>
+Index Delaunay<D, Index>::locate(const Point<D>& place) const {
+  if (!detail::is_finite<D>(place)) return -1;
+  const detail::FloatEnvironment environment;
+  return detail::locate<D>(mesh_->view(), place, mesh_->starts.find(place)).cell;
+}
+
+template <int D, class Index>
+std::vector<Index> Delaunay<D, Index>::locate(PointView<D> places) const {
+  const detail::FloatEnvironment environment;
+  const auto view = mesh_->view();
+  return answer_all<D, Index, Index>(*mesh_, places, -1, [&](const Point<D>& place, Index& cell) {
+    const auto location = detail::locate<D>(view, place, cell);
+    cell = location.last;
+    return location.cell;
+  });
+}
+
+template <int D, class Index>
+Index Delaunay<D, Index>::nearest_vertex(const Point<D>& place) const {
+  if (!detail::is_finite<D>(place)) return -1;
+  const detail::FloatEnvironment environment;
+  return detail::nearest_vertex<D>(mesh_->view(), place, mesh_->starts.find(place));
+}
+
+template <int D, class Index>
+std::vector<Index> Delaunay<D, Index>::nearest_vertex(PointView<D> places) const {
+  const detail::FloatEnvironment environment;
+  const auto view = mesh_->view();
+  return answer_all<D, Index, Index>(*mesh_, places, -1, [&](const Point<D>& place, Index& cell) {
+    const Index vertex = detail::nearest_vertex<D>(view, place, cell);
+    cell = view.vertex_cells[vertex];
+    return vertex;
+  });
+}
+
+template <int D, class Index>
+std::vector<double> Delaunay<D, Index>::interpolate(std::span<const double> values,
+                                                    PointView<D> places) const {
+  if (values.size() != point_count()) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("{} values for {} points: there must be one for each", values.size(),
+                            point_count()));
+  }
+  const detail::FloatEnvironment environment;
+  const auto view = mesh_->view();
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  return answer_all<D, Index, double>(
+      *mesh_, places, kNone, [&](const Point<D>& place, Index& cell) {
+        const auto location = detail::locate<D>(view, place, cell);
+        cell = location.last;
+        if (location.cell < 0) return kNone;
+        return detail::interpolated_value<D>(view, values, location.cell, place);
+      });
+}
+
+template class Delaunay<2, std::int32_t>;
+template class Delaunay<3, std::int32_t>;
+template class Delaunay<2, std::int64_t>;
+template class Delaunay<3, std::int64_t>;
+
+}  // namespace spillway

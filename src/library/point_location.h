@@ -1,0 +1,27 @@
+#pragma once
+
+#include "src/library/mesh_view.h"
+
+namespace spillway::detail {
+
+/// Where a search for a place ended.
+template <class Index>
+struct Location {
+  Index cell;  ///< the lowest number of a cell that has the place, -1 outside of the hull
+  Index last;  ///< the last cell of the walk: `cell` or one beside it, or one on the hull
+};
+
+/// Finds a place by a visibility walk from cell to cell (Devillers, Pion, Teillaud, "Walking in a
+/// triangulation", Int. J. Found. Comput. Sci. 13 (2002)), which ends in every Delaunay
+/// triangulation. Signs are exact, and of several cells with the place the lowest number counts, so
+/// the answer does not depend on `start`. The place must be finite.
+template <int D, class Index>
+Location<Index> locate(const MeshView<D, Index>& mesh, const Point<D>& place, Index start);
+
+/// The vertex nearest to a place, the lowest number of several. `start` is any cell; a near one
+/// saves time. Goes from vertex to nearer vertex along edges: where none is nearer, none in the
+/// mesh is, since a vertex's Voronoi cell is bounded by the bisectors to its neighbours.
+template <int D, class Index>
+Index nearest_vertex(const MeshView<D, Index>& mesh, const Point<D>& place, Index start);
+
+}  // namespace spillway::detail

@@ -1,0 +1,60 @@
+#include "src/library/start_tree.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "src/geometry/box.h"
+#include "src/parallel/parallel.h"
+
+namespace spillway::detail {
+namespace {
+
+/// Smaller parts are built by the thread that made them.
+constexpr std::size_t kSmallestTask = std::size_t{1} << 13;
+
+}  // namespace
+
+template <int D, class Index>
+StartTree<D, Index>::StartTree(std::vector<StartPoint<D, Index>> sample) {
+  const std::size_t leaves = std::bit_floor(sample.size());
+  cuts_.resize(leaves);
+  cells_.resize(leaves);
+  build(1, sample);
+}
+
+template <int D, class Index>
+void StartTree<D, Index>::build(std::size_t node, std::span<StartPoint<D, Index>> sample) {
+  if (node >= cells_.size()) {
+    cells_[node - cells_.size()] = sample[0].cell;
+    return;
+  }
+  Box<D> box;
+  for (const auto& start : sample) box.expand(start.point);
+  const int axis = box.longest_axis();
+  // The places of all coordinates and cells are in order, so the tree is the same every time.
+  const auto less = [axis](const StartPoint<D, Index>& a, const StartPoint<D, Index>& b) {
+    return a.point[axis] != b.point[axis] ? a.point[axis] < b.point[axis] : a.point < b.point;
+  };
+  const std::size_t half = sample.size() / 2;
+  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(half);
+  std::nth_element(sample.begin(), middle, sample.end(), less);
+  cuts_[node] = {middle->point[axis], static_cast<std::uint32_t>(axis)};
+  TaskGroup group;
+  for (const bool upper : {false, true}) {
+    const auto part = upper ? sample.subspan(half) : sample.first(half);
+    const auto work = [this, node, upper, part] { build(2 * node + (upper ? 1 : 0), part); };
+    if (part.size() < kSmallestTask) {
+      work();
+    } else {
+      group.run(work);
+    }
+  }
+  group.wait();
+}
+
+template class StartTree<2, std::int32_t>;
+template class StartTree<3, std::int32_t>;
+template class StartTree<2, std::int64_t>;
+template class StartTree<3, std::int64_t>;
+
+}  // namespace spillway::detail

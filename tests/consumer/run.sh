@@ -1,0 +1,119 @@
+#!/usr/bin/env bash
+# Uses the library as a program of somebody else does: installs it into a prefix, moves the prefix, and checks it there.
+#
+#   run.sh BUILD CASE [CXX]
+#
+# BUILD is a build folder of Spillway that has the library; CASE one of
+#   shared, static   builds tests/consumer with find_package and runs it
+#   pkg-config       the same with what pkg-config says, without CMake
+#   fast-math        the same where the program is built with -ffast-math
+#   headers          every header compiles alone, without warnings, and includes nothing but the standard's and its own
+#   symbols          the shared library exports the public names alone
+#   refusal          Spillway itself is not built with -ffast-math
+set -euo pipefail
+build=$(realpath "$1")
+what=$2
+CXX=${3:-c++}
+here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
+strict=(-std=c++20 -Wall -Wextra -Wpedantic -Werror)
+
+work=$(mktemp -d "${TMPDIR:-/tmp}/spillway-consumer-XXXXXX")
+trap 'rm -rf "$work"' EXIT
+
+fail() {
+  echo "$*" >&2
+  exit 1
+}
+
+# Where it was installed nothing is left.
+install_and_move() {
+  cmake --install "$build" --component library --prefix "$work/first" >/dev/null
+  mkdir -p "$work/elsewhere"
+  mv "$work/first" "$work/elsewhere/prefix"
+  prefix=$work/elsewhere/prefix
+}
+
+# build_and_run OPTION...
+build_and_run() {
+  cmake -S "$here" -B "$work/consumer" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$CXX" \
+    -DCMAKE_PREFIX_PATH="$prefix" "$@" >"$work/log" || { cat "$work/log"; fail "does not configure"; }
+  cmake --build "$work/consumer" >"$work/log" || { cat "$work/log"; fail "does not build"; }
+  grep -q "$prefix" "$work/consumer/CMakeCache.txt" || fail "another Spillway was found"
+  "$work/consumer/consumer"
+}
+
+uses_shared() {
+  ldd "$1" | grep -q libspillway
+}
+
+case $what in
+  shared)
+    install_and_move
+    build_and_run
+    uses_shared "$work/consumer/consumer" || fail "the shared library is not used"
+    ;;
+  static)
+    install_and_move
+    build_and_run -DSpillway_USE_STATIC_LIBS=ON
+    if uses_shared "$work/consumer/consumer"; then fail "the shared library is used"; fi
+    ;;
+  fast-math)
+    install_and_move
+    build_and_run -DCMAKE_CXX_FLAGS=-ffast-math -DSpillway_USE_STATIC_LIBS=ON
+    ;;
+  pkg-config)
+    install_and_move
+    pc=$(find "$prefix" -name spillway.pc)
+    export PKG_CONFIG_PATH=${pc%/*}
+    read -ra flags <<<"$(pkg-config --cflags spillway)"
+    read -ra libraries <<<"$(pkg-config --libs spillway)"
+    "$CXX" "${strict[@]}" "${flags[@]}" "$here/main.cpp" -o "$work/main" "${libraries[@]}"
+    LD_LIBRARY_PATH=$(pkg-config --variable=libdir spillway) "$work/main"
+    read -ra libraries <<<"$(pkg-config --static --libs spillway)"
+    find "$prefix" -name 'libspillway.so*' -delete
+    "$CXX" "${strict[@]}" "${flags[@]}" "$here/main.cpp" -o "$work/main" "${libraries[@]}"
+    "$work/main"
+    ;;
+  headers)
+    install_and_move
+    cd "$prefix/include"
+    mapfile -t headers < <(find spillway -name '*.h' | sort)
+    ((${#headers[@]} >= 6)) || fail "headers are missing"
+    for header in "${headers[@]}"; do
+      echo "#include <$header>" >"$work/alone.cpp"
+      "$CXX" "${strict[@]}" -I. -fsyntax-only "$work/alone.cpp" || fail "$header"
+      while read -r included; do
+        if [[ $included == spillway/* ]]; then
+          [[ -f $included ]] || fail "$header includes $included, which is not installed"
+        elif [[ ! $included =~ ^[a-z_]+$ ]]; then
+          fail "$header includes $included, which is not the standard's"
+        elif ! echo "#include <$included>" | "$CXX" -std=c++20 -x c++ -fsyntax-only -; then
+          fail "$header includes $included, which there is not"
+        fi
+      done < <(sed -n 's/^ *# *include *[<"]\(.*\)[>"].*/\1/p' "$header")
+    done
+    ;;
+  symbols)
+    install_and_move
+    nm -DC --defined-only "$(find "$prefix" -name libspillway.so)" | cut -d' ' -f3- >"$work/symbols"
+    grep -q '^spillway::Delaunay<3, int>::locate' "$work/symbols" || fail "locate is not exported"
+    if grep -vE '^((typeinfo|typeinfo name|vtable) for )?spillway::(Delaunay<[23], (int|long)>|Error)(::|$)|^spillway::(to_string|version)\(' \
+      "$work/symbols"; then
+      fail "is exported, too"
+    fi
+    ;;
+  refusal)
+    if cmake -S "$here/../.." -B "$work/refused" -DCMAKE_CXX_FLAGS=-ffast-math 2>"$work/log" >&2; then
+      fail "is configured"
+    fi
+    grep -q "exact only without -ffast-math" "$work/log" || { cat "$work/log"; fail "is not refused"; }
+    echo '#include "src/geometry/predicates.h"' >"$work/fast.cpp"
+    if "$CXX" -std=c++20 -ffast-math -I"$here/../.." -fsyntax-only "$work/fast.cpp" 2>"$work/log"; then
+      fail "is compiled"
+    fi
+    grep -q "exact only without -ffast-math" "$work/log" || { cat "$work/log"; fail "is not refused"; }
+    ;;
+  *)
+    fail "there is no case $what"
+    ;;
+esac
