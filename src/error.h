@@ -1,58 +1,76 @@
 #pragma once
-// The one family of exceptions. They are thrown where the fault is seen, carried through worker
-// threads, and caught once, in main.
+// The exceptions of all rooms, below the public one. They are thrown where the fault is seen and
+// carried through worker threads to whoever called the library.
 
-#include <stdexcept>
+#include <spillway/error.h>
+
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace spillway::detail {
 
-/// A fault that ends the run with exit code 1. The message is one line that says what is wrong,
-/// where (file, byte, line or point), and what to do about it.
-class Error : public std::runtime_error {
+/// A fault, of the input if nothing else is said. The message is one line that says what is wrong,
+/// where (file, byte, line or point), and what to do about it; the facts say what helps and depends
+/// on how the library was called.
+class Error : public spillway::Error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit Error(const std::string& message, ErrorCode code = ErrorCode::kBadInput,
+                 ErrorFacts facts = {})
+      : spillway::Error(code, message, std::move(facts)) {}
 };
 
 /// Several faults at once, each with a line of its own.
 class ErrorList : public Error {
  public:
   /// `heading` is a message, too: it says how many there are.
-  ErrorList(const std::string& heading, std::vector<std::string> faults)
-      : Error(joined(heading, faults)), heading_(heading), faults_(std::move(faults)) {}
+  ErrorList(const std::string& heading, std::vector<Error> faults)
+      : Error(joined(heading, faults), faults.front().code(), faults.front().facts()),
+        heading_(heading),
+        faults_(std::move(faults)) {}
 
   [[nodiscard]] const std::string& heading() const { return heading_; }
-  [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
+  [[nodiscard]] const std::vector<Error>& faults() const { return faults_; }
 
  private:
-  static std::string joined(std::string text, const std::vector<std::string>& faults) {
+  static std::string joined(std::string text, const std::vector<Error>& faults) {
     text += ':';
-    for (const std::string& fault : faults) text += "\n  " + fault;
+    for (const Error& fault : faults) text += std::string("\n  ") + fault.what();
     return text;
   }
 
   std::string heading_;
-  std::vector<std::string> faults_;
+  std::vector<Error> faults_;
 };
 
-/// The command was called wrongly; ends the run with exit code 2.
-class UsageError : public Error {
+/// The library was called with what no call can use.
+class InvalidArgument : public Error {
  public:
-  using Error::Error;
+  explicit InvalidArgument(const std::string& message, ErrorFacts facts = {})
+      : Error(message, ErrorCode::kInvalidArgument, std::move(facts)) {}
 };
 
-/// The caller asked to stop before the work was done.
+/// The system refuses to read, to write or to create `file`, for the reason that `system_error`
+/// names; the message says so in words.
+class SystemRefusal : public Error {
+ public:
+  SystemRefusal(const std::string& message, std::string file, int system_error,
+                Remedy remedy = Remedy::kNone)
+      : Error(message, ErrorCode::kInputOutput,
+              {.file = std::move(file), .system_error = system_error, .remedy = remedy}) {}
+};
+
+/// Whoever called the library asked it to stop.
 class Interrupted : public Error {
  public:
-  Interrupted() : Error("interrupted") {}
+  Interrupted() : Error("the run was interrupted", ErrorCode::kInterrupted) {}
 };
 
-/// The reader at the other end of a pipe went away. Ends the run quietly.
+/// The reader at the other end of a pipe went away.
 class ClosedPipe : public Error {
  public:
-  ClosedPipe() : Error("the reader of the output closed its end of the pipe") {}
+  ClosedPipe()
+      : Error("the reader of the output closed its end of the pipe", ErrorCode::kClosedPipe) {}
 };
 
 }  // namespace spillway::detail

@@ -8,7 +8,7 @@ namespace spillway::detail {
 namespace {
 
 /// Points of a source as a tree of tiles takes them.
-PointFeed feed_of(PointSource& source, const StreamOptions& options, StageTimes& times) {
+PointFeed feed_of(PointInput& source, const StreamOptions& options, StageTimes& times) {
   return {.fetch =
               [&](SourcePiece& piece) {
                 const StageTimer timer(times, Stage::kRead);
@@ -23,7 +23,7 @@ PointFeed feed_of(PointSource& source, const StreamOptions& options, StageTimes&
 }
 
 template <int D>
-void run(TileEngine<D>& engine, PointSource& source, MemoryBudget& budget,
+void run(TileEngine<D>& engine, PointInput& source, MemoryBudget& budget,
          const StreamOptions& options) {
   options.begin_phase("read");
   engine.spill(feed_of(source, options, engine.times()));
@@ -45,7 +45,7 @@ void run(TileEngine<D>& engine, PointSource& source, MemoryBudget& budget,
 }  // namespace
 
 template <int D>
-StreamFigures triangulate_stream(PointSource& source, MeshStreamWriter& writer,
+StreamFigures triangulate_stream(PointInput& source, MeshStreamWriter& writer,
                                  ScratchFolder& scratch, MemoryBudget& budget,
                                  const StreamOptions& options) {
   TileEngine<D> engine({source.lattice(), source.expected(), source.extent()}, writer, scratch,
@@ -55,9 +55,9 @@ StreamFigures triangulate_stream(PointSource& source, MeshStreamWriter& writer,
   return engine.figures();
 }
 
-template StreamFigures triangulate_stream<2>(PointSource&, MeshStreamWriter&, ScratchFolder&,
+template StreamFigures triangulate_stream<2>(PointInput&, MeshStreamWriter&, ScratchFolder&,
                                              MemoryBudget&, const StreamOptions&);
-template StreamFigures triangulate_stream<3>(PointSource&, MeshStreamWriter&, ScratchFolder&,
+template StreamFigures triangulate_stream<3>(PointInput&, MeshStreamWriter&, ScratchFolder&,
                                              MemoryBudget&, const StreamOptions&);
 
 }  // namespace spillway::detail

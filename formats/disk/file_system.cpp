@@ -53,7 +53,8 @@ class DiskInput : public InputFile {
     struct stat status {};
     if (::fstat(fd, &status) != 0) fail(errno);
     if (S_ISDIR(status.st_mode)) {
-      throw Error(fmt::format("cannot read {}: it is a folder; name a file in it", name_));
+      throw SystemRefusal(fmt::format("cannot read {}: it is a folder; name a file in it", name_),
+                          name_, EISDIR);
     }
     if (S_ISREG(status.st_mode)) {
       // Standard input may have been read from before: what counts is the rest.
@@ -89,7 +90,7 @@ class DiskInput : public InputFile {
 
  private:
   [[noreturn]] void fail(int error) const {
-    throw Error(fmt::format("cannot read {}: {}", name_, reason(error)));
+    throw SystemRefusal(fmt::format("cannot read {}: {}", name_, reason(error)), name_, error);
   }
 
   Descriptor file_;
@@ -163,8 +164,9 @@ class DiskOutput : public OutputFile {
 
   [[noreturn]] void fail(int error) const {
     if (error == EPIPE) throw ClosedPipe();
-    throw Error(
-        fmt::format("cannot write {}: {}{}", name_, reason(error), output_hint(error, name_)));
+    throw SystemRefusal(
+        fmt::format("cannot write {}: {}{}", name_, reason(error), output_hint(error, name_)),
+        name_, error);
   }
 
   Descriptor file_;
@@ -178,10 +180,14 @@ class DiskOutput : public OutputFile {
 int copy_of_standard(int descriptor, int wrong_direction, const std::string& what) {
   const int flags = ::fcntl(descriptor, F_GETFL);
   if (flags < 0 || (flags & O_ACCMODE) == wrong_direction) {
-    throw Error(fmt::format("{}: it is closed; name a file, or connect a pipe", what));
+    throw SystemRefusal(fmt::format("{}: it is closed; name a file, or connect a pipe", what), "-",
+                        EBADF);
   }
   const int copy = ::fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-  if (copy < 0) throw Error(fmt::format("{}: {}", what, reason(errno)));
+  if (copy < 0) {
+    const int error = errno;
+    throw SystemRefusal(fmt::format("{}: {}", what, reason(error)), "-", error);
+  }
   return copy;
 }
 
@@ -195,8 +201,9 @@ class Disk : public FileSystem {
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (fd < 0) {
       const int error = errno;
-      throw Error(fmt::format("cannot open {}: {}{}", path, reason(error),
-                              error == ENOENT ? "; check the name" : ""));
+      throw SystemRefusal(fmt::format("cannot open {}: {}{}", path, reason(error),
+                                      error == ENOENT ? "; check the name" : ""),
+                          path, error);
     }
     return std::make_unique<DiskInput>(fd, path);
   }

@@ -60,12 +60,13 @@ std::string output_hint(int error, const std::string& name) {
 }
 
 void fail_to_create(const std::string& name, int error) {
-  throw Error(fmt::format("cannot create {}: {}{}", name, std::generic_category().message(error),
-                          output_hint(error, name)));
+  throw SystemRefusal(fmt::format("cannot create {}: {}{}", name,
+                                  std::generic_category().message(error), output_hint(error, name)),
+                      name, error);
 }
 
 OutputTarget output_target(const std::string& name) {
-  if (name.empty()) throw UsageError("cannot create a file without a name; name the output");
+  if (name.empty()) throw InvalidArgument("cannot create a file without a name; name the output");
   OutputTarget target;
   struct stat status {};
   if (::stat(name.c_str(), &status) != 0) {
@@ -78,10 +79,12 @@ OutputTarget output_target(const std::string& name) {
   target.path = target.regular ? through_links(name) : name;
   if (!target.regular) return target;
   if (::access(name.c_str(), W_OK) != 0) {
-    throw Error(
+    const int error = errno;
+    throw SystemRefusal(
         fmt::format("cannot create {}: {}; the file is there and write-protected, choose another "
                     "name",
-                    name, std::generic_category().message(errno)));
+                    name, std::generic_category().message(error)),
+        name, error);
   }
   target.mode = status.st_mode & kPermissions;
   return target;

@@ -14,7 +14,7 @@ struct OutputTarget {
   std::optional<mode_t> mode;  ///< permissions of the file that will be replaced; none if it is new
 };
 
-/// The target of an output called `name`. Throws UsageError for an empty name, and Error for a
+/// The target of an output called `name`. Throws InvalidArgument for an empty name, and Error for a
 /// folder, a write-protected file and what the system refuses.
 OutputTarget output_target(const std::string& name);
 

@@ -88,10 +88,10 @@ class DiskScratchFile : public ScratchFile {
 
   void append(std::span<const std::byte> bytes) override {
     if (!usage_->add(bytes.size())) {
-      throw Error(
-          fmt::format("cannot write {}: temporary files would take more than the {} bytes "
-                      "allowed; raise --max-tmp or --memory",
-                      path_, usage_->cap().value_or(0)));
+      throw Error(fmt::format("cannot write {}: temporary files would take more than the {} bytes "
+                              "allowed",
+                              path_, usage_->cap().value_or(0)),
+                  ErrorCode::kOutOfBudget, {.file = path_, .remedy = Remedy::kScratchLimit});
     }
     size_ += bytes.size();
     const Opened file(path_, O_WRONLY | O_APPEND);
@@ -133,24 +133,22 @@ class DiskScratchFile : public ScratchFile {
  private:
   [[noreturn]] void fail(std::string_view action, int error) const {
     stop_if_run_is_ending();
-    throw Error(fmt::format("cannot {} {}: {}{}", action, path_,
-                            std::generic_category().message(error), hint(error)));
+    const std::string_view what_to_do = hint(error);
+    throw SystemRefusal(fmt::format("cannot {} {}: {}{}", action, path_,
+                                    std::generic_category().message(error), what_to_do),
+                        path_, error, what_to_do.empty() ? Remedy::kScratchFolder : Remedy::kNone);
   }
 
+  /// What to do where another folder would not help.
   [[nodiscard]] static std::string_view hint(int error) {
     switch (error) {
-      case ENOSPC:
-      case EDQUOT:
-        return "; free some space or choose another folder with --tmpdir";
-      case EFBIG:
-        return "; raise the file size limit (ulimit -f) or choose another folder with --tmpdir";
       case EMFILE:
       case ENFILE:
         return "; raise the limit of open files (ulimit -n)";
       case ENOENT:
         return "; leave the folder alone while the program runs";
       default:
-        return "; choose another folder with --tmpdir";
+        return "";
     }
   }
 
@@ -176,7 +174,8 @@ class DiskScratchFolder : public ScratchFolder {
       return std::make_unique<DiskScratchFile>(path_, fmt::format("{}-{}", label, ++files_),
                                                usage_);
     } catch (const Error& error) {
-      throw Error(fmt::format("{}; choose another folder with --tmpdir", error.what()));
+      // That a folder cannot be made has one remedy, whatever the system's reason.
+      throw SystemRefusal(error.what(), error.facts().file, 0, Remedy::kScratchFolder);
     }
   }
 

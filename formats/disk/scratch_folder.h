@@ -17,8 +17,8 @@ class ScratchFile {
  public:
   virtual ~ScratchFile() = default;
 
-  /// Appends all bytes. Throws Error with the system's reason and what to do (disk full: --tmpdir;
-  /// over the cap: --max-tmp).
+  /// Appends all bytes. Throws Error with the system's reason and what would help (disk full:
+  /// another folder; over the cap: a larger one).
   virtual void append(std::span<const std::byte> bytes) = 0;
 
   /// Fills `buffer` from `offset` on. Throws Error if the file is shorter.

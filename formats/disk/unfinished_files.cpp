@@ -196,7 +196,10 @@ std::string make_temporary_folder(const std::string& parent, const std::string& 
   std::string path = (fs::path(parent) / (prefix + "XXXXXX")).string();
   const auto lock = lock_to_create();
   if (::mkdtemp(path.data()) == nullptr) {
-    throw Error(fmt::format("cannot create a temporary folder in {}: {}", parent, reason(errno)));
+    const int error = errno;
+    throw SystemRefusal(
+        fmt::format("cannot create a temporary folder in {}: {}", parent, reason(error)), parent,
+        error);
   }
   registry().folders.emplace(path, "");
   return path;
@@ -214,7 +217,10 @@ void create_in_temporary_folder(const std::string& folder, const std::string& na
   const std::string path = (fs::path(folder) / name).string();
   const auto lock = lock_to_create();
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (descriptor < 0) throw Error(fmt::format("cannot create {}: {}", path, reason(errno)));
+  if (descriptor < 0) {
+    const int error = errno;
+    throw SystemRefusal(fmt::format("cannot create {}: {}", path, reason(error)), path, error);
+  }
   ::close(descriptor);
 }
 

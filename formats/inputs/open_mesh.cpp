@@ -81,10 +81,11 @@ bool is_ply_mesh(InputSource& source) {
 /// Throws Error if this is the index of VTU parts.
 void refuse_index_of_parts(InputSource& source) {
   if (as_text(source.peek(kProbe)).find("\"PUnstructuredGrid\"") != std::string_view::npos) {
-    throw Error(fmt::format(
-        "{}: this is the index of a mesh's parts, which is for viewers; name one of the parts, "
-        "or, to check the whole, write it to one file (without --parts)",
-        source.name()));
+    throw Error(
+        fmt::format("{}: this is the index of a mesh's parts, which is for viewers; name one of "
+                    "the parts, or, to check the whole, write it to one file",
+                    source.name()),
+        ErrorCode::kBadInput, {.file = source.name(), .remedy = Remedy::kOneFile});
   }
 }
 

@@ -17,15 +17,15 @@
 namespace spillway::detail {
 namespace {
 
-/// Throws UsageError if the format, of triangles only, cannot hold the mesh.
+/// Throws InvalidArgument if the format, of triangles only, cannot hold the mesh.
 void check_triangles_only(const std::string& path, std::string_view format, int dimension,
                           bool has_input_index) {
   if (dimension != 2) {
-    throw UsageError(fmt::format(
+    throw InvalidArgument(fmt::format(
         "cannot write {}: {} holds no tetrahedra; choose spm, ply, vtu or npy", path, format));
   }
   if (has_input_index) {
-    throw UsageError(
+    throw InvalidArgument(
         fmt::format("cannot write {}: {} holds no input index; choose spm, ply, vtu or npy, or "
                     "leave the index out",
                     path, format));
@@ -47,7 +47,7 @@ MeshFiles create_mesh_files(FileSystem& files, const std::string& path, MeshForm
     check_triangles_only(path, name, dimension, has_input_index);
   }
   if (path == "-" && needs_regular_file(format)) {
-    throw UsageError(
+    throw InvalidArgument(
         fmt::format("standard output cannot take {}, whose begin is written last; name a "
                     "file",
                     triangle_format(format)));

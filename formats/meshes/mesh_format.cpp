@@ -69,7 +69,8 @@ MeshFormat mesh_format(const std::string& path, const std::string& format_name) 
   const std::string what = !format_name.empty()
                                ? fmt::format("there is no mesh format \"{}\"", name)
                                : fmt::format("the name {} tells no mesh format", path);
-  throw UsageError(fmt::format("{}; choose one of {}", what, fmt::join(mesh_format_names(), ", ")));
+  throw InvalidArgument(
+      fmt::format("{}; choose one of {}", what, fmt::join(mesh_format_names(), ", ")));
 }
 
 std::string rounding_note(MeshFormat format) {

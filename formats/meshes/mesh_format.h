@@ -12,7 +12,7 @@ namespace spillway::detail {
 std::vector<std::string> mesh_format_names();
 
 /// The format called `format_name`, or, if that is empty, the one of the path's extension; "spm"
-/// for standard output. Throws UsageError that lists what there is if neither names a format.
+/// for standard output. Throws InvalidArgument that lists what there is if neither names a format.
 MeshFormat mesh_format(const std::string& path, const std::string& format_name);
 
 /// What is to be said of a mesh in a format that rounds its coordinates; empty for others.

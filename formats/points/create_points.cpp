@@ -27,20 +27,20 @@ bool header_comes_last(PointFormat format, const PointWriterOptions& options) {
 PointFormat point_format_to_write(const std::string& path, const std::string& format_name) {
   if (format_name == "laz" || format_name == "copc" ||
       (format_name.empty() && extension_of(path) == "laz")) {
-    throw UsageError(fmt::format(
+    throw InvalidArgument(fmt::format(
         "cannot write {}: LAZ is read, not written; write .las, or .spp, which is compressed too",
         path == "-" ? "standard output" : path));
   }
   if (!format_name.empty()) return point_format_by_name(format_name);
   if (compression_of_name(path) != Compression::kNone) {
-    throw UsageError(
+    throw InvalidArgument(
         fmt::format("cannot write {}: compressed points are not written; write them "
                     "to .las, .txt, .npy or .spp and compress that",
                     path));
   }
   const std::optional<PointFormat> format = point_format_of_path(path);
   if (!format) {
-    throw UsageError(
+    throw InvalidArgument(
         fmt::format("cannot tell the format of {} from its name; end it in .las, "
                     ".txt, .xyz, .csv, .asc, .npy or .spp, or name the format",
                     path == "-" ? "standard output" : path));
@@ -56,7 +56,7 @@ std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::str
     if (options.scratch != nullptr) {
       file = spool_output(std::move(file), *options.scratch);
     } else if (!options.count) {
-      throw UsageError(
+      throw InvalidArgument(
           fmt::format("cannot write {}: its header tells the number of points, which is not known "
                       "beforehand; write text or spp",
                       file->name()));

@@ -9,11 +9,11 @@
 
 namespace spillway::detail {
 
-/// Opens `path` ("-": standard output). Throws UsageError for what cannot be asked for.
+/// Opens `path` ("-": standard output). Throws InvalidArgument for what cannot be asked for.
 std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::string& path,
                                                const PointWriterOptions& options);
 
-/// The format that open_point_writer() chooses. Throws UsageError as it does.
+/// The format that open_point_writer() chooses. Throws InvalidArgument as it does.
 PointFormat point_format_to_write(const std::string& path, const std::string& format_name);
 
 }  // namespace spillway::detail

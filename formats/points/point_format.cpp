@@ -14,7 +14,7 @@ PointFormat point_format_by_name(std::string_view name) {
   if (name == "text") return PointFormat::kText;
   if (name == "npy") return PointFormat::kNpy;
   if (name == "spp") return PointFormat::kSpp;
-  throw UsageError(fmt::format(
+  throw InvalidArgument(fmt::format(
       "there is no point format \"{}\"; choose las, laz, copc, text, npy or spp", name));
 }
 

@@ -24,15 +24,15 @@ std::vector<std::string> family_names() { return {kNames.begin(), kNames.end()};
 Family family_by_name(std::string_view name) {
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found == kNames.end()) {
-    throw UsageError(fmt::format("there is no family of points called '{}'; choose one of {}", name,
-                                 fmt::join(kNames, ", ")));
+    throw InvalidArgument(fmt::format("there is no family of points called '{}'; choose one of {}",
+                                      name, fmt::join(kNames, ", ")));
   }
   return static_cast<Family>(found - kNames.begin());
 }
 
 std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options) {
   if (options.dimension != 2 && options.dimension != 3) {
-    throw UsageError(
+    throw InvalidArgument(
         fmt::format("cannot generate points of dimension {}; choose 2 or 3", options.dimension));
   }
   if (options.family == Family::kTerrain) return make_terrain(options);

@@ -37,7 +37,7 @@ enum class Family {
 /// The names the command line takes, in the order of the enumeration.
 std::vector<std::string> family_names();
 
-/// The family of that name. Throws UsageError that lists them all otherwise.
+/// The family of that name. Throws InvalidArgument that lists them all otherwise.
 Family family_by_name(std::string_view name);
 
 struct GeneratorOptions {
@@ -62,8 +62,8 @@ class PointGenerator {
   [[nodiscard]] virtual const Lattice* lattice() const { return nullptr; }
 };
 
-/// The stream of those points. Throws UsageError for a dimension other than 2 and 3, and Error for
-/// a terrain so large that its centimetres would leave the 32-bit integers of LAS.
+/// The stream of those points. Throws InvalidArgument for a dimension other than 2 and 3, and Error
+/// for a terrain so large that its centimetres would leave the 32-bit integers of LAS.
 std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options);
 
 /// All points at once, for tests and benchmarks, generated with dimension D whatever the options

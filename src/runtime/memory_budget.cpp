@@ -50,7 +50,7 @@ std::uint64_t parse_memory_size(const std::string& text) {
       (power > 0 && (name.size() == 1 || name.substr(1) == "B" || name.substr(1) == "IB"));
   const double bytes = name == "B" ? number : std::ldexp(number, static_cast<int>(10 * power));
   if (fault != std::errc() || !known || !(bytes >= 1) || bytes > 0x1p62) {
-    throw UsageError(fmt::format("\"{}\" is no size; write it as 512M or 2G", text));
+    throw InvalidArgument(fmt::format("\"{}\" is no size; write it as 512M or 2G", text));
   }
   return static_cast<std::uint64_t>(bytes);
 }
@@ -66,18 +66,17 @@ void MemoryBudget::take(std::uint64_t bytes, const char* purpose) {
   if (used <= limit_) return;
   used_ -= bytes;
   const double parts = static_cast<double>(whole_) / static_cast<double>(limit_);
-  const auto size = [parts](std::uint64_t least) {
-    return fmt::format("{:.0f}M", std::floor(static_cast<double>(least) * parts / kMiB) + 1);
+  const auto whole_mebibytes = [parts](std::uint64_t least) {
+    const double mebibytes = std::floor(static_cast<double>(least) * parts / kMiB) + 1;
+    return static_cast<std::uint64_t>(mebibytes) << 20;
   };
   const std::uint64_t perhaps = used + used / 4;
-  std::string advice = size(perhaps) + " may be enough";
-  if (enough_ > perhaps) {
-    advice += fmt::format(", {} is", size(enough_));
-  } else if (enough_ >= used) {
-    advice = size(enough_) + " is enough";
-  }
-  throw Error(fmt::format("{} of memory are too little for {}; --memory {}",
-                          memory_size_text(whole_), purpose, advice));
+  ErrorFacts facts;
+  facts.remedy = Remedy::kMemory;
+  if (enough_ >= used) facts.enough = whole_mebibytes(enough_);
+  if (enough_ > perhaps || enough_ < used) facts.perhaps = whole_mebibytes(perhaps);
+  throw Error(fmt::format("{} of memory are too little for {}", memory_size_text(whole_), purpose),
+              ErrorCode::kOutOfBudget, std::move(facts));
 }
 
 }  // namespace spillway::detail

@@ -13,7 +13,7 @@ namespace spillway::detail {
 std::uint64_t default_memory_limit(unsigned processes = 1);
 
 /// The number of bytes that "512M", "2G", "1.5g", "800MiB" or "1000000" stand for; K, M, G, T are
-/// powers of 1024. Throws UsageError for anything else.
+/// powers of 1024. Throws InvalidArgument for anything else.
 std::uint64_t parse_memory_size(const std::string& text);
 
 /// "512 MiB", "1.5 GiB": for messages.
@@ -49,8 +49,8 @@ class MemoryBudget {
 class MemoryLease {
  public:
   MemoryLease() = default;
-  /// Throws Error if the budget has not so much left, with the purpose, a --memory that may be
-  /// enough and, where it is known, one that is.
+  /// Throws Error (kOutOfBudget) if the budget has not so much left, with the purpose, a limit that
+  /// may be enough and, where it is known, one that is.
   MemoryLease(MemoryBudget& budget, std::uint64_t bytes, const char* purpose)
       : budget_(&budget), bytes_(bytes) {
     budget.take(bytes, purpose);

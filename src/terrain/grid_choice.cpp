@@ -50,9 +50,9 @@ PixelGrid choose_grid(const GridRequest& request, const Box<2>& extent) {
     const auto count = [](double pixels) {
       return pixels < 1e15 ? fmt::format("{:.0f}", pixels) : fmt::format("{:.3g}", pixels);
     };
-    throw UsageError("a raster of " + count(columns) + " x " + count(rows) +
-                     " pixels is more than GeoTIFF can hold (2147483647 each way); give a coarser "
-                     "--resolution or smaller --bounds");
+    throw InvalidArgument("a raster of " + count(columns) + " x " + count(rows) +
+                              " pixels is more than GeoTIFF can hold (2147483647 each way)",
+                          {.remedy = Remedy::kRasterSize});
   }
   return {box.lo[0], box.hi[1], resolution, static_cast<std::uint32_t>(columns),
           static_cast<std::uint32_t>(rows)};

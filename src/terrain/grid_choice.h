@@ -16,8 +16,8 @@ struct GridRequest {
 };
 
 /// The smallest grid that covers the box asked for; its upper left corner is that of the box unless
-/// aligned. `extent` is that of the points, in output coordinates. Throws UsageError, naming the
-/// raster's size, if there would be more rows or columns than GeoTIFF can count.
+/// aligned. `extent` is that of the points, in output coordinates. Throws InvalidArgument, naming
+/// the raster's size, if there would be more rows or columns than GeoTIFF can count.
 PixelGrid choose_grid(const GridRequest& request, const Box<2>& extent);
 
 /// The column (row) of the pixel that a coordinate lies in: pixels hold their western (northern)

@@ -33,7 +33,7 @@ Crossing crossing(const Corner& one, const Corner& other, std::int64_t level) {
 
 Levels Levels::every(double interval, double base) {
   if (!(interval > 0) || !std::isfinite(interval) || !std::isfinite(base)) {
-    throw UsageError(
+    throw InvalidArgument(
         fmt::format("levels every {} from {}: an interval is a number above 0, and "
                     "its base a finite one",
                     interval, base));
@@ -47,7 +47,7 @@ Levels Levels::every(double interval, double base) {
 Levels Levels::of_list(std::vector<double> heights) {
   const auto finite = [](double height) { return std::isfinite(height); };
   if (heights.empty() || !std::all_of(heights.begin(), heights.end(), finite)) {
-    throw UsageError("a list of levels has one finite number at least");
+    throw InvalidArgument("a list of levels has one finite number at least");
   }
   Levels levels;
   levels.list_ = std::move(heights);

@@ -14,9 +14,9 @@ namespace spillway::detail {
 /// the heights of a list. A level's number says which one it is.
 class Levels {
  public:
-  /// Throws UsageError unless the interval is positive and both numbers are finite.
+  /// Throws InvalidArgument unless the interval is positive and both numbers are finite.
   static Levels every(double interval, double base);
-  /// Throws UsageError unless there is one at least and all are finite.
+  /// Throws InvalidArgument unless there is one at least and all are finite.
   static Levels of_list(std::vector<double> heights);
 
   [[nodiscard]] double height(std::int64_t number) const;

@@ -27,14 +27,16 @@ PixelCentres::PixelCentres(const PixelGrid& grid, const std::optional<Lattice>& 
     const double x = grid.centre_x(c);
     x_[c] = lattice ? on_lattice(*lattice, 0, x) : x;
     if (c > 0 && !(x_[c] > x_[c - 1])) {
-      throw UsageError("the resolution is too fine for coordinates so large; give a coarser one");
+      throw InvalidArgument(
+          "the resolution is too fine for coordinates so large; give a coarser one");
     }
   }
   for (std::uint32_t r = 0; r < grid.rows; ++r) {
     const double y = grid.centre_y(r);
     y_[r] = lattice ? on_lattice(*lattice, 1, y) : y;
     if (r > 0 && !(y_[r] < y_[r - 1])) {
-      throw UsageError("the resolution is too fine for coordinates so large; give a coarser one");
+      throw InvalidArgument(
+          "the resolution is too fine for coordinates so large; give a coarser one");
     }
   }
 }

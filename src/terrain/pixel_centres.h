@@ -16,7 +16,7 @@ namespace spillway::detail {
 /// an integer but for rounding becomes that integer.
 class PixelCentres {
  public:
-  /// Throws UsageError if the resolution is too fine for doubles to tell neighbours apart. The
+  /// Throws InvalidArgument if the resolution is too fine for doubles to tell neighbours apart. The
   /// lattice's scales must be positive.
   PixelCentres(const PixelGrid& grid, const std::optional<Lattice>& lattice);
 

@@ -57,9 +57,10 @@ std::size_t share(std::uint64_t limit, double part, std::size_t bytes_each) {
 MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads) {
   const Costs& costs = costs_of(dimension);
   if (limit < costs.least_limit) {
-    throw UsageError(fmt::format("--memory is too small: {} MiB are the least that will do{}",
-                                 costs.least_limit / kMiB,
-                                 dimension == 3 ? " in three dimensions" : ""));
+    throw InvalidArgument(
+        fmt::format("the memory limit is too small: {} MiB are the least that will do{}",
+                    costs.least_limit / kMiB, dimension == 3 ? " in three dimensions" : ""),
+        {.perhaps = costs.least_limit, .remedy = Remedy::kMemory});
   }
   MemoryPlan plan;
   plan.buffered_points = share(limit, costs.buffer_share, kBufferedPointBytes);

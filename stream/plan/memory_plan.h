@@ -16,7 +16,7 @@ struct MemoryPlan {
 };
 
 /// The plan for a limit in bytes. `wanted_threads` is cut down to what there is memory for. Throws
-/// UsageError with the least limit that would do if this one is too small.
+/// InvalidArgument with the least limit that would do if this one is too small.
 MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads);
 
 /// Leaves for so many points: at most plan.leaf_size, and smaller where there are few points, so

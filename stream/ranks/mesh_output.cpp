@@ -356,11 +356,11 @@ MeshTarget mesh_target(const std::string& path, const std::string& format_name, 
   }
   const MeshFormat format = mesh_format(path, format_name);
   if (parts && path == "-") {
-    throw UsageError("standard output takes no mesh in parts: name a file");
+    throw InvalidArgument("standard output takes no mesh in parts: name a file");
   }
   if (parts && format != MeshFormat::kVtu && format != MeshFormat::kPly &&
       format != MeshFormat::kSpm) {
-    throw UsageError(
+    throw InvalidArgument(
         fmt::format("a mesh in parts is written as vtu, ply or spm, not as {}: choose one of these",
                     mesh_format_names().at(static_cast<std::size_t>(format))));
   }

@@ -21,8 +21,8 @@ struct MeshTarget {
 };
 
 /// What the command line says, as mesh_format() takes it; `NAME.pvtu` means VTU in parts. Throws
-/// UsageError for no format, and for parts on standard output or in formats other than vtu, ply and
-/// spm. Looks at no file.
+/// InvalidArgument for no format, and for parts on standard output or in formats other than vtu,
+/// ply and spm. Looks at no file.
 MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts);
 
 /// The output of triangulate_over_ranks(). One of:
@@ -55,9 +55,9 @@ class MeshOutput {
 };
 
 /// Creates the output's files, still under temporary names. Rank 0's header counts where they
-/// differ. `scratch` and `ranks` must outlive the output. Collective. Throws Error or UsageError at
-/// rank 0 if that cannot be done or the format does not hold the mesh, while the others wait to be
-/// ended.
+/// differ. `scratch` and `ranks` must outlive the output. Collective. Throws Error or
+/// InvalidArgument at rank 0 if that cannot be done or the format does not hold the mesh, while the
+/// others wait to be ended.
 std::unique_ptr<MeshOutput> open_mesh_output(FileSystem& files, const MeshTarget& target,
                                              const MeshStreamHeader& header, ScratchFolder& scratch,
                                              const distributed::Ranks& ranks);

@@ -108,11 +108,12 @@ Dem::Dem(DemOptions options, const std::optional<Lattice>& lattice, ScratchFolde
       scratch_(scratch) {
   const std::uint64_t least = RasterStore::least_memory(options_.products.size(), options_.threads);
   if (options_.memory < least) {
-    throw UsageError(
-        fmt::format("--memory is too small: of it {} are for pixels, and {} threads "
+    throw InvalidArgument(
+        fmt::format("the memory limit is too small: of it {} are for pixels, and {} threads "
                     "with {} products need {}",
                     memory_size_text(options_.memory), options_.threads, options_.products.size(),
-                    memory_size_text(least)));
+                    memory_size_text(least)),
+        {.remedy = Remedy::kMemory});
   }
 }
 
@@ -136,10 +137,9 @@ void Dem::begin(const PixelGrid& grid) {
                                                                tiles_down_ * kIndexBytes *
                                                                options_.products.size();
   if (index > options_.memory / 2) {
-    throw UsageError(
-        fmt::format("a raster of {} x {} pixels needs {} for its index alone; give "
-                    "more --memory, a coarser --resolution or smaller --bounds",
-                    grid_.columns, grid_.rows, memory_size_text(index)));
+    throw InvalidArgument(fmt::format("a raster of {} x {} pixels needs {} for its index alone",
+                                      grid_.columns, grid_.rows, memory_size_text(index)),
+                          {.remedy = Remedy::kRasterMemory});
   }
   centres_.emplace(grid_, on_lattice_ ? lattice_ : std::nullopt);
   std::vector<PixelRule> rules;

@@ -49,11 +49,12 @@ struct DemOptions {
 /// neither their order nor threads matter.
 class Dem {
  public:
-  /// `lattice` is that of the vertices to come. Throws UsageError if the memory is too small.
+  /// `lattice` is that of the vertices to come. Throws InvalidArgument if the memory is too small.
   Dem(DemOptions options, const std::optional<Lattice>& lattice, ScratchFolder& scratch);
 
   /// Lays the grid, given the box around all vertices (as they come, on the lattice if there is
-  /// one). To be called once, before what follows. Throws UsageError if the raster is too large.
+  /// one). To be called once, before what follows. Throws InvalidArgument if the raster is too
+  /// large.
   void begin(const Box<2>& extent);
   /// Likewise, with a grid that was chosen elsewhere.
   void begin(const PixelGrid& grid);

@@ -79,9 +79,8 @@ std::string common_crs(std::span<const InputCrs> inputs, bool force,
             fmt::format("{} has the coordinate system {}, but {} has {}", input.name,
                         crs_name(input.crs), first->name, crs_name(first->crs));
         if (!force) {
-          throw Error(what +
-                      "; bring them to one system, or take coordinates as they are with "
-                      "--force-crs");
+          throw Error(what + "; bring them to one system, or take coordinates as they are",
+                      ErrorCode::kBadInput, {.file = input.name, .remedy = Remedy::kForeignCrs});
         }
         warn(fmt::format("warning: {}; coordinates are taken as they are", what));
       }

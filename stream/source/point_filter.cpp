@@ -32,10 +32,10 @@ std::string describe(const PointCounts& counts) {
   std::string text = fmt::format("{} points read", counts.read);
   const std::array<std::pair<std::uint64_t, const char*>, 6> dropped = {
       {{counts.withheld, "withheld"},
-       {counts.every, "left out by --every"},
+       {counts.every, "skipped"},
        {counts.classes, "of other classes"},
        {counts.returns, "of other returns"},
-       {counts.bounds, "outside --bounds"},
+       {counts.bounds, "outside the bounds"},
        {counts.thinned, "thinned"}}};
   for (const auto& [count, why] : dropped) {
     if (count > 0) text += fmt::format(", {} {}", count, why);
@@ -44,8 +44,8 @@ std::string describe(const PointCounts& counts) {
 }
 
 void refuse_empty_input(const PointCounts& counts) {
-  if (counts.read == 0) throw Error("the input has no points");
-  throw Error("the filters leave no points: " + describe(counts));
+  if (counts.read == 0) throw Error("the input has no points", ErrorCode::kDegenerateInput);
+  throw Error("the filters leave no points: " + describe(counts), ErrorCode::kDegenerateInput);
 }
 
 void apply_filter(const PointFilter& filter, const std::optional<Lattice>& lattice,

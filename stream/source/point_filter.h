@@ -55,7 +55,7 @@ struct PointCounts {
   [[nodiscard]] std::uint64_t kept() const { return read - dropped(); }
 };
 
-/// One line: "500 points read, 12 withheld, 300 outside --bounds, 188 kept".
+/// One line: "500 points read, 12 withheld, 300 outside the bounds, 188 kept".
 std::string describe(const PointCounts& counts);
 
 /// Throws Error: there are no points, or none are left of those that were read.

@@ -73,14 +73,14 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
                          PointSourceOptions options)
     : files_(files), options_(std::move(options)), records_(0) {
   set_reader_options();
-  std::vector<std::string> faults;
+  std::vector<Error> faults;
   for (const std::string& path : paths) {
     try {
       inspect(path);
-    } catch (const UsageError&) {
+    } catch (const InvalidArgument&) {
       throw;
     } catch (const Error& error) {
-      faults.emplace_back(error.what());
+      faults.push_back(error);
     }
   }
   if (faults.size() == 1) throw Error(faults.front());
@@ -142,14 +142,14 @@ void PointSource::inspect(const std::string& path) {
   std::shared_ptr<PointReader> reader = open_point_reader(files_, path, options_.reader);
   const PointHeader& header = reader->header();
   if (options_.dimension == 3 && header.coordinates == 2) {
-    throw Error(header.name + ": the points have no z: triangulate them with --dim 2");
+    throw Error(header.name + ": the points have no z", ErrorCode::kDegenerateInput,
+                {.file = header.name, .remedy = Remedy::kPlane});
   }
   const bool has_attributes = header.point_format >= 0;
   if (options_.filter.needs_attributes() && !has_attributes) {
     throw Error(
-        fmt::format("{}: {} has neither classes nor returns of points, so --keep-class, "
-                    "--drop-class and --returns cannot be used with it",
-                    header.name, header.format));
+        fmt::format("{}: {} has neither classes nor returns of points", header.name, header.format),
+        ErrorCode::kBadInput, {.file = header.name, .remedy = Remedy::kFilters});
   }
   std::error_code unknown;
   const bool opens_again = path != "-" && std::filesystem::is_regular_file(path, unknown);

@@ -17,6 +17,7 @@
 #include "src/geometry/lattice.h"
 #include "stream/source/common_lattice.h"
 #include "stream/source/point_filter.h"
+#include "stream/source/point_input.h"
 #include "stream/source/thinning.h"
 #include "stream/tiles/point_feed.h"
 
@@ -62,7 +63,7 @@ struct SourceFacts {
 
 /// All inputs as one: one after the other, each in its own order, filtered, in common coordinates.
 /// If they are thinned, the first fetch() reads all of them.
-class PointSource {
+class PointSource : public PointInput {
  public:
   /// Reads all headers. Throws Error that names all inputs that cannot be opened or do not have
   /// what the filter looks at, or two of different coordinate systems.
@@ -84,26 +85,22 @@ class PointSource {
   /// Whether the inputs are thinned, for which fetch() has to read all of them.
   [[nodiscard]] bool thins() const { return thinning_.has_value(); }
 
-  /// Takes the next piece of the inputs, in order; false at the end.
-  bool fetch(SourcePiece& piece);
+  bool fetch(SourcePiece& piece) override;
 
-  /// Replaces `block` by the points of a piece, which is used up: on lattice() if that is set, else
-  /// in output coordinates. The index counts through all inputs, over dropped points too. Safe for
-  /// many threads at a time. A block may be empty before the end.
-  void decode(SourcePiece& piece, PointBlock& block);
+  /// The index counts through all inputs, over dropped points too.
+  void decode(SourcePiece& piece, PointBlock& block) override;
 
   /// Both steps: replaces `block` by the next points, at least one; false at the end.
   bool read(PointBlock& block);
 
   /// The lattice on which all inputs lie, if there is one (find_common_lattice).
-  [[nodiscard]] const std::optional<Lattice>& lattice() const { return lattice_; }
+  [[nodiscard]] const std::optional<Lattice>& lattice() const override { return lattice_; }
   /// Records in all inputs, where all headers tell and no filter is set; withheld ones may be among
   /// them.
   [[nodiscard]] std::optional<std::uint64_t> count() const;
-  /// About how many points will come, where that can be told; rather too many.
-  [[nodiscard]] std::optional<std::uint64_t> expected() const { return expected_; }
-  /// Of all points, in the coordinates of read(), where all headers tell.
-  [[nodiscard]] const std::optional<Box<3>>& extent() const { return extent_; }
+  [[nodiscard]] std::optional<std::uint64_t> expected() const override { return expected_; }
+  /// Known where all headers tell.
+  [[nodiscard]] const std::optional<Box<3>>& extent() const override { return extent_; }
   /// The same in output coordinates.
   [[nodiscard]] const std::optional<Box<3>>& world_extent() const { return world_extent_; }
   /// Of the first input that names a coordinate system.
@@ -118,12 +115,9 @@ class PointSource {
   /// input that has none comes without; a thinned one with zeros.
   [[nodiscard]] bool has_attributes() const;
 
-  /// What became of the records so far.
-  [[nodiscard]] PointCounts counts() const;
-  /// Records read so far, dropped ones among them: counts().read.
-  [[nodiscard]] std::uint64_t points_read() const;
-  /// How far all inputs have been read, from 0 to 1; nothing if that is unknown.
-  [[nodiscard]] std::optional<double> fraction_read() const;
+  [[nodiscard]] PointCounts counts() const override;
+  [[nodiscard]] std::uint64_t points_read() const override;
+  [[nodiscard]] std::optional<double> fraction_read() const override;
 
  private:
   struct Input {

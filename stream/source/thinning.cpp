@@ -30,7 +30,7 @@ constexpr int kAttributeBits = 20;
 
 std::uint64_t key_of(std::uint64_t index, const PointAttributes& attributes) {
   if (index >> (64 - kAttributeBits) != 0) {
-    throw Error(fmt::format("--thin: {} records are too many; thin parts of them", index));
+    throw Error(fmt::format("thinning: {} records are too many; thin parts of them", index));
   }
   return index << kAttributeBits | static_cast<std::uint64_t>(attributes.classification) << 12 |
          (attributes.return_number & 15U) << 8 | (attributes.return_count & 15U) << 4 |
@@ -80,7 +80,7 @@ Thinning::Cell Thinning::cell_of(const Point<3>& world) const {
     cell[k] = std::floor(world[k] / options_.cell);
     if (!(std::abs(cell[k]) <= kLargestCell)) {
       throw Error(
-          fmt::format("--thin: cells of {} are too small to count up to a coordinate of "
+          fmt::format("thinning: cells of {} are too small to count up to a coordinate of "
                       "{}; choose larger ones",
                       options_.cell, world[k]));
     }

@@ -66,11 +66,13 @@ void refuse_flat_points(const PointSpan<D>& span, std::uint64_t points) {
   const std::size_t independent = span.facts().points.size();
   if (!span.facts().others) {
     throw Error(fmt::format("the input has only {} distinct point{}: a {} needs {}", independent,
-                            independent == 1 ? "" : "s", simplex, D + 1));
+                            independent == 1 ? "" : "s", simplex, D + 1),
+                ErrorCode::kDegenerateInput);
   }
-  throw Error(fmt::format("all {} points lie {}: there is no {} to make{}", points,
-                          independent == 2 ? "on one line" : "in one plane", simplex,
-                          independent == 3 ? " (--dim 2 makes triangles)" : ""));
+  throw Error(fmt::format("all {} points lie {}: there is no {} to make", points,
+                          independent == 2 ? "on one line" : "in one plane", simplex),
+              ErrorCode::kDegenerateInput,
+              {.remedy = independent == 3 ? Remedy::kPlane : Remedy::kNone});
 }
 
 template class PointSpan<2>;

@@ -121,19 +121,19 @@ TEST(FamilyNames, LeadBackToTheirFamilies) {
   EXPECT_EQ(family_by_name("utm"), Family::kUtm);
 }
 
-TEST(FamilyNames, UnknownIsAUsageErrorThatListsThem) {
+TEST(FamilyNames, UnknownIsAInvalidArgumentThatListsThem) {
   try {
     family_by_name("gaussian");
     FAIL();
-  } catch (const UsageError& error) {
+  } catch (const InvalidArgument& error) {
     EXPECT_THAT(error.what(), HasSubstr("'gaussian'"));
     for (const std::string& name : family_names()) EXPECT_THAT(error.what(), HasSubstr(name));
   }
 }
 
-TEST(Generators, OtherDimensionsAreAUsageError) {
-  EXPECT_THROW(make_generator({Family::kUniform, 10, 4, 1}), UsageError);
-  EXPECT_THROW(make_generator({Family::kTerrain, 10, 1, 1}), UsageError);
+TEST(Generators, OtherDimensionsAreAInvalidArgument) {
+  EXPECT_THROW(make_generator({Family::kUniform, 10, 4, 1}), InvalidArgument);
+  EXPECT_THROW(make_generator({Family::kTerrain, 10, 1, 1}), InvalidArgument);
 }
 
 }  // namespace

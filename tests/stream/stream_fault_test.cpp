@@ -240,7 +240,7 @@ TEST_P(StreamFault, OfTooLittleMemoryNamesTheOptionThatHelps) {
                           {.threads = GetParam(), .buffered_points = 100'000'000});
     FAIL() << "more was promised than there is";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("--memory "));
+    EXPECT_EQ(error.facts().remedy, Remedy::kMemory);
   }
   EXPECT_EQ(budget_.used(), 0U);
 }

@@ -10,6 +10,7 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "tests/delaunay/cgal_oracle.h"
+#include "tests/error_facts.h"
 #include "tests/generators/family_cases.h"
 #include "tests/stream/stream_runner.h"
 
@@ -145,16 +146,10 @@ TEST(StreamOfBorderOnly, IsWrittenInEveryKindOfFormat) {
 template <int D>
 void expect_named_memory_is_enough(std::uint64_t points, std::uint64_t memory) {
   const std::string path = write_round_points<D>(points);
-  // It ends with "--memory 52M may be enough, 70M is" or with "--memory 60M is enough".
-  std::string message;
-  try {
-    run_stream<D>(path, {.threads = 2}, memory);
-  } catch (const Error& error) {
-    message = error.what();
-  }
-  const std::string size = message.substr(message.find_last_of(' ', message.rfind("M is")) + 1);
-  ASSERT_FALSE(message.empty() || message.rfind("M is") == std::string::npos) << message;
-  const std::uint64_t enough = std::stoull(size) << 20;
+  const ErrorFacts facts = facts_of([&] { run_stream<D>(path, {.threads = 2}, memory); });
+  ASSERT_EQ(facts.remedy, Remedy::kMemory);
+  const std::uint64_t enough = facts.enough;
+  ASSERT_GT(enough, memory);
   EXPECT_LE(enough, 2'000 * points) << "bytes";
   EXPECT_NO_THROW(run_stream<D>(path, {.threads = 2}, enough));
   EXPECT_NO_THROW(run_stream<D>(path, {.threads = 2, .tile_capacity = points / 5}, enough));

@@ -152,7 +152,7 @@ TEST(GridChoice, BoundsOverruleTheExtentAndAGivenGridBoth) {
 }
 
 TEST(GridChoice, MorePixelsThanGdalCountsAreRefused) {
-  EXPECT_THROW((void)choose_grid({.resolution = 1e-9}, {{0, 0}, {100, 1}}), UsageError);
+  EXPECT_THROW((void)choose_grid({.resolution = 1e-9}, {{0, 0}, {100, 1}}), InvalidArgument);
 }
 
 TEST(GridChoice, PixelsHoldTheirWesternAndNorthernEdgesAndTheLastOneBoth) {

@@ -161,7 +161,7 @@ TEST(PixelCentres, CentresOfALatticeAreItsIntegersWhereTheyFallOnThem) {
 }
 
 TEST(PixelCentres, TooFineAResolutionIsRefused) {
-  EXPECT_THROW(PixelCentres({1e9, 1e9, 1e-9, 10, 10}, std::nullopt), UsageError);
+  EXPECT_THROW(PixelCentres({1e9, 1e9, 1e-9, 10, 10}, std::nullopt), InvalidArgument);
 }
 
 }  // namespace

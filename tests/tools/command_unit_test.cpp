@@ -38,10 +38,10 @@ TEST(CoreList, DotsStandForDoubling) {
   EXPECT_EQ(parse_core_list("3,...,20"), (List{3, 6, 12, 20}));
 }
 
-TEST(CoreList, NonsenseIsAUsageError) {
+TEST(CoreList, NonsenseIsAInvalidArgument) {
   for (const char* text : {"", ",", "0", "-1", "1,", "1,,2", "...", "...,4", "1,...", "1,...,...,8",
                            "two", "1;2", "1e3", "99999999999"}) {
-    EXPECT_THROW(parse_core_list(text), UsageError) << text;
+    EXPECT_THROW(parse_core_list(text), InvalidArgument) << text;
   }
 }
 
@@ -65,7 +65,7 @@ TEST(Count, TakesDigitsAndExponents) {
   EXPECT_EQ(parse_point_count("1e6"), 1000000U);
   EXPECT_EQ(parse_point_count("2.5e3"), 2500U);
   for (const char* text : {"", "-1", "1.5", "1e-3", "1e400", "nan", "ten", "5 ", "1e6x"}) {
-    EXPECT_THROW(parse_point_count(text), UsageError) << text;
+    EXPECT_THROW(parse_point_count(text), InvalidArgument) << text;
   }
 }
 

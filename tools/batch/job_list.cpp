@@ -15,7 +15,7 @@
 #include "formats/disk/extension.h"
 #include "formats/disk/file_system.h"
 #include "formats/points/point_format.h"
-#include "src/error.h"
+#include "tools/process/usage_error.h"
 
 namespace spillway::detail {
 namespace {

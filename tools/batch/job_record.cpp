@@ -7,7 +7,7 @@
 #include <exception>
 #include <fstream>
 
-#include "tools/options/input_list.h"
+#include "stream/source/input_list.h"
 #include "tools/report/json_text.h"
 #include "tools/report/text_output.h"
 

@@ -11,7 +11,7 @@
 
 #include "formats/meshes/common/mesh_writer.h"
 #include "formats/meshes/mesh_format.h"
-#include "src/error.h"
+#include "tools/process/usage_error.h"
 
 namespace spillway::detail {
 namespace {
@@ -53,7 +53,7 @@ OutputKind kind_by_name(const Job& job, const std::string& name) {
   if (dot == std::string::npos) {
     try {
       mesh_format("x." + name, "");
-    } catch (const UsageError&) {
+    } catch (const InvalidArgument&) {
       throw UsageError(
           fmt::format("{}: no output can be made as \"{}\"; a mesh is one of {}, "
                       "anything else is named like dem.tif",

@@ -17,15 +17,15 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/disk/unfinished_files.h"
 #include "src/distributed/ranks.h"
-#include "src/error.h"
 #include "src/parallel/parallel.h"
+#include "stream/source/input_list.h"
 #include "tools/batch/child_process.h"
 #include "tools/batch/job_log.h"
 #include "tools/batch/job_record.h"
 #include "tools/batch/job_steps.h"
 #include "tools/commands/command.h"
 #include "tools/options/command_options.h"
-#include "tools/options/input_list.h"
+#include "tools/process/usage_error.h"
 #include "tools/report/json_text.h"
 #include "tools/report/text_output.h"
 
@@ -97,7 +97,7 @@ std::string make_scratch(const MemoryOptions& options) {
   try {
     return make_temporary_folder(scratch_parent(options.scratch_parent), "spillway-batch-");
   } catch (const Error& error) {
-    throw Error(fmt::format("{}; choose another folder with --tmpdir", error.what()));
+    throw SystemRefusal(error.what(), error.facts().file, 0, Remedy::kScratchFolder);
   }
 }
 

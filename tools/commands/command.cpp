@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "src/distributed/ranks.h"
-#include "src/error.h"
 #include "tools/options/command_options.h"
 #include "tools/options/option_tree.h"
 #include "tools/options/suggestion.h"
 #include "tools/process/rank_job.h"
+#include "tools/process/usage_error.h"
 #include "tools/report/standard_error.h"
 #include "tools/report/text_output.h"
 

@@ -14,13 +14,13 @@
 #include "formats/meshes/mesh_format.h"
 #include "formats/points/common/point_writer.h"
 #include "formats/points/create_points.h"
-#include "src/error.h"
+#include "stream/source/input_list.h"
 #include "tools/commands/command.h"
 #include "tools/commands/convert_meshes.h"
 #include "tools/commands/convert_points.h"
 #include "tools/options/command_options.h"
-#include "tools/options/input_list.h"
 #include "tools/options/input_options.h"
+#include "tools/process/usage_error.h"
 
 namespace spillway::detail {
 namespace {
@@ -68,7 +68,7 @@ bool is_mesh_output(const PointOutput& output) {
   try {
     mesh_format(output.path, output.format);
     return true;
-  } catch (const UsageError&) {
+  } catch (const InvalidArgument&) {
     return false;
   }
 }
@@ -80,7 +80,7 @@ void check_points_output(const ConvertOptions& options) {
   PointFormat format = PointFormat::kSpp;
   try {
     if (!piped) format = point_format_to_write(output.path, output.format);
-  } catch (const UsageError&) {
+  } catch (const InvalidArgument&) {
     if (!is_mesh_output(output)) throw;
     throw Error(
         fmt::format("{}: these are points, and {} would be a mesh: use spillway triangulate",
@@ -107,7 +107,7 @@ void check_mesh_output(const ConvertOptions& options) {
   if (is_mesh_output(output)) return;
   try {
     point_format_to_write(output.path, format_name_of(output));
-  } catch (const UsageError&) {
+  } catch (const InvalidArgument&) {
     return;  // of neither: that is said when the mesh is written
   }
   throw UsageError(

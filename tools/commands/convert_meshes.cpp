@@ -18,9 +18,9 @@
 #include "formats/meshes/mesh_stream_writer.h"
 #include "formats/meshes/npy/npy_mesh.h"
 #include "formats/meshes/spm/spm_format.h"
-#include "src/error.h"
 #include "stream/checker/checker.h"
 #include "tools/commands/facet_count.h"
+#include "tools/process/usage_error.h"
 
 namespace spillway::detail {
 namespace {

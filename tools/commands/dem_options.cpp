@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "formats/gdal/gdal.h"
-#include "src/error.h"
+#include "tools/process/usage_error.h"
 
 namespace spillway::detail {
 namespace {

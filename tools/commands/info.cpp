@@ -17,10 +17,10 @@
 #include "src/geometry/canonical_hash.h"
 #include "src/geometry/lattice_check.h"
 #include "stream/checker/checker.h"
+#include "stream/source/input_list.h"
 #include "tools/commands/command.h"
 #include "tools/commands/facet_count.h"
 #include "tools/options/command_options.h"
-#include "tools/options/input_list.h"
 #include "tools/options/input_options.h"
 #include "tools/process/rank_job.h"
 #include "tools/report/json_text.h"
@@ -301,7 +301,7 @@ int run(const InfoOptions& options) {
   for (const std::string& path : paths) {
     try {
       tell(input_of(path, inputs), options, progress);
-    } catch (const UsageError&) {
+    } catch (const InvalidArgument&) {
       throw;
     } catch (const ClosedPipe&) {
       throw;

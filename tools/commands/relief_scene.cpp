@@ -7,12 +7,12 @@
 #include <span>
 
 #include "formats/gdal/raster.h"
-#include "src/error.h"
 #include "src/picture/frame.h"
 #include "src/picture/line_layer.h"
 #include "src/picture/relief.h"
 #include "stream/sinks/dem_writer.h"
 #include "tools/commands/render_scene.h"
+#include "tools/process/usage_error.h"
 
 namespace spillway::detail {
 namespace {

@@ -6,11 +6,11 @@
 #include <numbers>
 #include <utility>
 
-#include "src/error.h"
 #include "src/picture/frame.h"
 #include "src/picture/polygons.h"
 #include "stream/sinks/tetrahedron_writers.h"
 #include "tools/commands/render_scene.h"
+#include "tools/process/usage_error.h"
 
 namespace spillway::detail {
 namespace {

@@ -15,10 +15,10 @@
 #include "formats/inputs/open_mesh_stream.h"
 #include "formats/meshes/common/mesh_writer.h"
 #include "formats/meshes/mesh_format.h"
-#include "src/error.h"
 #include "src/parallel/parallel.h"
+#include "stream/source/input_list.h"
 #include "tools/options/command_options.h"
-#include "tools/options/input_list.h"
+#include "tools/process/usage_error.h"
 #include "tools/report/rank_statistics.h"
 
 namespace spillway::detail {

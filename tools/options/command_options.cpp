@@ -14,9 +14,9 @@
 #include <utility>
 
 #include "src/distributed/ranks.h"
-#include "src/error.h"
 #include "src/runtime/memory_budget.h"
 #include "tools/process/rank_job.h"
+#include "tools/process/usage_error.h"
 
 namespace spillway::detail {
 namespace {
@@ -206,7 +206,7 @@ CLI::Option* take_parsed(CLI::Option* option, std::function<void(const std::stri
     try {
       parse(text);
       return "";
-    } catch (const UsageError& error) {
+    } catch (const InvalidArgument& error) {
       return error.what();
     }
   });

@@ -9,10 +9,10 @@
 #include <limits>
 #include <system_error>
 
-#include "src/error.h"
 #include "stream/ranks/rank_pipeline.h"
+#include "stream/source/input_list.h"
 #include "tools/options/command_options.h"
-#include "tools/options/input_list.h"
+#include "tools/process/usage_error.h"
 
 namespace spillway::detail {
 namespace {

@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include "formats/gdal/gdal.h"
-#include "src/error.h"
 #include "tools/options/command_options.h"
+#include "tools/process/usage_error.h"
 
 namespace spillway::detail {
 

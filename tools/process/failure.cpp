@@ -61,7 +61,7 @@ int report(const std::exception_ptr& failure) {
     std::rethrow_exception(failure);
   } catch (const ClosedPipe&) {
     return end_quietly(kExitClosedPipe);
-  } catch (const UsageError& error) {
+  } catch (const InvalidArgument& error) {
     return report_error(error, kExitUsage);
   } catch (const Error& error) {
     return report_error(error, kExitFailed);

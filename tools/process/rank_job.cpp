@@ -13,7 +13,8 @@
 
 #include "formats/bytes/bytes.h"
 #include "formats/disk/unfinished_files.h"
-#include "src/error.h"
+#include "tools/process/usage_error.h"
+#include "tools/report/advice.h"
 #include "tools/report/printable_text.h"
 #include "tools/report/standard_error.h"
 
@@ -81,11 +82,11 @@ int report_error(const Error& error, int exit_code) {
                               std::min(joined() ? joined()->rank() : launch().rank, kMostTurns));
   if (const auto* const list = dynamic_cast<const ErrorList*>(&error)) {
     write_error(rank + list->heading() + ":");
-    for (const std::string& fault : list->faults()) {
-      write_to_standard_error("  " + printable(fault) + "\n");
+    for (const Error& fault : list->faults()) {
+      write_to_standard_error("  " + printable(advised_message(fault)) + "\n");
     }
   } else {
-    write_error(rank + error.what());
+    write_error(rank + advised_message(error));
   }
   return end_quietly(exit_code);
 }

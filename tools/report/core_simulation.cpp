@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-#include "src/error.h"
+#include "tools/process/usage_error.h"
 
 namespace spillway::detail {
 namespace {

@@ -86,7 +86,7 @@ class NpyMeshWriter : public CheckedMeshWriter {
 NpyMeshNames npy_mesh_to_write(const FileSystem& files, const std::string& path,
                                bool has_input_index) {
   if (path == "-") {
-    throw UsageError(
+    throw InvalidArgument(
         "standard output cannot take an npy mesh, which is two files; choose ply or vtu");
   }
   NpyMeshNames names = npy_mesh_names(path);

@@ -36,11 +36,11 @@ bool is_version14(const OutputFile& file, const PointWriterOptions& options) {
   const bool large = options.count && *options.count > kMostLegacyPoints;
   if (options.version.empty()) return large;
   if (options.version != "1.2" && options.version != "1.4") {
-    throw UsageError(fmt::format("cannot write {}: LAS {} is not written; choose 1.2 or 1.4",
-                                 file.name(), options.version));
+    throw InvalidArgument(fmt::format("cannot write {}: LAS {} is not written; choose 1.2 or 1.4",
+                                      file.name(), options.version));
   }
   if (options.version == "1.2" && large) {
-    throw UsageError(
+    throw InvalidArgument(
         fmt::format("cannot write {}: {} points are more than LAS 1.2 counts; choose "
                     "1.4",
                     file.name(), *options.count));
@@ -106,9 +106,9 @@ class LasWriter : public PointWriter {
   void write_block(std::span<const Point<3>> points, std::span<const PointAttributes> attributes) {
     if (!version14_ && written_ + points.size() > kMostLegacyPoints) {
       throw Error(
-          fmt::format("cannot write {}: more than {} points come, and LAS 1.2 counts no "
-                      "further; choose --las-version 1.4",
-                      file_->name(), kMostLegacyPoints));
+          fmt::format("cannot write {}: more than {} points come, and LAS 1.2 counts no further",
+                      file_->name(), kMostLegacyPoints),
+          ErrorCode::kTooLarge, {.file = file_->name(), .remedy = Remedy::kLas14});
     }
     std::byte* record = records_.data();
     for (std::size_t i = 0; i < points.size(); ++i, record += record_length_) {
@@ -168,13 +168,15 @@ class LasWriter : public PointWriter {
       }
       if (!attributes.empty() && !holds(attributes[i])) {
         const PointAttributes& a = attributes[i];
-        throw Error(fmt::format(
-            "cannot write {}: point {} (class {}, return {} of {}{}) is more than a LAS {} record "
-            "holds; {}",
-            file_->name(), written_ + i, a.classification, a.return_number, a.return_count,
-            (a.flags & PointAttributes::kOverlap) != 0 ? ", overlap" : "",
-            version14_ ? "1.4" : "1.2",
-            version14_ ? "the input is corrupt" : "choose --las-version 1.4"));
+        throw Error(
+            fmt::format("cannot write {}: point {} (class {}, return {} of {}{}) is more than a "
+                        "LAS {} record holds{}",
+                        file_->name(), written_ + i, a.classification, a.return_number,
+                        a.return_count,
+                        (a.flags & PointAttributes::kOverlap) != 0 ? ", overlap" : "",
+                        version14_ ? "1.4" : "1.2", version14_ ? "; the input is corrupt" : ""),
+            ErrorCode::kBadInput,
+            {.file = file_->name(), .remedy = version14_ ? Remedy::kNone : Remedy::kLas14});
       }
     }
     throw std::logic_error("a block without invalid points was called invalid");

@@ -10,6 +10,7 @@
 
 #include "formats/bytes/bytes.h"
 #include "formats/disk/unfinished_files.h"
+#include "tests/error_facts.h"
 #include "tests/formats/point_test_helpers.h"
 
 namespace spillway::detail::testing {
@@ -124,8 +125,8 @@ TEST_F(Scratch, TheCapHoldsForWhatIsThere) {
   first->append(as_bytes_of("123456"));
   second->append(as_bytes_of("1234"));
   EXPECT_THAT(error_of([&] { second->append(as_bytes_of("5")); }),
-              AllOf(HasSubstr("cannot write " + second->name()), HasSubstr("10 bytes"),
-                    HasSubstr("raise --max-tmp")));
+              AllOf(HasSubstr("cannot write " + second->name()), HasSubstr("10 bytes")));
+  EXPECT_EQ(facts_of([&] { second->append(as_bytes_of("5")); }).remedy, Remedy::kScratchLimit);
   EXPECT_EQ(second->size(), 4U);
   first.reset();
   second->append(as_bytes_of("56789"));
@@ -138,9 +139,12 @@ TEST_F(Scratch, AFullDiskIsAnError) {
   const auto file = scratch->create("tile");
   fs::remove(file->name());
   fs::create_symlink("/dev/full", file->name());
-  EXPECT_THAT(error_of([&] { file->append(as_bytes_of("x")); }),
-              AllOf(HasSubstr("cannot write " + file->name() + ": No space left on device"),
-                    HasSubstr("free some space"), HasSubstr("--tmpdir")));
+  const auto append = [&] { file->append(as_bytes_of("x")); };
+  EXPECT_THAT(error_of(append),
+              HasSubstr("cannot write " + file->name() + ": No space left on device"));
+  EXPECT_EQ(facts_of(append).file, file->name());
+  EXPECT_EQ(facts_of(append).system_error, ENOSPC);
+  EXPECT_EQ(facts_of(append).remedy, Remedy::kScratchFolder);
 }
 
 TEST_F(Scratch, AFileThatShrankIsAnError) {
@@ -158,9 +162,10 @@ TEST_F(Scratch, AFileThatShrankIsAnError) {
 
 TEST_F(Scratch, AMissingParentIsAnError) {
   const auto scratch = make_scratch_folder(parent_ / "none", std::nullopt);
-  EXPECT_THAT(error_of([&] { scratch->create("tile"); }),
-              AllOf(HasSubstr((parent_ / "none").string() + ": No such file or directory"),
-                    HasSubstr("--tmpdir")));
+  const auto create = [&] { scratch->create("tile"); };
+  EXPECT_THAT(error_of(create),
+              HasSubstr((parent_ / "none").string() + ": No such file or directory"));
+  EXPECT_EQ(facts_of(create).remedy, Remedy::kScratchFolder);
 }
 
 TEST_F(Scratch, MoreFilesThanDescriptors) {

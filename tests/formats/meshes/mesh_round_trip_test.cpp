@@ -188,8 +188,8 @@ TEST_P(EveryFormat, NothingAppearsBeforeFinish) {
 INSTANTIATE_TEST_SUITE_P(All, EveryFormat, Values(kPly, kPlyAscii, kObj, kOff, kVtu, kNpy),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST(MeshFormats, UnknownNamesAreUsageErrorsThatListTheFormats) {
-  EXPECT_THROW(mesh_format("mesh.ply", "dxf"), UsageError);
+TEST(MeshFormats, UnknownNamesAreInvalidArgumentsThatListTheFormats) {
+  EXPECT_THROW(mesh_format("mesh.ply", "dxf"), InvalidArgument);
   EXPECT_THAT(error_of([] { mesh_format("mesh.dxf", ""); }),
               HasSubstr("choose one of ply, ply-ascii, obj, off, vtu, npy, spm, sma, glb, stl, "
                         "landxml, gpkg, shp"));
@@ -230,7 +230,7 @@ TEST(MeshFormats, AFormatCanBeNamed) {
   FaultyFileSystem files;
   files.files["mesh"] = mesh_bytes(MeshFormat::kObj, awkward_mesh(2));
   expect_equal(read_mesh(files, "mesh", "obj"), awkward_mesh(2));
-  EXPECT_THROW(read_mesh(files, "mesh", "dxf"), UsageError);
+  EXPECT_THROW(read_mesh(files, "mesh", "dxf"), InvalidArgument);
 }
 
 TEST(NpyMesh, IsNotWrittenToAPipe) {

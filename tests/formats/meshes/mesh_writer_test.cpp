@@ -54,7 +54,7 @@ TEST(MeshFormatChoice, NamesAreInTheOrderOfTheFormats) {
 
 TEST(MeshFormatChoice, ListsTheFormatsWhereNoneIsNamed) {
   for (const std::string path : {"a", "a.dxf", "ply"}) {
-    EXPECT_THROW(mesh_format(path, ""), UsageError) << path;
+    EXPECT_THROW(mesh_format(path, ""), InvalidArgument) << path;
     EXPECT_THAT(error_of([&] { mesh_format(path, ""); }),
                 HasSubstr("ply, ply-ascii, obj, off, vtu, npy, spm, sma"));
   }

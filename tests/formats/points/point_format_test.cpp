@@ -107,13 +107,13 @@ TEST(PointFormatChoice, UnknownOption) {
 
 TEST(PointFormatChoice, OutputWithoutKnownFormat) {
   FaultyFileSystem files;
-  EXPECT_THROW(open_point_writer(files, "-", {}), UsageError);
-  EXPECT_THROW(open_point_writer(files, "a.dat", {}), UsageError);
-  EXPECT_THROW(open_point_writer(files, "a.laz", {}), UsageError);
-  EXPECT_THROW(open_point_writer(files, "a.xyz.gz", {}), UsageError);
+  EXPECT_THROW(open_point_writer(files, "-", {}), InvalidArgument);
+  EXPECT_THROW(open_point_writer(files, "a.dat", {}), InvalidArgument);
+  EXPECT_THROW(open_point_writer(files, "a.laz", {}), InvalidArgument);
+  EXPECT_THROW(open_point_writer(files, "a.xyz.gz", {}), InvalidArgument);
   PointWriterOptions laz;
   laz.format = "laz";
-  EXPECT_THROW(open_point_writer(files, "-", laz), UsageError);
+  EXPECT_THROW(open_point_writer(files, "-", laz), InvalidArgument);
   EXPECT_EQ(files.count(Call::kCreate), 0);
 }
 

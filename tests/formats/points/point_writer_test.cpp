@@ -7,6 +7,7 @@
 #include <random>
 
 #include "formats/disk/scratch_folder.h"
+#include "tests/error_facts.h"
 #include "tests/formats/point_test_helpers.h"
 #include "tests/formats/points/las/las_file.h"
 
@@ -234,10 +235,9 @@ TEST(LasWriter, RefusesAttributesThatTheRecordCannotHold) {
   for (const PointAttributes& bad :
        {PointAttributes{.classification = 32}, PointAttributes{.return_number = 8},
         PointAttributes{.return_count = 8}, PointAttributes{.flags = PointAttributes::kOverlap}}) {
-    EXPECT_THAT(error_of([&] {
-                  written(points, {{}, {}, bad}, with_lattice({}));
-                }),
-                AllOf(HasSubstr("a.las: point 2 (class "), HasSubstr("choose --las-version 1.4")));
+    const auto write = [&] { written(points, {{}, {}, bad}, with_lattice({})); };
+    EXPECT_THAT(error_of(write), HasSubstr("a.las: point 2 (class "));
+    EXPECT_EQ(facts_of(write).remedy, Remedy::kLas14);
   }
 }
 
@@ -391,9 +391,9 @@ TEST(SpooledOutput, ReportsAFullScratchFolder) {
   const auto scratch = make_scratch_folder(::testing::TempDir(), 1 << 20);
   PointWriterOptions options = with_lattice({});
   options.scratch = scratch.get();
-  EXPECT_THAT(
-      error_of([&] { written_as_is("a.las", random_integers(200000), {}, options, false); }),
-      HasSubstr("--max-tmp"));
+  const ErrorFacts facts =
+      facts_of([&] { written_as_is("a.las", random_integers(200000), {}, options, false); });
+  EXPECT_EQ(facts.remedy, Remedy::kScratchLimit);
 }
 
 TEST(SpooledOutput, ReportsAFullPipe) {

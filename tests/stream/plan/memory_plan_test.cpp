@@ -5,6 +5,7 @@
 #include "src/error.h"
 #include "src/runtime/memory_budget.h"
 #include "stream/plan/memory_plan.h"
+#include "tests/error_facts.h"
 
 namespace spillway::detail {
 namespace {
@@ -22,7 +23,7 @@ TEST(MemorySize, IsReadWithAndWithoutUnits) {
 
 TEST(MemorySize, RefusesWhatIsNone) {
   for (const char* text : {"", "M", "-1", "1X", "1MX", "0", "nan", "inf", "1e30T", "12 M"}) {
-    EXPECT_THROW(parse_memory_size(text), UsageError) << text;
+    EXPECT_THROW(parse_memory_size(text), InvalidArgument) << text;
   }
 }
 
@@ -41,21 +42,17 @@ TEST(MemoryBudget, NamesWhatMayBeEnoughAndWhatIs) {
   MemoryBudget budget(32 * kMiB);
   budget.set_enough(100 * kMiB - 1);
   const MemoryLease lease(budget, 20 * kMiB, "one thing");
-  const auto message = [&](std::uint64_t bytes) {
-    try {
-      const MemoryLease more(budget, bytes, "another");
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+  const auto facts = [&](std::uint64_t bytes) {
+    return facts_of([&] { const MemoryLease more(budget, bytes, "another"); });
   };
-  EXPECT_EQ(message(12 * kMiB), "");
-  EXPECT_EQ(message(20 * kMiB),
-            "32 MiB of memory are too little for another; --memory 51M may be enough, 100M is");
-  EXPECT_EQ(message(70 * kMiB),
-            "32 MiB of memory are too little for another; --memory 100M is enough");
-  EXPECT_EQ(message(100 * kMiB),
-            "32 MiB of memory are too little for another; --memory 151M may be enough");
+  EXPECT_EQ(facts(12 * kMiB).remedy, Remedy::kNone);
+  EXPECT_EQ(facts(20 * kMiB).remedy, Remedy::kMemory);
+  EXPECT_EQ(facts(20 * kMiB).perhaps, 51 * kMiB);
+  EXPECT_EQ(facts(20 * kMiB).enough, 100 * kMiB);
+  EXPECT_EQ(facts(70 * kMiB).perhaps, 0U);
+  EXPECT_EQ(facts(70 * kMiB).enough, 100 * kMiB);
+  EXPECT_EQ(facts(100 * kMiB).perhaps, 151 * kMiB);
+  EXPECT_EQ(facts(100 * kMiB).enough, 0U);
 }
 
 TEST(MemoryBudget, SpeaksOfTheWholeThatItIsAPartOf) {
@@ -65,9 +62,10 @@ TEST(MemoryBudget, SpeaksOfTheWholeThatItIsAPartOf) {
     const MemoryLease lease(budget, 40 * kMiB, "one thing");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "32 MiB of memory are too little for one thing; --memory 67M may be enough, 81M is");
+    EXPECT_STREQ(error.what(), "32 MiB of memory are too little for one thing");
+    EXPECT_EQ(error.code(), ErrorCode::kOutOfBudget);
+    EXPECT_EQ(error.facts().perhaps, 67 * kMiB);
+    EXPECT_EQ(error.facts().enough, 81 * kMiB);
   }
 }
 
@@ -80,7 +78,7 @@ TEST(MemoryPlan, RefusesTooSmallALimitAndNamesTheLeast) {
   try {
     plan_memory(8 * kMiB, 2, 1);
     FAIL() << "8 MiB were accepted";
-  } catch (const UsageError& error) {
+  } catch (const InvalidArgument& error) {
     EXPECT_NE(std::string(error.what()).find("MiB are the least"), std::string::npos);
   }
 }

@@ -450,7 +450,7 @@ TEST(RankOutput, PartsAreRefusedWhereAFormatHasNone) {
   const auto error = [](const std::string& path, const std::string& format) -> std::string {
     try {
       mesh_target(path, format, true);
-    } catch (const UsageError& e) {
+    } catch (const InvalidArgument& e) {
       return e.what();
     }
     return "";

@@ -219,10 +219,10 @@ TEST(Levels, HaveNoMinusZero) {
 }
 
 TEST(Levels, RefuseWhatMakesNoSense) {
-  EXPECT_THROW(Levels::every(0, 0), UsageError);
-  EXPECT_THROW(Levels::every(-1, 0), UsageError);
-  EXPECT_THROW(Levels::every(NAN, 0), UsageError);
-  EXPECT_THROW(Levels::of_list({}), UsageError);
+  EXPECT_THROW(Levels::every(0, 0), InvalidArgument);
+  EXPECT_THROW(Levels::every(-1, 0), InvalidArgument);
+  EXPECT_THROW(Levels::every(NAN, 0), InvalidArgument);
+  EXPECT_THROW(Levels::of_list({}), InvalidArgument);
   EXPECT_THROW(static_cast<void>(Levels::every(1e-300, 0).between(5, 6)), Error);
 }
 

@@ -239,9 +239,9 @@ TEST(Dem, PixelsThatDoNotFitIntoMemoryGoToTheDiskAndComeBack) {
 
 TEST(Dem, TooLittleMemoryAndTooLargeARasterAreRefused) {
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  EXPECT_THROW(Dem({.memory = 1000}, std::nullopt, *scratch), UsageError);
+  EXPECT_THROW(Dem({.memory = 1000}, std::nullopt, *scratch), InvalidArgument);
   Dem dem({.grid = {.resolution = 1e-6}, .memory = kMemory}, std::nullopt, *scratch);
-  EXPECT_THROW(dem.begin(Box<2>{{0, 0}, {1000, 1000}}), UsageError);
+  EXPECT_THROW(dem.begin(Box<2>{{0, 0}, {1000, 1000}}), InvalidArgument);
 }
 
 TEST(RasterStore, PreferredValuesWinOverOthersInAnyOrder) {

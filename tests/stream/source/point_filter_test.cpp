@@ -78,7 +78,7 @@ TEST(PointFilter, EachPointIsCountedWhereItIsDroppedFirst) {
   EXPECT_EQ(block.index, (std::vector<std::uint64_t>{104, 106, 108}));
   EXPECT_EQ(block.attributes[1].classification, 6);
   EXPECT_EQ(describe(counts),
-            "12 points read, 6 left out by --every, 1 of other classes, 2 outside --bounds, 3 "
+            "12 points read, 6 skipped, 1 of other classes, 2 outside the bounds, 3 "
             "kept");
 }
 

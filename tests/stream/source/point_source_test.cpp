@@ -190,7 +190,7 @@ TEST_F(PointSourceTest, DifferentCoordinateSystemsAreRefusedUnlessForced) {
   files_.files["there.las"] = there.bytes();
   EXPECT_THAT(error_of({"here.las", "there.las"}),
               AllOf(HasSubstr("here.las"), HasSubstr("there.las"), HasSubstr("32632"),
-                    HasSubstr("32633"), HasSubstr("--force-crs")));
+                    HasSubstr("32633"), HasSubstr("take coordinates as they are")));
   PointSourceOptions options;
   options.force_crs = true;
   EXPECT_EQ(read({"here.las", "there.las"}, options).points.size(), 18U);

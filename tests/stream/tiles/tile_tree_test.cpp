@@ -201,7 +201,7 @@ TEST(TileTree, SaysWhenTheDiskIsFull) {
       tree.divide_large([](std::uint64_t, double) {});
       FAIL() << "the cap was not kept";
     } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("--max-tmp"), std::string::npos) << error.what();
+      EXPECT_EQ(error.facts().remedy, Remedy::kScratchLimit) << error.what();
     }
   });
 }

@@ -74,7 +74,7 @@ TEST_F(Filters, WhatWasDroppedIsSaidInOneLine) {
   const Result result =
       work_.run("spillway triangulate in.las -o mesh.ply --keep-class 2 --every 2");
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_THAT(result.err, HasSubstr("3000 points read, 1500 left out by --every, 1200 of other "
+  EXPECT_THAT(result.err, HasSubstr("3000 points read, 1500 skipped, 1200 of other "
                                     "classes, 300 kept\n"));
   EXPECT_THAT(work_.run("spillway triangulate in.las -o mesh.ply").err, Not(HasSubstr("kept")));
 }

@@ -1,6 +1,7 @@
 #include "formats/meshes/spooled_mesh_writer.h"
 #include "formats/meshes/create_mesh.h"
 
+#include "tests/error_facts.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
 namespace spillway::detail::testing {
@@ -109,7 +110,7 @@ TEST(SpooledMeshWriter, AFullDiskIsReported) {
   FaultyFileSystem files;
   const auto writer = open_spooled_mesh_writer(
       create_mesh_files(files, "a.ply", MeshFormat::kPly, 2, false), mesh.header, *scratch, 100);
-  EXPECT_THAT(error_of([&] { write_blocks(*writer, mesh); }), HasSubstr("--max-tmp"));
+  EXPECT_EQ(facts_of([&] { write_blocks(*writer, mesh); }).remedy, Remedy::kScratchLimit);
 }
 
 }  // namespace

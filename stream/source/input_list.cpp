@@ -1,4 +1,4 @@
-#include "tools/options/input_list.h"
+#include "stream/source/input_list.h"
 
 #include <fmt/format.h>
 #include <glob.h>

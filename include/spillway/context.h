@@ -1,0 +1,63 @@
+#pragma once
+// What a run may take, and how it is watched and stopped.
+
+#include <spillway/export.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+
+namespace spillway {
+
+/// How far a run is.
+struct Progress {
+  std::string_view phase;          ///< "read", "divide", "triangulate" or "write"
+  std::uint64_t done = 0;          ///< points that have been through the phase
+  std::optional<double> fraction;  ///< of the phase, from 0 to 1, where that is known
+};
+
+struct ContextOptions {
+  /// Memory to keep to: "512M", "2G"; K, M, G, T are powers of 1024. Empty: a quarter of what this
+  /// process may use, 2G at most.
+  std::string memory{};
+  /// At most so many threads, the caller's among them; 0: as many as this process may use.
+  unsigned threads = 0;
+  /// Where scratch files go that do not fit into memory. Empty: $TMPDIR, else /tmp.
+  std::string scratch_folder{};
+  /// Most that may lie there at a time, written as `memory`. Empty: no limit.
+  std::string scratch_limit{};
+  /// Told from time to time how far the run is, by any thread, one call at a time.
+  std::function<void(const Progress&)> progress{};
+  /// Told what is worth a warning, and what explains how the run goes; by any thread.
+  std::function<void(std::string_view)> warning{};
+  std::function<void(std::string_view)> detail{};
+  /// A request to stop ends the run with ErrorCode::kInterrupted, soon but not at once: parts of
+  /// some ten thousand points that have been begun are finished.
+  std::stop_token stop{};
+};
+
+/// What the calls of a program have in common. Nothing of it is kept by the process: two contexts
+/// beside each other do not know of each other. It may be used by several calls, also at a time.
+class SPILLWAY_API Context {
+ public:
+  /// Throws Error(kInvalidArgument) for sizes that are none, or more than 4,096 threads.
+  explicit Context(ContextOptions options = {});
+
+  [[nodiscard]] const ContextOptions& options() const { return options_; }
+  /// Bytes to keep to.
+  [[nodiscard]] std::uint64_t memory() const { return memory_; }
+  [[nodiscard]] unsigned threads() const { return threads_; }
+  /// Bytes of scratch files, where there is a limit.
+  [[nodiscard]] const std::optional<std::uint64_t>& scratch_limit() const { return scratch_limit_; }
+
+ private:
+  ContextOptions options_;
+  std::uint64_t memory_ = 0;
+  unsigned threads_ = 1;
+  std::optional<std::uint64_t> scratch_limit_;
+};
+
+}  // namespace spillway

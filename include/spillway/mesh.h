@@ -1,0 +1,107 @@
+#pragma once
+// A mesh that streams out, block by block: to files, into memory, to whatever a program derives.
+
+#include <spillway/context.h>
+#include <spillway/export.h>
+#include <spillway/extent.h>
+#include <spillway/point_view.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace spillway {
+
+/// What is known of a mesh before its first block.
+struct MeshHeader {
+  int dimension = 2;                      ///< 2: triangles with z carried along, 3: tetrahedra
+  bool has_input_index = false;           ///< vertices carry their index in the input
+  std::optional<std::uint64_t> points{};  ///< of the input
+  std::optional<Extent> extent{};         ///< a box around the points
+  std::string crs{};                      ///< coordinate system as WKT or "EPSG:n"; empty: unknown
+};
+
+/// Some vertices and simplices. A mesh numbers its vertices 0, 1, 2, ... in the order in which they
+/// come; no simplex comes before its vertices, and none after one of them was finalized. So who
+/// reads along need never hold more than the vertices in use.
+struct MeshBlock {
+  std::uint64_t first_vertex = 0;          ///< the number of the first of `vertices`
+  std::vector<Point<3>> vertices;          ///< that come for the first time
+  std::vector<std::uint64_t> input_index;  ///< of `vertices`, if the header says so
+  std::vector<std::uint64_t> corners;      ///< dimension + 1 vertices a simplex, oriented
+  std::vector<std::uint64_t> finalized;    ///< vertices that are used no more
+};
+
+/// What is known of a mesh after its last block.
+struct MeshTotals {
+  std::uint64_t vertices = 0;
+  std::uint64_t simplices = 0;
+  std::uint64_t hull_facets = 0;  ///< facets of one simplex only
+  std::uint64_t points = 0;       ///< of the input
+  std::uint64_t duplicates = 0;   ///< points that equal another one (in the plane: in x and y)
+  /// A number that depends on nothing but the set of simplices, each the set of its vertices'
+  /// coordinates; the command prints it as 16 hexadecimal digits.
+  std::uint64_t canonical_hash = 0;
+
+  bool operator==(const MeshTotals&) const = default;
+};
+
+/// What takes a mesh. All calls come one at a time, though from any thread: begin() once, write()
+/// for each block, and finish() once, if nothing fails. What they throw ends the run and reaches
+/// whoever called triangulate(); a sink that is destroyed without finish() leaves nothing behind.
+class SPILLWAY_API MeshSink {
+ public:
+  virtual ~MeshSink();
+
+  virtual void begin(const MeshHeader& header);
+  virtual void write(const MeshBlock& block) = 0;
+  virtual void finish(const MeshTotals& totals);
+};
+
+struct MeshOptions {
+  std::string format{};  ///< "spm", "ply", "vtu", ...; empty: by the extension
+};
+
+/// A mesh file, of any format that the command writes; "-" is standard output, as spm. It gets its
+/// name when it is complete. Throws Error: kInvalidArgument for a format that is not known;
+/// begin() throws it for a format that cannot hold the mesh, and kInputOutput.
+SPILLWAY_API std::unique_ptr<MeshSink> open_mesh(const std::string& path,
+                                                 const MeshOptions& options,
+                                                 const Context& context);
+
+/// Calls `take` with each block.
+SPILLWAY_API std::unique_ptr<MeshSink> mesh_to(std::function<void(const MeshBlock&)> take);
+
+/// Keeps a whole mesh in memory.
+class SPILLWAY_API MeshInMemory : public MeshSink {
+ public:
+  MeshInMemory();
+  ~MeshInMemory() override;
+  MeshInMemory(const MeshInMemory&) = delete;
+  MeshInMemory& operator=(const MeshInMemory&) = delete;
+
+  void begin(const MeshHeader& header) override;
+  void write(const MeshBlock& block) override;
+  void finish(const MeshTotals& totals) override;
+
+  [[nodiscard]] const MeshHeader& header() const { return header_; }
+  [[nodiscard]] const MeshTotals& totals() const { return totals_; }
+  /// Shape: totals().vertices.
+  [[nodiscard]] const std::vector<Point<3>>& vertices() const { return vertices_; }
+  /// Shape: as vertices, or none.
+  [[nodiscard]] const std::vector<std::uint64_t>& input_index() const { return input_index_; }
+  /// Vertices of all simplices. Shape: totals().simplices * (header().dimension + 1).
+  [[nodiscard]] const std::vector<std::uint64_t>& corners() const { return corners_; }
+
+ private:
+  MeshHeader header_;
+  MeshTotals totals_;
+  std::vector<Point<3>> vertices_;
+  std::vector<std::uint64_t> input_index_;
+  std::vector<std::uint64_t> corners_;
+};
+
+}  // namespace spillway

@@ -1,0 +1,51 @@
+#include <spillway/mesh.h>
+
+#include <utility>
+
+namespace spillway {
+namespace {
+
+class MeshTaker final : public MeshSink {
+ public:
+  explicit MeshTaker(std::function<void(const MeshBlock&)> take) : take_(std::move(take)) {}
+  void write(const MeshBlock& block) override { take_(block); }
+
+ private:
+  std::function<void(const MeshBlock&)> take_;
+};
+
+template <typename T>
+void append(std::vector<T>& to, const std::vector<T>& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+MeshSink::~MeshSink() = default;
+void MeshSink::begin(const MeshHeader& /*header*/) {}
+void MeshSink::finish(const MeshTotals& /*totals*/) {}
+
+std::unique_ptr<MeshSink> mesh_to(std::function<void(const MeshBlock&)> take) {
+  return std::make_unique<MeshTaker>(std::move(take));
+}
+
+MeshInMemory::MeshInMemory() = default;
+MeshInMemory::~MeshInMemory() = default;
+
+void MeshInMemory::begin(const MeshHeader& header) {
+  header_ = header;
+  totals_ = {};
+  vertices_.clear();
+  input_index_.clear();
+  corners_.clear();
+}
+
+void MeshInMemory::write(const MeshBlock& block) {
+  append(vertices_, block.vertices);
+  append(input_index_, block.input_index);
+  append(corners_, block.corners);
+}
+
+void MeshInMemory::finish(const MeshTotals& totals) { totals_ = totals; }
+
+}  // namespace spillway

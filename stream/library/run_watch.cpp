@@ -1,0 +1,32 @@
+#include "stream/library/run_watch.h"
+
+#include "src/error.h"
+
+namespace spillway::detail {
+
+void RunWatch::begin(const char* phase) {
+  check();
+  {
+    const std::lock_guard lock(mutex_);
+    phase_ = phase;
+    told_ = 0;
+  }
+  tell(0, std::nullopt);
+}
+
+void RunWatch::tell(std::uint64_t done, std::optional<double> fraction) {
+  check();
+  if (!options_.progress) return;
+  const std::lock_guard lock(mutex_);
+  if (done < told_) return;  // another thread knows more
+  told_ = done;
+  options_.progress({phase_, done, fraction});
+}
+
+void RunWatch::end(std::uint64_t done) { tell(done, 1.0); }
+
+void RunWatch::check() const {
+  if (options_.stop.stop_requested()) throw Interrupted();
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
+#include "stream/source/point_filter.h"
+#include "stream/tiles/point_feed.h"
+
+namespace spillway::detail {
+
+/// The points of a run as the pipeline takes them.
+class PointInput {
+ public:
+  virtual ~PointInput() = default;
+
+  /// Takes the next piece, in order; false at the end.
+  virtual bool fetch(SourcePiece& piece) = 0;
+  /// Replaces `block` by the points of a piece, which is used up: on lattice() if that is set, else
+  /// in output coordinates. Safe for many threads at a time. A block may be empty before the end.
+  virtual void decode(SourcePiece& piece, PointBlock& block) = 0;
+
+  /// The lattice on which all points lie, if there is one.
+  [[nodiscard]] virtual const std::optional<Lattice>& lattice() const = 0;
+  /// About how many points will come, where that can be told; rather too many.
+  [[nodiscard]] virtual std::optional<std::uint64_t> expected() const = 0;
+  /// Of all points, in the coordinates of decode(), where that is known.
+  [[nodiscard]] virtual const std::optional<Box<3>>& extent() const = 0;
+
+  /// What became of the records so far.
+  [[nodiscard]] virtual PointCounts counts() const = 0;
+  /// Records read so far, dropped ones among them: counts().read.
+  [[nodiscard]] virtual std::uint64_t points_read() const = 0;
+  /// How far the points have been read, from 0 to 1; nothing if that is unknown.
+  [[nodiscard]] virtual std::optional<double> fraction_read() const = 0;
+};
+
+}  // namespace spillway::detail

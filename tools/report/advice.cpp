@@ -1,0 +1,70 @@
+#include "tools/report/advice.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+
+namespace spillway::detail {
+namespace {
+
+std::string mebibytes(std::uint64_t bytes) { return fmt::format("{}M", bytes >> 20); }
+
+std::string memory_advice(const ErrorFacts& facts) {
+  if (facts.perhaps > 0 && facts.enough > 0) {
+    return fmt::format("; --memory {} may be enough, {} is", mebibytes(facts.perhaps),
+                       mebibytes(facts.enough));
+  }
+  if (facts.enough > 0) return fmt::format("; --memory {} is enough", mebibytes(facts.enough));
+  if (facts.perhaps > 0) {
+    return fmt::format("; --memory {} may be enough", mebibytes(facts.perhaps));
+  }
+  return "; raise --memory";
+}
+
+std::string folder_advice(int system_error) {
+  switch (system_error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "; free some space or choose another folder with --tmpdir";
+    case EFBIG:
+      return "; raise the file size limit (ulimit -f) or choose another folder with --tmpdir";
+    default:
+      return "; choose another folder with --tmpdir";
+  }
+}
+
+std::string advice(const ErrorFacts& facts) {
+  switch (facts.remedy) {
+    case Remedy::kNone:
+      return "";
+    case Remedy::kMemory:
+      return memory_advice(facts);
+    case Remedy::kScratchFolder:
+      return folder_advice(facts.system_error);
+    case Remedy::kScratchLimit:
+      return "; raise --max-tmp or --memory";
+    case Remedy::kRasterSize:
+      return "; give a coarser --resolution or smaller --bounds";
+    case Remedy::kRasterMemory:
+      return "; give more --memory, a coarser --resolution or smaller --bounds";
+    case Remedy::kPlane:
+      return " (--dim 2 makes triangles)";
+    case Remedy::kFilters:
+      return ", so --keep-class, --drop-class and --returns cannot be used with it";
+    case Remedy::kForeignCrs:
+      return " with --force-crs";
+    case Remedy::kOneFile:
+      return " (without --parts)";
+    case Remedy::kLas14:
+      return "; choose --las-version 1.4";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string advised_message(const spillway::Error& error) {
+  return error.what() + advice(error.facts());
+}
+
+}  // namespace spillway::detail
