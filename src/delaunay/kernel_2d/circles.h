@@ -1,6 +1,6 @@
 #pragma once
-// The first rung of the 2D kernel's predicates: circumcircles with proven tolerances, made for
-// several triangles at a time. The bounds are derived in docs/algorithm.md ("The 2D kernel").
+// The first filter of the 2D kernel's predicates: circumcircles with proven tolerances, made for
+// several triangles at a time. The bounds are derived in docs/algorithm-kernel-2d.md.
 
 #include <cstddef>
 #include <cstdint>

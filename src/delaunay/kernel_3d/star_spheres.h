@@ -1,6 +1,6 @@
 #pragma once
 // The spheres of a new star, made for several cells at once and tested with the next point. The
-// bounds are derived in docs/algorithm.md ("The 3D kernel").
+// bounds are derived in docs/algorithm-kernel-3d.md.
 
 #include <bit>
 #include <cstddef>
