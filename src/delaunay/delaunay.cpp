@@ -18,8 +18,8 @@
 namespace spillway::detail {
 namespace {
 
-/// Smaller base cases lose more to merging, larger ones more to memory (docs/performance.md has the
-/// measurements).
+/// Smaller base cases lose more to merging, larger ones more to memory: measured in
+/// docs/performance-history.md.
 template <int D>
 constexpr std::size_t kGoodBaseCase = D == 2 ? 131'072 : 524'288;
 

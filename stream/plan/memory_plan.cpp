@@ -9,7 +9,7 @@
 namespace spillway::detail {
 namespace {
 
-/// What memory is needed for, by dimension; measured, see docs/performance.md.
+/// What memory is needed for, by dimension; measured, see docs/performance-history.md.
 struct Costs {
   std::size_t leaf_bytes;     ///< a point: triangulation of a leaf, and what is made of it
   std::size_t tile_bytes;     ///< a point: two loaded tiles and output that waits for its turn
