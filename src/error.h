@@ -1,6 +1,7 @@
 #pragma once
-// The one family of exceptions. They are thrown where the fault is seen, carried through worker
-// threads, and caught once, in main.
+// The one family of exceptions. They are thrown where the fault is seen and carried through worker
+// threads. What ends the run is reported at one place; docs/architecture.md ("Conventions") says
+// who else catches them.
 
 #include <stdexcept>
 #include <string>

@@ -22,7 +22,7 @@ inline constexpr double kToleranceOfSquare = 0x1p-20;
 inline constexpr double kToleranceOfPlace = 0x1p-84;
 
 /// The triangles at a point just inserted, counter-clockwise: triangle i has the vertices ring[i]
-/// and ring[i + 1]. Lists go on behind their ends from their beginnings.
+/// and ring[i + 1]. After their ends lists go on from their beginnings.
 struct StarView {
   TriangleArray triangles;
   const Point<2>* scaled;

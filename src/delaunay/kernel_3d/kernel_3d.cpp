@@ -23,7 +23,7 @@ namespace {
 
 constexpr kernel::Rounds kRounds{.factor = 16, .first = 40};
 constexpr std::size_t kMostPoints = (std::size_t{1} << 28) - 2;
-/// Room for so many cells a point is made at first; scattered points have 6.8.
+/// Cells a point that there is room for at first; scattered points have 6.8.
 constexpr std::size_t kUsualCells = 7;
 
 using Pair = Reals<2>;
