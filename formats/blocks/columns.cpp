@@ -194,7 +194,7 @@ std::uint64_t decode_chunk(const std::byte* planes, std::size_t plane_size, std:
     keys[k] = sum;
   }
   for (std::size_t k = 0; k < kChunk; ++k) misfit |= Codec::key_misfit(keys[k]);
-  // The words behind the last value are 0: those keys repeat the last one.
+  // The words after the last value are 0: those keys repeat the last one.
   key = sum;
   if (count == kChunk) {
     for (std::size_t k = 0; k < kChunk; ++k) values[k] = Codec::value(keys[k]);

@@ -29,7 +29,7 @@ class BlockInput {
   /// Number of the next byte.
   [[nodiscard]] std::uint64_t position() const { return source_.position() - (end_ - begin_); }
 
-  /// Number of the byte behind the last one, known once take() or skip() has failed.
+  /// Number of the byte after the last one, known once take() or skip() has failed.
   [[nodiscard]] std::uint64_t end() const { return source_.position(); }
 
   [[nodiscard]] const std::string& name() const { return source_.name(); }

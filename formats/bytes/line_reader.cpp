@@ -45,7 +45,7 @@ void LineReader::pass_over() {
 }
 
 void LineReader::seek(std::uint64_t byte) {
-  // A line begins behind the end of another one, so the byte before tells.
+  // A line begins after the end of another one, so the byte before tells.
   const std::uint64_t from = byte - (byte > 0 ? 1 : 0);
   file_.seek(from);
   buffer_begin_ = from;

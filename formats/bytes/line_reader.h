@@ -24,7 +24,7 @@ class LineReader {
   /// Sets `line` to the next one without its end, valid until the next call; false at the end.
   bool next(std::string_view& line);
 
-  /// What has been read of the file behind that line: most of the first MiB once next() has given
+  /// What has been read of the file after that line: most of the first MiB once next() has given
   /// the first line. Valid until the next call.
   [[nodiscard]] std::string_view unread() const { return {buffer_.data() + begin_, end_ - begin_}; }
 
@@ -33,7 +33,7 @@ class LineReader {
   /// another.
   void pass_over();
 
-  /// Makes next() go on with the first line that begins at that byte or behind it. Lines have no
+  /// Makes next() go on with the first line that begins at that byte or after it. Lines have no
   /// numbers from then on. Only for a file that can seek.
   void seek(std::uint64_t byte);
 
@@ -52,7 +52,7 @@ class LineReader {
  private:
   [[nodiscard]] std::string name_of_line(std::uint64_t number, std::uint64_t byte) const;
 
-  /// Moves the unread bytes to the front and fills up behind them; false if there was nothing more.
+  /// Moves the unread bytes to the front and fills up after them; false if there was nothing more.
   bool refill();
 
   InputFile& file_;

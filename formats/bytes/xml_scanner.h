@@ -32,13 +32,13 @@ class XmlScanner {
   /// Goes to the next tag.
   Result next(XmlTag& tag);
 
-  /// What stands between the tag that next() gave last and the one behind it.
+  /// What stands between the tag that next() gave last and the one after it.
   [[nodiscard]] std::string_view content() const;
 
   /// Whether that content comes to its end in the text.
   [[nodiscard]] bool has_content_end() const { return text_.find('<', position_) != text_.npos; }
 
-  /// Where the scanner is in the text: behind the last tag.
+  /// Where the scanner is in the text: after the last tag.
   [[nodiscard]] std::size_t position() const { return position_; }
 
  private:

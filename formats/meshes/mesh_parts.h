@@ -19,7 +19,7 @@ std::string mesh_part_name(const std::string& path, MeshFormat format, int part,
 /// The name of the index of the mesh `path`.
 std::string pvtu_name(const std::string& path);
 
-/// The index of the mesh `path` in so many parts.
+/// The index of the mesh `path` in `parts` files.
 std::string pvtu_text(const std::string& path, int parts, bool has_input_index);
 
 }  // namespace spillway::detail

@@ -12,7 +12,7 @@ namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kChannels = 4;
-/// libpng's functions for whole pictures count to so many bytes.
+/// libpng's functions for whole pictures count to this many bytes.
 constexpr std::uint64_t kMostBytes = 0x7FFFFFFF;
 
 }  // namespace

@@ -39,7 +39,7 @@ std::optional<LatticeOfPoints<D>> find_lattice(std::span<const Point<D>> points,
     corner[k] = box.lo[k] * scale;
     whole_corner[k] = static_cast<std::int64_t>(corner[k]);
   }
-  constexpr std::size_t kGrain = 256;  // so many points at a time, without a branch
+  constexpr std::size_t kGrain = 256;  // points at a time, without a branch
   std::int64_t bits = 0;
   for (std::size_t begin = 0; begin < points.size(); begin += kGrain) {
     bool exact = true;

@@ -18,8 +18,8 @@
 namespace spillway::detail {
 namespace {
 
-/// Smaller base cases lose more to merging, larger ones more to memory (docs/performance.md has the
-/// measurements).
+/// Smaller base cases lose more to merging, larger ones more to memory: measured in
+/// docs/performance-history.md.
 template <int D>
 constexpr std::size_t kGoodBaseCase = D == 2 ? 131'072 : 524'288;
 
@@ -31,7 +31,7 @@ constexpr std::size_t kSmallestBaseCase = D == 2 ? 32'768 : 65'536;
 template <int D>
 constexpr std::size_t kGoodBorderBaseCase = D == 2 ? 32'768 : 262'144;
 
-/// Base cases of this size divide so many points into so many parts, a power of two, with room for
+/// Base cases of this size divide `points` points into `parts` parts, a power of two, with room for
 /// cuts that miss the middle.
 std::size_t base_case_size_for(std::size_t points, std::size_t parts) {
   constexpr double kSlack = 1.1;
@@ -47,7 +47,7 @@ std::size_t default_base_case_size(std::size_t points) {
       points, std::bit_floor(std::max(fewest, (points + kGoodBaseCase<D> / 2) / kGoodBaseCase<D>)));
 }
 
-/// So many base cases that a border is divided into, to have something to do for every thread.
+/// Base cases that a border is divided into, to have something to do for every thread.
 constexpr std::size_t kBorderBaseCases = 2;
 constexpr std::size_t kSmallestBorderBaseCase = 4'096;
 

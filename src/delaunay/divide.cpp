@@ -117,7 +117,7 @@ class Divider {
                : partition(part, [=](const Point<D>& p) { return p[axis] <= value; });
   }
 
-  /// Large parts are partitioned in two halves beside each other; then what is above in the first
+  /// Large parts are partitioned in two halves at the same time; then what is above in the first
   /// one changes places with what is below in the second one.
   template <typename Below>
   VertexId partition(const Part<D>& part, const Below& below) const {

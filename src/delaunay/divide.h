@@ -21,7 +21,7 @@ enum class DivisionScheme {
 };
 
 struct DivideOptions {
-  std::size_t leaf_size = 0;  ///< parts of at most so many points are not divided further
+  std::size_t leaf_size = 0;  ///< parts of at most this many points are not divided further
   DivisionScheme scheme = DivisionScheme::kLongestExtent;
   unsigned children = 2;   ///< parts made of one part at a time, at least 2
   std::stop_token stop{};  ///< looked at before each part is divided

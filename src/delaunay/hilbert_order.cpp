@@ -114,7 +114,7 @@ class Sorter {
   /// A base case takes longer if a point has fewer cells than this; more do not help it. Of more
   /// than two million points, whose numbers leave less room for keys, crowded cells make up for it.
   static constexpr std::size_t kCellsOfPoint = 4;
-  /// Keys have two digits, of so many bits at most.
+  /// Keys have two digits, of at most this many bits.
   static constexpr int kWidestDigit = 13;
   /// Smaller boxes have no cells: how many there are in a unit of length could overflow.
   static constexpr double kSmallestExtent = 1e-300;

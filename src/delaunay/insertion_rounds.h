@@ -49,7 +49,7 @@ void for_each_in_rounds(std::size_t count, const Rounds& rounds, const Visit& vi
 template <typename Insertion>
 void insert_in_rounds(Insertion& insertion, std::size_t count, std::span<const VertexId> basis,
                       const Rounds& rounds) {
-  // One behind the rounds, so that an insertion knows which point comes next.
+  // One after the rounds, so that an insertion knows which point comes next.
   VertexId pending = kInfinite;
   for_each_in_rounds(count, rounds, [&](std::size_t i) {
     if (std::find(basis.begin(), basis.end(), i) != basis.end()) return;

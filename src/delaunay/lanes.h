@@ -58,7 +58,7 @@ using Words [[gnu::vector_size(16)]] = std::uint32_t;
 using Floats [[gnu::vector_size(16)]] = float;
 
 /// Whether words can be shuffled by a mask that is not a constant, on processors that have vectors
-/// of so many doubles; others would do it one by one.
+/// of kLanes doubles; others would do it one by one.
 template <int kLanes>
 inline constexpr bool kShufflesWords = kLanes > 2;
 

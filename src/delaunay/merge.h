@@ -31,7 +31,7 @@ struct PartSurface {
 /// at the root, where that cannot be, the border is not divided again.
 inline constexpr double kLargestBorder = 0.5;
 
-/// Triangulates a border's points for a merge of so many points; vertex v of the result is point
+/// Triangulates a border's points for a merge; vertex v of the result is point
 /// input_index[v] of those given.
 template <int D>
 using BorderTriangulator =

@@ -9,7 +9,7 @@ namespace spillway::detail {
 
 /// One task of a run: a node of the k-d recursion, or a step of one. Its parts follow one another
 /// in the order of the members: steps `before`, its own work, `children`, steps `after`. Steps run
-/// one after the other, children beside each other.
+/// one after the other, children at the same time.
 struct Task {
   std::string kind;        ///< "node", "base_case", "divide", "border", "accept", "neighbours"
   std::size_t points = 0;  ///< points it works on
@@ -37,7 +37,7 @@ class Stopwatch {
   Clock::time_point start_;
 };
 
-/// The time that the tasks would take on so many cores, under a greedy schedule: a core that falls
+/// The time that the tasks would take on `cores` cores, under a greedy schedule: a core that falls
 /// free takes the deepest piece that is ready, as work-stealing does. Durations as measured; moving
 /// data costs nothing.
 double greedy_makespan(const Task& root, unsigned cores);

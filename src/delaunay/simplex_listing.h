@@ -19,7 +19,7 @@ struct ListingNotes {
 
 /// Fills result.simplices, hull and, if `asked`, not_inside by calls of list(begin, end, notes) for
 /// grains of simplices. After a first one come ranges as long as all before them, whose grains are
-/// worked on beside each other by threads that have nothing else to do. The simplices may lie where
+/// worked on at the same time by threads that have nothing else to do. The simplices may lie where
 /// the kernel's records are, if those are at least twice as large and numbered alike: those of a
 /// range come to lie over records before it, and those of the first grain, in which list() keeps to
 /// the order and reads a record before it writes, over records that it has read.

@@ -18,14 +18,14 @@ class Block {
   /// A block of this size, aligned for cache lines. Throws std::bad_alloc.
   static Block of(std::size_t bytes);
 
-  /// Memory for at least so many bytes; what it held before may be lost. Some room is added if it
+  /// Memory for at least `bytes` bytes; what it held before may be lost. Some room is added if it
   /// has to be larger than it was. Throws std::bad_alloc.
   void* reserve(std::size_t bytes);
 
   /// The same, but the first `used` bytes stay what they are.
   void* grow(std::size_t bytes, std::size_t used);
 
-  /// Lets the system have the huge pages behind the first `used` bytes when it is short of memory.
+  /// Lets the system have the huge pages after the first `used` bytes when it is short of memory.
   void give_back_behind(std::size_t used);
 
   [[nodiscard]] void* data() const { return memory_.get(); }
@@ -47,7 +47,7 @@ class Block {
 /// What base cases keep a block for, so that the next one gets a block of fitting size.
 enum class BlockUse : std::uint8_t { kPoints, kSimplices };
 
-/// A block on loan: the smallest that an earlier base case left and that has so many bytes, or else
+/// A block on loan: the smallest that an earlier base case left and that has `bytes` bytes, or else
 /// the largest, which is to be made larger, if there is any. Gives it back at the end of its life,
 /// for a later one of any thread.
 class BorrowedBlock {

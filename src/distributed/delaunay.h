@@ -18,7 +18,7 @@ struct DistributedOptions {
 
 /// The Delaunay triangulation of all ranks' points, the same one that spillway::detail::delaunay
 /// makes of them: Algorithms 2 and 3 of Funke and Sanders, "Parallel d-D Delaunay Triangulations in
-/// Shared and Distributed Memory" (ALENEX 2017); docs/algorithm.md, "Over several processes".
+/// Shared and Distributed Memory" (ALENEX 2017); docs/algorithm-ranks.md.
 /// Points are finite and may be anywhere: none at some ranks, fewer than ranks, equal ones at
 /// several. Equal points become one vertex.
 ///

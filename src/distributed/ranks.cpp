@@ -79,7 +79,7 @@ void end_unless(int code, const char* activity) {
   }
 }
 
-/// Counts a message in a group of so many ranks.
+/// Counts a message in a group of `ranks` ranks.
 void count_traffic(int ranks, std::size_t bytes) {
   if (ranks == 1) {
     return;
@@ -88,7 +88,7 @@ void count_traffic(int ranks, std::size_t bytes) {
   bytes_sent.fetch_add(bytes, std::memory_order_relaxed);
 }
 
-/// Calls step(offset, length) for the pieces of so many bytes.
+/// Calls step(offset, length) for the stretches of a message of `bytes` bytes.
 template <class Step>
 void in_pieces(std::size_t bytes, Step step) {
   for (std::size_t offset = 0; offset < bytes;) {

@@ -20,7 +20,7 @@ constexpr float kPersistence = 0.5F;  // amplitude of an octave relative to the 
 constexpr float kShoreHeight = 3;  // dry land begins this far above the water
 constexpr float kLakeLevel = -0.33F;
 constexpr float kLakeShore = 0.14F;
-constexpr std::int64_t kRiverPeriod = 1536;  // one river in so many metres of x
+constexpr std::int64_t kRiverPeriod = 1536;  // metres of x from river to river
 constexpr float kRiverHalfWidth = 8;
 constexpr float kRiverBank = 30;
 

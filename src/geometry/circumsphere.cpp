@@ -9,7 +9,7 @@
 namespace spillway::detail {
 namespace {
 
-// The names are those of docs/algorithm.md ("Certified balls").
+// The names are those of docs/algorithm-predicates.md ("Certified balls").
 constexpr double kRoundoff = 0x1p-53;      // u
 constexpr double kGamma = 16 * kRoundoff;  // above all relative errors of monomials
 constexpr double kUnderflow = 0x1p-700;    // above all that underflow can lose
@@ -138,8 +138,8 @@ std::array<Point<D>, D + 1> corners_in(const SimplexBatch<D>& simplices, std::si
   return simplex;
 }
 
-// The names are those of docs/algorithm.md ("Many balls at once"). Positive if the circumsphere is
-// certainly inside.
+// The names are those of docs/algorithm-predicates.md ("Many balls at once"). Positive if the
+// circumsphere is certainly inside.
 template <int D>
 double room_around(const std::array<Point<D>, D + 1>& simplex, const Box<D>& box) {
   const Edges<D> edges(simplex);

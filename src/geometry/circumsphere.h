@@ -2,7 +2,7 @@
 // Circumspheres that prove something. A rounded circumcentre proves nothing by itself; here it
 // carries a bound on its own error, so that "cannot meet" is a theorem and everything else is
 // "may meet": rounding can delay a decision but never falsify one.
-// The bounds are derived in docs/algorithm.md ("Certified balls").
+// The bounds are derived in docs/algorithm-predicates.md ("Certified balls").
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,8 @@
 #pragma once
-// The rungs of the predicates, each of which is right or says nothing: a floating-point filter,
-// exact 128-bit integers, exact big integers. predicates.cpp climbs them; tests compare them.
-// Bounds are derived in docs/algorithm.md ("Predicates").
+// The first stages of the predicates, each of which is right or says nothing: the filter (floating
+// point), and the exact stage (128-bit integers, else big integers). predicates.cpp tries one after
+// the other and adds the symbolic stage; tests compare them. Bounds are derived in
+// docs/algorithm-predicates.md.
 //
 // A predicate P (Orientation<D> or InSphere<D>) is a determinant of differences of points.
 

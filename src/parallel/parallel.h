@@ -15,12 +15,12 @@ namespace spillway::detail {
 /// Number of processors this process may use.
 unsigned available_threads();
 
-/// Runs `work` with at most so many threads for all loops and groups inside. An exception of any
-/// worker is thrown here. Calls from several threads run beside each other, each with its own
+/// Runs `work` with at most `threads` threads for all loops and groups inside. An exception of any
+/// worker is thrown here. Calls from several threads run at the same time, each with its own
 /// number.
 void with_threads(unsigned threads, const std::function<void()>& work);
 
-/// Tasks that run beside each other. Inside with_threads(1, ...), run() does the work at once.
+/// Tasks that run at the same time. Inside with_threads(1, ...), run() does the work at once.
 class TaskGroup {
  public:
   TaskGroup();
@@ -62,7 +62,7 @@ struct PipelineStage {
   std::function<void(std::size_t slot)> work;
 };
 
-/// Sends items through stages that work beside each other on different items. `source` fills the
+/// Sends items through stages that work at the same time on different items. `source` fills the
 /// slot it is given and returns whether it could; it is called in order, as is the last stage,
 /// which must be in_order. At most `slots` items are under way, so slot numbers are below that.
 void run_pipeline(std::size_t slots, const std::function<bool(std::size_t slot)>& source,

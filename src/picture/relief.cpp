@@ -22,7 +22,7 @@ constexpr std::array<Colour, 7> kHeightColours = {{{0.16F, 0.40F, 0.34F},
 constexpr float kDarkest = 0.28F;
 constexpr float kLightest = 0.4F;
 
-/// Percentiles are taken of so many pixels at most.
+/// Percentiles are taken of at most this many pixels.
 constexpr std::size_t kLargestSample = 1'000'000;
 
 /// The slope that this share of the pixels is below is brought into a range in which light and

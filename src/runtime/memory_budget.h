@@ -9,7 +9,7 @@
 namespace spillway::detail {
 
 /// The smaller of 2 GiB and a quarter of the memory that this process may use: the machine's, or
-/// its container's where that has less; of that an equal part where so many processes share it.
+/// its container's where that has less; of that an equal share if `processes` processes share it.
 std::uint64_t default_memory_limit(unsigned processes = 1);
 
 /// The number of bytes that "512M", "2G", "1.5g", "800MiB" or "1000000" stand for; K, M, G, T are

@@ -15,7 +15,7 @@ namespace {
 /// GDAL counts rows and columns in int.
 constexpr double kMostPixels = std::numeric_limits<std::int32_t>::max();
 
-/// A box that is a whole number of pixels but for rounding gets just so many.
+/// A box that is a whole number of pixels but for rounding gets just that number.
 constexpr double kRoundingShare = 1e-9;
 
 /// Pixels of side `resolution` that cover a length.

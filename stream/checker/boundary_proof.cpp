@@ -1,5 +1,5 @@
 // Whether the boundary of a mesh is one convex surface, traversed once. Letters B1 to B4 are those
-// of docs/algorithm.md ("What check proves").
+// of docs/algorithm-checker.md.
 
 #include <algorithm>
 

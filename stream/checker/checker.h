@@ -56,8 +56,8 @@ struct CheckReport {
 /// simplex positively oriented, every facet shared by exactly two simplices or on the boundary, the
 /// boundary one convex surface traversed once, every inner facet locally Delaunay by exact
 /// predicates. Together these make the mesh the Delaunay triangulation of its vertices (Delaunay's
-/// lemma: locally Delaunay everywhere implies globally); docs/algorithm.md, "What check proves",
-/// has the argument. Throws Error if the mesh's dimension is neither 2 nor 3.
+/// lemma: locally Delaunay everywhere implies globally); docs/algorithm-checker.md has the
+/// argument. Throws Error if the mesh's dimension is neither 2 nor 3.
 CheckReport check_mesh(const Mesh& mesh, const CheckOptions& options);
 
 /// The same proof for a mesh that flows, in memory that is proportional to its open border (the

@@ -1,6 +1,6 @@
 #pragma once
 // The proof behind check_mesh, for one dimension. What its steps prove together, and why, is
-// written in docs/algorithm.md ("What check proves").
+// written in docs/algorithm-checker.md.
 
 #include <fmt/format.h>
 

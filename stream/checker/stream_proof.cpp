@@ -36,7 +36,7 @@ struct OpenFacet {
 template <int D>
 struct Batch {
   std::vector<StreamBlock<D>> blocks;
-  std::size_t count = 0;  // so many of them are in use, the first ones
+  std::size_t count = 0;  // how many of them, the first ones, are in use
 };
 
 template <int D>

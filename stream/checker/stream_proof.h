@@ -1,7 +1,7 @@
 #pragma once
 // The proof behind check_mesh_stream, for one dimension: the steps of mesh_proof.h on a mesh that
-// flows. What it proves, and why the open border is enough, is written in docs/algorithm.md ("What
-// check proves").
+// flows. What it proves, and why the open border is enough, is written in
+// docs/algorithm-checker.md.
 
 #include "formats/meshes/common/mesh_stream.h"
 #include "stream/checker/checker.h"

@@ -31,7 +31,7 @@ class Sequencer {
   void submit(BlockPlace place, MeshBlock mesh, std::vector<StreamPlace> imported,
               const CanonicalHash<D>& hash);
 
-  /// Waits until at most so many bytes of blocks wait for their turn, or until it is the turn of
+  /// Waits until at most `bytes` bytes of blocks wait for their turn, or until it is the turn of
   /// `slot`, whose blocks nobody else will bring.
   void wait_for_room(std::uint64_t bytes, std::uint32_t slot);
 

@@ -9,13 +9,13 @@
 namespace spillway::detail {
 namespace {
 
-/// What memory is needed for, by dimension; measured, see docs/performance.md.
+/// What memory is needed for, by dimension; measured, see docs/performance-history.md.
 struct Costs {
   std::size_t leaf_bytes;     ///< a point: triangulation of a leaf, and what is made of it
   std::size_t tile_bytes;     ///< a point: two loaded tiles and output that waits for its turn
   std::size_t good_leaf;      ///< leaves larger than this are no faster
   std::size_t small_leaf;     ///< leaves smaller than this lose too much to merging
-  std::size_t enough_leaves;  ///< so many are enough for every thread
+  std::size_t enough_leaves;  ///< that are enough for every thread
   double buffer_share;        ///< of the limit: for points that wait to be spilled
   double leaf_share;          ///< of the limit: for a leaf of one thread
   double leaves_share;        ///< of the limit: for those of all threads

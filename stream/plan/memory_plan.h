@@ -19,8 +19,8 @@ struct MemoryPlan {
 /// InvalidArgument with the least limit that would do if this one is too small.
 MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads);
 
-/// Leaves for so many points: at most plan.leaf_size, and smaller where there are few points, so
-/// that all threads have something to do.
+/// The size of leaves of `points` points: at most plan.leaf_size, and smaller where there are few
+/// points, so that all threads have something to do.
 std::size_t leaf_size_for(std::uint64_t points, int dimension, const MemoryPlan& plan);
 
 }  // namespace spillway::detail

@@ -71,7 +71,7 @@ class PointExchange {
   const bool indexed_;
   StageTimes& times_;
   std::uint64_t pieces_per_round_ = 1;
-  std::uint64_t turns_ = 1;         ///< a rank reads in one of so many rounds
+  std::uint64_t turns_ = 1;         ///< a rank reads in one round of this many
   std::vector<std::uint64_t> own_;  ///< pieces that this rank reads
   std::uint64_t next_own_ = 0;
   std::uint64_t round_ = 0;

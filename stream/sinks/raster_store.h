@@ -48,7 +48,7 @@ class RasterStore {
   /// Tiles that fit in `memory` bytes are kept; those in hands are, in any case.
   RasterStore(std::vector<PixelRule> bands, std::uint64_t memory, ScratchFolder& scratch);
 
-  /// The least memory that gives so many threads a hand and the store some room.
+  /// The least memory that gives `threads` threads a hand and the store some room.
   static std::uint64_t least_memory(std::size_t bands, unsigned threads);
 
   /// A few tiles that stay in memory while one thread writes to them.
@@ -59,7 +59,7 @@ class RasterStore {
     Hand(const Hand&) = delete;
     Hand& operator=(const Hand&) = delete;
 
-    /// The pixels of a tile, row by row, band after band, until so many others are asked for.
+    /// The pixels of a tile, row by row, band after band, until kTilesInHand others are asked for.
     float* tile(std::uint64_t number) {
       for (const Held& held : held_) {
         if (held.pixels != nullptr && held.number == number) return held.pixels;

@@ -31,7 +31,7 @@ bool same(const std::string& a, const std::string& b) {
   }
 }
 
-/// " (and n more)" for so many beside the first one.
+/// " (and n more)" for `inputs` inputs, the first one among them.
 std::string and_more(std::size_t inputs) {
   return inputs > 1 ? fmt::format(" (and {} more)", inputs - 1) : "";
 }

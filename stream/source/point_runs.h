@@ -45,7 +45,7 @@ class PointRuns {
     std::uint64_t end;
   };
 
-  /// Reads several runs beside each other.
+  /// Reads several runs at the same time.
   class Merge {
    public:
     explicit Merge(std::span<const Run> runs);

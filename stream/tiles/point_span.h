@@ -38,7 +38,7 @@ class PointSpan {
   std::atomic<bool> full_ = false;
 };
 
-/// Throws Error unless the points, so many, span D dimensions: what they are instead.
+/// Throws Error unless the `points` points span D dimensions; it says what they are instead.
 template <int D>
 void refuse_flat_points(const PointSpan<D>& span, std::uint64_t points);
 

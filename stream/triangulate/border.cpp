@@ -26,8 +26,8 @@ constexpr std::uint64_t kMergeBytes = D == 2 ? 320 : 900;
 template <int D>
 constexpr std::uint64_t kAllBorderMergeBytes = D == 2 ? 320 : 1400;
 
-/// Memory for each point of a border, where there are so many simplices for each of them: all there
-/// can be in the plane, and more than there usually are in space.
+/// Memory for each point of a border, where there are this many simplices for each of them: all
+/// there can be in the plane, and more than there usually are in space.
 template <int D>
 constexpr std::uint64_t kBorderBytes = sizeof(BorderVertex<D>) +
                                        (D == 2 ? 2 : 8) * sizeof(std::array<VertexId, D + 1>);

@@ -48,11 +48,11 @@ struct Border {
 template <int D>
 struct MergedBorder {
   Border<D> border;
-  std::size_t tested = 0;            ///< so many simplices in front are known not to be final
+  std::size_t tested = 0;            ///< how many simplices in front are known not to be final
   std::uint64_t retriangulated = 0;  ///< points of the triangulation of the borders
 };
 
-/// Bytes of memory that are enough to triangulate so many points, even if all of them stay in the
+/// Bytes of memory that are enough to triangulate `points` points, even if all of them stay in the
 /// border to the end. In space that holds for borders of up to 8 simplices a point.
 template <int D>
 std::uint64_t enough_memory(std::uint64_t points);

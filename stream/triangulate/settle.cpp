@@ -12,7 +12,7 @@ constexpr std::uint8_t kByFinal = 1;
 constexpr std::uint8_t kByBorder = 2;
 constexpr std::uint8_t kByEmitted = 4;  ///< a final one that is not left out
 
-/// So many vertices ahead memory is fetched.
+/// Memory is fetched this many vertices ahead.
 constexpr VertexId kAhead = 16;
 
 template <int D, typename Part>

@@ -12,7 +12,7 @@
 namespace spillway::detail {
 namespace {
 
-/// Tiles that are triangulated beside each other. Two, so that there is something to do while the
+/// Tiles that are triangulated at the same time. Two, so that there is something to do while the
 /// last merges of one tile leave threads idle; the next one is being read meanwhile.
 constexpr std::size_t kTilesAtATime = 2;
 

@@ -14,6 +14,7 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "stream/pipeline.h"
+#include "stream/source/point_source.h"
 #include "tests/faulty_file_system.h"
 
 namespace spillway::detail {

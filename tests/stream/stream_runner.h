@@ -14,6 +14,7 @@
 #include "formats/points/common/point_writer.h"
 #include "formats/points/create_points.h"
 #include "stream/pipeline.h"
+#include "stream/source/point_source.h"
 
 namespace spillway::detail {
 

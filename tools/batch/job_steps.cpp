@@ -139,7 +139,7 @@ std::vector<JobStep> JobPlanner::plan(const Job& job) const {
   return steps;
 }
 
-/// The output comes last, behind -o.
+/// The output comes last, after -o.
 JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
                          const std::vector<std::string>& inputs, bool of_points) const {
   OutputKind kind = kind_by_name(job, kind_name);

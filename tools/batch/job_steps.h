@@ -19,7 +19,7 @@ struct JobStep {
   std::vector<std::string> arguments;  ///< the subcommand first
   std::vector<std::string> options;    ///< the names of those of the job's options that it takes
   std::string output;                  ///< the file it makes
-  bool temporary = false;              ///< `output` only serves the steps behind
+  bool temporary = false;              ///< `output` only serves later steps
 };
 
 /// What a job is made of.

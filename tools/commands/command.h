@@ -25,7 +25,7 @@ Subcommand add_info(CLI::App& root);
 Subcommand add_convert(CLI::App& root);
 Subcommand add_generate(CLI::App& root);
 Subcommand add_check(CLI::App& root);
-/// Behind those that make outputs: it takes over their options.
+/// After those that make outputs: it takes over their options.
 Subcommand add_batch(CLI::App& root);
 Subcommand add_completion(CLI::App& root);
 Subcommand add_manual(CLI::App& root);

@@ -49,7 +49,7 @@ MeshTotals totals_of(const Mesh& mesh) {
   return totals;
 }
 
-/// The vertices with so many of their axes on the lattice; nothing if one is not on it.
+/// The vertices with their first `axes` axes on the lattice; nothing if one is not on it.
 std::optional<std::vector<Point<3>>> on_lattice(const Mesh& mesh, const Lattice& lattice,
                                                 int axes) {
   std::vector<Point<3>> vertices = mesh.vertices;

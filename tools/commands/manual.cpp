@@ -30,7 +30,7 @@ std::string roff(const std::string& text) {
 
 std::string bold(const std::string& text) { return "\\fB" + roff(text) + "\\fR"; }
 
-/// Where it lists words, it may be broken behind each.
+/// Where it lists words, it may be broken after each.
 std::string italic(const std::string& text) {
   std::string out = "\\fI";
   for (const char c : roff(text)) {

@@ -65,7 +65,7 @@ class Scene {
 /// Margin around what is shown, in pixels, unless --zoom says what is.
 inline constexpr std::uint32_t kMargin = 6;
 
-/// How strongly an edge of so many pixels is drawn, from 0 to 1: edges fade out before they run
+/// How strongly an edge of `pixels` pixels is drawn, from 0 to 1: edges fade out before they run
 /// into each other.
 inline float edge_strength(double pixels) {
   return static_cast<float>(std::clamp((pixels - 4) / 8, 0.0, 1.0));

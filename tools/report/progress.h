@@ -37,7 +37,7 @@ class Progress {
   /// Says how far the phase is. Of what several threads say, in any order, the most counts; a
   /// fraction that has become unknown is not shown.
   void update(std::uint64_t done, std::optional<double> fraction);
-  /// Ends the phase, in which so many units were done, and returns how many seconds it took.
+  /// Ends the phase, in which `done` units were done, and returns how many seconds it took.
   double end(std::uint64_t done);
   /// The same for a phase within the one that goes on, which is shown in its place. Meanwhile
   /// update() is still about the outer one.

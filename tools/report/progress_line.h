@@ -11,7 +11,7 @@ namespace spillway::detail {
 struct PhaseState {
   std::string phase;               ///< what is being done: "read", "triangulate", "write", ...
   std::string unit;                ///< what `done` counts: "points", ...
-  std::uint64_t done = 0;          ///< so many units
+  std::uint64_t done = 0;          ///< units
   std::optional<double> fraction;  ///< of the whole phase, from 0 to 1, where known
   double seconds = 0;              ///< since the phase began
   bool finished = false;

@@ -55,7 +55,7 @@ GDALDriver& driver_for(const RasterOptions& options, const char* name) {
   return *driver;
 }
 
-/// How many of so many threads can be started now, at least 1. GDAL would wait forever for work
+/// How many of `wanted` threads can be started now, at least 1. GDAL would wait forever for work
 /// that it has no thread for; with 1 it does all in the calling thread.
 unsigned threads_to_be_had(unsigned wanted) {
   std::promise<void> all_here;

@@ -114,7 +114,7 @@ class OgrLayer : public VectorLayer {
     }
   }
 
-  /// Counts a feature of so many points, which must fit the format.
+  /// Counts a feature of `points` points, which must fit the format.
   void take_space(std::size_t points) {
     shapefile_bytes_ += kShapefileRecord + kShapefilePoint * points;
     if (is_shapefile_ && shapefile_bytes_ > kShapefileLimit) {

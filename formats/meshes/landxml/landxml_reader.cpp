@@ -55,7 +55,7 @@ class XmlTags {
     }
   }
 
-  /// What stands between the tag that next() gave last and the one behind it.
+  /// What stands between the tag that next() gave last and the one after it.
   [[nodiscard]] std::string_view content() const { return scanner_.content(); }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -68,7 +68,7 @@ class XmlTags {
   static constexpr std::size_t kStep = std::size_t{1} << 20;
   static constexpr std::size_t kLongestElement = std::size_t{16} << 20;
 
-  /// Drops what is before that place in the window and reads more behind it.
+  /// Drops what is before that place in the window and reads more after it.
   void read_on(std::size_t begin) {
     const auto first = window_.begin();
     lines_before_ += std::count(first, first + static_cast<std::ptrdiff_t>(begin), '\n');

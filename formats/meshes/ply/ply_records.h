@@ -18,7 +18,7 @@ std::string ply_header_text(const MeshHeader& header, bool ascii, const std::str
 /// file `name` if it is too large for that.
 double ply_index(std::uint64_t index, const std::string& name);
 
-/// Bytes of a vertex with so many such numbers, and of a simplex, in binary.
+/// Bytes of a vertex with `indices` such numbers, and of a simplex, in binary.
 constexpr std::size_t ply_vertex_size(std::size_t indices) {
   return (3 + indices) * sizeof(double);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The values behind a PLY header, one after another, in either encoding. Both classes have the same
+// The values after a PLY header, one after another, in either encoding. Both classes have the same
 // functions; what reads values is a template over them, so that no value costs a virtual call.
 
 #include <cstdint>

@@ -177,7 +177,7 @@ void order_in_fans(std::span<Rest<2>> group, std::uint8_t* continues) {
   }
 }
 
-/// The same for so many triangles, which nearly always are one fan: without a branch until it is
+/// The same for kSize triangles, which nearly always are one fan: without a branch until it is
 /// known whether they are.
 template <std::size_t kSize>
 void order_in_one_fan(Rest<2>* group, std::uint8_t* continues) {

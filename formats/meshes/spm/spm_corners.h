@@ -15,7 +15,7 @@ void append_corners(std::vector<std::byte>& out, int dimension, std::uint32_t nu
                     std::span<const std::uint32_t> corners);
 
 /// Takes `simplices` simplices off the front of `bytes`, which hold nothing else, and returns the
-/// bytes behind. Throws Error, beginning with `where`, if bytes are missing or a corner is not
+/// bytes after them. Throws Error, beginning with `where`, if bytes are missing or a corner is not
 /// below `numbers`; allocates nothing that the bytes do not back.
 std::span<const std::byte> read_corners(std::span<const std::byte> bytes, int dimension,
                                         std::uint32_t numbers, std::uint32_t simplices,

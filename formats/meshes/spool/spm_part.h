@@ -8,8 +8,8 @@
 
 namespace spillway::detail {
 
-/// The blocks of a finished spool, as they are stored in a stream in which so many vertices come
-/// before: imported numbers are larger by that, all else is copied without a look at it.
+/// The blocks of a finished spool, as they are stored in a stream in which n vertices come
+/// before: imported numbers are larger by n, all else is copied without a look at it.
 class SpmPart {
  public:
   /// The spool must outlive the part.

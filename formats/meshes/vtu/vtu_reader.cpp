@@ -64,7 +64,7 @@ class VtuReader {
     }
   }
 
-  /// Makes sure that the array has so many items of `each` bytes.
+  /// Makes sure that the array has `count` items of `each` bytes.
   void expect_items(const char* name, std::uint64_t count, std::uint64_t each) const {
     if (length_ % each != 0 || length_ / each != count) {
       fail(fmt::format("the array {} has {} bytes, but {} items of {} are declared", name, length_,

@@ -22,7 +22,7 @@ namespace {
 /// UInt64, then its numbers.
 class AppendedArrays {
  public:
-  /// The element that declares an array of so many bytes.
+  /// The element that declares an array of `bytes` bytes.
   std::string declare(std::string_view name, std::string_view type, int components,
                       std::uint64_t bytes) {
     std::string text =

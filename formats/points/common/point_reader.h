@@ -81,7 +81,7 @@ struct PointHeader {
   std::string crs_note;                ///< why there is none, though the source tells of one; or
                                        ///< what is not read of it; empty: neither
   std::string software;                ///< generating software, LAS only
-  std::size_t extra_bytes = 0;         ///< of each record, behind what the LAS point format has
+  std::size_t extra_bytes = 0;         ///< of each record, after what the LAS point format has
   std::vector<std::string> notices;    ///< what was taken where the source leaves some doubt
 };
 

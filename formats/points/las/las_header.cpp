@@ -154,7 +154,7 @@ Box<3> read_extent(std::span<const std::byte> bytes) {
   return extent;
 }
 
-/// What variable length records say of the coordinate system, before the points or behind them.
+/// What variable length records say of the coordinate system, before the points or after them.
 class CrsRecords {
  public:
   static bool tells_crs(std::string_view user, std::uint16_t record) {
@@ -216,7 +216,7 @@ void read_vlrs(InputSource& source, const Layout& layout, LasHeader& header) {
   records.tell(header);
 }
 
-/// Puts the coordinate system that the records behind the points tell into the header. What is
+/// Puts the coordinate system that the records after the points tell into the header. What is
 /// damaged there ends the search, as the points can be read without.
 void read_crs_of_evlrs(InputSource& source, const Layout& layout, LasHeader& las) {
   constexpr std::uint32_t kMostRecords = 1000;
@@ -246,7 +246,7 @@ void read_crs_of_evlrs(InputSource& source, const Layout& layout, LasHeader& las
   records.tell(las);
 }
 
-/// What begins first behind the points; nothing that would begin before them.
+/// What begins first after the points; nothing that would begin before them.
 std::optional<std::uint64_t> offset_behind_points(const Layout& layout, int point_format) {
   const bool waveforms = point_format == 4 || point_format == 5 || point_format >= 9;
   std::optional<std::uint64_t> offset;

@@ -47,7 +47,7 @@ inline constexpr std::size_t kLasHeaderSize = 227;    ///< of LAS 1.0 to 1.2
 inline constexpr std::size_t kLas14HeaderSize = 375;  ///< of LAS 1.4
 inline constexpr std::size_t kLasTextField = 32;      ///< bytes of an identifier in the header
 inline constexpr std::size_t kLasVlrHeaderSize = 54;
-inline constexpr std::size_t kLasEvlrHeaderSize = 60;  ///< of the records behind the points
+inline constexpr std::size_t kLasEvlrHeaderSize = 60;  ///< of the records after the points
 
 /// Records that tell the coordinate system: their user, WKT, and a directory of GeoTIFF keys with
 /// the text that keys refer to.
@@ -78,13 +78,13 @@ struct LasHeader {
   std::string crs_note;                ///< as PointHeader has it
   std::string software;                ///< generating software
   std::uint64_t offset_to_points = 0;  ///< compressed or not
-  /// Where waveforms or extended records begin behind the points, if there are any.
+  /// Where waveforms or extended records begin after the points, if there are any.
   std::optional<std::uint64_t> offset_behind_points;
   std::optional<LazRecord> laz;  ///< set if the points are compressed
   std::optional<CopcInfo> copc;  ///< set if they are and lie in an octree
 };
 
-/// Reads everything before the first point, and behind the points where the coordinate system is
+/// Reads everything before the first point, and after the points where the coordinate system is
 /// not told before and the source can go there. Throws Error, before anything is allocated, if a
 /// field contradicts another one or the size of the file.
 LasHeader read_las_header(InputSource& source);

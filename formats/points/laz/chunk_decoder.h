@@ -32,7 +32,7 @@ class LazChunkDecoder {
   void decode(std::span<Point<3>> points, std::span<PointAttributes> attributes);
 
   /// After the chunk's last point: checks that the stream ended as encoders end it, and returns how
-  /// many bytes of the last piece of `bytes` lie behind the chunk.
+  /// many bytes of the last piece of `bytes` lie after the chunk.
   std::size_t end();
 
  private:

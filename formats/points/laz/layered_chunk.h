@@ -12,7 +12,7 @@
 namespace spillway::detail::laz {
 
 /// Chunks of the compressor 3: the first record as it is, the number of points, the sizes of all
-/// layers, the layers. Those behind the wanted ones are skipped unseen.
+/// layers, the layers. Those after the wanted ones are skipped unseen.
 class LayeredChunk {
  public:
   LayeredChunk(const LazChunkFormat& format, bool attributes);
@@ -28,7 +28,7 @@ class LayeredChunk {
   PieceInput input_;
   std::vector<std::byte> head_;
   std::vector<std::byte> layers_;
-  std::uint64_t skipped_ = 0;  // bytes behind the wanted layers
+  std::uint64_t skipped_ = 0;  // bytes after the wanted layers
   bool at_first_ = true;       // the first record has not been given out
   Point14Layers points_;
 };

@@ -199,7 +199,7 @@ class LazReader : public PointReader {
   }
 
   /// Whether the chunk that ends with the `points`-th point may leave that much of its room: there
-  /// may be chunks beyond the header's number of points, but not behind one with fewer than the
+  /// may be chunks beyond the header's number of points, but not after one with fewer than the
   /// others.
   [[nodiscard]] bool may_leave(std::uint64_t bytes, std::uint64_t points) const {
     if (bytes == 0) return true;

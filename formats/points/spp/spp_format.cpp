@@ -9,7 +9,7 @@
 namespace spillway::detail {
 namespace {
 
-/// From here on doubles have no digits behind the point; added to a number below, it takes these.
+/// From here on doubles have no digits after the point; added to a number below, it takes these.
 constexpr double kNoFraction = 0x1p52;
 constexpr double kLargestExact = 0x1p53;
 constexpr std::uint64_t kLargestBits = std::numeric_limits<std::int64_t>::max();  // of no sign

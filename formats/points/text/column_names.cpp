@@ -58,7 +58,7 @@ constexpr std::array<std::string_view, 55> kDecorations = {
     "orthometric", "ortho",       "msl",    "amsl",       "nn",      "nhn",         "nap",
     "navd88",      "dhhn2016",    "ground", "terrain",    "surface", "dec"};
 
-/// Those that also stand before or behind a base name with nothing between, as in "xcoord".
+/// Those that also stand before or after a base name with nothing between, as in "xcoord".
 constexpr std::array<std::string_view, 10> kJoined = {
     "utm", "point", "coord", "coords", "coordinate", "koord", "pos", "gps", "map", "world"};
 

@@ -17,7 +17,7 @@ constexpr std::size_t kLongestNumber = 128;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// How many commas there are, eight bytes at a time: attributes behind the columns that are read
+/// How many commas there are, eight bytes at a time: attributes after the columns that are read
 /// are long, and this is all that is done with them.
 std::size_t count_commas(std::string_view text) {
   constexpr std::uint64_t kOnes = 0x0101010101010101;

@@ -19,7 +19,7 @@ enum class Separator : char { kBlanks = ' ', kTab = '\t', kComma = ',', kSemicol
 std::string_view name_of(Separator separator);
 
 /// The fields of a line, without quotes and the blanks around them. A comment at the end is left
-/// out, and so is an empty field behind the last separator.
+/// out, and so is an empty field after the last separator.
 std::vector<std::string_view> text_fields(std::string_view line, Separator separator);
 
 /// The same for a line of names, in which # and the like begin no comment unless blanks separate.
@@ -38,7 +38,7 @@ class TextColumns {
   /// Columns are counted from 0; that of z is -1 if there is none. `count` is how many columns the
   /// file has by its header or first row. Commas that separate are not decimal commas, too. Where
   /// blanks separate and the columns are `named`, every row must have that many: a blank in a field
-  /// would shift those behind it.
+  /// would shift those after it.
   TextColumns(Separator separator, bool decimal_commas, const std::array<int, 3>& column,
               std::size_t count, bool named);
 
@@ -56,7 +56,7 @@ class TextColumns {
   template <Separator S>
   [[nodiscard]] bool parse_as(std::string_view line, Point<3>& point) const;
 
-  /// Whether what stands behind the columns that are read may stand there.
+  /// Whether what stands after the columns that are read may stand there.
   [[nodiscard]] bool rest_fits(std::string_view rest) const;
   [[nodiscard]] std::string fault_of_field(std::string_view field) const;
 

@@ -16,7 +16,8 @@ namespace {
 /// Bytes of the first rows, which settle the decimal sign.
 constexpr std::size_t kSample = std::size_t{1} << 16;
 
-/// Rows of so many numbers without a single decimal point may be fewer numbers with decimal commas.
+/// Rows of at least this many numbers without a single decimal point may be fewer numbers with
+/// decimal commas.
 constexpr std::size_t kFewestAmbiguous = 4;
 
 /// Comments that name x and y, of which the last ones are kept.
@@ -129,7 +130,7 @@ bool is_prose(const std::vector<std::string_view>& names) {
 class CommentHeader {
  public:
   /// Nothing, if the comment names no x or no y. A label before a colon is left out, if the names
-  /// stand behind it.
+  /// stand after it.
   static std::optional<CommentHeader> read(std::string_view comment, std::uint64_t line) {
     if (const std::size_t colon = comment.find(':'); colon != comment.npos) {
       CommentHeader header(comment.substr(colon + 1), line);
@@ -211,7 +212,7 @@ class Opening {
     return false;
   }
 
-  /// Reads lines with counts of points, as in PTS; false if there is none, or no row behind.
+  /// Reads lines with counts of points, as in PTS; false if there is none, or no row after them.
   bool read_count() {
     while (const auto count = point_count_of_line(line_)) {
       if (scan_points_.value_or(0) > 0) {
@@ -301,7 +302,7 @@ class Opening {
   }
 
   /// Throws Error if the last comment that lists columns has others than 1 to 3, which are to be
-  /// read as it does not fit a row of so many columns. Of sentences a notice will do.
+  /// read as it does not fit a row of `columns` columns. Of sentences a notice will do.
   void check_comments(std::size_t columns) {
     if (comments_.empty()) return;
     const auto list = std::find_if(

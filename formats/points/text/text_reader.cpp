@@ -128,7 +128,7 @@ class TextReader : public PointReader {
   bool has_first_ = false;  // line_ is the first row, still to be given out
   PointHeader header_;
   std::uint64_t next_ = 0;        // number of the next point, in its piece if that was asked for
-  std::uint64_t scan_begin_ = 0;  // number of the first point behind the last count line
+  std::uint64_t scan_begin_ = 0;  // number of the first point after the last count line
 
   std::uint64_t piece_bytes_;
   bool in_pieces_ = false;

@@ -1,6 +1,6 @@
 #pragma once
-// The first rung of the 2D kernel's predicates: circumcircles with proven tolerances, made for
-// several triangles at a time. The bounds are derived in docs/algorithm.md ("The 2D kernel").
+// The first filter of the 2D kernel's predicates: circumcircles with proven tolerances, made for
+// several triangles at a time. The bounds are derived in docs/algorithm-kernel-2d.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +22,7 @@ inline constexpr double kToleranceOfSquare = 0x1p-20;
 inline constexpr double kToleranceOfPlace = 0x1p-84;
 
 /// The triangles at a point just inserted, counter-clockwise: triangle i has the vertices ring[i]
-/// and ring[i + 1]. Lists go on behind their ends from their beginnings.
+/// and ring[i + 1]. After their ends lists go on from their beginnings.
 struct StarView {
   TriangleArray triangles;
   const Point<2>* scaled;

@@ -1,7 +1,7 @@
 #pragma once
-// The upper rungs of the 2D kernel's predicates, for what its filters leave open: double-double
+// The later stages of the 2D kernel's predicates, for what its filters leave open: double-double
 // arithmetic or 128-bit integers, big integers, and the tie rule. Bounds are derived in
-// docs/algorithm.md ("The 2D kernel").
+// docs/algorithm-kernel-2d.md.
 
 #include <optional>
 

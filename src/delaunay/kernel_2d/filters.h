@@ -1,6 +1,6 @@
 #pragma once
-// Rungs of the 2D kernel's predicates in double arithmetic: with error bounds, and exactly on
-// lattices. The bounds are derived in docs/algorithm.md ("The 2D kernel").
+// Stages of the 2D kernel's predicates in double arithmetic: with error bounds, and exactly on
+// lattices. The bounds are derived in docs/algorithm-kernel-2d.md.
 
 #include <algorithm>
 

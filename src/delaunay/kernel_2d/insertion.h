@@ -33,11 +33,11 @@ class Insertion {
   [[nodiscard]] const std::vector<kernel::Repetition>& repetitions() const { return repetitions_; }
 
  private:
-  /// Room behind the ends of lists, for what is written ahead.
+  /// Room after the ends of lists, for what is written ahead.
   static constexpr std::size_t kAhead = 8;
-  /// So many triangles of a star that the next point destroys are found without tests.
+  /// Up to this many triangles of a star that the next point destroys are found without tests.
   static constexpr std::size_t kKnownFan = 4;
-  /// The next point is tested with the stars of at most so many triangles.
+  /// The next point is tested with stars of at most this many triangles.
   static constexpr std::size_t kTestedStar = 60;
 
   /// The beginning of a search: lengths of the lists of triangles to be reused and of edges to be

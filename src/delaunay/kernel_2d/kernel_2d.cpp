@@ -24,7 +24,7 @@ namespace {
 constexpr kernel::Rounds kRounds{.factor = 24, .first = 40};
 
 /// Whether a finite triangle's true circumcircle is certainly inside the box and touches no side:
-/// see docs/algorithm.md ("Circles inside a box").
+/// see docs/algorithm-kernel-2d.md ("Circles inside a box").
 bool certainly_inside(const Triangle& triangle, const Box<2>& box) {
   double gap = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 2; ++k) {

@@ -1,6 +1,6 @@
 #pragma once
 // The base case in the plane: exact incremental insertion along a Hilbert curve, in rounds. How it
-// works and why it is exact: docs/algorithm.md, "The 2D kernel".
+// works and why it is exact: docs/algorithm-kernel-2d.md.
 
 #include <span>
 

@@ -1,7 +1,7 @@
 #pragma once
-// The upper rungs of the 3D kernel's predicates, for what its cached spheres leave open: a tighter
-// filter, wide integers, big integers, and the tie rule. Bounds are derived in docs/algorithm.md
-// ("The 3D kernel").
+// The later stages of the 3D kernel's predicates, for what its cached spheres leave open: a tighter
+// filter, wide integers, big integers, and the tie rule. Bounds are derived in
+// docs/algorithm-kernel-3d.md.
 
 #include <array>
 #include <optional>

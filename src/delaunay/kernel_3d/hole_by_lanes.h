@@ -109,7 +109,7 @@ SPILLWAY_INLINE auto Insertion<kRanked>::find_hole(VertexRef query, std::size_t 
     leave_star<kLanes>(known, hole);
     examined = known;
   }
-  // So many cells may be examined before there may be no room for what is beside them.
+  // How many cells may be examined before there may be no room for what is beside them.
   const auto room = [&] { return (conflicts_.size() - known - kAhead) / 4; };
   std::size_t most = room();
   for (; examined < hole.cell_count; ++examined) {

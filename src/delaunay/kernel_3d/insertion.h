@@ -53,7 +53,7 @@ class Insertion {
 
  private:
   static constexpr std::size_t kFirstListSize = 512;
-  /// Room behind the ends of lists, for what is written ahead.
+  /// Room after the ends of lists, for what is written ahead.
   static constexpr std::size_t kAhead = 16;
   /// Known conflicts for which there are bits, and room in the shortest lists for what is around.
   static constexpr std::size_t kMostKnown = 64;

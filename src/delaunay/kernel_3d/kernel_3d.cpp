@@ -23,13 +23,13 @@ namespace {
 
 constexpr kernel::Rounds kRounds{.factor = 16, .first = 40};
 constexpr std::size_t kMostPoints = (std::size_t{1} << 28) - 2;
-/// Room for so many cells a point is made at first; scattered points have 6.8.
+/// Cells a point that there is room for at first; scattered points have 6.8.
 constexpr std::size_t kUsualCells = 7;
 
 using Pair = Reals<2>;
 
 /// A bit for each of two spheres: whether the true circumsphere of a finite cell is certainly
-/// inside the box and touches no side. See docs/algorithm.md ("Spheres inside a box").
+/// inside the box and touches no side. See docs/algorithm-kernel-3d.md ("Spheres inside a box").
 std::uint32_t certainly_inside(const Records<2>& spheres, const Box<3>& box) {
   const auto lesser = [](const Pair& a, const Pair& b) { return a < b ? a : b; };
   const auto gap_along = [&](const Pair& centre, int k) {

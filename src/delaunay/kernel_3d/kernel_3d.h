@@ -1,6 +1,6 @@
 #pragma once
 // The base case in space: exact incremental insertion along a Hilbert curve, in rounds. How it
-// works and why it is exact: docs/algorithm.md, "The 3D kernel".
+// works and why it is exact: docs/algorithm-kernel-3d.md.
 
 #include <span>
 

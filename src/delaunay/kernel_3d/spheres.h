@@ -1,6 +1,6 @@
 #pragma once
-// The first rung of the 3D kernel's predicates: what cells keep of their circumspheres and of the
-// bound of their error, and tests with them. Derived in docs/algorithm.md ("The 3D kernel").
+// The first filter of the 3D kernel's predicates: what cells keep of their circumspheres and of the
+// bound of their error, and tests with them. Derived in docs/algorithm-kernel-3d.md.
 
 #include <bit>
 #include <cstdint>

@@ -21,7 +21,7 @@ namespace spillway::detail::kernel_3d {
     store(vertices_[i], hole.cells.at_cell(hole.handles[i]).vertices);
     hole.cells.join(CellArray::facet(hole.handles[i], 0), hole.outer[i]);
   }
-  if (hole.count / 2 + 2 < kTableSide) {  // so many vertices it has, by Euler's relation
+  if (hole.count / 2 + 2 < kTableSide) {  // the number of its vertices, by Euler's relation
     join_by_table(hole);
   } else {
     join_by_hashing(hole);

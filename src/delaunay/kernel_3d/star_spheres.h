@@ -1,6 +1,6 @@
 #pragma once
 // The spheres of a new star, made for several cells at once and tested with the next point. The
-// bounds are derived in docs/algorithm.md ("The 3D kernel").
+// bounds are derived in docs/algorithm-kernel-3d.md.
 
 #include <bit>
 #include <cstddef>
@@ -14,7 +14,8 @@
 
 namespace spillway::detail::kernel_3d {
 
-/// A cell the product of whose edges is so many times its determinant is too flat for its sphere.
+/// A cell is too flat for its sphere if the product of its edges is this many times its
+/// determinant.
 inline constexpr double kFlattest = 0x1p40;
 /// The tolerance, beside kToleranceOfPlace, in units of the squared radius: for each unit of
 /// flatness, ...
@@ -29,7 +30,7 @@ struct StarView {
   const double* coordinates;  ///< four for each point: x, y, z, rank
   double largest;             ///< of their magnitudes
   CellArray cells;
-  /// The new cells, whose first vertex is the query. Behind them the last one again, 2 kLanes - 1
+  /// The new cells, whose first vertex is the query. After them the last one again, 2 kLanes - 1
   /// times: for lanes that are left over, and for what is gathered ahead.
   const Handle* handles;
   const double* query;  ///< the record of the point just inserted

@@ -9,7 +9,7 @@ namespace spillway::detail {
 class LazBytes {
  public:
   virtual ~LazBytes() = default;
-  /// The bytes behind those given out so far, valid until the next call; empty at the end.
+  /// The bytes after those given out so far, valid until the next call; empty at the end.
   virtual std::span<const std::byte> more() = 0;
 };
 

@@ -27,8 +27,8 @@ struct Point14 {
   static Point14 of_record(const std::byte* record);
 };
 
-/// Decodes coordinates, returns, classification and flags; the layers behind are not needed, as no
-/// layer depends on those after it. Each scanner channel has its own models and last point.
+/// Decodes coordinates, returns, classification and flags; the layers after these are not needed,
+/// as no layer depends on those after it. Each scanner channel has its own models and last point.
 class Point14Layers {
  public:
   static constexpr std::size_t kCoordinateLayers = 2;  ///< x, y and returns; z

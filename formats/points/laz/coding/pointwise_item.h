@@ -12,7 +12,7 @@ namespace spillway::detail::laz {
 class PointwiseItem {
  public:
   virtual ~PointwiseItem() = default;
-  /// Begins a chunk, behind its first point.
+  /// Begins a chunk, after its first point.
   virtual void reset() = 0;
   /// Takes this item's symbols of the next point.
   virtual void decode(ArithmeticDecoder& stream) = 0;
