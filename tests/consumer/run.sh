@@ -9,6 +9,7 @@
 #   fast-math        the same where the program is built with -ffast-math
 #   headers          every header compiles alone, without warnings, and includes nothing but the standard's and its own
 #   symbols          the shared library exports the public names alone
+#   docs             the code in docs/library.md is that of main.cpp
 #   refusal          Spillway itself is not built with -ffast-math
 set -euo pipefail
 build=$(realpath "$1")
@@ -101,6 +102,14 @@ case $what in
       "$work/symbols"; then
       fail "is exported, too"
     fi
+    ;;
+  docs)
+    tr -d ' \n' <"$here/main.cpp" >"$work/program"
+    sed -n '/^```cpp/,/^```$/{/^```/d;s# *//.*##;s/ //g;/./p}' "$here/../../docs/library.md" >"$work/lines"
+    (($(wc -l <"$work/lines") > 30)) || fail "there is no code"
+    while read -r line; do
+      grep -qF -- "$line" "$work/program" || fail "not in main.cpp: $line"
+    done <"$work/lines"
     ;;
   refusal)
     if cmake -S "$here/../.." -B "$work/refused" -DCMAKE_CXX_FLAGS=-ffast-math 2>"$work/log" >&2; then
