@@ -1,6 +1,7 @@
 // A mesh in memory: its construction, and queries of many places, beside CGAL's on the same points
 // and places, sorted along its spatial curve, each search from where the last one ended. Prints a
-// Markdown table of microseconds a point or place; wall times, medians over the turns.
+// Markdown table of microseconds a point or place, medians over the turns: processor time of the
+// one thread that works, or wall time if there are several.
 
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_3.h>
@@ -11,11 +12,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
 #include "src/delaunay/schedule.h"
 #include "src/generators/generators.h"
+#include "tests/benchmark/cgal_timing.h"
 
 namespace spillway::detail {
 namespace {
@@ -47,11 +50,11 @@ struct Plan {
   bool cgal = true;
 };
 
-template <typename Work>
+template <typename Watch, typename Work>
 double median_microseconds(const Plan& plan, std::size_t items, const Work& work) {
   std::vector<double> times(plan.repetitions, 0);
   for (double& seconds : times) {
-    const Stopwatch watch(seconds);
+    const Watch watch(seconds);
     static_cast<void>(work());
   }
   std::sort(times.begin(), times.end());
@@ -83,14 +86,14 @@ void time_cgal(const Plan& plan, const std::string& family, const std::vector<Po
   };
   typename Cgal<D>::Triangulation triangulation;
   std::array<double, 6> times{};
-  times[0] = median_microseconds(plan, points.size(), [&] {
+  times[0] = median_microseconds<ProcessorStopwatch>(plan, points.size(), [&] {
     triangulation = typename Cgal<D>::Triangulation(input.begin(), input.end());
   });
-  times[1] = median_microseconds(plan, places.size(), [&] {
+  times[1] = median_microseconds<ProcessorStopwatch>(plan, places.size(), [&] {
     auto cell = triangulation.locate(queries[0]);
     for (const Query& q : sorted()) cell = triangulation.locate(q, cell);
   });
-  times[2] = median_microseconds(plan, places.size(), [&] {
+  times[2] = median_microseconds<ProcessorStopwatch>(plan, places.size(), [&] {
     auto cell = triangulation.locate(queries[0]);
     for (const Query& q : sorted()) {
       cell = Cgal<D>::cell(triangulation.nearest_vertex(q, cell));
@@ -112,7 +115,8 @@ void time_family(const Plan& plan, const std::string& family) {
   for (const unsigned threads : plan.threads) {
     const spillway::DelaunayOptions options{.threads = threads};
     const auto time = [&](std::size_t items, const auto& work) {
-      return median_microseconds(plan, items, work);
+      return threads == 1 ? median_microseconds<ProcessorStopwatch>(plan, items, work)
+                          : median_microseconds<Stopwatch>(plan, items, work);
     };
     const double construction =
         time(points.size(), [&] { const Delaunay<D> mesh(points, options); });
@@ -125,7 +129,8 @@ void time_family(const Plan& plan, const std::string& family) {
       for (const auto& place : places) static_cast<void>(mesh.locate(place));
     });
     const double centres = time(points.size(), [&] { return mesh.circumcentres(); });
-    print_row<D>(plan, family, fmt::format("Spillway, {} threads", threads),
+    print_row<D>(plan, family,
+                 fmt::format("Spillway, {} thread{}", threads, threads == 1 ? "" : "s"),
                  {construction, locate, nearest, interpolate, threads == 1 ? one : 0, centres});
   }
 }
