@@ -25,8 +25,8 @@ struct DelaunayOptions {
   /// several threads, one at a time; `done` never falls. What it throws ends the run and reaches
   /// the caller.
   std::function<void(std::size_t done, std::size_t total)> progress{};
-  /// A request to stop ends the run with ErrorCode::kInterrupted, soon but not at once: parts of
-  /// some hundred thousand points that have been begun are finished.
+  /// A request to stop ends the run with ErrorCode::kInterrupted, soon but not at once: parts (of
+  /// some hundred thousand points) and merges of them that have been begun are finished.
   std::stop_token stop{};
 };
 

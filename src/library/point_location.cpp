@@ -159,11 +159,9 @@ Location<Index> locate(const MeshView<D, Index>& mesh, const Point<D>& place, In
 
 template <int D, class Index>
 Index nearest_vertex(const MeshView<D, Index>& mesh, const Point<D>& place, Index start) {
-  const Walk<Index> end = walk<D>(mesh, place, start);
-  if (end.vertex >= 0) return end.vertex;
-  Step<Index> step{mesh.vertex(end.last, 0), end.last};
+  Step<Index> step{mesh.vertex(start, 0), start};
   for (int i = 1; i <= D; ++i) {
-    const Index vertex = mesh.vertex(end.last, i);
+    const Index vertex = mesh.vertex(start, i);
     if (compare_distances<D>(place, mesh.points[vertex], mesh.points[step.vertex]) < 0) {
       step.vertex = vertex;
     }

@@ -9,6 +9,7 @@
 #   fast-math        the same where the program is built with -ffast-math
 #   headers          every header compiles alone, without warnings, and includes nothing but the standard's and its own
 #   symbols          the shared library exports the public names alone
+#   docs             the code in docs/library.md is that of main.cpp
 #   refusal          Spillway itself is not built with -ffast-math
 set -euo pipefail
 build=$(realpath "$1")
@@ -81,14 +82,12 @@ case $what in
     ((${#headers[@]} >= 6)) || fail "headers are missing"
     for header in "${headers[@]}"; do
       echo "#include <$header>" >"$work/alone.cpp"
-      "$CXX" "${strict[@]}" -I. -fsyntax-only "$work/alone.cpp" || fail "$header"
+      "$CXX" "${strict[@]}" -I. -fsyntax-only "$work/alone.cpp" || fail "$header does not compile alone"
       while read -r included; do
         if [[ $included == spillway/* ]]; then
           [[ -f $included ]] || fail "$header includes $included, which is not installed"
         elif [[ ! $included =~ ^[a-z_]+$ ]]; then
           fail "$header includes $included, which is not the standard's"
-        elif ! echo "#include <$included>" | "$CXX" -std=c++20 -x c++ -fsyntax-only -; then
-          fail "$header includes $included, which there is not"
         fi
       done < <(sed -n 's/^ *# *include *[<"]\(.*\)[>"].*/\1/p' "$header")
     done
@@ -101,6 +100,14 @@ case $what in
       "$work/symbols"; then
       fail "is exported, too"
     fi
+    ;;
+  docs)
+    tr -d ' \n' <"$here/main.cpp" >"$work/program"
+    sed -n '/^```cpp/,/^```$/{/^```/d;s# *//.*##;s/ //g;/./p}' "$here/../../docs/library.md" >"$work/lines"
+    (($(wc -l <"$work/lines") > 30)) || fail "there is no code"
+    while read -r line; do
+      grep -qF -- "$line" "$work/program" || fail "not in main.cpp: $line"
+    done <"$work/lines"
     ;;
   refusal)
     if cmake -S "$here/../.." -B "$work/refused" -DCMAKE_CXX_FLAGS=-ffast-math 2>"$work/log" >&2; then

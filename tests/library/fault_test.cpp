@@ -23,8 +23,8 @@ using testing::Points;
 using testing::random_points;
 
 template <typename Dimension>
-class FaultTest : public ::testing::Test {};
-TYPED_TEST_SUITE(FaultTest, testing::Dimensions);
+class InMemoryFault : public ::testing::Test {};
+TYPED_TEST_SUITE(InMemoryFault, testing::Dimensions, testing::DimensionNames);
 
 /// The code that triangulating throws; the text has to hold `text`.
 template <int D, class Index = std::int32_t>
@@ -40,7 +40,7 @@ ErrorCode code_of(const PointView<D>& points, const std::string& text,
   return {};
 }
 
-TYPED_TEST(FaultTest, PointsThatAreNotFinite) {
+TYPED_TEST(InMemoryFault, PointsThatAreNotFinite) {
   constexpr int D = TypeParam::value;
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
@@ -51,7 +51,7 @@ TYPED_TEST(FaultTest, PointsThatAreNotFinite) {
   }
 }
 
-TYPED_TEST(FaultTest, PointsThatSpanNothing) {
+TYPED_TEST(InMemoryFault, PointsThatSpanNothing) {
   constexpr int D = TypeParam::value;
   const std::string cell = D == 2 ? "triangle" : "tetrahedron";
   EXPECT_EQ(code_of<D>(PointView<D>(), "no points"), ErrorCode::kDegenerateInput);
@@ -67,7 +67,7 @@ TYPED_TEST(FaultTest, PointsThatSpanNothing) {
   }
 }
 
-TYPED_TEST(FaultTest, MorePointsThanNumbers) {
+TYPED_TEST(InMemoryFault, MorePointsThanNumbers) {
   constexpr int D = TypeParam::value;
   // One point in memory, seen often: nothing of that size may be asked for before the check.
   const Point<D> point{};
@@ -84,7 +84,7 @@ TEST(Numbers, AsManyAsThereAreAreEnough) {
   EXPECT_THROW(require_numbers(6, 5, "cells"), spillway::Error);
 }
 
-TYPED_TEST(FaultTest, ArgumentsOfNoUse) {
+TYPED_TEST(InMemoryFault, ArgumentsOfNoUse) {
   constexpr int D = TypeParam::value;
   const Points<D> points = random_points<D>(10, 1);
   EXPECT_EQ(code_of<D>(points, "5000 threads", {.threads = 5000}), ErrorCode::kInvalidArgument);
@@ -96,7 +96,7 @@ TYPED_TEST(FaultTest, ArgumentsOfNoUse) {
   EXPECT_THROW(static_cast<void>(mesh.interpolate(values, points)), spillway::Error);
 }
 
-TYPED_TEST(FaultTest, StopBeforeTheBeginning) {
+TYPED_TEST(InMemoryFault, StopBeforeTheBeginning) {
   constexpr int D = TypeParam::value;
   std::stop_source stop;
   stop.request_stop();
@@ -104,7 +104,7 @@ TYPED_TEST(FaultTest, StopBeforeTheBeginning) {
             ErrorCode::kInterrupted);
 }
 
-TYPED_TEST(FaultTest, StopInTheMidstOfWork) {
+TYPED_TEST(InMemoryFault, StopInTheMidstOfWork) {
   constexpr int D = TypeParam::value;
   const Points<D> points = random_points<D>(D == 2 ? 300'000 : 140'000, 3);
   for (const unsigned threads : {1U, 2U}) {
@@ -123,7 +123,7 @@ TYPED_TEST(FaultTest, StopInTheMidstOfWork) {
   }
 }
 
-TYPED_TEST(FaultTest, ProgressAscendsToTheTotal) {
+TYPED_TEST(InMemoryFault, ProgressAscendsToTheTotal) {
   constexpr int D = TypeParam::value;
   const Points<D> points = random_points<D>(D == 2 ? 300'000 : 140'000, 3);
   std::vector<std::size_t> told;
@@ -137,14 +137,14 @@ TYPED_TEST(FaultTest, ProgressAscendsToTheTotal) {
   EXPECT_EQ(told.back(), points.size());
 }
 
-TYPED_TEST(FaultTest, WhatProgressThrowsReachesTheCaller) {
+TYPED_TEST(InMemoryFault, WhatProgressThrowsReachesTheCaller) {
   constexpr int D = TypeParam::value;
   const auto fail = [](std::size_t, std::size_t) { throw std::out_of_range("enough"); };
   EXPECT_THROW(Delaunay<D>(random_points<D>(100'000, 3), {.threads = 2, .progress = fail}),
                std::out_of_range);
 }
 
-TYPED_TEST(FaultTest, TwoMeshesBesideEachOther) {
+TYPED_TEST(InMemoryFault, TwoMeshesBesideEachOther) {
   constexpr int D = TypeParam::value;
   const Points<D> a = random_points<D>(80'000, 4), b = random_points<D>(90'000, 5);
   const auto hash_of = [](const Points<D>& points, unsigned threads) {
@@ -163,7 +163,7 @@ TYPED_TEST(FaultTest, TwoMeshesBesideEachOther) {
   }
 }
 
-TYPED_TEST(FaultTest, OneMeshAskedByManyThreads) {
+TYPED_TEST(InMemoryFault, OneMeshAskedByManyThreads) {
   constexpr int D = TypeParam::value;
   const Points<D> points = random_points<D>(5'000, 6);
   const Delaunay<D> mesh(points);
@@ -178,7 +178,7 @@ TYPED_TEST(FaultTest, OneMeshAskedByManyThreads) {
 }
 
 #if defined(__x86_64__)
-TYPED_TEST(FaultTest, ProgramsMayRoundAndFlushAsTheyLike) {
+TYPED_TEST(InMemoryFault, ProgramsMayRoundAndFlushAsTheyLike) {
   constexpr int D = TypeParam::value;
   Points<D> points = testing::lattice_points<D>(60 / D / D, 7);
   const Points<D> large = random_points<D>(D == 2 ? 70'000 : 140'000, 8);  // several threads

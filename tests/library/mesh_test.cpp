@@ -23,8 +23,11 @@ using testing::Points;
 using testing::PointSet;
 
 template <typename Dimension>
-class MeshTest : public ::testing::Test {};
-TYPED_TEST_SUITE(MeshTest, testing::Dimensions);
+class InMemoryMesh : public ::testing::Test {};
+TYPED_TEST_SUITE(InMemoryMesh, testing::Dimensions, testing::DimensionNames);
+
+static_assert(std::ranges::forward_range<Cells<2, std::int32_t>>);
+static_assert(std::ranges::sized_range<Cells<3, std::int64_t>>);
 
 template <int D, class Index>
 std::vector<std::array<VertexId, D + 1>> sorted_cells(const Delaunay<D, Index>& mesh) {
@@ -43,7 +46,7 @@ auto copy_of(const Range& range) {
   return std::vector(range.begin(), range.end());
 }
 
-TYPED_TEST(MeshTest, CellsAreThoseOfCgal) {
+TYPED_TEST(InMemoryMesh, CellsAreThoseOfCgal) {
   constexpr int D = TypeParam::value;
   for (const auto& [name, points] : point_sets<D>()) {
     SCOPED_TRACE(name);
@@ -57,7 +60,7 @@ TYPED_TEST(MeshTest, CellsAreThoseOfCgal) {
   }
 }
 
-TYPED_TEST(MeshTest, CellsArePositiveAndNeighboursShareTheFacetOppositeTheVertex) {
+TYPED_TEST(InMemoryMesh, CellsArePositiveAndNeighboursShareTheFacetOppositeTheVertex) {
   constexpr int D = TypeParam::value;
   for (const auto& [name, points] : point_sets<D>()) {
     SCOPED_TRACE(name);
@@ -83,7 +86,7 @@ TYPED_TEST(MeshTest, CellsArePositiveAndNeighboursShareTheFacetOppositeTheVertex
   }
 }
 
-TYPED_TEST(MeshTest, HullFacetsLookOutwardsAndBelongToTheirCells) {
+TYPED_TEST(InMemoryMesh, HullFacetsLookOutwardsAndBelongToTheirCells) {
   constexpr int D = TypeParam::value;
   for (const auto& [name, points] : point_sets<D>()) {
     SCOPED_TRACE(name);
@@ -110,7 +113,7 @@ TYPED_TEST(MeshTest, HullFacetsLookOutwardsAndBelongToTheirCells) {
   }
 }
 
-TYPED_TEST(MeshTest, DuplicatesNameTheFirstOfEqualPoints) {
+TYPED_TEST(InMemoryMesh, DuplicatesNameTheFirstOfEqualPoints) {
   constexpr int D = TypeParam::value;
   for (const auto& [name, points] : point_sets<D>()) {
     SCOPED_TRACE(name);
@@ -124,7 +127,7 @@ TYPED_TEST(MeshTest, DuplicatesNameTheFirstOfEqualPoints) {
   }
 }
 
-TYPED_TEST(MeshTest, VertexCellsAreTheLowest) {
+TYPED_TEST(InMemoryMesh, VertexCellsAreTheLowest) {
   constexpr int D = TypeParam::value;
   for (const auto& [name, points] : point_sets<D>()) {
     SCOPED_TRACE(name);
@@ -137,7 +140,7 @@ TYPED_TEST(MeshTest, VertexCellsAreTheLowest) {
   }
 }
 
-TYPED_TEST(MeshTest, HashIsThatOfTheSetOfCells) {
+TYPED_TEST(InMemoryMesh, HashIsThatOfTheSetOfCells) {
   constexpr int D = TypeParam::value;
   for (const auto& [name, points] : point_sets<D>()) {
     SCOPED_TRACE(name);
@@ -151,7 +154,7 @@ TYPED_TEST(MeshTest, HashIsThatOfTheSetOfCells) {
   }
 }
 
-TYPED_TEST(MeshTest, CircumcentresAreNearTheExactOnes) {
+TYPED_TEST(InMemoryMesh, CircumcentresAreNearTheExactOnes) {
   constexpr int D = TypeParam::value;
   using testing::Rational;
   for (const auto& [name, points] : point_sets<D>()) {
@@ -175,7 +178,7 @@ TYPED_TEST(MeshTest, CircumcentresAreNearTheExactOnes) {
   }
 }
 
-TYPED_TEST(MeshTest, PointsMayLieAsTheyDoInAProgram) {
+TYPED_TEST(InMemoryMesh, PointsMayLieAsTheyDoInAProgram) {
   constexpr int D = TypeParam::value;
   const Points<D> points = testing::random_points<D>(300, 8);
   const auto expected = copy_of(Delaunay<D>(points).cell_vertices());
@@ -208,7 +211,7 @@ TYPED_TEST(MeshTest, PointsMayLieAsTheyDoInAProgram) {
   EXPECT_EQ(copy_of(Delaunay<D>(view).cell_vertices()), expected);
 }
 
-TYPED_TEST(MeshTest, ResultDependsNeitherOnThreadsNorOnTheTypeOfNumbers) {
+TYPED_TEST(InMemoryMesh, ResultDependsNeitherOnThreadsNorOnTheTypeOfNumbers) {
   constexpr int D = TypeParam::value;
   // Several base cases, and several ranges of cells.
   const Points<D> points = testing::random_points<D>(D == 2 ? 300'000 : 140'000, 9);
@@ -227,7 +230,7 @@ TYPED_TEST(MeshTest, ResultDependsNeitherOnThreadsNorOnTheTypeOfNumbers) {
   EXPECT_TRUE(std::ranges::equal(one.vertex_cells(), wide.vertex_cells()));
 }
 
-TYPED_TEST(MeshTest, MovesWithItsSpans) {
+TYPED_TEST(InMemoryMesh, MovesWithItsSpans) {
   constexpr int D = TypeParam::value;
   Delaunay<D> mesh(testing::random_points<D>(50, 1));
   const auto vertices = mesh.cell_vertices();

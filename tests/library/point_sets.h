@@ -127,4 +127,12 @@ Points<D> places_around(const Points<D>& points, std::size_t count, std::uint64_
 
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 
+/// "2D" and "3D" in the names of typed tests.
+struct DimensionNames {
+  template <typename Dimension>
+  static std::string GetName(int /*place*/) {
+    return std::to_string(Dimension::value) + "D";
+  }
+};
+
 }  // namespace spillway::detail::testing

@@ -22,8 +22,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <typename Dimension>
-class QueryTest : public ::testing::Test {};
-TYPED_TEST_SUITE(QueryTest, testing::Dimensions);
+class InMemoryQuery : public ::testing::Test {};
+TYPED_TEST_SUITE(InMemoryQuery, testing::Dimensions, testing::DimensionNames);
 
 template <int D>
 std::int32_t locate_slowly(const Delaunay<D>& mesh, const Point<D>& place) {
@@ -52,7 +52,7 @@ std::int32_t nearest_slowly(const Delaunay<D>& mesh, const Point<D>& place) {
   return nearest;
 }
 
-TYPED_TEST(QueryTest, LocateFindsTheLowestCellThatHasThePlace) {
+TYPED_TEST(InMemoryQuery, LocateFindsTheLowestCellThatHasThePlace) {
   constexpr int D = TypeParam::value;
   for (const auto& [name, points] : point_sets<D>()) {
     SCOPED_TRACE(name);
@@ -68,7 +68,7 @@ TYPED_TEST(QueryTest, LocateFindsTheLowestCellThatHasThePlace) {
   }
 }
 
-TYPED_TEST(QueryTest, NearestVertexIsTheLowestOfTheNearest) {
+TYPED_TEST(InMemoryQuery, NearestVertexIsTheLowestOfTheNearest) {
   constexpr int D = TypeParam::value;
   for (const auto& [name, points] : point_sets<D>()) {
     SCOPED_TRACE(name);
@@ -87,7 +87,7 @@ TYPED_TEST(QueryTest, NearestVertexIsTheLowestOfTheNearest) {
   }
 }
 
-TYPED_TEST(QueryTest, NearestVertexOfTheCentreOfACircleOfManyIsTheLowest) {
+TYPED_TEST(InMemoryQuery, NearestVertexOfTheCentreOfACircleOfManyIsTheLowest) {
   constexpr int D = TypeParam::value;
   Points<D> points;
   for (const auto& [a, b] :
@@ -104,7 +104,7 @@ TYPED_TEST(QueryTest, NearestVertexOfTheCentreOfACircleOfManyIsTheLowest) {
   EXPECT_EQ(mesh.nearest_vertex(Point<D>{}), 0);
 }
 
-TYPED_TEST(QueryTest, ManyPlacesAreAnsweredAsEachAlone) {
+TYPED_TEST(InMemoryQuery, ManyPlacesAreAnsweredAsEachAlone) {
   constexpr int D = TypeParam::value;
   const Points<D> points = testing::random_points<D>(20'000, 13);
   const Points<D> places = places_around<D>(points, 9'000, 14);
@@ -131,7 +131,7 @@ TYPED_TEST(QueryTest, ManyPlacesAreAnsweredAsEachAlone) {
   }
 }
 
-TYPED_TEST(QueryTest, PlacesThatAreNotFiniteAreNowhere) {
+TYPED_TEST(InMemoryQuery, PlacesThatAreNotFiniteAreNowhere) {
   constexpr int D = TypeParam::value;
   const Points<D> points = testing::random_points<D>(100, 15);
   const Delaunay<D> mesh(points);
@@ -151,7 +151,7 @@ TYPED_TEST(QueryTest, PlacesThatAreNotFiniteAreNowhere) {
   EXPECT_TRUE(mesh.locate(PointView<D>()).empty());
 }
 
-TYPED_TEST(QueryTest, InterpolationReproducesLinearFunctions) {
+TYPED_TEST(InMemoryQuery, InterpolationReproducesLinearFunctions) {
   constexpr int D = TypeParam::value;
   for (const auto& [name, points] : point_sets<D>()) {
     SCOPED_TRACE(name);
@@ -185,7 +185,7 @@ TYPED_TEST(QueryTest, InterpolationReproducesLinearFunctions) {
   }
 }
 
-TYPED_TEST(QueryTest, InterpolationLooksOnlyAtVerticesOfTheFaceWithThePlace) {
+TYPED_TEST(InMemoryQuery, InterpolationLooksOnlyAtVerticesOfTheFaceWithThePlace) {
   constexpr int D = TypeParam::value;
   Points<D> points(D + 1);
   for (int k = 0; k < D; ++k) points[k + 1][k] = 2;
