@@ -26,8 +26,6 @@
 #include "tools/commands/command.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_list.h"
-#include "tools/report/json_text.h"
-#include "tools/report/text_output.h"
 
 namespace spillway::detail {
 namespace {
