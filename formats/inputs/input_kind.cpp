@@ -4,13 +4,8 @@
 #include <utility>
 
 #include "formats/bytes/bytes.h"
-#include "formats/disk/extension.h"
 #include "formats/inputs/open_mesh.h"
 #include "formats/inputs/open_points.h"
-#include "formats/meshes/sma/sma_reader.h"
-#include "formats/meshes/spm/spm_format.h"
-#include "formats/points/common/point_reader.h"
-#include "formats/points/point_format.h"
 
 namespace spillway::detail {
 namespace {
@@ -35,22 +30,24 @@ std::unique_ptr<InputFile> ProbedInput::open(const std::string& path) {
   return files_.open(path);
 }
 
-InputKind kind_of_input(ProbedInput& input) {
+InputKind kind_of_input(ProbedInput& input, MeshFormats formats) {
   const bool is_pipe = input.is_pipe();
-  const std::string extension = extension_of(input.path());
-  const bool is_named_stream = extension == "spm" || extension == "sma";
+  const MeshFormat* const named = mesh_format_of_name(input.path(), formats);
+  const bool is_named_stream = named != nullptr && named->is_stream();
   if (!is_pipe && !input.exists(input.path()) && !is_named_stream) {
-    // An npy mesh may go by a name that no file has.
-    return is_mesh(input.beneath(), input.path()) ? InputKind::kMesh : InputKind::kPoints;
+    // A mesh in several files may go by a name that no file has.
+    return is_mesh(input.beneath(), input.path(), formats) ? InputKind::kMesh : InputKind::kPoints;
   }
   InputSource& source = input.source();
   const std::string_view text = as_text(source.peek(kProbe));
-  if (text.starts_with(kSpmMagic) || text.starts_with(kSmaNote)) return InputKind::kMeshStream;
+  const MeshFormat* const told = mesh_format_of_content(source, formats);
+  if (told != nullptr && told->is_stream()) return InputKind::kMeshStream;
   if (is_named_stream && !begins_as_points(source.peek(kProbe))) {
-    return mesh_format_of_content(source) ? InputKind::kMesh : InputKind::kMeshStream;
+    return told != nullptr ? InputKind::kMesh : InputKind::kMeshStream;
   }
-  if (!is_pipe && is_mesh(input.beneath(), input.path())) return InputKind::kMesh;
-  return looks_like_sma(text) ? InputKind::kMeshStream : InputKind::kPoints;
+  if (!is_pipe && is_mesh(input.beneath(), input.path(), formats)) return InputKind::kMesh;
+  return stream_format_that_resembles(text, formats) != nullptr ? InputKind::kMeshStream
+                                                                : InputKind::kPoints;
 }
 
 }  // namespace spillway::detail

@@ -5,6 +5,7 @@
 
 #include "formats/bytes/input_source.h"
 #include "formats/disk/file_system.h"
+#include "formats/meshes/mesh_formats.h"
 
 namespace spillway::detail {
 
@@ -51,6 +52,6 @@ enum class InputKind {
 
 /// What an input holds, by its name and its first bytes; points if neither tells of a mesh. A pipe
 /// holds points or a mesh stream. Throws Error if it cannot be opened.
-InputKind kind_of_input(ProbedInput& input);
+InputKind kind_of_input(ProbedInput& input, MeshFormats formats = mesh_formats());
 
 }  // namespace spillway::detail

@@ -1,39 +1,18 @@
 #include "formats/inputs/open_mesh.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <memory>
-#include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "formats/bytes/bytes.h"
-#include "formats/bytes/input_source.h"
-#include "formats/disk/extension.h"
 #include "formats/inputs/open_points.h"
 #include "formats/meshes/common/mesh_block.h"
-#include "formats/meshes/common/mesh_writer.h"
-#include "formats/meshes/glb/glb_format.h"
-#include "formats/meshes/glb/glb_reader.h"
-#include "formats/meshes/landxml/landxml_reader.h"
-#include "formats/meshes/mesh_format.h"
-#include "formats/meshes/npy/npy_mesh.h"
-#include "formats/meshes/obj/obj_reader.h"
-#include "formats/meshes/off/off_reader.h"
-#include "formats/meshes/ply/ply_header.h"
-#include "formats/meshes/ply/ply_reader.h"
-#include "formats/meshes/sma/sma_reader.h"
-#include "formats/meshes/spm/spm_format.h"
-#include "formats/meshes/spm/spm_reader.h"
-#include "formats/meshes/stl/stl_format.h"
-#include "formats/meshes/stl/stl_reader.h"
-#include "formats/meshes/vector/vector_mesh.h"
-#include "formats/meshes/vtu/vtu_reader.h"
-#include "formats/points/common/point_reader.h"
-#include "formats/points/npy/npy_header.h"
-#include "formats/points/point_format.h"
+#include "formats/points/point_formats.h"
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
 
@@ -42,101 +21,56 @@ namespace {
 
 constexpr std::size_t kProbe = 1024;
 
-// A GeoPackage is a SQLite database.
-constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
-constexpr std::string_view kShapefileMagic("\x00\x00\x27\x0a", 4);
-
-/// Whether the text begins with `word`, and with nothing that makes it longer.
-bool begins_with_word(std::string_view text, std::string_view word) {
-  return text.starts_with(word) &&
-         (text.size() == word.size() ||
-          std::isspace(static_cast<unsigned char>(text[word.size()])) != 0);
-}
-
-/// The format that a name alone tells; npy is not among them, as points have it too.
-std::optional<MeshFormat> format_of_name(const std::string& path) {
-  const std::string extension = extension_of(path);
-  if (extension == "ply") return MeshFormat::kPly;
-  if (extension == "obj") return MeshFormat::kObj;
-  if (extension == "off") return MeshFormat::kOff;
-  if (extension == "vtu") return MeshFormat::kVtu;
-  if (extension == "spm") return MeshFormat::kSpm;
-  if (extension == "sma") return MeshFormat::kSma;
-  if (extension == "glb") return MeshFormat::kGlb;
-  if (extension == "stl") return MeshFormat::kStl;
-  if (extension == "gpkg") return MeshFormat::kGpkg;
-  if (extension == "shp") return MeshFormat::kShp;
-  return std::nullopt;
-}
-
-/// Whether a PLY file has simplices. What is wrong with its header is left to read_mesh() to say.
-bool is_ply_mesh(InputSource& source) {
+/// Whether a file has simplices. What is wrong with its header is left to read_mesh() to say.
+bool has_simplices(const MeshFormat& format, InputSource& source) {
   try {
-    return read_ply_header(source).simplices() != nullptr;
+    return format.has_simplices == nullptr || format.has_simplices(source);
   } catch (const Error&) {
     return true;
   }
 }
 
-/// Throws Error if this is the index of VTU parts.
-void refuse_index_of_parts(InputSource& source) {
-  if (as_text(source.peek(kProbe)).find("\"PUnstructuredGrid\"") != std::string_view::npos) {
-    throw Error(
-        fmt::format("{}: this is the index of a mesh's parts, which is for viewers; name one of "
-                    "the parts, or, to check the whole, write it to one file",
-                    source.name()),
-        ErrorCode::kBadInput, {.file = source.name(), .remedy = Remedy::kOneFile});
+/// The format in several files that `path` names a mesh of, and nothing else; null if there is no
+/// such mesh.
+const MeshFormat* format_of_files(const FileSystem& files, const std::string& path,
+                                  MeshFormats formats) {
+  for (const MeshFormat* const format : formats) {
+    if (format->file_set != nullptr && format->file_set->is_meant(files, path)) return format;
   }
+  return nullptr;
 }
 
-/// Throws Error if the file begins as points do, whatever its name says.
-void refuse_points(InputSource& source) {
-  const std::string_view text = as_text(source.peek(kProbe));
-  const bool is_npy = text.starts_with(kNpyMagic);  // which fail_for_unknown() tells about
-  if (is_npy || !begins_as_points(source.peek(kProbe))) return;
-  throw Error(
-      fmt::format("{}: this begins as {}, not as a mesh; triangulate it first", source.name(),
-                  text.starts_with("LASF") ? "points in LAS" : "points or compressed data"));
+/// Throws Error if the file is one of those of a mesh in several, or begins as points do, whatever
+/// its name says.
+void refuse_what_is_no_mesh(InputSource& source, const std::string& path, MeshFormats formats) {
+  for (const MeshFormat* const format : formats) {
+    if (format->file_set != nullptr) format->file_set->check_is_no_part(source, path);
+  }
+  const std::span<const std::byte> first_bytes = source.peek(kProbe);
+  if (!begins_as_points(first_bytes)) return;
+  const PointFormat* const points = point_format_of_bytes(as_text(first_bytes));
+  throw Error(fmt::format(
+      "{}: this begins as {}, not as a mesh; triangulate it first", source.name(),
+      points != nullptr ? fmt::format("points in {}", points->title) : "compressed data"));
 }
 
-/// Throws Error for a GeoPackage or Shapefile in a pipe, which nobody could open by its name again.
+/// Throws Error for a table in a pipe, which nobody could open by its name again.
 void refuse_pipe_of_tables(const InputSource& source, const std::string& path,
-                           std::optional<MeshFormat> format) {
-  if (format != MeshFormat::kGpkg && format != MeshFormat::kShp) return;
-  if (path != "-" && source.size()) return;
-  throw Error(fmt::format("{}: a GeoPackage or Shapefile is not read from a pipe; name the file",
-                          source.name()));
+                           const MeshFormat& format) {
+  if (!format.is_table() || (path != "-" && source.size())) return;
+  throw Error(
+      fmt::format("{}: a {} is not read from a pipe; name the file", source.name(), format.title));
 }
 
-[[noreturn]] void fail_for_unknown(InputSource& source, const std::string& path) {
-  if (as_text(source.peek(kProbe)).starts_with(kNpyMagic)) {
-    const NpyMeshNames names = npy_mesh_names(path);
-    throw Error(
-        fmt::format("{}: this is one npy array, but a mesh is two, such as {} and {}; name "
-                    "one of these",
-                    source.name(), names.vertices, names.simplices));
+[[noreturn]] void fail_for_unknown(const InputSource& source, MeshFormats formats) {
+  std::vector<std::string> titles;
+  for (const MeshFormat* const format : formats) {
+    if (format->recognises != nullptr) titles.emplace_back(format->title);
   }
   throw Error(
-      fmt::format("{}: this is no mesh that is known: it begins neither as PLY nor as OFF nor "
-                  "as VTU nor as spm, and has not the name of another format; convert it or name "
-                  "its format",
-                  source.name()));
-}
-
-/// Whether `path` names an npy mesh and nothing else: one of its files, or no file at all.
-bool is_npy_mesh(const FileSystem& files, const std::string& path) {
-  const std::optional<NpyMeshNames> names = find_npy_mesh(files, path);
-  return names && (path == names->vertices || path == names->simplices || !files.exists(path));
-}
-
-Mesh read_npy(FileSystem& files, const std::string& path) {
-  if (const std::optional<NpyMeshNames> names = find_npy_mesh(files, path)) {
-    return read_npy_mesh(files, *names);
-  }
-  const NpyMeshNames names = npy_mesh_names(path);
-  throw Error(
-      fmt::format("{}: an npy mesh is two files, such as {} and {}, which are not both there", path,
-                  names.vertices, names.simplices));
+      fmt::format("{}: this is no mesh that is known: it begins neither as {}, and has not the "
+                  "name of a format; convert it or name its format",
+                  source.name(), fmt::join(titles, " nor as ")));
 }
 
 /// The whole of a stream, in output coordinates.
@@ -159,43 +93,25 @@ Mesh collect(MeshStreamReader& stream) {
   return mesh;
 }
 
-Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string& format_name) {
-  std::optional<MeshFormat> format;
-  if (!format_name.empty()) format = mesh_format(path, format_name);
-  if (format == MeshFormat::kNpy || (!format && is_npy_mesh(files, path))) {
-    return read_npy(files, path);
-  }
+Mesh read_as(const MeshFormat& format, std::unique_ptr<InputSource> source,
+             const std::string& path) {
+  refuse_pipe_of_tables(*source, path, format);
+  if (format.is_table()) return format.read_table(path);
+  if (format.is_stream()) return collect(*format.open_stream(std::move(source)));
+  return format.read(*source);
+}
+
+Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string& format_name,
+                   MeshFormats formats) {
+  const MeshFormat* format = format_name.empty() ? format_of_files(files, path, formats)
+                                                 : &mesh_format(path, format_name, formats);
+  if (format != nullptr && format->file_set != nullptr) return format->file_set->read(files, path);
   auto source = std::make_unique<InputSource>(files.open(path));
-  refuse_pipe_of_tables(*source, path, format);
-  refuse_index_of_parts(*source);
-  if (!format) format = mesh_format_of_content(*source);
-  if (!format) refuse_points(*source);
-  if (!format) format = format_of_name(path);
-  if (!format) fail_for_unknown(*source, path);
-  refuse_pipe_of_tables(*source, path, format);
-  switch (*format) {
-    case MeshFormat::kObj:
-      return read_obj(*source);
-    case MeshFormat::kOff:
-      return read_off(*source);
-    case MeshFormat::kVtu:
-      return read_vtu(*source);
-    case MeshFormat::kSpm:
-      return collect(*open_spm_reader(std::move(source)));
-    case MeshFormat::kSma:
-      return collect(*open_sma_reader(std::move(source)));
-    case MeshFormat::kGlb:
-      return read_glb(*source);
-    case MeshFormat::kStl:
-      return read_stl(*source);
-    case MeshFormat::kLandXml:
-      return read_landxml(*source);
-    case MeshFormat::kGpkg:
-    case MeshFormat::kShp:
-      return read_vector_mesh(path);
-    default:
-      return read_ply(*source);
-  }
+  if (format == nullptr) format = mesh_format_of_content(*source, formats);
+  if (format == nullptr) refuse_what_is_no_mesh(*source, path, formats);
+  if (format == nullptr) format = mesh_format_of_name(path, formats);
+  if (format == nullptr) fail_for_unknown(*source, formats);
+  return read_as(*format, std::move(source), path);
 }
 
 /// Whether all vertices are on the header's lattice, z of the plane apart.
@@ -219,34 +135,24 @@ void check_lattice_of(const Mesh& mesh, const std::string& path) {
 
 }  // namespace
 
-std::optional<MeshFormat> mesh_format_of_content(InputSource& source) {
-  const std::string_view text = as_text(source.peek(kProbe));
-  if (begins_with_word(text, "ply")) return MeshFormat::kPly;
-  if (begins_with_word(text, "OFF")) return MeshFormat::kOff;
-  // Of OBJ, which has no magic number, only Spillway's own is recognised.
-  if (begins_with_word(text, "# spillway dimension")) return MeshFormat::kObj;
-  if (begins_with_word(text, kSmaNote)) return MeshFormat::kSma;
-  if (text.starts_with(kSpmMagic)) return MeshFormat::kSpm;
-  if (text.starts_with('<') && text.find("<VTKFile") != text.npos) return MeshFormat::kVtu;
-  if (text.find("<LandXML") != text.npos) return MeshFormat::kLandXml;
-  if (text.starts_with(glb::kMagic)) return MeshFormat::kGlb;
-  if (text.starts_with(kStlOrigin) || looks_like_ascii_stl(text)) return MeshFormat::kStl;
-  if (text.starts_with(kSqliteMagic)) return MeshFormat::kGpkg;
-  if (text.starts_with(kShapefileMagic)) return MeshFormat::kShp;
-  return std::nullopt;
+const MeshFormat* mesh_format_of_content(InputSource& source, MeshFormats formats) {
+  return mesh_format_of_bytes(as_text(source.peek(kProbe)), formats);
 }
 
-bool is_mesh(FileSystem& files, const std::string& path) {
+bool is_mesh(FileSystem& files, const std::string& path, MeshFormats formats) {
   if (path == "-") return false;
-  if (is_npy_mesh(files, path)) return true;
+  if (format_of_files(files, path, formats) != nullptr) return true;
   InputSource source(files.open(path));
-  std::optional<MeshFormat> format = mesh_format_of_content(source);
-  if (!format && !begins_as_points(source.peek(kProbe))) format = format_of_name(path);
-  return format == MeshFormat::kPly ? is_ply_mesh(source) : format.has_value();
+  const MeshFormat* format = mesh_format_of_content(source, formats);
+  if (format == nullptr && !begins_as_points(source.peek(kProbe))) {
+    format = mesh_format_of_name(path, formats);
+  }
+  return format != nullptr && has_simplices(*format, source);
 }
 
-Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name) {
-  Mesh mesh = read_any_mesh(files, path, format_name);
+Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name,
+               MeshFormats formats) {
+  Mesh mesh = read_any_mesh(files, path, format_name, formats);
   check_lattice_of(mesh, path);
   return mesh;
 }

@@ -4,90 +4,60 @@
 
 #include <utility>
 
-#include "formats/meshes/glb/glb_writer.h"
-#include "formats/meshes/landxml/landxml_writer.h"
-#include "formats/meshes/mesh_format.h"
-#include "formats/meshes/npy/npy_mesh.h"
-#include "formats/meshes/obj/obj_writer.h"
-#include "formats/meshes/off/off_writer.h"
-#include "formats/meshes/ply/ply_writer.h"
-#include "formats/meshes/vtu/vtu_writer.h"
+#include "formats/meshes/mesh_formats.h"
 #include "src/error.h"
 
 namespace spillway::detail {
 namespace {
 
-/// Throws InvalidArgument if the format, of triangles only, cannot hold the mesh.
-void check_triangles_only(const std::string& path, std::string_view format, int dimension,
-                          bool has_input_index) {
-  if (dimension != 2) {
-    throw InvalidArgument(fmt::format(
-        "cannot write {}: {} holds no tetrahedra; choose spm, ply, vtu or npy", path, format));
+/// Throws InvalidArgument if the format cannot hold the mesh.
+void check_holds(const MeshFormat& format, const std::string& path, int dimension,
+                 bool has_input_index) {
+  if (dimension != 2 && !format.holds_tetrahedra) {
+    const auto hold = [](const MeshFormat& other) { return other.holds_tetrahedra; };
+    throw InvalidArgument(fmt::format("cannot write {}: {} holds no tetrahedra; choose {}", path,
+                                 format.title, list_of_formats(hold, "or")));
   }
-  if (has_input_index) {
+  if (has_input_index && !format.holds_input_index) {
+    const auto hold = [](const MeshFormat& other) { return other.holds_input_index; };
     throw InvalidArgument(
-        fmt::format("cannot write {}: {} holds no input index; choose spm, ply, vtu or npy, or "
-                    "leave the index out",
-                    path, format));
+        fmt::format("cannot write {}: {} holds no input index; choose {}, or leave the index out",
+                    path, format.title, list_of_formats(hold, "or")));
   }
-}
-
-bool needs_regular_file(MeshFormat format) {
-  return format == MeshFormat::kGlb || format == MeshFormat::kStl || format == MeshFormat::kGpkg ||
-         format == MeshFormat::kShp;
 }
 
 }  // namespace
 
-MeshFiles create_mesh_files(FileSystem& files, const std::string& path, MeshFormat format,
+MeshFiles create_mesh_files(FileSystem& files, const std::string& path, const MeshFormat& format,
                             int dimension, bool has_input_index) {
-  MeshFiles created;
-  created.format = format;
-  if (const std::string_view name = triangle_format(format); !name.empty()) {
-    check_triangles_only(path, name, dimension, has_input_index);
-  }
-  if (path == "-" && needs_regular_file(format)) {
+  check_holds(format, path, dimension, has_input_index);
+  if (path == "-" && format.needs_regular_file) {
     throw InvalidArgument(
         fmt::format("standard output cannot take {}, whose begin is written last; name a "
                     "file",
-                    triangle_format(format)));
+                    format.title));
   }
-  if (format == MeshFormat::kGpkg || format == MeshFormat::kShp) return created;
-  if (format == MeshFormat::kNpy) {
-    const NpyMeshNames names = npy_mesh_to_write(files, path, has_input_index);
-    created.main = files.create(names.vertices);
-    created.simplices = files.create(names.simplices);
-    if (has_input_index) created.input_index = files.create(names.input_index);
-    return created;
+  MeshFiles created;
+  if (format.file_set != nullptr) {
+    created = format.file_set->create(files, path, has_input_index);
+  } else if (!format.is_table()) {
+    created.main = files.create(path);
   }
-  created.main = files.create(path);
+  created.format = &format;
+  created.path = path;
   return created;
 }
 
 std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshHeader& header) {
-  switch (files.format) {
-    case MeshFormat::kPly:
-    case MeshFormat::kPlyAscii:
-      return open_ply_writer(std::move(files.main), header, files.format == MeshFormat::kPlyAscii);
-    case MeshFormat::kObj:
-      return open_obj_writer(std::move(files.main), header);
-    case MeshFormat::kOff:
-      return open_off_writer(std::move(files.main), header);
-    case MeshFormat::kVtu:
-      return open_vtu_writer(std::move(files.main), header);
-    case MeshFormat::kNpy:
-      return open_npy_mesh_writer(std::move(files), header);
-    case MeshFormat::kGlb:
-      return open_glb_writer(std::move(files.main), header);
-    case MeshFormat::kLandXml:
-      return open_landxml_writer(std::move(files.main), header);
-    default:
-      throw Error("this mesh format is written block by block, not as a whole mesh");
+  const MeshFormat& format = *files.format;
+  if (format.open_writer == nullptr) {
+    throw Error("this mesh format is written block by block, not as a whole mesh");
   }
+  return format.open_writer(std::move(files), header);
 }
 
 std::unique_ptr<MeshWriter> open_mesh_writer(FileSystem& files, const std::string& path,
-                                             MeshFormat format, const MeshHeader& header) {
+                                             const MeshFormat& format, const MeshHeader& header) {
   return open_mesh_writer(
       create_mesh_files(files, path, format, header.dimension, header.has_input_index), header);
 }

@@ -4,15 +4,14 @@
 #include <string>
 
 #include "formats/disk/file_system.h"
-#include "formats/meshes/common/mesh_writer.h"
+#include "formats/meshes/common/mesh_format.h"
 
 namespace spillway::detail {
 
 /// Creates the files of the mesh `path` ("-": standard output). Throws Error if the format cannot
-/// hold it (all but spm, ply, vtu and npy hold no tetrahedra and no input index; npy needs two
-/// files and so no pipe, and neither do glb, stl, gpkg and shp, whose begin is written last) or a
-/// file cannot be created.
-MeshFiles create_mesh_files(FileSystem& files, const std::string& path, MeshFormat format,
+/// hold it (MeshFormat tells), if it needs two files or one that it can go back in and gets
+/// standard output, or if a file cannot be created.
+MeshFiles create_mesh_files(FileSystem& files, const std::string& path, const MeshFormat& format,
                             int dimension, bool has_input_index);
 
 /// Begins to write to these files. Throws Error for what is written block by block:
@@ -21,6 +20,6 @@ std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshHeader& 
 
 /// Creates the files of a mesh and begins to write to them.
 std::unique_ptr<MeshWriter> open_mesh_writer(FileSystem& files, const std::string& path,
-                                             MeshFormat format, const MeshHeader& header);
+                                             const MeshFormat& format, const MeshHeader& header);
 
 }  // namespace spillway::detail

@@ -4,8 +4,7 @@
 #include <string>
 
 #include "formats/disk/scratch_folder.h"
-#include "formats/meshes/common/mesh_stream.h"
-#include "formats/meshes/common/mesh_writer.h"
+#include "formats/meshes/common/mesh_format.h"
 
 namespace spillway::detail {
 
@@ -14,7 +13,7 @@ namespace spillway::detail {
 /// files are created at once. Throws Error as create_mesh_files() does.
 std::unique_ptr<MeshStreamWriter> open_mesh_stream_writer(FileSystem& files,
                                                           const std::string& path,
-                                                          MeshFormat format,
+                                                          const MeshFormat& format,
                                                           const MeshStreamHeader& header,
                                                           ScratchFolder& scratch);
 

@@ -4,8 +4,7 @@
 #include <memory>
 
 #include "formats/disk/scratch_folder.h"
-#include "formats/meshes/common/mesh_stream.h"
-#include "formats/meshes/common/mesh_writer.h"
+#include "formats/meshes/common/mesh_format.h"
 #include "formats/meshes/spool/mesh_spool.h"
 
 namespace spillway::detail {

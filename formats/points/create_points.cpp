@@ -3,76 +3,78 @@
 #include <fmt/format.h>
 
 #include <utility>
+#include <vector>
 
+#include "formats/bytes/word_list.h"
 #include "formats/compression/decompress.h"
-#include "formats/disk/extension.h"
 #include "formats/disk/spooled_output.h"
-#include "formats/points/las/las_writer.h"
-#include "formats/points/npy/npy_writer.h"
-#include "formats/points/spp/spp_writer.h"
-#include "formats/points/text/text_writer.h"
 #include "src/error.h"
 
 namespace spillway::detail {
 namespace {
 
-/// Whether the header is only right once all points are written.
-bool header_comes_last(PointFormat format, const PointWriterOptions& options) {
-  if (format == PointFormat::kLas) return !options.count || options.attributes;
-  return format == PointFormat::kNpy && !options.count;
+std::string name_of_output(const std::string& path) {
+  return path == "-" ? "standard output" : path;
+}
+
+/// The extensions of the formats that are written, the first ones or all.
+std::string written_extensions(bool all, std::string_view last, PointFormats formats) {
+  std::vector<std::string> extensions;
+  for (const PointFormat* const format : formats) {
+    if (!is_written(*format)) continue;
+    const std::vector<std::string> own = point_extensions({&format, 1});
+    extensions.insert(extensions.end(), own.begin(), all ? own.end() : own.begin() + 1);
+  }
+  return word_list(extensions, last);
+}
+
+/// The format by its name, or by the path's; it need not be one that is written.
+const PointFormat& chosen_format(const std::string& path, const std::string& format_name,
+                                 PointFormats formats) {
+  if (!format_name.empty()) return point_format_by_name(format_name, formats);
+  if (compression_of_name(path) != Compression::kNone) {
+    throw InvalidArgument(
+        fmt::format("cannot write {}: compressed points are not written; write them "
+                    "to {} and compress that",
+                    path, written_extensions(false, "or", formats)));
+  }
+  if (const PointFormat* const format = point_format_of_path(path, formats)) return *format;
+  throw InvalidArgument(
+      fmt::format("cannot tell the format of {} from its name; end it in {}, or name the format",
+                  name_of_output(path), written_extensions(true, "or", formats)));
 }
 
 }  // namespace
 
-PointFormat point_format_to_write(const std::string& path, const std::string& format_name) {
-  if (format_name == "laz" || format_name == "copc" ||
-      (format_name.empty() && extension_of(path) == "laz")) {
-    throw InvalidArgument(fmt::format(
-        "cannot write {}: LAZ is read, not written; write .las, or .spp, which is compressed too",
-        path == "-" ? "standard output" : path));
-  }
-  if (!format_name.empty()) return point_format_by_name(format_name);
-  if (compression_of_name(path) != Compression::kNone) {
-    throw InvalidArgument(
-        fmt::format("cannot write {}: compressed points are not written; write them "
-                    "to .las, .txt, .npy or .spp and compress that",
-                    path));
-  }
-  const std::optional<PointFormat> format = point_format_of_path(path);
-  if (!format) {
-    throw InvalidArgument(
-        fmt::format("cannot tell the format of {} from its name; end it in .las, "
-                    ".txt, .xyz, .csv, .asc, .npy or .spp, or name the format",
-                    path == "-" ? "standard output" : path));
-  }
-  return *format;
+const PointFormat& point_format_to_write(const std::string& path, const std::string& format_name,
+                                         PointFormats formats) {
+  const PointFormat& format = chosen_format(path, format_name, formats);
+  if (is_written(format)) return format;
+  throw InvalidArgument(fmt::format(
+      "cannot write {}: {} is read, not written; write .las, or .spp, which is compressed too",
+      name_of_output(path), format.title));
 }
 
 std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::string& path,
-                                               const PointWriterOptions& options) {
-  const PointFormat format = point_format_to_write(path, options.format);
+                                               const PointWriterOptions& options,
+                                               PointFormats formats) {
+  const PointFormat& format = point_format_to_write(path, options.format, formats);
   std::unique_ptr<OutputFile> file = files.create(path);
-  if (header_comes_last(format, options) && !file->rewrite(0, {})) {
+  const bool comes_last = format.header_comes_last != nullptr && format.header_comes_last(options);
+  if (comes_last && !file->rewrite(0, {})) {
     if (options.scratch != nullptr) {
       file = spool_output(std::move(file), *options.scratch);
     } else if (!options.count) {
+      const auto counts_nothing = [](const PointFormat& other) {
+        return is_written(other) && other.header_comes_last == nullptr;
+      };
       throw InvalidArgument(
           fmt::format("cannot write {}: its header tells the number of points, which is not known "
-                      "beforehand; write text or spp",
-                      file->name()));
+                      "beforehand; write {}",
+                      file->name(), list_of_points(counts_nothing, "or", formats)));
     }
   }
-  switch (format) {
-    case PointFormat::kLas:
-      return open_las_writer(std::move(file), options);
-    case PointFormat::kNpy:
-      return open_npy_writer(std::move(file), options);
-    case PointFormat::kSpp:
-      return open_spp_writer(std::move(file), options);
-    case PointFormat::kText:
-      break;
-  }
-  return open_text_writer(std::move(file), options, extension_of(path) == "csv" ? ',' : ' ');
+  return format.open_writer(std::move(file), path, options);
 }
 
 }  // namespace spillway::detail

@@ -1,20 +1,23 @@
 #include "formats/points/open_las.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
-#include "formats/points/copc/copc_reader.h"
-#include "formats/points/las/las_header.h"
-#include "formats/points/las/las_reader.h"
-#include "formats/points/laz/laz_reader.h"
+#include "formats/points/las/las_variant.h"
+#include "src/error.h"
 
 namespace spillway::detail {
 
-std::unique_ptr<PointReader> open_las(std::unique_ptr<InputSource> source, const std::string& path,
-                                      const PointReaderOptions& options) {
-  const LasHeader las = read_las_header(*source);
-  if (las.copc) return open_copc_reader(std::move(source), las, path, options);
-  if (las.laz) return open_laz_reader(std::move(source), las, path, options);
-  return open_las_reader(std::move(source), las, path, options);
+std::unique_ptr<PointReader> open_las(PointInput input, const PointReaderOptions& options,
+                                      PointFormats formats) {
+  const LasHeader las = read_las_header(*input.source);
+  for (const PointFormat* const format : formats) {
+    const LasVariant* const variant = format->las_variant;
+    if (variant == nullptr || !variant->is_told(las)) continue;
+    return variant->open(std::move(input.source), las, input.path, options);
+  }
+  throw Error(fmt::format("{}: no format is known that has such a header", input.path));
 }
 
 }  // namespace spillway::detail

@@ -1,16 +1,14 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
-#include "formats/bytes/input_source.h"
-#include "formats/points/common/point_reader.h"
+#include "formats/points/point_formats.h"
 
 namespace spillway::detail {
 
-/// Opens LAS 1.0 to 1.5, point formats 0 to 10, compressed (LAZ, COPC) or not, as the header says.
-/// `path` is the source's name as the user gave it.
-std::unique_ptr<PointReader> open_las(std::unique_ptr<InputSource> source, const std::string& path,
-                                      const PointReaderOptions& options);
+/// Opens what begins as LAS: LAS 1.0 to 1.5, point formats 0 to 10, compressed (LAZ, COPC) or not,
+/// as the header says. Throws Error if none of `formats` reads a file with such a header.
+std::unique_ptr<PointReader> open_las(PointInput input, const PointReaderOptions& options,
+                                      PointFormats formats = point_formats());
 
 }  // namespace spillway::detail

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -14,10 +13,8 @@
 namespace spillway::detail {
 namespace {
 
-/// What belongs to a vector file beside itself: parts, indices and journals. Those of an older file
-/// of that name would make nonsense of the new one.
-constexpr std::array<std::string_view, 8> kPartExtensions = {".shx", ".dbf", ".prj", ".cpg",
-                                                             ".qix", ".sbn", ".sbx", ".qpj"};
+/// Journals beside a vector file. Those of an older file of that name would make nonsense of the
+/// new one, as would its parts.
 constexpr std::array<std::string_view, 3> kJournalEnds = {"-wal", "-shm", "-journal"};
 
 /// The layer's name for a file of that stem. GDAL's GeoPackages take any name, but none that begins
@@ -31,11 +28,13 @@ std::string layer_name(std::string stem) {
 
 }  // namespace
 
-VectorFile::VectorFile(VectorLayerOptions options) : output_(options.path) {
+VectorFile::VectorFile(const VectorFormat& format, VectorLayerOptions options)
+    : format_(format), output_(options.path) {
+  options.driver = format.driver;
   options.name = output_.name();
   options.layer = layer_name(output_.target().stem().string());
   options.path = output_.path();
-  if (options.driver == "ESRI Shapefile" && options.path.find('\\') != std::string::npos) {
+  if (!format.takes_backslash && options.path.find('\\') != std::string::npos) {
     throw Error(fmt::format(
         "cannot write {}: its path has a backslash, which shapefiles cannot be written to; choose "
         "another name or folder",
@@ -47,9 +46,7 @@ VectorFile::VectorFile(VectorLayerOptions options) : output_(options.path) {
 void VectorFile::finish() {
   layer_->finish();
   layer_.reset();
-  const std::span<const std::string_view> parts(kPartExtensions);
-  bytes_ =
-      output_.finish(kJournalEnds, output_.target().extension() == ".shp" ? parts : parts.first(0));
+  bytes_ = output_.finish(kJournalEnds, format_.part_extensions);
 }
 
 }  // namespace spillway::detail

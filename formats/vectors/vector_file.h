@@ -5,17 +5,18 @@
 
 #include "formats/disk/private_output.h"
 #include "formats/gdal/vector_layer.h"
+#include "formats/vectors/vector_formats.h"
 
 namespace spillway::detail {
 
-/// A vector file (GeoPackage, Shapefile, GeoJSON) being written. GDAL writes it into a private
+/// A vector file being written. GDAL writes it into a private
 /// folder beside the target; finish() gives all its files (a shapefile is five) their names. If
 /// destroyed without, or after a signal, nothing is left.
 class VectorFile {
  public:
-  /// Begins the file `options.path` with a layer that is named after it; name and layer of the
-  /// options are set here. Throws Error if it cannot be created.
-  explicit VectorFile(VectorLayerOptions options);
+  /// Begins the file `options.path` with a layer that is named after it; name, layer and driver of
+  /// the options are set here. Throws Error if it cannot be created.
+  VectorFile(const VectorFormat& format, VectorLayerOptions options);
 
   [[nodiscard]] VectorLayer& layer() { return *layer_; }
 
@@ -26,6 +27,7 @@ class VectorFile {
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
  private:
+  const VectorFormat& format_;
   PrivateOutput output_;
   std::unique_ptr<VectorLayer> layer_;  ///< writes to output_, so it goes first
   std::uint64_t bytes_ = 0;

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "formats/disk/file_system.h"
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_stream_writer.h"
 #include "stream/library/public_values.h"
 

@@ -7,7 +7,7 @@
 
 #include "formats/disk/scratch_folder.h"
 #include "formats/meshes/common/mesh_stream.h"
-#include "formats/meshes/common/mesh_writer.h"
+#include "formats/meshes/common/mesh_format.h"
 
 namespace spillway::detail {
 
@@ -26,7 +26,7 @@ class FileMesh final : public spillway::MeshSink {
 
  private:
   std::string path_;
-  MeshFormat format_;
+  const MeshFormat& format_;
   std::unique_ptr<ScratchFolder> scratch_;
   std::unique_ptr<MeshStreamWriter> writer_;
 };

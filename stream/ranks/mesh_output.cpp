@@ -14,15 +14,15 @@
 #include "formats/disk/unfinished_files.h"
 #include "formats/meshes/common/mesh_block.h"
 #include "formats/meshes/create_mesh.h"
-#include "formats/meshes/mesh_format.h"
-#include "formats/meshes/mesh_parts.h"
+#include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_stream_writer.h"
+#include "formats/meshes/ply/ply_format.h"
 #include "formats/meshes/ply/ply_records.h"
 #include "formats/meshes/spm/spm_block.h"
 #include "formats/meshes/spm/spm_encoding.h"
+#include "formats/meshes/spm/spm_format.h"
 #include "formats/meshes/spm/spm_reader.h"
 #include "formats/meshes/spooled_mesh_writer.h"
-#include "formats/points/point_format.h"
 #include "src/error.h"
 #include "stream/ranks/part_files.h"
 #include "stream/ranks/stream_parts.h"
@@ -78,8 +78,7 @@ class SharedMeshOutput : public MeshOutput {
 
   std::uint64_t finish(RankMesh& mesh) override {
     do_together(ranks_, [&] { finish_spool(mesh); });
-    const std::uint64_t bytes =
-        target_.format == MeshFormat::kSpm ? write_spm(mesh) : write_ply(mesh);
+    const std::uint64_t bytes = target_.format == &kSpmMesh ? write_spm(mesh) : write_ply(mesh);
     do_together(ranks_, [&] { file_->close(); });
     do_together(ranks_, [&] {
       if (created_) created_->commit();
@@ -322,22 +321,22 @@ class CollectedMeshOutput : public MeshOutput {
 std::unique_ptr<MeshOutput> open_one_file(FileSystem& files, const MeshTarget& target,
                                           const MeshStreamHeader& header, ScratchFolder& scratch,
                                           const Ranks& ranks) {
-  const bool at_places = target.format == MeshFormat::kSpm || target.format == MeshFormat::kPly;
+  const bool at_places = target.format == &kSpmMesh || target.format == &kPlyMesh;
   MeshFiles created;
   std::unique_ptr<MeshStreamWriter> writer;
   std::vector<std::byte> temporary_path;
   // What rank 0 throws finds the others in the broadcast.
   if (ranks.rank() == 0 && at_places) {
-    created = create_mesh_files(files, target.path, target.format, header.dimension,
+    created = create_mesh_files(files, target.path, *target.format, header.dimension,
                                 header.has_input_index);
     const std::string path = created.main->temporary_path();
     const std::span<const std::byte> bytes = as_bytes_of(path);
     temporary_path.assign(bytes.begin(), bytes.end());
-    if (path.empty() && target.format == MeshFormat::kPly) {
+    if (path.empty() && target.format == &kPlyMesh) {
       writer = open_spooled_mesh_writer(std::move(created), header, scratch);
     }
   } else if (ranks.rank() == 0) {
-    writer = open_mesh_stream_writer(files, target.path, target.format, header, scratch);
+    writer = open_mesh_stream_writer(files, target.path, *target.format, header, scratch);
   }
   ranks.broadcast(temporary_path, 0);
   if (temporary_path.empty()) {
@@ -351,20 +350,23 @@ std::unique_ptr<MeshOutput> open_one_file(FileSystem& files, const MeshTarget& t
 }  // namespace
 
 MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts) {
-  if (extension_of(path) == kPvtu && (format_name.empty() || format_name == "vtu")) {
-    return {path, MeshFormat::kVtu, true};
+  for (const MeshFormat* const format : mesh_formats()) {
+    const bool is_index =
+        format->part_index != nullptr && extension_of(path) == format->part_index->extension;
+    if (is_index && (format_name.empty() || format_name == format->name)) {
+      return {path, format, true};
+    }
   }
-  const MeshFormat format = mesh_format(path, format_name);
+  const MeshFormat& format = mesh_format(path, format_name);
   if (parts && path == "-") {
     throw InvalidArgument("standard output takes no mesh in parts: name a file");
   }
-  if (parts && format != MeshFormat::kVtu && format != MeshFormat::kPly &&
-      format != MeshFormat::kSpm) {
-    throw InvalidArgument(
-        fmt::format("a mesh in parts is written as vtu, ply or spm, not as {}: choose one of these",
-                    mesh_format_names().at(static_cast<std::size_t>(format))));
+  if (parts && !format.stands_in_parts) {
+    const auto stand = [](const MeshFormat& other) { return other.stands_in_parts; };
+    throw InvalidArgument(fmt::format("a mesh in parts is written as {}, not as {}: choose one of these",
+                                 list_of_formats(stand, "or"), format.name));
   }
-  return {path, format, parts};
+  return {path, &format, parts};
 }
 
 MeshOutput::MeshOutput(const MeshStreamHeader& header, const std::string& name,

@@ -6,7 +6,7 @@
 
 #include "formats/disk/file_system.h"
 #include "formats/disk/scratch_folder.h"
-#include "formats/meshes/common/mesh_writer.h"
+#include "formats/meshes/common/mesh_format.h"
 #include "formats/meshes/spool/mesh_spool.h"
 #include "src/distributed/ranks.h"
 #include "stream/ranks/rank_pipeline.h"
@@ -16,13 +16,13 @@ namespace spillway::detail {
 /// Where the mesh of all ranks goes.
 struct MeshTarget {
   std::string path;
-  MeshFormat format = MeshFormat::kPly;
+  const MeshFormat* format = nullptr;
   bool parts = false;  ///< a file for each rank
 };
 
-/// What the command line says, as mesh_format() takes it; `NAME.pvtu` means VTU in parts. Throws
-/// InvalidArgument for no format, and for parts on standard output or in formats other than vtu,
-/// ply and spm. Looks at no file.
+/// What the command line says, as mesh_format() takes it; the name of an index (`NAME.pvtu`) means
+/// its format in parts. Throws InvalidArgument for no format, and for parts on standard output or in a
+/// format that does not stand in parts. Looks at no file.
 MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts);
 
 /// The output of triangulate_over_ranks(). One of:

@@ -9,12 +9,12 @@
 #include "formats/disk/naming_turn.h"
 #include "formats/meshes/common/mesh_block.h"
 #include "formats/meshes/create_mesh.h"
+#include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_parts.h"
 #include "formats/meshes/spm/spm_encoding.h"
 #include "formats/meshes/spool/spm_part.h"
 #include "stream/output/open_facets.h"
 #include "stream/ranks/part_numbers.h"
-#include "stream/ranks/stream_parts.h"
 #include "stream/ranks/together.h"
 
 namespace spillway::detail {
@@ -77,8 +77,8 @@ class PartFiles : public MeshOutput {
         ranks_(ranks) {
     do_together(ranks, [&] { file_ = files.create(name_of(target, ranks)); });
     do_together(ranks, [&] {
-      const bool with_index = ranks.rank() == 0 && target.format == MeshFormat::kVtu;
-      if (with_index) index_ = files.create(pvtu_name(target.path));
+      const bool with_index = ranks.rank() == 0 && target.format->part_index != nullptr;
+      if (with_index) index_ = files.create(part_index_name(target.path, *target.format));
     });
   }
 
@@ -91,8 +91,8 @@ class PartFiles : public MeshOutput {
     do_together(ranks_, [&] { file_->commit(); });
     do_together(ranks_, [&] {
       if (!index_) return;
-      const std::string text =
-          pvtu_text(target_.path, ranks_.size(), spool_.header().has_input_index);
+      const std::string text = part_index_text(target_.path, *target_.format, ranks_.size(),
+                                               spool_.header().has_input_index);
       index_->write(as_bytes_of(text));
       index_->commit();
       bytes_ += text.size();
@@ -103,7 +103,7 @@ class PartFiles : public MeshOutput {
 
  private:
   static std::string name_of(const MeshTarget& target, const Ranks& ranks) {
-    return mesh_part_name(target.path, target.format, ranks.rank(), ranks.size());
+    return mesh_part_name(target.path, *target.format, ranks.rank(), ranks.size());
   }
 
   [[nodiscard]] bool plane() const { return spool_.header().dimension == 2; }
@@ -122,7 +122,7 @@ class PartFiles : public MeshOutput {
     totals.vertices = numbers.vertices();
     totals.points = totals.vertices;
     spool_.finish(totals);
-    if (target_.format == MeshFormat::kSpm) {
+    if (target_.format == &own_mesh_stream()) {
       write_stream(totals);
     } else {
       write_whole(totals, numbers.global_ids());
@@ -156,7 +156,7 @@ class PartFiles : public MeshOutput {
   MeshTarget target_;
   const Ranks& ranks_;
   std::unique_ptr<OutputFile> file_;
-  std::unique_ptr<OutputFile> index_;  ///< at rank 0, for VTU
+  std::unique_ptr<OutputFile> index_;  ///< at rank 0, if the format has one
   std::uint64_t bytes_ = 0;
 };
 

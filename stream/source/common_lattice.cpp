@@ -8,13 +8,14 @@
 #include <set>
 #include <utility>
 
+#include "formats/points/point_formats.h"
+
 namespace spillway::detail {
 namespace {
 
 /// The largest integers of a LAS file and of any source, and the largest that a lattice may make of
 /// either.
 constexpr double kLargest32Bit = 0x1p31;
-constexpr double kLargestInput = 0x1p53;
 constexpr double kLargest = 0x1p52;
 /// Scales are multiples of this part of the smallest one, at most.
 constexpr std::int64_t kMostParts = 1000;
@@ -87,8 +88,9 @@ bool join_axes(std::span<const Lattice> lattices, std::span<const double> larges
 }  // namespace
 
 double largest_integer(const PointHeader& header) {
-  if (header.format != "spp") return kLargest32Bit;
-  if (!header.lattice || !header.extent) return kLargestInput;
+  const PointFormat* const format = find_point_format(header.format);
+  const double most = format != nullptr ? format->largest_integer : kLargest32Bit;
+  if (most <= kLargest32Bit || !header.lattice || !header.extent) return most;
   double largest = kLargest32Bit;
   for (int k = 0; k < 3; ++k) {
     for (const double end : {header.extent->lo[k], header.extent->hi[k]}) {
@@ -96,7 +98,7 @@ double largest_integer(const PointHeader& header) {
       largest = std::max(largest, std::ceil(std::abs(steps)) + 1);
     }
   }
-  return std::min(largest, kLargestInput);
+  return std::min(largest, most);
 }
 
 std::optional<CommonLattice> find_common_lattice(std::span<const Lattice> lattices, int dimension,

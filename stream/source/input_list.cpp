@@ -1,6 +1,7 @@
 #include "stream/source/input_list.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glob.h>
 
 #include <algorithm>
@@ -12,8 +13,8 @@
 
 #include "formats/bytes/line_reader.h"
 #include "formats/disk/file_system.h"
-#include "formats/meshes/npy/npy_mesh.h"
-#include "formats/points/point_format.h"
+#include "formats/meshes/mesh_formats.h"
+#include "formats/points/point_formats.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -24,8 +25,13 @@ namespace fs = std::filesystem;
 /// What arguments stand for.
 struct Found {
   std::vector<std::string> files;
-  std::size_t of_meshes = 0;  ///< files of npy meshes that were left out
+  std::size_t of_meshes = 0;  ///< files of meshes in several files, which were left out
 };
+
+/// The names of the formats of meshes in several files.
+std::string formats_in_files() {
+  return list_of_formats([](const MeshFormat& format) { return format.file_set != nullptr; }, "or");
+}
 
 void append_folder(const std::string& folder, Found& found) {
   std::vector<std::string> names;
@@ -36,7 +42,7 @@ void append_folder(const std::string& folder, Found& found) {
     const std::string name = entry->path().string();
     if (entry->path().filename().string().starts_with('.')) continue;  // hidden
     if (!point_format_of_path(name) || entry->is_directory(unknown)) continue;
-    if (is_part_of_npy_mesh(disk(), name)) {
+    if (mesh_format_of_part(disk(), name) != nullptr) {
       ++found.of_meshes;
     } else {
       names.push_back(name);
@@ -44,10 +50,10 @@ void append_folder(const std::string& folder, Found& found) {
   }
   if (fault) throw Error(fmt::format("cannot read the folder {}: {}", folder, fault.message()));
   if (names.empty()) {
-    throw Error(
-        fmt::format("{}: the folder has no point files (.las, .laz, .txt, .xyz, .csv, "
-                    ".asc, .npy, .spp){}; name files or a pattern",
-                    folder, found.of_meshes > 0 ? " but those of npy meshes" : ""));
+    const std::string others = fmt::format(" but those of {} meshes", formats_in_files());
+    throw Error(fmt::format("{}: the folder has no point files ({}){}; name files or a pattern",
+                            folder, fmt::join(point_extensions(), ", "),
+                            found.of_meshes > 0 ? others : ""));
   }
   std::sort(names.begin(), names.end());
   found.files.insert(found.files.end(), names.begin(), names.end());
@@ -139,8 +145,8 @@ std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments
     }
   }
   if (found.of_meshes > 0 && notice) {
-    notice(fmt::format("{} files of npy meshes in folders left out: they are not points",
-                       found.of_meshes));
+    notice(fmt::format("{} files of {} meshes in folders left out: they are not points",
+                       found.of_meshes, formats_in_files()));
   }
   return found.files;
 }

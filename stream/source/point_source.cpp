@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "formats/inputs/open_points.h"
+#include "formats/points/point_formats.h"
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
 #include "src/parallel/parallel.h"
@@ -49,7 +50,8 @@ Box<3> integers_up_to(double largest) {
 
 /// The integers that a source with a lattice may give, by its format; its extent may be false.
 Box<3> possible_integers(const PointHeader& header) {
-  return integers_up_to(header.format == "spp" ? 0x1p53 : 0x1p31);
+  const PointFormat* const format = find_point_format(header.format);
+  return integers_up_to(format != nullptr ? format->largest_integer : 0x1p31);
 }
 
 Box<3> mapped(const Box<3>& integers, const LatticeMap& map) {

@@ -1,3 +1,9 @@
+spillway_test(format_tables_test unit
+  SOURCES
+    formats/inputs/first_bytes_test.cpp
+    formats/meshes/mesh_formats_test.cpp
+    formats/points/point_formats_test.cpp
+  LIBS spillway_formats fmt::fmt)
 spillway_test(mesh_writer_test unit
   SOURCES formats/meshes/mesh_parts_test.cpp formats/meshes/mesh_writer_test.cpp
   LIBS spillway_formats)

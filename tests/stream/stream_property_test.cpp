@@ -6,6 +6,11 @@
 #include <string>
 
 #include "formats/meshes/mesh_stream_writer.h"
+#include "formats/meshes/obj/obj_format.h"
+#include "formats/meshes/ply/ply_format.h"
+#include "formats/meshes/sma/sma_format.h"
+#include "formats/meshes/spm/spm_format.h"
+#include "formats/meshes/vtu/vtu_format.h"
 #include "src/delaunay/delaunay.h"
 #include "src/error.h"
 #include "src/generators/generators.h"
@@ -119,16 +124,16 @@ std::string write_round_points(std::uint64_t count) {
 }
 
 template <int D>
-void expect_written_in(const std::vector<MeshFormat>& formats) {
+void expect_written_in(const std::vector<const MeshFormat*>& formats) {
   const std::string path = write_round_points<D>(3000);
   MeshStreamHeader header;
   header.dimension = D;
-  for (const MeshFormat format : formats) {
-    SCOPED_TRACE(testing::Message() << D << "D, format " << static_cast<int>(format));
+  for (const MeshFormat* const format : formats) {
+    SCOPED_TRACE(testing::Message() << D << "D, format " << format->name);
     PointSource source(disk(), {path}, {.dimension = D});
     const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
     const std::string mesh = path + ".mesh";
-    const auto writer = open_mesh_stream_writer(disk(), mesh, format, header, *scratch);
+    const auto writer = open_mesh_stream_writer(disk(), mesh, *format, header, *scratch);
     MemoryBudget budget(std::uint64_t{1} << 30);
     const StreamOptions options{.threads = 2, .tile_capacity = 700, .leaf_size = 100};
     const StreamFigures figures = triangulate_stream<D>(source, *writer, *scratch, budget, options);
@@ -139,8 +144,8 @@ void expect_written_in(const std::vector<MeshFormat>& formats) {
 }
 
 TEST(StreamOfBorderOnly, IsWrittenInEveryKindOfFormat) {
-  expect_written_in<2>({MeshFormat::kSpm, MeshFormat::kSma, MeshFormat::kPly, MeshFormat::kObj});
-  expect_written_in<3>({MeshFormat::kSpm, MeshFormat::kVtu});
+  expect_written_in<2>({&kSpmMesh, &kSmaMesh, &kPlyMesh, &kObjMesh});
+  expect_written_in<3>({&kSpmMesh, &kVtuMesh});
 }
 
 template <int D>

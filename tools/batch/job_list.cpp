@@ -14,7 +14,6 @@
 #include "formats/bytes/whole_file.h"
 #include "formats/disk/extension.h"
 #include "formats/disk/file_system.h"
-#include "formats/points/point_format.h"
 #include "tools/process/usage_error.h"
 
 namespace spillway::detail {

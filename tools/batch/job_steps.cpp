@@ -9,8 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "formats/meshes/common/mesh_writer.h"
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/mesh_formats.h"
 #include "tools/process/usage_error.h"
 
 namespace spillway::detail {
@@ -92,7 +91,8 @@ std::string path_argument(const std::string& path) {
   return misleading ? "./" + path : path;
 }
 
-bool is_mesh_stream(const std::string& kind) { return kind == "spm"; }
+/// What all other outputs of a job are made of.
+std::string stream_kind() { return std::string(own_mesh_stream().name); }
 
 }  // namespace
 
@@ -120,14 +120,14 @@ std::vector<JobStep> JobPlanner::plan(const Job& job) const {
   if (kinds.size() == 1) {
     steps.push_back(step(job, kinds.front(), job.inputs, true));
   } else {
-    const auto stream = std::find_if(kinds.begin(), kinds.end(), is_mesh_stream);
-    JobStep first = step(job, "spm", job.inputs, true);
+    const auto stream = std::find(kinds.begin(), kinds.end(), stream_kind());
+    JobStep first = step(job, stream_kind(), job.inputs, true);
     if (stream != kinds.end()) {
       kinds.erase(stream);
     } else {
       first.temporary = true;
-      first.output =
-          path_argument((std::filesystem::path(scratch_) / (job.name + ".spm")).string());
+      first.output = path_argument(
+          (std::filesystem::path(scratch_) / (job.name + "." + stream_kind())).string());
       first.arguments[first.arguments.size() - 1] = first.output;
     }
     steps.push_back(first);

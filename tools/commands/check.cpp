@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,8 +12,8 @@
 #include "formats/inputs/open_mesh.h"
 #include "formats/inputs/open_mesh_stream.h"
 #include "formats/meshes/common/mesh_stream.h"
-#include "formats/meshes/common/mesh_writer.h"
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/mesh_formats.h"
+#include "formats/points/point_formats.h"
 #include "src/geometry/canonical_hash.h"
 #include "stream/checker/checker.h"
 #include "tools/commands/command.h"
@@ -31,7 +33,7 @@ constexpr const char* kExamples =
     "  spillway check tin.ply --points north.las south.las\n"
     "  spillway check of-another-program.obj --any-delaunay\n"
     "  spillway triangulate survey.las -o - | spillway check -\n"
-    "A mesh stream (spm, sma) is proved while it is read, in memory for its open border only.\n"
+    "A mesh stream ({}) is proved while it is read, in memory for its open border only.\n"
     "Exit code 0: proved. 1: refuted, with the first offending simplices, or not readable.";
 
 struct CheckCommandOptions {
@@ -126,8 +128,7 @@ Outcome check_stream(ProbedInput& input, const CheckCommandOptions& options, Pro
 /// Whether the mesh is to be read as a stream. A pipe always is: other formats need a file.
 bool is_stream(ProbedInput& input, const CheckCommandOptions& options) {
   if (!options.mesh_format.empty()) {
-    const MeshFormat format = mesh_format(options.mesh, options.mesh_format);
-    return format == MeshFormat::kSpm || format == MeshFormat::kSma;
+    return mesh_format(options.mesh, options.mesh_format).is_stream();
   }
   return input.is_pipe() || kind_of_input(input) == InputKind::kMeshStream;
 }
@@ -151,6 +152,17 @@ std::string json_report(const Outcome& outcome, const CheckCommandOptions& optio
   return json_text(json) + "\n";
 }
 
+/// What points and meshes are rounded in.
+std::vector<std::string> rounding_formats() {
+  std::vector<std::string> names;
+  for (const PointFormat* const format : point_formats()) {
+    if (format->is_text) names.emplace_back(format->name);
+  }
+  const auto rounds = [](const MeshFormat& format) { return format.rounds_coordinates; };
+  std::ranges::move(names_of_formats(rounds), std::back_inserter(names));
+  return names;
+}
+
 std::string text_report(const Outcome& outcome, const CheckCommandOptions& options) {
   const CheckReport& report = outcome.report;
   std::string text;
@@ -160,9 +172,10 @@ std::string text_report(const Outcome& outcome, const CheckCommandOptions& optio
     text += fmt::format("fault: {} more\n", report.fault_count - report.faults.size());
   }
   if (report.off_lattice > 0) {
-    text +=
-        "hint: vertices off the lattice are what rounding leaves (text, glb, stl); check without "
-        "--points, or make the mesh of LAS or spp\n";
+    text += fmt::format(
+        "hint: vertices off the lattice are what rounding leaves ({}); check without --points, or "
+        "make the mesh of LAS or spp\n",
+        fmt::join(rounding_formats(), ", "));
   }
   text += fmt::format("{} vertices, {} {}, {} hull facets, hash {}\n", report.vertices,
                       report.simplices, outcome.dimension == 2 ? "triangles" : "tetrahedra",
@@ -192,7 +205,8 @@ Subcommand add_check(CLI::App& root) {
   const auto options = std::make_shared<CheckCommandOptions>();
   CLI::App* app = root.add_subcommand("check", "Prove that a mesh is a Delaunay triangulation");
   options->app = app;
-  app->footer(kExamples);
+  const auto is_stream = [](const MeshFormat& format) { return format.is_stream(); };
+  app->footer(fmt::format(fmt::runtime(kExamples), fmt::join(names_of_formats(is_stream), ", ")));
   app->add_option("MESH", options->mesh, "Mesh file; - is a mesh stream from a pipe")->required();
   app->add_option("--points", options->points,
                   "Prove, too, that the vertices are the distinct points of these files, in the "

@@ -2,18 +2,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "formats/disk/extension.h"
-#include "formats/points/point_format.h"
 #include "formats/vectors/vector_file.h"
+#include "formats/vectors/vector_formats.h"
 #include "stream/sinks/contour_writer.h"
 #include "tools/commands/command.h"
 #include "tools/commands/output_check.h"
@@ -44,20 +42,11 @@ struct ContourCommandOptions : TerrainOptions {
   std::vector<double> levels;
 };
 
-/// GDAL's name of the driver for the output.
-std::string driver_of(const std::string& path) {
-  struct Known {
-    std::string_view extension;
-    const char* driver;
-  };
-  constexpr std::array kKnown = {Known{"gpkg", "GPKG"}, Known{"shp", "ESRI Shapefile"},
-                                 Known{"geojson", "GeoJSON"}, Known{"json", "GeoJSON"}};
-  const std::string extension = extension_of(path);
-  for (const Known& known : kKnown) {
-    if (known.extension == extension) return known.driver;
-  }
-  throw UsageError(fmt::format(
-      "-o {}: contours go to a file that ends in .gpkg, .shp, .geojson or .json", path));
+/// The format of the output, by its name.
+const VectorFormat& format_of(const std::string& path) {
+  if (const VectorFormat* const format = vector_format_of_path(path)) return *format;
+  throw UsageError(
+      fmt::format("-o {}: contours go to a file that ends in {}", path, vector_extensions(true)));
 }
 
 Levels levels_of(const ContourCommandOptions& options) {
@@ -80,10 +69,9 @@ class ContourUse : public TerrainUse {
   MeshStreamWriter& begin(const TerrainHeader& header) override {
     VectorLayerOptions layer;
     layer.path = options_.output;
-    layer.driver = driver_of(options_.output);
     layer.lines = true;
     layer.crs = header.crs;
-    file_.emplace(std::move(layer));
+    file_.emplace(format_of(options_.output), std::move(layer));
     writer_.emplace(
         ContourOptions{.levels = levels_,
                        .lattice = header.lattice,
@@ -126,7 +114,7 @@ class ContourUse : public TerrainUse {
 
 int run(const ContourCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  driver_of(options.output);
+  format_of(options.output);
   check_can_create(disk(), options.output);
   if (!options.stats_path.empty()) check_can_create(disk(), options.stats_path);
   reuse_freed_memory();
@@ -180,7 +168,7 @@ Subcommand add_contour(CLI::App& root) {
   const auto options = std::make_shared<ContourCommandOptions>();
   CLI::App* app = root.add_subcommand("contour", "Draw lines of equal height");
   app->footer(kExamples);
-  app->add_option("-o,--output", options->output, "Vector file: .gpkg, .shp or .geojson")
+  app->add_option("-o,--output", options->output, "Vector file: " + vector_extensions(false))
       ->required()
       ->type_name("FILE");
   take_positive_number(app->add_option("--interval", options->interval, "Height between two lines"))

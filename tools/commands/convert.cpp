@@ -10,9 +10,7 @@
 #include <vector>
 
 #include "formats/inputs/input_kind.h"
-#include "formats/meshes/common/mesh_writer.h"
-#include "formats/meshes/mesh_format.h"
-#include "formats/points/common/point_writer.h"
+#include "formats/meshes/mesh_formats.h"
 #include "formats/points/create_points.h"
 #include "stream/source/input_list.h"
 #include "tools/commands/command.h"
@@ -48,8 +46,11 @@ struct ConvertOptions {
 
 /// The words of --output-format: formats of points and of meshes.
 std::vector<std::string> output_format_names() {
-  std::vector<std::string> names = {"las", "text", "spp"};
+  std::vector<std::string> names = written_point_format_names();
   const std::vector<std::string> meshes = mesh_format_names();
+  std::erase_if(names, [&](const std::string& name) {
+    return std::ranges::find(meshes, name) != meshes.end();
+  });
   names.insert(names.end(), meshes.begin(), meshes.end());
   return names;
 }
@@ -77,16 +78,16 @@ bool is_mesh_output(const PointOutput& output) {
 void check_points_output(const ConvertOptions& options) {
   const PointOutput& output = options.output;
   const bool piped = output.path == "-" && output.format.empty();
-  PointFormat format = PointFormat::kSpp;
+  const PointFormat* format = &own_point_stream();
   try {
-    if (!piped) format = point_format_to_write(output.path, output.format);
+    if (!piped) format = &point_format_to_write(output.path, output.format);
   } catch (const InvalidArgument&) {
     if (!is_mesh_output(output)) throw;
     throw Error(
         fmt::format("{}: these are points, and {} would be a mesh: use spillway triangulate",
                     options.inputs.front(), output.name()));
   }
-  check_las_version(output, format == PointFormat::kLas);
+  check_las_version(output, format->has_versions);
   static_cast<void>(format_name_of(output));
 }
 

@@ -9,15 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "formats/bytes/bytes.h"
 #include "formats/inputs/open_mesh.h"
 #include "formats/inputs/open_mesh_stream.h"
 #include "formats/meshes/common/mesh_stream.h"
-#include "formats/meshes/common/mesh_writer.h"
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_stream_writer.h"
-#include "formats/meshes/npy/npy_mesh.h"
-#include "formats/meshes/spm/spm_format.h"
 #include "stream/checker/checker.h"
 #include "tools/commands/facet_count.h"
 #include "tools/process/usage_error.h"
@@ -26,8 +22,8 @@ namespace spillway::detail {
 namespace {
 
 /// Passes the blocks of a stream on as they come.
-MeshTotals convert_stream(MeshStreamReader& reader, MeshFormat format, const std::string& output,
-                          ScratchFolder& scratch, Progress& progress) {
+MeshTotals convert_stream(MeshStreamReader& reader, const MeshFormat& format,
+                          const std::string& output, ScratchFolder& scratch, Progress& progress) {
   const auto writer = open_mesh_stream_writer(disk(), output, format, reader.header(), scratch);
   std::uint64_t simplices = 0;
   for (MeshBlock block; reader.read(block); block = {}) {
@@ -78,7 +74,7 @@ std::vector<Point<3>> stream_vertices(const Mesh& mesh, std::optional<Lattice>& 
 }
 
 /// Writes a whole mesh as one block.
-MeshTotals convert_whole(const Mesh& mesh, MeshFormat format, const std::string& input,
+MeshTotals convert_whole(const Mesh& mesh, const MeshFormat& format, const std::string& input,
                          const std::string& output, ScratchFolder& scratch) {
   if (mesh.vertices.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw Error(fmt::format("{}: {} vertices are too many to convert at once", input,
@@ -103,18 +99,17 @@ MeshTotals convert_whole(const Mesh& mesh, MeshFormat format, const std::string&
 }
 
 /// What a mesh was written to, in words.
-std::string files_of(const std::string& output, MeshFormat format) {
+std::string files_of(const std::string& output, const MeshFormat& format) {
   if (output == "-") return "standard output";
-  if (format != MeshFormat::kNpy) return output;
-  const NpyMeshNames names = npy_mesh_names(output);
-  return names.vertices + " and " + names.simplices;
+  return format.file_set != nullptr ? format.file_set->names(output) : output;
 }
 
-/// Whether the mesh is to be read block by block: an spm stream. An sma stream has no hash at its
-/// end, so that is computed of the whole.
+/// Whether the mesh is to be read block by block. Where a stream has no hash at its end, that is
+/// computed of the whole.
 bool is_stream(ProbedInput& input, InputKind kind) {
-  return kind == InputKind::kMeshStream &&
-         as_text(input.source().peek(kSpmMagic.size())) == kSpmMagic;
+  if (kind != InputKind::kMeshStream) return false;
+  const MeshFormat* const format = mesh_format_of_content(input.source());
+  return format != nullptr && format->has_totals;
 }
 
 }  // namespace
@@ -122,7 +117,7 @@ bool is_stream(ProbedInput& input, InputKind kind) {
 void convert_mesh(ProbedInput& input, InputKind kind, const MeshConversion& conversion,
                   ScratchFolder& scratch, Progress& progress) {
   const std::string& output = conversion.output;
-  const MeshFormat format = mesh_format(output, conversion.output_format);
+  const MeshFormat& format = mesh_format(output, conversion.output_format);
   if (output == "-" && ::isatty(STDOUT_FILENO) != 0 && conversion.output_format.empty()) {
     throw UsageError("a mesh stream is nothing for a terminal: name a file, or pipe it on");
   }

@@ -41,16 +41,16 @@ void append_las_fields(const PointHeader& header, std::vector<std::string_view>&
 }
 
 /// What the inputs have and the output does not keep, in words.
-std::vector<std::string_view> losses(const std::vector<PointHeader>& headers, PointFormat format,
-                                     bool keeps_attributes, bool has_crs) {
+std::vector<std::string_view> losses(const std::vector<PointHeader>& headers,
+                                     const PointFormat& format, bool keeps_attributes,
+                                     bool has_crs) {
   std::vector<std::string_view> all;
   for (const PointHeader& header : headers) {
     if (!is_las(header)) continue;
     if (!keeps_attributes) all.insert(all.end(), {"classes", "returns", "flags"});
     append_las_fields(header, all);
   }
-  const bool holds_crs = format == PointFormat::kLas || format == PointFormat::kSpp;
-  if (has_crs && !holds_crs) all.emplace_back("coordinate system");
+  if (has_crs && !format.holds_crs) all.emplace_back("coordinate system");
   std::vector<std::string_view> lost;
   for (const std::string_view field : all) {
     if (std::ranges::find(lost, field) == lost.end()) lost.push_back(field);
@@ -78,20 +78,20 @@ class PointConversion {
     how_.format = format_name_of(output);
     const bool flat = std::ranges::all_of(
         headers_, [](const PointHeader& header) { return header.coordinates == 2; });
-    adds_heights_ = flat && format_ == PointFormat::kLas;
+    adds_heights_ = flat && format_.needs_heights;
     how_.coordinates = flat && !adds_heights_ ? 2 : 3;
     how_.crs = source.crs();
     how_.scratch = &scratch;
     // Points may be left out of LAS, since they are flagged as withheld.
     if (std::ranges::none_of(headers_, is_las)) how_.count = source.count();
     if (source.heights_on_lattice()) how_.lattice = source.lattice();
-    if (format_ == PointFormat::kLas) {
+    if (format_.has_versions) {
       how_.version =
           output.las_version.empty() ? las_version_for(source, headers_) : output.las_version;
-      how_.crs_wkt = wkt_of_code(how_.crs);
-      how_.attributes = source.has_attributes();
     }
-    if (!choice.empty() || (format_ == PointFormat::kLas && !how_.lattice)) {
+    if (format_.wants_wkt) how_.crs_wkt = wkt_of_code(how_.crs);
+    how_.attributes = format_.holds_attributes && source.has_attributes();
+    if (!choice.empty() || (format_.needs_lattice && !how_.lattice)) {
       const Box<3> box = extent();
       rounding_.emplace(output.name(), chosen_lattice(choice, how_.lattice, box), source.lattice(),
                         box);
@@ -171,7 +171,7 @@ class PointConversion {
   PointSource& source_;
   const PointOutput& output_;
   std::vector<PointHeader> headers_;
-  PointFormat format_;
+  const PointFormat& format_;
   bool adds_heights_ = false;
   PointWriterOptions how_;
   std::optional<LatticeRounding> rounding_;

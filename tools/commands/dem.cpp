@@ -9,10 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "formats/disk/extension.h"
 #include "formats/gdal/gdal.h"
-#include "formats/points/point_format.h"
 #include "formats/rasters/raster_file.h"
+#include "formats/rasters/raster_formats.h"
 #include "src/parallel/parallel.h"
 #include "src/terrain/grid_choice.h"
 #include "stream/plan/memory_plan.h"
@@ -61,7 +60,7 @@ class Run : public TerrainUse {
     dem_options_.memory = limit_ / kPixelShare;
     dem_options_.threads = plan_memory(budget_.limit(), 2, thread_count(options)).threads;
     statistics_.output = options.output;
-    statistics_.output_format = "tif";
+    statistics_.output_format = kGeoTiff.name;
     statistics_.memory_limit = limit_;
   }
 
@@ -224,10 +223,9 @@ int run(const DemCommandOptions& options) {
     throw UsageError(fmt::format("-o {}: a GeoTIFF is not written in one go, so it needs a file",
                                  options.output));
   }
-  const std::string extension = extension_of(options.output);
-  if (extension != "tif" && extension != "tiff") {
-    throw UsageError(
-        fmt::format("-o {}: a DEM is a GeoTIFF: give it a name that ends in .tif", options.output));
+  if (!kGeoTiff.is_named(options.output)) {
+    throw UsageError(fmt::format("-o {}: a DEM is a GeoTIFF: give it a name that ends in .{}",
+                                 options.output, kGeoTiff.extensions.front()));
   }
   if (options.output == options.stats_path) {
     throw UsageError("the raster and --stats cannot go to the same place: " + options.output);

@@ -57,9 +57,10 @@ int run(const GenerateOptions& options) {
   PointWriterOptions how;
   how.format = format_name_of(options.output);
   how.version = options.output.las_version;
-  const bool las = point_format_to_write(options.output.path, how.format) == PointFormat::kLas;
-  check_las_version(options.output, las);
-  how.coordinates = what.dimension == 3 || what.family == Family::kTerrain || las ? 3 : 2;
+  const PointFormat& format = point_format_to_write(options.output.path, how.format);
+  check_las_version(options.output, format.has_versions);
+  how.coordinates =
+      what.dimension == 3 || what.family == Family::kTerrain || format.needs_heights ? 3 : 2;
   how.count = what.count;
   if (generator->lattice() != nullptr) how.lattice = *generator->lattice();
   const auto writer = open_point_writer(disk(), options.output.path, how);
@@ -104,7 +105,7 @@ Subcommand add_generate(CLI::App& root) {
   app->add_option("-o,--output", options->output.path, "Point file; - is standard output")
       ->type_name("FILE")
       ->capture_default_str();
-  add_choice(*app, "--output-format", options->output.format, {"las", "text", "npy", "spp"},
+  add_choice(*app, "--output-format", options->output.format, written_point_format_names(),
              "Format, where the name does not tell; spp on a pipe");
   add_las_version(*app, options->output);
   add_report_options(*app, options->report);

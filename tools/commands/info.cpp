@@ -156,6 +156,7 @@ Json describe_mesh(ProbedInput& input, Progress& progress) {
 /// Holds no more of the stream than its open border. Throws Error if its end says otherwise than
 /// what was read.
 Json describe_mesh_stream(ProbedInput& input, Progress& progress) {
+  const MeshFormat& format = mesh_stream_format(input.source(), input.path());
   const auto reader = open_mesh_stream_reader(input, input.path());
   Box<3> box;
   CheckOptions options;
@@ -171,7 +172,7 @@ Json describe_mesh_stream(ProbedInput& input, Progress& progress) {
                             found.faults.front()));
   }
   Json json = mesh_json(input.path(), reader->header(),
-                        {.format = reader->has_hash() ? "spm" : "sma",
+                        {.format = std::string(format.name),
                          .vertices = found.vertices,
                          .simplices = found.simplices,
                          .hull_facets = found.hull_facets,

@@ -11,9 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "formats/disk/extension.h"
-#include "formats/points/point_format.h"
 #include "formats/rasters/png.h"
+#include "formats/rasters/raster_formats.h"
 #include "src/parallel/parallel.h"
 #include "stream/plan/memory_plan.h"
 #include "tools/commands/command.h"
@@ -127,8 +126,9 @@ void check_outputs(const RenderCommandOptions& options) {
     if (::isatty(STDOUT_FILENO) != 0) {
       throw UsageError("a picture is nothing for a terminal: name a file, or pipe it on");
     }
-  } else if (extension_of(options.output) != "png") {
-    throw UsageError(fmt::format("-o {}: pictures are written as .png only", options.output));
+  } else if (!kPng.is_named(options.output)) {
+    throw UsageError(fmt::format("-o {}: pictures are written as .{} only", options.output,
+                                 kPng.extensions.front()));
   }
   if (options.output == options.stats_path) {
     throw UsageError("the picture and --stats cannot go to the same place: " + options.output);
@@ -168,7 +168,7 @@ int run(const RenderCommandOptions& options) {
   RenderUse use(request, limit / kPixelShare, threads, *scratch);
   RunStatistics statistics;
   statistics.output = options.output;
-  statistics.output_format = "png";
+  statistics.output_format = kPng.name;
   statistics.memory_limit = limit;
   feed_terrain(options, use,
                {.budget = budget, .scratch = *scratch, .progress = progress, .threads = threads},

@@ -13,8 +13,7 @@
 #include "formats/inputs/input_kind.h"
 #include "formats/inputs/open_mesh.h"
 #include "formats/inputs/open_mesh_stream.h"
-#include "formats/meshes/common/mesh_writer.h"
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/mesh_formats.h"
 #include "src/parallel/parallel.h"
 #include "stream/source/input_list.h"
 #include "tools/options/command_options.h"
@@ -121,8 +120,8 @@ class TerrainFeed {
   }
 
   [[nodiscard]] InputKind kind_by_format() const {
-    const bool streams = options_.mesh_format == "spm" || options_.mesh_format == "sma";
-    return streams ? InputKind::kMeshStream : InputKind::kMesh;
+    const MeshFormat& format = mesh_format(options_.inputs.front(), options_.mesh_format);
+    return format.is_stream() ? InputKind::kMeshStream : InputKind::kMesh;
   }
 
   void feed_points(FileSystem& files) {

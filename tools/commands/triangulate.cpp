@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "formats/disk/extension.h"
 #include "formats/disk/scratch_folder.h"
-#include "formats/meshes/common/mesh_writer.h"
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_stream_writer.h"
-#include "formats/points/point_format.h"
+#include "formats/points/point_formats.h"
+#include "formats/rasters/raster_formats.h"
+#include "formats/vectors/vector_formats.h"
 #include "src/distributed/ranks.h"
 #include "src/geometry/canonical_hash.h"
 #include "src/runtime/memory_budget.h"
@@ -107,7 +107,7 @@ void report(const TriangulateOptions& options, const RunStatistics& statistics,
                            stream.totals.simplices,
                            statistics.dimension == 2 ? "triangles" : "tetrahedra",
                            hash_to_hex(stream.totals.canonical_hash), statistics.seconds));
-  const MeshFormat format = mesh_format(options.output, statistics.output_format);
+  const MeshFormat& format = mesh_format(options.output, statistics.output_format);
   if (const std::string note = rounding_note(format); !note.empty()) progress.say(note);
   if (options.simulates()) {
     // The table is what was asked for; it gives way only to a mesh on standard output.
@@ -180,7 +180,7 @@ int run(const TriangulateOptions& options, const MeshTarget& target, RunStatisti
     if (ranks->rank() != 0) return kExitDone;
   } else {
     const auto writer =
-        open_mesh_stream_writer(disk(), target.path, target.format, header, *scratch);
+        open_mesh_stream_writer(disk(), target.path, *target.format, header, *scratch);
     statistics.stream = triangulate_stream<D>(source, *writer, *scratch, budget, stream);
     if (statistics.stream.threads < stream.threads) {
       progress.detail(fmt::format("{} of {} threads used: more of them need more --memory",
@@ -209,12 +209,12 @@ int run(const TriangulateOptions& options, const MeshTarget& target, RunStatisti
 
 /// Throws for a file that another subcommand makes.
 void refuse_other_output(const std::string& path) {
-  const std::string extension = extension_of(path);
+  if (mesh_format_of_extension(path) != nullptr) return;
   const char* subcommand = nullptr;
-  if (extension == "tif" || extension == "tiff") subcommand = "dem";
-  if (extension == "png") subcommand = "render";
-  if (extension == "geojson") subcommand = "contour";
-  if (extension != "npy" && point_format_of_path(path)) subcommand = "convert";
+  if (kGeoTiff.is_named(path)) subcommand = "dem";
+  if (kPng.is_named(path)) subcommand = "render";
+  if (vector_format_of_path(path) != nullptr) subcommand = "contour";
+  if (point_format_of_path(path) != nullptr) subcommand = "convert";
   if (subcommand == nullptr) return;
   throw UsageError(
       fmt::format("-o {}: this is no mesh; it is what spillway {} makes", path, subcommand));
@@ -248,7 +248,7 @@ int run(const TriangulateOptions& options) {
   statistics.dimension = options.dimension == "3" ? 3 : 2;
   statistics.inputs = options.inputs;
   statistics.output = options.output;
-  statistics.output_format = mesh_format_names().at(static_cast<std::size_t>(target.format));
+  statistics.output_format = target.format->name;
   if (!options.stats_path.empty() && is_first_rank()) {
     check_can_create(disk(), options.stats_path);
   }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <system_error>
 
+#include "formats/points/point_formats.h"
 #include "stream/ranks/rank_pipeline.h"
 #include "stream/source/input_list.h"
 #include "tools/options/command_options.h"
@@ -58,8 +59,10 @@ PointFilter point_filter(const InputOptions& options) {
 /// Tells how many inputs have no levels that --resolution could choose from. Throws UsageError if
 /// none has.
 void check_levels(const std::vector<PointHeader>& headers, Progress& progress) {
-  const auto whole = std::ranges::count_if(
-      headers, [](const PointHeader& header) { return header.format != "copc"; });
+  const auto whole = std::ranges::count_if(headers, [](const PointHeader& header) {
+    const PointFormat* const format = find_point_format(header.format);
+    return format == nullptr || !format->has_levels;
+  });
   if (whole == 0) return;
   if (static_cast<std::size_t>(whole) == headers.size()) {
     throw UsageError(
@@ -80,7 +83,7 @@ bool InputOptions::filters() const {
 }
 
 void add_input_options(CLI::App& app, InputOptions& options) {
-  add_choice(app, "--input-format", options.format, {"las", "laz", "copc", "text", "npy", "spp"},
+  add_choice(app, "--input-format", options.format, point_format_names(),
              "Format of the points, where neither name nor first bytes tell");
   app.add_flag("--force-crs", options.force_crs,
                "Take coordinates as they are, though inputs have different coordinate systems");

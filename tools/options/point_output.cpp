@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "formats/gdal/gdal.h"
+#include "formats/points/point_formats.h"
 #include "tools/options/command_options.h"
 #include "tools/process/usage_error.h"
 
@@ -22,13 +23,14 @@ void check_las_version(const PointOutput& output, bool is_las) {
 
 std::string format_name_of(const PointOutput& output) {
   if (output.path != "-") return output.format;
-  const std::string format = output.format.empty() ? "spp" : output.format;
-  if (format != "text" && isatty(STDOUT_FILENO) != 0) {
+  const PointFormat* const named = find_point_format(output.format);
+  const bool is_text = named != nullptr && named->is_text;
+  if (!is_text && isatty(STDOUT_FILENO) != 0) {
     throw UsageError(
         "standard output is a terminal, and the points are no text; name a file with -o, pipe "
         "them into another command, or ask for --output-format text");
   }
-  return format;
+  return output.format.empty() ? std::string(own_point_stream().name) : output.format;
 }
 
 std::string wkt_of_code(const std::string& crs) {

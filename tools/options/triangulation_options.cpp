@@ -9,7 +9,6 @@
 
 #include "src/delaunay/base_case.h"
 #include "src/distributed/ranks.h"
-#include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "stream/output/heights.h"
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/mesh_writer.h"
 
 namespace spillway::detail {

@@ -9,6 +9,9 @@ namespace spillway::detail {
 /// simplices.
 bool is_spillway_note(std::string_view comment);
 
+/// Whether a file's first bytes are this word, and nothing that makes it longer.
+bool begins_with_word(std::string_view first_bytes, std::string_view word);
+
 /// Throws Error that says that the file of that format has no faces or tetrahedra, and what to do.
 [[noreturn]] void fail_for_point_cloud(const std::string& file, std::string_view format);
 

@@ -1,12 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <string>
 
-#include "formats/disk/file_system.h"
-#include "formats/meshes/common/mesh.h"
+#include "src/geometry/point.h"
 
 namespace spillway::detail {
 
@@ -27,33 +24,6 @@ class MeshWriter {
 
   /// Completes the file and gives it its final name. Throws Error if anything is missing.
   virtual void finish() = 0;
-};
-
-/// The mesh formats, by the names `--output-format` and `--input-format` take. Spm and sma are
-/// streams, and stl, gpkg and shp are written as such, too, block by block.
-enum class MeshFormat {
-  kPly,
-  kPlyAscii,
-  kObj,
-  kOff,
-  kVtu,
-  kNpy,
-  kSpm,
-  kSma,
-  kGlb,
-  kStl,
-  kLandXml,
-  kGpkg,
-  kShp
-};
-
-/// The files of a mesh, created but still empty.
-struct MeshFiles {
-  MeshFormat format = MeshFormat::kPly;
-  /// The only one but for npy, where it has the vertices; none for gpkg and shp, which GDAL writes.
-  std::unique_ptr<OutputFile> main;
-  std::unique_ptr<OutputFile> simplices;    ///< npy only
-  std::unique_ptr<OutputFile> input_index;  ///< npy only, if there is an input index
 };
 
 }  // namespace spillway::detail

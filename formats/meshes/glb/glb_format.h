@@ -6,7 +6,13 @@
 #include <cstdint>
 #include <string_view>
 
-namespace spillway::detail::glb {
+#include "formats/meshes/common/mesh_format.h"
+
+namespace spillway::detail {
+
+extern const MeshFormat kGlbMesh;
+
+namespace glb {
 
 inline constexpr std::string_view kMagic = "glTF";
 inline constexpr std::uint32_t kVersion = 2;
@@ -26,4 +32,5 @@ inline constexpr int kTriangles = 4;
 
 inline constexpr const char* kGenerator = "Spillway";
 
-}  // namespace spillway::detail::glb
+}  // namespace glb
+}  // namespace spillway::detail

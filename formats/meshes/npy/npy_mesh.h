@@ -8,8 +8,7 @@
 #include <string_view>
 
 #include "formats/disk/file_system.h"
-#include "formats/meshes/common/mesh.h"
-#include "formats/meshes/common/mesh_writer.h"
+#include "formats/meshes/common/mesh_format.h"
 
 namespace spillway::detail {
 

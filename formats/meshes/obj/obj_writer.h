@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "formats/disk/file_system.h"
+#include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/mesh_writer.h"
 
 namespace spillway::detail {

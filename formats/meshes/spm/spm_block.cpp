@@ -8,7 +8,7 @@
 #include "formats/blocks/columns.h"
 #include "formats/bytes/bytes.h"
 #include "formats/meshes/spm/spm_corners.h"
-#include "formats/points/spp/spp_format.h"
+#include "formats/points/spp/spp_coordinates.h"
 #include "src/error.h"
 
 namespace spillway::detail {

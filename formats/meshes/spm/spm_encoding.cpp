@@ -66,7 +66,7 @@ void append_spm_block(std::vector<std::byte>& out, const MeshStreamHeader& heade
   if (!block.imported.empty()) append_spm_imported(out, block.imported);
   std::vector<std::byte> content;
   append_spm_content(content, header, block);
-  append_block(out, kSpmMesh, content);
+  append_block(out, kSpmMeshBlock, content);
 }
 
 }  // namespace spillway::detail

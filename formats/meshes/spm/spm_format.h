@@ -5,7 +5,11 @@
 #include <cstdint>
 #include <string_view>
 
+#include "formats/meshes/common/mesh_format.h"
+
 namespace spillway::detail {
+
+extern const MeshFormat kSpmMesh;
 
 inline constexpr std::string_view kSpmMagic = "SPWMESH\n";
 inline constexpr std::uint32_t kSpmVersion = 1;
@@ -13,7 +17,7 @@ inline constexpr std::uint32_t kSpmVersion = 1;
 /// Kinds of blocks.
 inline constexpr std::uint32_t kSpmHeader = 1;
 inline constexpr std::uint32_t kSpmImported = 2;
-inline constexpr std::uint32_t kSpmMesh = 3;
+inline constexpr std::uint32_t kSpmMeshBlock = 3;
 inline constexpr std::uint32_t kSpmTrailer = 4;
 
 /// Bits of the header's flags.

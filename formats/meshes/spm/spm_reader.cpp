@@ -42,7 +42,7 @@ class SpmReader : public MeshStreamReader {
       parse_imported(block.imported);
       kind = stream_.next();
     }
-    if (kind != kSpmMesh) stream_.fail("a block is of another kind than expected");
+    if (kind != kSpmMeshBlock) stream_.fail("a block is of another kind than expected");
     parse_mesh(block);
     return true;
   }

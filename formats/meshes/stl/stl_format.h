@@ -4,7 +4,11 @@
 #include <cstddef>
 #include <string_view>
 
+#include "formats/meshes/common/mesh_format.h"
+
 namespace spillway::detail {
+
+extern const MeshFormat kStlMesh;
 
 inline constexpr std::size_t kStlText = 80;              ///< bytes of text that a file begins with
 inline constexpr std::size_t kStlHeader = kStlText + 4;  ///< with the number of triangles

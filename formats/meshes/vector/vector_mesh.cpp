@@ -18,11 +18,9 @@ namespace {
 
 constexpr const char* kNote = "SPILLWAY_LATTICE";
 
-VectorLayerOptions layer_options(const std::string& path, MeshFormat format,
-                                 const MeshStreamHeader& header) {
+VectorLayerOptions layer_options(const std::string& path, const MeshStreamHeader& header) {
   VectorLayerOptions options;
   options.path = path;
-  options.driver = format == MeshFormat::kGpkg ? "GPKG" : "ESRI Shapefile";
   options.crs = header.crs;
   MeshHeader notes;
   notes.lattice = header.lattice;
@@ -32,8 +30,9 @@ VectorLayerOptions layer_options(const std::string& path, MeshFormat format,
 
 class VectorMeshWriter : public TriangleStreamWriter {
  public:
-  VectorMeshWriter(const std::string& path, MeshFormat format, const MeshStreamHeader& header)
-      : TriangleStreamWriter(header, path), file_(layer_options(path, format, header)) {}
+  VectorMeshWriter(const std::string& path, const VectorFormat& format,
+                   const MeshStreamHeader& header)
+      : TriangleStreamWriter(header, path), file_(format, layer_options(path, header)) {}
 
   [[nodiscard]] std::uint64_t bytes_written() const override { return file_.bytes(); }
 
@@ -49,7 +48,7 @@ class VectorMeshWriter : public TriangleStreamWriter {
 }  // namespace
 
 std::unique_ptr<MeshStreamWriter> open_vector_mesh_writer(const std::string& path,
-                                                          MeshFormat format,
+                                                          const VectorFormat& format,
                                                           const MeshStreamHeader& header) {
   return std::make_unique<VectorMeshWriter>(path, format, header);
 }

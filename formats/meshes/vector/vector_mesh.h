@@ -6,14 +6,14 @@
 
 #include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/mesh_stream.h"
-#include "formats/meshes/common/mesh_writer.h"
+#include "formats/vectors/vector_formats.h"
 
 namespace spillway::detail {
 
-/// Begins to write triangles to `path` as kGpkg or kShp. The lattice goes into a GeoPackage's
+/// Begins to write triangles to `path`. The lattice goes into a GeoPackage's
 /// metadata; a shapefile cannot hold it. Throws Error if the file cannot be created.
 std::unique_ptr<MeshStreamWriter> open_vector_mesh_writer(const std::string& path,
-                                                          MeshFormat format,
+                                                          const VectorFormat& format,
                                                           const MeshStreamHeader& header);
 
 /// Reads the triangles of a GeoPackage or Shapefile of one layer; equal corners become one vertex.

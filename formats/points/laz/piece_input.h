@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "formats/points/laz/chunk_decoder.h"
+#include "formats/points/laz/coding/laz_bytes.h"
 
 namespace spillway::detail::laz {
 

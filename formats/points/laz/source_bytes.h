@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "formats/bytes/input_source.h"
-#include "formats/points/laz/chunk_decoder.h"
+#include "formats/points/laz/coding/laz_bytes.h"
 
 namespace spillway::detail {
 

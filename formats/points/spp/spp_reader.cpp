@@ -10,6 +10,7 @@
 
 #include "formats/blocks/block_stream.h"
 #include "formats/blocks/columns.h"
+#include "formats/points/spp/spp_coordinates.h"
 #include "formats/points/spp/spp_format.h"
 
 namespace spillway::detail {
@@ -38,7 +39,7 @@ class SppReader : public PointReader {
     block.clear();
     if (ended_) return false;
     switch (stream_.next()) {
-      case kSppPoints:
+      case kSppPointBlock:
         parse_points(block);
         return true;
       case kSppTrailer:

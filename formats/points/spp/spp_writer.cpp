@@ -10,6 +10,7 @@
 #include "formats/blocks/block.h"
 #include "formats/blocks/columns.h"
 #include "formats/bytes/bytes.h"
+#include "formats/points/spp/spp_coordinates.h"
 #include "formats/points/spp/spp_format.h"
 #include "src/error.h"
 
@@ -92,7 +93,7 @@ class SppWriter : public PointWriter {
       }
       append_column(content_, column);
     }
-    write_block(kSppPoints);
+    write_block(kSppPointBlock);
     written_ += size;
     for (std::vector<double>& column : columns_) column.clear();
   }

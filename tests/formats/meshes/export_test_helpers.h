@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/mesh_formats.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
 namespace spillway::detail::testing {

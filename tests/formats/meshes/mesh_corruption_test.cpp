@@ -2,7 +2,12 @@
 
 #include <limits>
 
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/mesh_formats.h"
+#include "formats/meshes/npy/npy_format.h"
+#include "formats/meshes/obj/obj_format.h"
+#include "formats/meshes/off/off_format.h"
+#include "formats/meshes/ply/ply_format.h"
+#include "formats/meshes/vtu/vtu_format.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
 namespace spillway::detail::testing {
@@ -41,7 +46,7 @@ std::string error_of_ply(const std::string& from, const std::string& to) {
   return error_of_change("a.ply", ascii_ply(), from, to);
 }
 
-std::string binary_ply() { return mesh_bytes(MeshFormat::kPly, square()); }
+std::string binary_ply() { return mesh_bytes(kPlyMesh, square()); }
 
 TEST(PlyCorruption, BadHeader) {
   EXPECT_THAT(error_of_ply("ply\n", "plx\n"), HasSubstr("this is no PLY file"));
@@ -224,7 +229,7 @@ std::string vtu(int dimension = 2) {
     mesh.header.simplices = 1;
     mesh.corners = {0, 1, 2, 3};
   }
-  return mesh_bytes(MeshFormat::kVtu, mesh);
+  return mesh_bytes(kVtuMesh, mesh);
 }
 
 /// Where the appended data of a VTU file begins.
@@ -272,7 +277,7 @@ TEST(VtuCorruption, BadHeader) {
 TEST(VtuCorruption, BadFieldData) {
   Mesh mesh = square();
   mesh.header.lattice = Lattice{{1, 1, 1}, {10, 20, 30}};
-  const std::string good = mesh_bytes(MeshFormat::kVtu, mesh);
+  const std::string good = mesh_bytes(kVtuMesh, mesh);
   EXPECT_THAT(error_of_change("a.vtu", good, "10 20 30", "10 20"), HasSubstr("six numbers"));
   EXPECT_THAT(error_of_change("a.vtu", good, "10 20 30", "10 20 x"), HasSubstr("no number"));
   EXPECT_THAT(error_of_change("a.vtu", good, ">2<", ">4<"), HasSubstr("must be 2 or 3"));
@@ -333,9 +338,9 @@ TEST(VtuCorruption, PointCloud) {
   Mesh mesh = square();
   mesh.corners.clear();
   mesh.header.simplices = 0;
-  EXPECT_THAT(error_of_change("a.vtu", mesh_bytes(MeshFormat::kVtu, mesh), "spillway_dimension",
-                              "other_dimension"),
-              HasSubstr("no faces or tetrahedra"));
+  EXPECT_THAT(
+      error_of_change("a.vtu", mesh_bytes(kVtuMesh, mesh), "spillway_dimension", "other_dimension"),
+      HasSubstr("no faces or tetrahedra"));
 }
 
 /// An npy mesh, its two files by the names a_vertices.npy and a_simplices.npy.
@@ -344,9 +349,7 @@ struct NpyFiles {
   std::string& vertices = files.files["a_vertices.npy"];
   std::string& simplices = files.files["a_simplices.npy"];
 
-  explicit NpyFiles(const Mesh& mesh = square()) {
-    write_mesh(files, "a.npy", MeshFormat::kNpy, mesh);
-  }
+  explicit NpyFiles(const Mesh& mesh = square()) { write_mesh(files, "a.npy", kNpyMesh, mesh); }
   std::string error() {
     files.seekable = false;
     error_of([&] { read_mesh(files, "a.npy"); });
@@ -460,34 +463,31 @@ void break_everywhere(FaultyFileSystem& files, const std::string& broken, const 
   files.files[broken] = good;
 }
 
-class BrokenEverywhere : public ::testing::TestWithParam<std::pair<MeshFormat, int>> {};
+class BrokenEverywhere : public ::testing::TestWithParam<std::pair<const MeshFormat*, int>> {};
 
 TEST_P(BrokenEverywhere, MeshOrError) {
   const auto [format, dimension] = GetParam();
   Mesh mesh = awkward_mesh(dimension);
-  if (format != MeshFormat::kObj && format != MeshFormat::kOff) add_input_index(mesh);
+  if (format->holds_input_index) add_input_index(mesh);
   mesh.header.lattice = awkward_lattice();
   mesh.header.crs = "PROJCS[\"a\"]";
   FaultyFileSystem files;
-  const std::string path = "a." + (format == MeshFormat::kPlyAscii
-                                       ? std::string("ply")
-                                       : mesh_format_names().at(static_cast<std::size_t>(format)));
-  write_mesh(files, path, format, mesh);
+  const std::string path = "a." + std::string(format->is_variant ? kPlyMesh.name : format->name);
+  write_mesh(files, path, *format, mesh);
   const auto written = files.files;
   for (const auto& [name, bytes] : written) break_everywhere(files, name, path);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, BrokenEverywhere,
-    ::testing::Values(std::pair(MeshFormat::kPly, 2), std::pair(MeshFormat::kPly, 3),
-                      std::pair(MeshFormat::kPlyAscii, 2), std::pair(MeshFormat::kObj, 2),
-                      std::pair(MeshFormat::kOff, 2), std::pair(MeshFormat::kVtu, 2),
-                      std::pair(MeshFormat::kVtu, 3), std::pair(MeshFormat::kNpy, 2)),
-    [](const auto& tested) {
-      std::string name = mesh_format_names().at(static_cast<std::size_t>(tested.param.first));
-      std::replace(name.begin(), name.end(), '-', '_');
-      return name + std::to_string(tested.param.second);
-    });
+INSTANTIATE_TEST_SUITE_P(All, BrokenEverywhere,
+                         ::testing::Values(std::pair(&kPlyMesh, 2), std::pair(&kPlyMesh, 3),
+                                           std::pair(&kPlyAsciiMesh, 2), std::pair(&kObjMesh, 2),
+                                           std::pair(&kOffMesh, 2), std::pair(&kVtuMesh, 2),
+                                           std::pair(&kVtuMesh, 3), std::pair(&kNpyMesh, 2)),
+                         [](const auto& tested) {
+                           std::string name(tested.param.first->name);
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name + std::to_string(tested.param.second);
+                         });
 
 }  // namespace
 }  // namespace spillway::detail::testing

@@ -8,7 +8,9 @@
 
 #include "formats/gdal/gdal.h"
 #include "formats/meshes/create_mesh.h"
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/glb/glb_format.h"
+#include "formats/meshes/landxml/landxml_format.h"
+#include "formats/meshes/mesh_formats.h"
 #include "tests/formats/meshes/export_test_helpers.h"
 #include "tests/formats/meshes/mesh_writer_helpers.h"
 
@@ -108,7 +110,7 @@ TEST(Glb, MeshesWithoutTrianglesAreValid) {
 }
 
 TEST(Glb, FilesOfOtherProgramsAreRead) {
-  const std::string good = mesh_bytes(MeshFormat::kGlb, small_mesh(2));
+  const std::string good = mesh_bytes(kGlbMesh, small_mesh(2));
   const std::string other = with_json(good, [](nlohmann::json& json) {
     json["asset"].erase("generator");
     // y up, turned by a quaternion about z, twice as large, then moved.
@@ -126,7 +128,7 @@ TEST(Glb, FilesOfOtherProgramsAreRead) {
 }
 
 TEST(Glb, CorruptFilesAreErrors) {
-  const std::string good = mesh_bytes(MeshFormat::kGlb, small_mesh(2));
+  const std::string good = mesh_bytes(kGlbMesh, small_mesh(2));
   using Json = nlohmann::json;
   const auto error = [&](const std::function<void(Json&)>& change) {
     return error_of_bytes("a.glb", with_json(good, change));
@@ -226,27 +228,27 @@ TEST(LandXml, KeepsEveryBitAndTheLattice) {
   }
   Mesh mesh = awkward_mesh(2);
   mesh.header.crs = gdal().crs_to_wkt("EPSG:25832+5783");
-  expect_equal(mesh, read_bytes("a.xml", mesh_bytes(MeshFormat::kLandXml, mesh)));
+  expect_equal(mesh, read_bytes("a.xml", mesh_bytes(kLandXmlMesh, mesh)));
 }
 
 TEST(LandXml, TextIsAsTheSchemaHasIt) {
   Mesh mesh = small_mesh(2);
   mesh.header.crs = "EPSG:2927";
-  const std::string text = mesh_bytes(MeshFormat::kLandXml, mesh);
+  const std::string text = mesh_bytes(kLandXmlMesh, mesh);
   EXPECT_THAT(text, HasSubstr("linearUnit=\"USSurveyFoot\""));
   EXPECT_THAT(text, HasSubstr("<CoordinateSystem epsgCode=\"2927\"/>"));
   // Northing, easting, elevation.
   EXPECT_THAT(text, HasSubstr("<P id=\"2\">0 1 0.5</P>\n<P id=\"3\">1 0 -2</P>"));
   EXPECT_THAT(text, HasSubstr("<Faces>\n<F>1 2 3</F>\n<F>3 2 4</F>\n</Faces>"));
   mesh.header.crs.clear();
-  EXPECT_THAT(mesh_bytes(MeshFormat::kLandXml, mesh), HasSubstr("linearUnit=\"meter\""));
+  EXPECT_THAT(mesh_bytes(kLandXmlMesh, mesh), HasSubstr("linearUnit=\"meter\""));
   mesh.header.crs = "<nonsense>";
-  EXPECT_THAT(error_of([&] { mesh_bytes(MeshFormat::kLandXml, mesh); }),
+  EXPECT_THAT(error_of([&] { mesh_bytes(kLandXmlMesh, mesh); }),
               HasSubstr("is no coordinate system"));
 }
 
 TEST(LandXml, CorruptFilesAreErrors) {
-  const std::string good = mesh_bytes(MeshFormat::kLandXml, small_mesh(2));
+  const std::string good = mesh_bytes(kLandXmlMesh, small_mesh(2));
   const auto error = [&](const std::string& from, const std::string& to) {
     return error_of_bytes("a.xml", replaced(good, from, to));
   };
@@ -295,12 +297,12 @@ TEST(ExportFormats, NoFlippedByteCrashesAReader) {
 TEST(ExportFormats, TetrahedraInputIndicesAndPipesAreRefused) {
   FaultyFileSystem files;
   for (const char* const name : {"glb", "stl", "landxml", "gpkg", "shp"}) {
-    const MeshFormat format = mesh_format("a", name);
+    const MeshFormat& format = mesh_format("a", name);
     EXPECT_THAT(error_of([&] { create_mesh_files(files, "a", format, 3, false); }),
                 HasSubstr("holds no tetrahedra"));
     EXPECT_THAT(error_of([&] { create_mesh_files(files, "a", format, 2, true); }),
                 HasSubstr("holds no input index"));
-    if (format == MeshFormat::kLandXml) continue;
+    if (format == kLandXmlMesh) continue;
     EXPECT_THAT(error_of([&] { create_mesh_files(files, "-", format, 2, false); }),
                 HasSubstr("standard output cannot take"));
   }
@@ -336,10 +338,10 @@ TEST(ExportFormats, TooLargeForGltfIsRefusedAtOnce) {
   MeshHeader header;
   header.vertices = 200'000'000;
   header.simplices = 400'000'000;
-  EXPECT_THAT(error_of([&] { open_mesh_writer(files, "a.glb", MeshFormat::kGlb, header); }),
+  EXPECT_THAT(error_of([&] { open_mesh_writer(files, "a.glb", kGlbMesh, header); }),
               HasSubstr("more than the 4 GiB"));
   header.vertices = std::numeric_limits<std::uint64_t>::max();
-  EXPECT_THAT(error_of([&] { open_mesh_writer(files, "a.glb", MeshFormat::kGlb, header); }),
+  EXPECT_THAT(error_of([&] { open_mesh_writer(files, "a.glb", kGlbMesh, header); }),
               HasSubstr("more than the 4 GiB"));
 }
 

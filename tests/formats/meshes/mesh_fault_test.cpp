@@ -1,5 +1,12 @@
 // Disks that fail or fill up: an Error, and nothing left behind.
 
+#include "formats/meshes/glb/glb_format.h"
+#include "formats/meshes/landxml/landxml_format.h"
+#include "formats/meshes/npy/npy_format.h"
+#include "formats/meshes/obj/obj_format.h"
+#include "formats/meshes/off/off_format.h"
+#include "formats/meshes/ply/ply_format.h"
+#include "formats/meshes/vtu/vtu_format.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
 namespace spillway::detail::testing {
@@ -9,7 +16,7 @@ using ::testing::HasSubstr;
 
 struct FaultCase {
   const char* name;
-  MeshFormat format;
+  const MeshFormat* format;
   const char* path;
 };
 
@@ -31,7 +38,7 @@ const Mesh& large_mesh() {
 class MeshFaults : public ::testing::TestWithParam<FaultCase> {
  protected:
   static void write(FileSystem& files) {
-    write_mesh(files, GetParam().path, GetParam().format, large_mesh(), 65536);
+    write_mesh(files, GetParam().path, *GetParam().format, large_mesh(), 65536);
   }
 
   /// Bytes of all files together.
@@ -92,14 +99,14 @@ TEST_P(MeshFaults, EveryFailingReadIsReported) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MeshFaults,
-                         ::testing::Values(FaultCase{"Ply", MeshFormat::kPly, "mesh.ply"},
-                                           FaultCase{"PlyAscii", MeshFormat::kPlyAscii, "mesh.ply"},
-                                           FaultCase{"Obj", MeshFormat::kObj, "mesh.obj"},
-                                           FaultCase{"Off", MeshFormat::kOff, "mesh.off"},
-                                           FaultCase{"Vtu", MeshFormat::kVtu, "mesh.vtu"},
-                                           FaultCase{"Npy", MeshFormat::kNpy, "mesh.npy"},
-                                           FaultCase{"Glb", MeshFormat::kGlb, "mesh.glb"},
-                                           FaultCase{"LandXml", MeshFormat::kLandXml, "mesh.xml"}),
+                         ::testing::Values(FaultCase{"Ply", &kPlyMesh, "mesh.ply"},
+                                           FaultCase{"PlyAscii", &kPlyAsciiMesh, "mesh.ply"},
+                                           FaultCase{"Obj", &kObjMesh, "mesh.obj"},
+                                           FaultCase{"Off", &kOffMesh, "mesh.off"},
+                                           FaultCase{"Vtu", &kVtuMesh, "mesh.vtu"},
+                                           FaultCase{"Npy", &kNpyMesh, "mesh.npy"},
+                                           FaultCase{"Glb", &kGlbMesh, "mesh.glb"},
+                                           FaultCase{"LandXml", &kLandXmlMesh, "mesh.xml"}),
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace

@@ -1,4 +1,7 @@
 #include "formats/meshes/mesh_parts.h"
+#include "formats/meshes/ply/ply_format.h"
+#include "formats/meshes/spm/spm_format.h"
+#include "formats/meshes/vtu/vtu_format.h"
 
 #include "formats/bytes/bytes.h"
 #include "formats/meshes/ply/ply_records.h"
@@ -10,18 +13,18 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(MeshPartNames, HaveNumbersOfOneWidthBeforeTheExtension) {
-  EXPECT_EQ(mesh_part_name("a/b.c.ply", MeshFormat::kPly, 0, 1), "a/b.c.0.ply");
-  EXPECT_EQ(mesh_part_name("tin.VTU", MeshFormat::kVtu, 3, 10), "tin.3.vtu");
-  EXPECT_EQ(mesh_part_name("tin.vtu", MeshFormat::kVtu, 3, 11), "tin.03.vtu");
-  EXPECT_EQ(mesh_part_name("tin.pvtu", MeshFormat::kVtu, 99, 101), "tin.099.vtu");
-  EXPECT_EQ(mesh_part_name("tin", MeshFormat::kSpm, 1, 2), "tin.1.spm");
-  EXPECT_EQ(mesh_part_name("tin.data", MeshFormat::kPly, 1, 2), "tin.data.1.ply");
-  EXPECT_EQ(pvtu_name("a/tin.vtu"), "a/tin.pvtu");
-  EXPECT_EQ(pvtu_name("a/tin.pvtu"), "a/tin.pvtu");
+  EXPECT_EQ(mesh_part_name("a/b.c.ply", kPlyMesh, 0, 1), "a/b.c.0.ply");
+  EXPECT_EQ(mesh_part_name("tin.VTU", kVtuMesh, 3, 10), "tin.3.vtu");
+  EXPECT_EQ(mesh_part_name("tin.vtu", kVtuMesh, 3, 11), "tin.03.vtu");
+  EXPECT_EQ(mesh_part_name("tin.pvtu", kVtuMesh, 99, 101), "tin.099.vtu");
+  EXPECT_EQ(mesh_part_name("tin", kSpmMesh, 1, 2), "tin.1.spm");
+  EXPECT_EQ(mesh_part_name("tin.data", kPlyMesh, 1, 2), "tin.data.1.ply");
+  EXPECT_EQ(part_index_name("a/tin.vtu", kVtuMesh), "a/tin.pvtu");
+  EXPECT_EQ(part_index_name("a/tin.pvtu", kVtuMesh), "a/tin.pvtu");
 }
 
 TEST(PvtuIndex, IsAsVtkHasIt) {
-  EXPECT_EQ(pvtu_text("a/x<y.pvtu", 2, true),
+  EXPECT_EQ(part_index_text("a/x<y.pvtu", kVtuMesh, 2, true),
             R"(<?xml version="1.0"?>
 <VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
   <PUnstructuredGrid GhostLevel="0">
@@ -47,20 +50,20 @@ Mesh small_part(int dimension) {
 }
 
 TEST(GlobalIds, AreAPropertyOfPlyThatReadersPassOver) {
-  const std::string text = written(MeshFormat::kPlyAscii, small_part(2));
+  const std::string text = written(kPlyAsciiMesh, small_part(2));
   EXPECT_THAT(text, HasSubstr("comment global_id is a whole number; PLY has no 64-bit integer type"
                               "\nproperty double global_id\nelement face 2\n"));
   EXPECT_THAT(text, HasSubstr("\n0 0 0 30 100\n1 0 0.5 10 101\n0 1 -2 20 7\n"
                               "1 1 0.001 4294967295 103\n"));
-  for (const MeshFormat format : {MeshFormat::kPly, MeshFormat::kPlyAscii}) {
-    const Mesh read = read_bytes("a.ply", written(format, small_part(3)));
+  for (const MeshFormat* const format : {&kPlyMesh, &kPlyAsciiMesh}) {
+    const Mesh read = read_bytes("a.ply", written(*format, small_part(3)));
     EXPECT_EQ(read.vertices, small_part(3).vertices);
     EXPECT_EQ(read.input_index, small_part(3).input_index);
   }
 }
 
 TEST(GlobalIds, AreTheIdsOfPointsInVtu) {
-  const std::string text = written(MeshFormat::kVtu, small_part(2));
+  const std::string text = written(kVtuMesh, small_part(2));
   EXPECT_THAT(text, HasSubstr("<PointData GlobalIds=\"GlobalPointIds\">\n"
                               "        <DataArray type=\"Int64\" Name=\"input_index\" "
                               "NumberOfComponents=\"1\" format=\"appended\" offset=\"104\"/>\n"
@@ -72,7 +75,7 @@ TEST(GlobalIds, AreTheIdsOfPointsInVtu) {
   for (const int i : {0, 1, 2, 3, 4}) {
     EXPECT_EQ(load<std::uint64_t>(at + 8 * i), (std::array{32, 100, 101, 7, 103}[i]));
   }
-  expect_equal(read_bytes("a.vtu", text), read_bytes("a.vtu", written(MeshFormat::kVtu, [] {
+  expect_equal(read_bytes("a.vtu", text), read_bytes("a.vtu", written(kVtuMesh, [] {
                                                        Mesh mesh = small_part(2);
                                                        mesh.header.global_ids.reset();
                                                        return mesh;
@@ -82,15 +85,15 @@ TEST(GlobalIds, AreTheIdsOfPointsInVtu) {
 TEST(GlobalIds, MustBeAsManyAsVertices) {
   Mesh mesh = small_part(2);
   mesh.header.global_ids->pop_back();
-  EXPECT_THAT(error_of([&] { written(MeshFormat::kPly, mesh); }),
+  EXPECT_THAT(error_of([&] { written(kPlyMesh, mesh); }),
               HasSubstr("4 vertices were promised, but 3 ids"));
 }
 
 TEST(GlobalIds, OfAPartWithoutVerticesAreDeclared) {
   Mesh mesh;
   mesh.header.global_ids.emplace();
-  EXPECT_THAT(written(MeshFormat::kVtu, mesh), HasSubstr("Name=\"GlobalPointIds\""));
-  EXPECT_THAT(written(MeshFormat::kPly, mesh), HasSubstr("property double global_id"));
+  EXPECT_THAT(written(kVtuMesh, mesh), HasSubstr("Name=\"GlobalPointIds\""));
+  EXPECT_THAT(written(kPlyMesh, mesh), HasSubstr("property double global_id"));
 }
 
 TEST(PlyRecords, AreWhatTheWriterWrites) {
@@ -111,7 +114,7 @@ TEST(PlyRecords, AreWhatTheWriterWrites) {
                 record.data() + record.size());
       bytes += as_text(record);
     }
-    EXPECT_EQ(bytes, written(MeshFormat::kPly, mesh));
+    EXPECT_EQ(bytes, written(kPlyMesh, mesh));
   }
 }
 

@@ -1,7 +1,12 @@
 // Every format gives back exactly the mesh that was written to it.
 
 #include "formats/meshes/create_mesh.h"
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/mesh_formats.h"
+#include "formats/meshes/npy/npy_format.h"
+#include "formats/meshes/obj/obj_format.h"
+#include "formats/meshes/off/off_format.h"
+#include "formats/meshes/ply/ply_format.h"
+#include "formats/meshes/vtu/vtu_format.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
 namespace spillway::detail::testing {
@@ -14,7 +19,7 @@ using ::testing::Values;
 
 struct FormatCase {
   const char* name;
-  MeshFormat format;
+  const MeshFormat* format;
   const char* path;
   bool triangles_only = false;  // and no input index
   bool keeps_notes = true;      // lattice and coordinate system
@@ -22,12 +27,12 @@ struct FormatCase {
 
 std::ostream& operator<<(std::ostream& out, const FormatCase& c) { return out << c.name; }
 
-constexpr FormatCase kPly{"Ply", MeshFormat::kPly, "mesh.ply"};
-constexpr FormatCase kPlyAscii{"PlyAscii", MeshFormat::kPlyAscii, "mesh.ply"};
-constexpr FormatCase kObj{"Obj", MeshFormat::kObj, "mesh.obj", true};
-constexpr FormatCase kOff{"Off", MeshFormat::kOff, "mesh.off", true};
-constexpr FormatCase kVtu{"Vtu", MeshFormat::kVtu, "mesh.vtu"};
-constexpr FormatCase kNpy{"Npy", MeshFormat::kNpy, "mesh.npy", false, false};
+constexpr FormatCase kPly{"Ply", &kPlyMesh, "mesh.ply"};
+constexpr FormatCase kPlyAscii{"PlyAscii", &kPlyAsciiMesh, "mesh.ply"};
+constexpr FormatCase kObj{"Obj", &kObjMesh, "mesh.obj", true};
+constexpr FormatCase kOff{"Off", &kOffMesh, "mesh.off", true};
+constexpr FormatCase kVtu{"Vtu", &kVtuMesh, "mesh.vtu"};
+constexpr FormatCase kNpy{"Npy", &kNpyMesh, "mesh.npy", false, false};
 
 /// Format, dimension, lattice, input index.
 using RoundTripCase = std::tuple<FormatCase, int, bool, bool>;
@@ -48,7 +53,7 @@ class RoundTrip : public ::testing::TestWithParam<RoundTripCase> {
     }
     if (std::get<3>(GetParam())) add_input_index(mesh);
     FaultyFileSystem files;
-    write_mesh(files, format().path, format().format, mesh);
+    write_mesh(files, format().path, *format().format, mesh);
     EXPECT_TRUE(is_mesh(files, format().path));
     if (!format().keeps_notes) {
       mesh.header.lattice.reset();
@@ -107,10 +112,10 @@ INSTANTIATE_TEST_SUITE_P(All, RoundTrip,
 class EveryFormat : public ::testing::TestWithParam<FormatCase> {};
 
 TEST_P(EveryFormat, TakesExtensionsAndNames) {
-  const std::string name = mesh_format_names().at(static_cast<std::size_t>(GetParam().format));
-  EXPECT_EQ(mesh_format("anything.las", name), GetParam().format);
+  const std::string name(GetParam().format->name);
+  EXPECT_EQ(mesh_format("anything.las", name), *GetParam().format);
   if (name != "ply-ascii") {
-    EXPECT_EQ(mesh_format("folder.d/x." + name, ""), GetParam().format);
+    EXPECT_EQ(mesh_format("folder.d/x." + name, ""), *GetParam().format);
   }
 }
 
@@ -120,10 +125,10 @@ TEST_P(EveryFormat, RefusesTetrahedraOrHoldsThem) {
   header.dimension = 3;
   if (GetParam().triangles_only) {
     EXPECT_THAT(
-        error_of([&] { open_mesh_writer(files, GetParam().path, GetParam().format, header); }),
+        error_of([&] { open_mesh_writer(files, GetParam().path, *GetParam().format, header); }),
         HasSubstr("holds no tetrahedra; choose spm, ply, vtu or npy"));
   } else {
-    open_mesh_writer(files, GetParam().path, GetParam().format, header)->finish();
+    open_mesh_writer(files, GetParam().path, *GetParam().format, header)->finish();
   }
   EXPECT_TRUE(files.parts.empty());
 }
@@ -134,10 +139,10 @@ TEST_P(EveryFormat, RefusesInputIndicesOrHoldsThem) {
   header.has_input_index = true;
   if (GetParam().triangles_only) {
     EXPECT_THAT(
-        error_of([&] { open_mesh_writer(files, GetParam().path, GetParam().format, header); }),
+        error_of([&] { open_mesh_writer(files, GetParam().path, *GetParam().format, header); }),
         HasSubstr("holds no input index"));
   } else {
-    open_mesh_writer(files, GetParam().path, GetParam().format, header)->finish();
+    open_mesh_writer(files, GetParam().path, *GetParam().format, header)->finish();
   }
   EXPECT_TRUE(files.parts.empty());
 }
@@ -146,7 +151,7 @@ TEST_P(EveryFormat, RefusesVertexNumbersOutOfRange) {
   FaultyFileSystem files;
   Mesh mesh = awkward_mesh(2);
   mesh.corners[4] = 5;
-  EXPECT_THAT(error_of([&] { write_mesh(files, GetParam().path, GetParam().format, mesh, 100); }),
+  EXPECT_THAT(error_of([&] { write_mesh(files, GetParam().path, *GetParam().format, mesh, 100); }),
               HasSubstr("simplex 1 has vertex 5, but there are only 5"));
 }
 
@@ -156,14 +161,14 @@ TEST_P(EveryFormat, RefusesCountsThatAreNotThePromisedOnes) {
   for (const int change : {-1, 1}) {
     Mesh mesh = good;
     mesh.header.vertices += change;
-    error_of([&] { write_mesh(files, GetParam().path, GetParam().format, mesh); });
+    error_of([&] { write_mesh(files, GetParam().path, *GetParam().format, mesh); });
     mesh = good;
     mesh.header.simplices += change;
-    error_of([&] { write_mesh(files, GetParam().path, GetParam().format, mesh); });
+    error_of([&] { write_mesh(files, GetParam().path, *GetParam().format, mesh); });
   }
   MeshHeader header;
   header.vertices = 3;
-  const auto writer = open_mesh_writer(files, GetParam().path, GetParam().format, header);
+  const auto writer = open_mesh_writer(files, GetParam().path, *GetParam().format, header);
   EXPECT_THAT(error_of([&] { writer->finish(); }), HasSubstr("3 vertices and 0 simplices"));
   EXPECT_TRUE(files.files.empty());
 }
@@ -172,7 +177,7 @@ TEST_P(EveryFormat, RefusesInputIndicesThatAreNotOneAVertex) {
   FaultyFileSystem files;
   MeshHeader header;
   header.vertices = 2;
-  const auto writer = open_mesh_writer(files, GetParam().path, GetParam().format, header);
+  const auto writer = open_mesh_writer(files, GetParam().path, *GetParam().format, header);
   const std::vector<Point<3>> vertices(2);
   const std::vector<std::uint64_t> index(2);
   error_of([&] { writer->write_vertices(vertices, index); });
@@ -180,7 +185,7 @@ TEST_P(EveryFormat, RefusesInputIndicesThatAreNotOneAVertex) {
 
 TEST_P(EveryFormat, NothingAppearsBeforeFinish) {
   FaultyFileSystem files;
-  open_mesh_writer(files, GetParam().path, GetParam().format, MeshHeader{}).reset();
+  open_mesh_writer(files, GetParam().path, *GetParam().format, MeshHeader{}).reset();
   EXPECT_TRUE(files.files.empty());
   EXPECT_TRUE(files.parts.empty());
 }
@@ -222,26 +227,25 @@ TEST(MeshFormats, WhatIsNoMeshIsRefused) {
 }
 
 TEST(MeshFormats, FirstBytesCountMoreThanTheName) {
-  expect_equal(read_bytes("mesh.obj", mesh_bytes(MeshFormat::kVtu, awkward_mesh(2))),
-               awkward_mesh(2));
+  expect_equal(read_bytes("mesh.obj", mesh_bytes(kVtuMesh, awkward_mesh(2))), awkward_mesh(2));
 }
 
 TEST(MeshFormats, AFormatCanBeNamed) {
   FaultyFileSystem files;
-  files.files["mesh"] = mesh_bytes(MeshFormat::kObj, awkward_mesh(2));
+  files.files["mesh"] = mesh_bytes(kObjMesh, awkward_mesh(2));
   expect_equal(read_mesh(files, "mesh", "obj"), awkward_mesh(2));
   EXPECT_THROW(read_mesh(files, "mesh", "dxf"), InvalidArgument);
 }
 
 TEST(NpyMesh, IsNotWrittenToAPipe) {
   FaultyFileSystem files;
-  EXPECT_THAT(error_of([&] { open_mesh_writer(files, "-", MeshFormat::kNpy, MeshHeader{}); }),
+  EXPECT_THAT(error_of([&] { open_mesh_writer(files, "-", kNpyMesh, MeshHeader{}); }),
               HasSubstr("two files"));
 }
 
 TEST(NpyMesh, IsReadByAnyOfItsNames) {
   FaultyFileSystem files;
-  write_mesh(files, "a.npy", MeshFormat::kNpy, awkward_mesh(3));
+  write_mesh(files, "a.npy", kNpyMesh, awkward_mesh(3));
   EXPECT_EQ(files.files.size(), 2U);
   for (const char* name : {"a.npy", "a_vertices.npy", "a_simplices.npy"}) {
     expect_equal(read_mesh(files, name), awkward_mesh(3));
@@ -255,8 +259,8 @@ TEST(NpyMesh, IsNotMixedWithTheInputIndexOfAnEarlierMesh) {
   FaultyFileSystem files;
   Mesh mesh = awkward_mesh(2);
   add_input_index(mesh);
-  write_mesh(files, "a.npy", MeshFormat::kNpy, mesh);
-  EXPECT_THAT(error_of([&] { write_mesh(files, "a.npy", MeshFormat::kNpy, awkward_mesh(2)); }),
+  write_mesh(files, "a.npy", kNpyMesh, mesh);
+  EXPECT_THAT(error_of([&] { write_mesh(files, "a.npy", kNpyMesh, awkward_mesh(2)); }),
               HasSubstr("a_input_index.npy of an earlier mesh"));
   expect_equal(read_mesh(files, "a.npy"), mesh);
 }
@@ -266,8 +270,8 @@ TEST(Ply, RefusesAnInputIndexThatIsNoDouble) {
   Mesh mesh = awkward_mesh(2);
   add_input_index(mesh);
   mesh.input_index[2] = (std::uint64_t{1} << 53) + 1;
-  for (const MeshFormat format : {MeshFormat::kPly, MeshFormat::kPlyAscii}) {
-    EXPECT_THAT(error_of([&] { write_mesh(files, "mesh.ply", format, mesh); }),
+  for (const MeshFormat* const format : {&kPlyMesh, &kPlyAsciiMesh}) {
+    EXPECT_THAT(error_of([&] { write_mesh(files, "mesh.ply", *format, mesh); }),
                 HasSubstr("cannot hold the input index 9007199254740993"));
   }
 }
@@ -276,20 +280,19 @@ TEST(Ply, RefusesMoreVerticesThanItCanNumber) {
   FaultyFileSystem files;
   MeshHeader header;
   header.vertices = (std::uint64_t{1} << 32) + 1;
-  EXPECT_THAT(error_of([&] { open_mesh_writer(files, "mesh.ply", MeshFormat::kPly, header); }),
+  EXPECT_THAT(error_of([&] { open_mesh_writer(files, "mesh.ply", kPlyMesh, header); }),
               HasSubstr("at most 4294967296 vertices"));
 }
 
 TEST(Notes, ALongCoordinateSystemIsCutIntoLinesAndComesBackWhole) {
   Mesh mesh = awkward_mesh(2);
   for (int i = 0; i < 500; ++i) mesh.header.crs += "PARAM[ " + std::to_string(i) + "] ";
-  for (const MeshFormat format : {MeshFormat::kPly, MeshFormat::kObj, MeshFormat::kOff}) {
-    const std::string bytes = mesh_bytes(format, mesh);
+  for (const MeshFormat* const format : {&kPlyMesh, &kObjMesh, &kOffMesh}) {
+    const std::string bytes = mesh_bytes(*format, mesh);
     EXPECT_LT(bytes.find('\n', bytes.find("crs ")), bytes.find("crs ") + 1000);
     FaultyFileSystem files;
     files.files["mesh"] = bytes;
-    const Mesh read =
-        read_mesh(files, "mesh", mesh_format_names().at(static_cast<std::size_t>(format)));
+    const Mesh read = read_mesh(files, "mesh", std::string(format->name));
     EXPECT_EQ(read.header.crs, mesh.header.crs);
   }
 }

@@ -47,7 +47,7 @@ inline Lattice awkward_lattice() {
 }
 
 /// Writes a mesh in blocks of `block` vertices and simplices.
-inline void write_mesh(FileSystem& files, const std::string& path, MeshFormat format,
+inline void write_mesh(FileSystem& files, const std::string& path, const MeshFormat& format,
                        const Mesh& mesh, std::size_t block = 3) {
   const auto writer = open_mesh_writer(files, path, format, mesh.header);
   const std::span<const Point<3>> vertices(mesh.vertices);
@@ -66,7 +66,7 @@ inline void write_mesh(FileSystem& files, const std::string& path, MeshFormat fo
 }
 
 /// The bytes of a mesh in a format of one file.
-inline std::string mesh_bytes(MeshFormat format, const Mesh& mesh) {
+inline std::string mesh_bytes(const MeshFormat& format, const Mesh& mesh) {
   FaultyFileSystem files;
   write_mesh(files, "mesh", format, mesh);
   return files.files.at("mesh");

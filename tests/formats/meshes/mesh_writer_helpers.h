@@ -2,6 +2,9 @@
 
 #include <string>
 
+#include "formats/meshes/npy/npy_format.h"
+#include "formats/meshes/ply/ply_format.h"
+#include "formats/meshes/vtu/vtu_format.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
 namespace spillway::detail::testing {
@@ -29,7 +32,7 @@ inline Mesh full_mesh(int dimension) {
 }
 
 /// The one file that a mesh becomes.
-inline std::string written(MeshFormat format, const Mesh& mesh, std::size_t block = 3) {
+inline std::string written(const MeshFormat& format, const Mesh& mesh, std::size_t block = 3) {
   FaultyFileSystem files;
   write_mesh(files, "a.mesh", format, mesh, block);
   EXPECT_EQ(files.files.size(), 1U);
@@ -38,7 +41,7 @@ inline std::string written(MeshFormat format, const Mesh& mesh, std::size_t bloc
 }
 
 /// The formats that hold everything, tetrahedra and input indices included.
-inline constexpr MeshFormat kFullFormats[] = {MeshFormat::kPly, MeshFormat::kPlyAscii,
-                                              MeshFormat::kVtu, MeshFormat::kNpy};
+inline constexpr const MeshFormat* kFullFormats[] = {&kPlyMesh, &kPlyAsciiMesh, &kVtuMesh,
+                                                     &kNpyMesh};
 
 }  // namespace spillway::detail::testing

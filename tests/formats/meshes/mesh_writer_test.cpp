@@ -1,6 +1,17 @@
 #include "formats/meshes/common/mesh_writer.h"
 #include "formats/meshes/create_mesh.h"
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/glb/glb_format.h"
+#include "formats/meshes/landxml/landxml_format.h"
+#include "formats/meshes/mesh_formats.h"
+#include "formats/meshes/npy/npy_format.h"
+#include "formats/meshes/obj/obj_format.h"
+#include "formats/meshes/off/off_format.h"
+#include "formats/meshes/ply/ply_format.h"
+#include "formats/meshes/sma/sma_format.h"
+#include "formats/meshes/spm/spm_format.h"
+#include "formats/meshes/stl/stl_format.h"
+#include "formats/meshes/vector/vector_format.h"
+#include "formats/meshes/vtu/vtu_format.h"
 
 #include <limits>
 
@@ -21,35 +32,25 @@ std::string bytes_of_all(const std::vector<T>& values) {
 }
 
 TEST(MeshFormatChoice, TakesTheExtensionInAnyCase) {
-  EXPECT_EQ(mesh_format("a.ply", ""), MeshFormat::kPly);
-  EXPECT_EQ(mesh_format("a.b/c.OBJ", ""), MeshFormat::kObj);
-  EXPECT_EQ(mesh_format("a.off", ""), MeshFormat::kOff);
-  EXPECT_EQ(mesh_format("a.vtu", ""), MeshFormat::kVtu);
-  EXPECT_EQ(mesh_format("a.npy", ""), MeshFormat::kNpy);
-  EXPECT_EQ(mesh_format("a.Spm", ""), MeshFormat::kSpm);
-  EXPECT_EQ(mesh_format("a.sma", ""), MeshFormat::kSma);
-  EXPECT_EQ(mesh_format("a.glb", ""), MeshFormat::kGlb);
-  EXPECT_EQ(mesh_format("a.stl", ""), MeshFormat::kStl);
-  EXPECT_EQ(mesh_format("a.xml", ""), MeshFormat::kLandXml);
-  EXPECT_EQ(mesh_format("a.gpkg", ""), MeshFormat::kGpkg);
-  EXPECT_EQ(mesh_format("a.SHP", ""), MeshFormat::kShp);
+  EXPECT_EQ(mesh_format("a.ply", ""), kPlyMesh);
+  EXPECT_EQ(mesh_format("a.b/c.OBJ", ""), kObjMesh);
+  EXPECT_EQ(mesh_format("a.off", ""), kOffMesh);
+  EXPECT_EQ(mesh_format("a.vtu", ""), kVtuMesh);
+  EXPECT_EQ(mesh_format("a.npy", ""), kNpyMesh);
+  EXPECT_EQ(mesh_format("a.Spm", ""), kSpmMesh);
+  EXPECT_EQ(mesh_format("a.sma", ""), kSmaMesh);
+  EXPECT_EQ(mesh_format("a.glb", ""), kGlbMesh);
+  EXPECT_EQ(mesh_format("a.stl", ""), kStlMesh);
+  EXPECT_EQ(mesh_format("a.xml", ""), kLandXmlMesh);
+  EXPECT_EQ(mesh_format("a.gpkg", ""), kGpkgMesh);
+  EXPECT_EQ(mesh_format("a.SHP", ""), kShpMesh);
 }
 
-TEST(MeshFormatChoice, StandardOutputTakesAStream) {
-  EXPECT_EQ(mesh_format("-", ""), MeshFormat::kSpm);
-}
+TEST(MeshFormatChoice, StandardOutputTakesAStream) { EXPECT_EQ(mesh_format("-", ""), kSpmMesh); }
 
 TEST(MeshFormatChoice, TakesTheNameBeforeTheExtension) {
-  EXPECT_EQ(mesh_format("a.ply", "obj"), MeshFormat::kObj);
-  EXPECT_EQ(mesh_format("-", "ply-ascii"), MeshFormat::kPlyAscii);
-}
-
-TEST(MeshFormatChoice, NamesAreInTheOrderOfTheFormats) {
-  const std::vector<std::string> names = mesh_format_names();
-  ASSERT_EQ(names.size(), 13U);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    EXPECT_EQ(mesh_format("-", names[i]), static_cast<MeshFormat>(i));
-  }
+  EXPECT_EQ(mesh_format("a.ply", "obj"), kObjMesh);
+  EXPECT_EQ(mesh_format("-", "ply-ascii"), kPlyAsciiMesh);
 }
 
 TEST(MeshFormatChoice, ListsTheFormatsWhereNoneIsNamed) {
@@ -64,7 +65,7 @@ TEST(MeshFormatChoice, ListsTheFormatsWhereNoneIsNamed) {
 }
 
 TEST(PlyWriter, AsciiTriangles) {
-  EXPECT_EQ(written(MeshFormat::kPlyAscii, small_mesh(2)),
+  EXPECT_EQ(written(kPlyAsciiMesh, small_mesh(2)),
             "ply\n"
             "format ascii 1.0\n"
             "comment spillway dimension 2\n"
@@ -84,7 +85,7 @@ TEST(PlyWriter, AsciiTriangles) {
 }
 
 TEST(PlyWriter, AsciiTetrahedraWithAllThatAHeaderSays) {
-  EXPECT_EQ(written(MeshFormat::kPlyAscii, full_mesh(3)),
+  EXPECT_EQ(written(kPlyAsciiMesh, full_mesh(3)),
             "ply\n"
             "format ascii 1.0\n"
             "comment spillway dimension 3\n"
@@ -108,7 +109,7 @@ TEST(PlyWriter, AsciiTetrahedraWithAllThatAHeaderSays) {
 
 TEST(PlyWriter, BinaryTrianglesFollowTheHeaderWithoutPadding) {
   const Mesh mesh = small_mesh(2);
-  EXPECT_EQ(written(MeshFormat::kPly, mesh),
+  EXPECT_EQ(written(kPlyMesh, mesh),
             "ply\n"
             "format binary_little_endian 1.0\n"
             "comment spillway dimension 2\n"
@@ -125,7 +126,7 @@ TEST(PlyWriter, BinaryTrianglesFollowTheHeaderWithoutPadding) {
 
 TEST(PlyWriter, BinaryTetrahedraWithInputIndex) {
   const Mesh mesh = full_mesh(3);
-  const std::string file = written(MeshFormat::kPly, mesh);
+  const std::string file = written(kPlyMesh, mesh);
   std::string data;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     data += bytes_of(mesh.vertices[i]) + bytes_of(static_cast<double>(mesh.input_index[i]));
@@ -143,7 +144,7 @@ TEST(PlyWriter, VertexNumbersBeyondIntAreUnsigned) {
     MeshHeader header;
     header.vertices = (std::uint64_t{1} << 31) + (beyond ? 1 : 0);
     FaultyFileSystem files;
-    const auto writer = open_mesh_writer(files, "a.ply", MeshFormat::kPly, header);
+    const auto writer = open_mesh_writer(files, "a.ply", kPlyMesh, header);
     writer->write_vertices(enough_to_be_written_out, {});
     EXPECT_THAT(
         files.parts.at("a.ply").substr(0, 500),
@@ -154,20 +155,20 @@ TEST(PlyWriter, VertexNumbersBeyondIntAreUnsigned) {
 TEST(PlyWriter, RefusesMoreVerticesThanItCanNumber) {
   MeshHeader header;
   header.vertices = (std::uint64_t{1} << 32) + 1;
-  for (const MeshFormat format : {MeshFormat::kPly, MeshFormat::kPlyAscii}) {
+  for (const MeshFormat* const format : {&kPlyMesh, &kPlyAsciiMesh}) {
     FaultyFileSystem files;
     EXPECT_THAT(
-        error_of([&] { open_mesh_writer(files, "a.ply", format, header); }),
+        error_of([&] { open_mesh_writer(files, "a.ply", *format, header); }),
         AllOf(HasSubstr("a.ply"), HasSubstr("4294967296 vertices"), HasSubstr("vtu or npy")));
     EXPECT_TRUE(files.parts.empty());
   }
 }
 
 TEST(PlyWriter, RefusesAnInputIndexThatADoubleCannotHold) {
-  for (const MeshFormat format : {MeshFormat::kPly, MeshFormat::kPlyAscii}) {
+  for (const MeshFormat* const format : {&kPlyMesh, &kPlyAsciiMesh}) {
     Mesh mesh = full_mesh(2);
     mesh.input_index[3] = (std::uint64_t{1} << 53) + 1;
-    EXPECT_THAT(error_of([&] { written(format, mesh); }),
+    EXPECT_THAT(error_of([&] { written(*format, mesh); }),
                 AllOf(HasSubstr("input index 9007199254740993"), HasSubstr("vtu or npy")));
   }
 }
@@ -176,7 +177,7 @@ TEST(ObjWriter, TrianglesAreCountedFromOne) {
   Mesh mesh = full_mesh(2);
   mesh.header.has_input_index = false;
   mesh.input_index.clear();
-  EXPECT_EQ(written(MeshFormat::kObj, mesh),
+  EXPECT_EQ(written(kObjMesh, mesh),
             "# spillway dimension 2\n"
             "# spillway lattice 0.5 0.5 0.0005 500000 4100000.25 -0.1\n"
             "# crs PROJCS[\"a\",   UNIT[\"m\",1]]\n"
@@ -192,7 +193,7 @@ TEST(OffWriter, TrianglesFollowTheCounts) {
   Mesh mesh = full_mesh(2);
   mesh.header.has_input_index = false;
   mesh.input_index.clear();
-  EXPECT_EQ(written(MeshFormat::kOff, mesh),
+  EXPECT_EQ(written(kOffMesh, mesh),
             "OFF\n"
             "# spillway dimension 2\n"
             "# spillway lattice 0.5 0.5 0.0005 500000 4100000.25 -0.1\n"
@@ -208,10 +209,10 @@ TEST(OffWriter, TrianglesFollowTheCounts) {
 
 TEST(SurfaceFormats, NameTheFormatsThatHoldWhatTheyCannot) {
   FaultyFileSystem files;
-  for (const MeshFormat format : {MeshFormat::kObj, MeshFormat::kOff}) {
-    EXPECT_THAT(error_of([&] { write_mesh(files, "a.x", format, small_mesh(3)); }),
+  for (const MeshFormat* const format : {&kObjMesh, &kOffMesh}) {
+    EXPECT_THAT(error_of([&] { write_mesh(files, "a.x", *format, small_mesh(3)); }),
                 AllOf(HasSubstr("a.x"), HasSubstr("tetrahedra; choose spm, ply, vtu or npy")));
-    EXPECT_THAT(error_of([&] { write_mesh(files, "a.x", format, full_mesh(2)); }),
+    EXPECT_THAT(error_of([&] { write_mesh(files, "a.x", *format, full_mesh(2)); }),
                 AllOf(HasSubstr("a.x"), HasSubstr("input index; choose spm, ply, vtu or npy")));
   }
   EXPECT_EQ(files.count(Call::kCreate), 0);
@@ -219,7 +220,7 @@ TEST(SurfaceFormats, NameTheFormatsThatHoldWhatTheyCannot) {
 
 TEST(VtuWriter, TrianglesByteByByte) {
   const Mesh mesh = small_mesh(2);
-  EXPECT_EQ(written(MeshFormat::kVtu, mesh),
+  EXPECT_EQ(written(kVtuMesh, mesh),
             "<?xml version=\"1.0\"?>\n"
             "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
             "header_type=\"UInt64\">\n"
@@ -254,7 +255,7 @@ TEST(VtuWriter, TrianglesByteByByte) {
 TEST(VtuWriter, TetrahedraWithAllThatAHeaderSays) {
   Mesh mesh = full_mesh(3);
   mesh.header.crs = "A\n\"<\xc3\xa9";
-  const std::string file = written(MeshFormat::kVtu, mesh);
+  const std::string file = written(kVtuMesh, mesh);
   EXPECT_THAT(file, HasSubstr("Name=\"spillway_lattice\" NumberOfTuples=\"6\" format=\"ascii\">"
                               "0.5 0.5 0.0005 500000 4100000.25 -0.1</DataArray>\n"));
   EXPECT_THAT(file,
@@ -277,14 +278,14 @@ TEST(VtuWriter, TetrahedraWithAllThatAHeaderSays) {
 TEST(VtuWriter, RefusesAnInputIndexBeyondInt64) {
   Mesh mesh = full_mesh(2);
   mesh.input_index[1] = std::uint64_t{1} << 63;
-  EXPECT_THAT(error_of([&] { written(MeshFormat::kVtu, mesh); }),
+  EXPECT_THAT(error_of([&] { written(kVtuMesh, mesh); }),
               HasSubstr("input index 9223372036854775808"));
 }
 
 TEST(NpyMeshWriter, WritesOneFileAnArray) {
   FaultyFileSystem files;
   const Mesh mesh = full_mesh(3);
-  write_mesh(files, "d.npy/a.npy", MeshFormat::kNpy, mesh);
+  write_mesh(files, "d.npy/a.npy", kNpyMesh, mesh);
   ASSERT_EQ(files.files.size(), 3U);
   const std::string& vertices = files.files.at("d.npy/a_vertices.npy");
   EXPECT_THAT(vertices, HasSubstr("{'descr': '<f8', 'fortran_order': False, 'shape': (4, 3), }"));
@@ -299,7 +300,7 @@ TEST(NpyMeshWriter, WritesOneFileAnArray) {
 
 TEST(NpyMeshWriter, TrianglesHaveThreeColumnsAndNoIndexFile) {
   FaultyFileSystem files;
-  write_mesh(files, "tin", MeshFormat::kNpy, small_mesh(2));
+  write_mesh(files, "tin", kNpyMesh, small_mesh(2));
   ASSERT_EQ(files.files.size(), 2U);
   EXPECT_TRUE(files.exists("tin_vertices.npy"));
   EXPECT_THAT(files.files.at("tin_simplices.npy"), HasSubstr("'shape': (2, 3)"));
@@ -307,30 +308,29 @@ TEST(NpyMeshWriter, TrianglesHaveThreeColumnsAndNoIndexFile) {
 
 TEST(NpyMeshWriter, RefusesAPipeAndNamesTheFormatsThatTakeOne) {
   FaultyFileSystem files;
-  EXPECT_THAT(error_of([&] { write_mesh(files, "-", MeshFormat::kNpy, small_mesh(2)); }),
+  EXPECT_THAT(error_of([&] { write_mesh(files, "-", kNpyMesh, small_mesh(2)); }),
               AllOf(HasSubstr("tandard output"), HasSubstr("choose ply or vtu")));
 }
 
 TEST(NpyMeshWriter, DoesNotAdoptTheInputIndicesOfAnotherMesh) {
   FaultyFileSystem files;
-  write_mesh(files, "a.npy", MeshFormat::kNpy, full_mesh(2));
-  EXPECT_THAT(error_of([&] { write_mesh(files, "a.npy", MeshFormat::kNpy, small_mesh(2)); }),
+  write_mesh(files, "a.npy", kNpyMesh, full_mesh(2));
+  EXPECT_THAT(error_of([&] { write_mesh(files, "a.npy", kNpyMesh, small_mesh(2)); }),
               AllOf(HasSubstr("a_input_index.npy"), HasSubstr("remove it")));
-  write_mesh(files, "a.npy", MeshFormat::kNpy, full_mesh(3));
+  write_mesh(files, "a.npy", kNpyMesh, full_mesh(3));
 }
 
 TEST(MeshNotes, LineEndsInTheCoordinateSystemBecomeBlanks) {
   Mesh mesh = small_mesh(2);
   mesh.header.crs = std::string("A\r\n\tB\0\x7f", 7);
-  EXPECT_THAT(written(MeshFormat::kOff, mesh), HasSubstr("2\n# crs A   B  \n4 2 0\n"));
+  EXPECT_THAT(written(kOffMesh, mesh), HasSubstr("2\n# crs A   B  \n4 2 0\n"));
 }
 
 TEST(MeshNotes, ALongCoordinateSystemIsSplitIntoLinesThatOtherReadersTake) {
   Mesh mesh = small_mesh(2);
   mesh.header.crs = std::string(900, 'a') + std::string(900, 'b') + "c";
-  EXPECT_THAT(written(MeshFormat::kOff, mesh),
-              HasSubstr("2\n# crs " + std::string(900, 'a') + "\n# crs " + std::string(900, 'b') +
-                        "\n# crs c\n4 2 0\n"));
+  EXPECT_THAT(written(kOffMesh, mesh), HasSubstr("2\n# crs " + std::string(900, 'a') + "\n# crs " +
+                                                 std::string(900, 'b') + "\n# crs c\n4 2 0\n"));
 }
 
 TEST(MeshText, DoublesHaveTheFewestDigitsThatReadBackTheSame) {
@@ -340,7 +340,7 @@ TEST(MeshText, DoublesHaveTheFewestDigitsThatReadBackTheSame) {
                    {std::numeric_limits<double>::denorm_min(), 1e-5, 123456789.123456789},
                    {std::numeric_limits<double>::max(), 9007199254740993.0, 1e22}};
   mesh.header.lattice = Lattice{{0.1, 1.0 / 3, 1e-7}, {500000, 1e22, 0.30000000000000004}};
-  const std::string file = written(MeshFormat::kObj, mesh);
+  const std::string file = written(kObjMesh, mesh);
   EXPECT_THAT(file, HasSubstr("# spillway lattice 0.1 0.3333333333333333 1e-07 500000 1e+22 "
                               "0.30000000000000004\n"
                               "v 500000.01 4649999.99 0.3333333333333333\n"
@@ -363,41 +363,41 @@ TEST(MeshWriters, BytesDoNotDependOnTheBlocks) {
       for (int k = 0; k <= dimension; ++k) mesh.corners.push_back((i + k) % kVertices);
     }
     mesh.header.vertices = mesh.header.simplices = kVertices;
-    for (const MeshFormat format : kFullFormats) {
+    for (const MeshFormat* const format : kFullFormats) {
       FaultyFileSystem whole;
       FaultyFileSystem in_blocks;
-      write_mesh(whole, "a.npy", format, mesh, kVertices);
-      write_mesh(in_blocks, "a.npy", format, mesh, 997);
+      write_mesh(whole, "a.npy", *format, mesh, kVertices);
+      write_mesh(in_blocks, "a.npy", *format, mesh, 997);
       EXPECT_TRUE(whole.files == in_blocks.files);
     }
-    const std::string ply = written(MeshFormat::kPly, mesh, 997);
+    const std::string ply = written(kPlyMesh, mesh, 997);
     EXPECT_TRUE(ply.ends_with(bytes_of(static_cast<std::int32_t>(mesh.corners.back()))));
     EXPECT_EQ(ply.size(), ply.find("end_header\n") + 11 + kVertices * (32 + 5 + 4 * dimension));
-    const std::string vtu = written(MeshFormat::kVtu, mesh, 997);
+    const std::string vtu = written(kVtuMesh, mesh, 997);
     EXPECT_THAT(vtu.substr(vtu.size() - 200), HasSubstr(std::string(100, dimension == 2 ? 5 : 10)));
   }
 }
 
 TEST(MeshWriters, AnEmptyMeshIsComplete) {
-  for (const MeshFormat format : {MeshFormat::kPly, MeshFormat::kPlyAscii, MeshFormat::kObj,
-                                  MeshFormat::kOff, MeshFormat::kVtu, MeshFormat::kNpy}) {
+  for (const MeshFormat* const format :
+       {&kPlyMesh, &kPlyAsciiMesh, &kObjMesh, &kOffMesh, &kVtuMesh, &kNpyMesh}) {
     FaultyFileSystem files;
-    write_mesh(files, "a", format, {});
+    write_mesh(files, "a", *format, {});
     EXPECT_FALSE(files.files.empty());
   }
 }
 
 TEST(MeshWriters, EachBlockOfAnEmptyVtuIsThere) {
   const std::string zero = bytes_of(std::uint64_t{0});
-  EXPECT_THAT(written(MeshFormat::kVtu, {}), HasSubstr("_" + zero + zero + zero + zero + "\n"));
+  EXPECT_THAT(written(kVtuMesh, {}), HasSubstr("_" + zero + zero + zero + zero + "\n"));
 }
 
 /// What a writer says to a wrong call.
-class MeshWriterMisuse : public ::testing::TestWithParam<MeshFormat> {
+class MeshWriterMisuse : public ::testing::TestWithParam<const MeshFormat*> {
  protected:
   std::string error_of_mesh(const Mesh& mesh) {
     FaultyFileSystem files;
-    std::string message = error_of([&] { write_mesh(files, "a.x", GetParam(), mesh); });
+    std::string message = error_of([&] { write_mesh(files, "a.x", *GetParam(), mesh); });
     EXPECT_TRUE(files.files.empty());
     EXPECT_TRUE(files.parts.empty());
     EXPECT_THAT(message, HasSubstr("a.x"));
@@ -453,7 +453,7 @@ TEST_P(MeshWriterMisuse, InputIndicesThatWereNotPromised) {
 TEST_P(MeshWriterMisuse, AFileAfterAFailedBlockIsNeverCompleted) {
   FaultyFileSystem files;
   const Mesh mesh = small_mesh(2);
-  const auto writer = open_mesh_writer(files, "a.x", GetParam(), mesh.header);
+  const auto writer = open_mesh_writer(files, "a.x", *GetParam(), mesh.header);
   writer->write_vertices(mesh.vertices, {});
   const std::vector<std::uint64_t> bad = {0, 1, 4};
   error_of([&] { writer->write_simplices(bad); });
@@ -463,22 +463,20 @@ TEST_P(MeshWriterMisuse, AFileAfterAFailedBlockIsNeverCompleted) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MeshWriterMisuse,
-                         ::testing::Values(MeshFormat::kPly, MeshFormat::kPlyAscii,
-                                           MeshFormat::kObj, MeshFormat::kOff, MeshFormat::kVtu,
-                                           MeshFormat::kNpy, MeshFormat::kGlb,
-                                           MeshFormat::kLandXml),
+                         ::testing::Values(&kPlyMesh, &kPlyAsciiMesh, &kObjMesh, &kOffMesh,
+                                           &kVtuMesh, &kNpyMesh, &kGlbMesh, &kLandXmlMesh),
                          [](const auto& tested) {
-                           std::string name = mesh_format_names()[static_cast<int>(tested.param)];
+                           std::string name(tested.param->name);
                            std::erase(name, '-');
                            return name;
                          });
 
 TEST(MeshWriters, MissingInputIndicesAreTold) {
-  for (const MeshFormat format : kFullFormats) {
+  for (const MeshFormat* const format : kFullFormats) {
     Mesh mesh = full_mesh(2);
     mesh.input_index.clear();
     FaultyFileSystem files;
-    EXPECT_THAT(error_of([&] { write_mesh(files, "a.x", format, mesh); }),
+    EXPECT_THAT(error_of([&] { write_mesh(files, "a.x", *format, mesh); }),
                 HasSubstr("3 vertices came with 0 input indices"));
   }
 }

@@ -91,7 +91,8 @@ inline void write_blocks(MeshStreamWriter& writer, const StreamedMesh& mesh, boo
 }
 
 /// The bytes of the mesh as a stream.
-inline std::string stream_bytes(const StreamedMesh& mesh, MeshFormat format, bool prepare = false) {
+inline std::string stream_bytes(const StreamedMesh& mesh, const MeshFormat& format,
+                                bool prepare = false) {
   FaultyFileSystem files;
   files.seekable = false;
   const auto scratch = make_scratch_folder("", std::nullopt);

@@ -1,7 +1,12 @@
-#include "formats/points/point_format.h"
 #include "formats/points/create_points.h"
+#include "formats/points/point_formats.h"
 
 #include "formats/points/common/point_writer.h"
+#include "formats/points/las/las_format.h"
+#include "formats/points/laz/laz_format.h"
+#include "formats/points/npy/npy_format.h"
+#include "formats/points/spp/spp_format.h"
+#include "formats/points/text/text_format.h"
 #include "tests/formats/point_test_helpers.h"
 #include "tests/formats/points/las/las_file.h"
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
@@ -14,12 +19,13 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 TEST(PointFormatChoice, ExtensionInAnyCase) {
-  EXPECT_EQ(point_format_of_path("dir.txt/A.LAS"), PointFormat::kLas);
-  EXPECT_EQ(point_format_of_path("a.npy"), PointFormat::kNpy);
-  EXPECT_EQ(point_format_of_path("a.Spp"), PointFormat::kSpp);
+  EXPECT_EQ(point_format_of_path("dir.txt/A.LAS"), &kLasPoints);
+  EXPECT_EQ(point_format_of_path("a.copc.laz"), &kLazPoints);
+  EXPECT_EQ(point_format_of_path("a.npy"), &kNpyPoints);
+  EXPECT_EQ(point_format_of_path("a.Spp"), &kSppPoints);
   for (const char* name :
        {"a.txt", "a.xyz", "a.csv", "a.asc", "a.xyz.gz", "a.csv.bz2", "a.zst", "a.txt.lz4"}) {
-    EXPECT_EQ(point_format_of_path(name), PointFormat::kText) << name;
+    EXPECT_EQ(point_format_of_path(name), &kTextPoints) << name;
   }
   EXPECT_FALSE(point_format_of_path("a.dat"));
   EXPECT_FALSE(point_format_of_path("las"));

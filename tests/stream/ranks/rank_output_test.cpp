@@ -17,8 +17,11 @@
 #include "formats/inputs/open_mesh.h"
 #include "formats/inputs/open_mesh_stream.h"
 #include "formats/meshes/common/mesh_block.h"
-#include "formats/meshes/mesh_format.h"
+#include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_parts.h"
+#include "formats/meshes/ply/ply_format.h"
+#include "formats/meshes/spm/spm_format.h"
+#include "formats/meshes/vtu/vtu_format.h"
 #include "formats/points/common/point_writer.h"
 #include "formats/points/create_points.h"
 #include "src/error.h"
@@ -273,10 +276,10 @@ TEST(RankOutput, AMeshOfManyPiecesIsTheSameInEveryWay) {
 }
 
 /// The numbers in the whole mesh that a file has for its vertices.
-std::vector<std::uint64_t> global_ids(const std::string& bytes, const Mesh& part, MeshFormat format,
-                                      bool index) {
+std::vector<std::uint64_t> global_ids(const std::string& bytes, const Mesh& part,
+                                      const MeshFormat& format, bool index) {
   std::vector<std::uint64_t> ids(part.vertices.size());
-  if (format == MeshFormat::kPly) {
+  if (format == kPlyMesh) {
     EXPECT_THAT(bytes.substr(0, 1000), HasSubstr("property double global_id\n"));
     const std::size_t each = (index ? 5 : 4) * sizeof(double);
     const std::size_t begin = bytes.find("end_header\n") + 11;
@@ -299,8 +302,8 @@ std::vector<std::uint64_t> global_ids(const std::string& bytes, const Mesh& part
 }
 
 /// Reads all parts, and expects that together they are the mesh of `whole`.
-void expect_parts(const std::vector<std::string>& paths, MeshFormat format, const Mesh& whole,
-                  const MeshTotals& totals) {
+void expect_parts(const std::vector<std::string>& paths, const MeshFormat& format,
+                  const Mesh& whole, const MeshTotals& totals) {
   std::uint64_t hash = 0;
   std::uint64_t simplices = 0;
   std::set<Point<3>> vertices;
@@ -314,7 +317,7 @@ void expect_parts(const std::vector<std::string>& paths, MeshFormat format, cons
     vertices.insert(part.vertices.begin(), part.vertices.end());
     EXPECT_EQ(std::set(part.vertices.begin(), part.vertices.end()).size(), part.vertices.size())
         << "a vertex is repeated within a part";
-    if (format == MeshFormat::kSpm) continue;
+    if (format == kSpmMesh) continue;
     const auto ids = global_ids(file_bytes(path), part, format, whole.header.has_input_index);
     named.insert(ids.begin(), ids.end());
     for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -327,7 +330,7 @@ void expect_parts(const std::vector<std::string>& paths, MeshFormat format, cons
   EXPECT_EQ(hash, totals.canonical_hash);
   EXPECT_EQ(simplices, totals.simplices);
   EXPECT_EQ(vertices, std::set(whole.vertices.begin(), whole.vertices.end()));
-  if (format != MeshFormat::kSpm) {
+  if (format != kSpmMesh) {
     EXPECT_EQ(named.size(), totals.vertices);
   }
 }
@@ -340,7 +343,7 @@ TEST(RankOutput, PartsTogetherAreTheMeshOfAll) {
     const int ranks = world().size();
     for (const std::string name : {"a.vtu", "a.ply", "a.spm"}) {
       const std::string path = folder / name;
-      const MeshFormat format = mesh_format(path, "");
+      const MeshFormat& format = mesh_format(path, "");
       const std::uint64_t bytes = write(made, disk(), path, "", true);
       if (world().rank() != 0) continue;
       std::vector<std::string> paths;
@@ -349,7 +352,7 @@ TEST(RankOutput, PartsTogetherAreTheMeshOfAll) {
         paths.push_back(mesh_part_name(path, format, part, ranks));
         size += fs::file_size(paths.back());
       }
-      if (format == MeshFormat::kVtu) size += fs::file_size(folder / "a.pvtu");
+      if (format == kVtuMesh) size += fs::file_size(folder / "a.pvtu");
       EXPECT_EQ(bytes, size);
       expect_parts(paths, format, read_mesh(disk(), folder / "whole.spm"), made.mesh.totals);
     }
@@ -377,8 +380,7 @@ TEST(RankOutput, APartOfAStreamIsAStreamThatTellsOfItself) {
     write(made, disk(), folder / "a.spm", "", true);
     if (world().rank() != 0) continue;
     for (int part = 0; part < world().size(); ++part) {
-      const std::string path =
-          mesh_part_name(folder / "a.spm", MeshFormat::kSpm, part, world().size());
+      const std::string path = mesh_part_name(folder / "a.spm", kSpmMesh, part, world().size());
       const auto stream = open_mesh_stream_reader(disk(), path);
       MeshBlock block;
       while (stream->read(block)) {

@@ -1,3 +1,4 @@
+#include "formats/meshes/sma/sma_format.h"
 #include "formats/meshes/sma/sma_reader.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
@@ -20,7 +21,7 @@ TEST(Sma, WritesBothFormsOfFinalization) {
   mesh.blocks[1].finalized = {0, 1, 2};
   mesh.totals.vertices = 5;
   mesh.totals.simplices = 2;
-  EXPECT_EQ(stream_bytes(mesh, MeshFormat::kSma),
+  EXPECT_EQ(stream_bytes(mesh, kSmaMesh),
             "# spillway mesh stream\n"
             "# spillway dimension 2\n"
             "v 0 0 0\n"
@@ -51,8 +52,8 @@ TEST(Sma, RoundTripOfMoreThanOneBlock) {
   StreamedMesh mesh = strip(2, 40000, 700);
   mesh.header.extent = Box<3>{{0, -1, 2}, {3, 4, 5.5}};
   mesh.header.crs = std::string(1000, 'x') + " y";
-  const std::string bytes = stream_bytes(mesh, MeshFormat::kSma);
-  EXPECT_EQ(bytes, stream_bytes(mesh, MeshFormat::kSma, true));
+  const std::string bytes = stream_bytes(mesh, kSmaMesh);
+  EXPECT_EQ(bytes, stream_bytes(mesh, kSmaMesh, true));
   StreamedMesh read = read_stream("-", bytes);
   EXPECT_GT(read.blocks.size(), 2U);
   EXPECT_EQ(read.header.lattice, mesh.header.lattice);
@@ -120,7 +121,7 @@ TEST(Sma, EndsOfEarlierBlocksAreRemembered) {
 }
 
 TEST(Sma, Truncated) {
-  const std::string bytes = stream_bytes(strip(2, 30, 8), MeshFormat::kSma);
+  const std::string bytes = stream_bytes(strip(2, 30, 8), kSmaMesh);
   for (std::size_t size = 0; size + 1 < bytes.size(); ++size) {
     EXPECT_THAT(error_of_stream("a.sma", bytes.substr(0, size)), HasSubstr("a.sma")) << size;
   }
@@ -129,7 +130,7 @@ TEST(Sma, Truncated) {
 }
 
 TEST(Sma, EveryByteChangedGivesAMeshOrAnError) {
-  const std::string good = stream_bytes(strip(2, 12, 5), MeshFormat::kSma);
+  const std::string good = stream_bytes(strip(2, 12, 5), kSmaMesh);
   for (std::size_t at = 0; at < good.size(); ++at) {
     for (const int change : {0x01, 0x02, 0x10, 0xff}) {
       std::string bytes = good;
@@ -145,18 +146,18 @@ TEST(Sma, EveryByteChangedGivesAMeshOrAnError) {
 
 TEST(Sma, HoldsNeitherTetrahedraNorInputIndices) {
   StreamedMesh mesh = strip(3, 10, 10);
-  EXPECT_THAT(error_of([&] { stream_bytes(mesh, MeshFormat::kSma); }),
+  EXPECT_THAT(error_of([&] { stream_bytes(mesh, kSmaMesh); }),
               HasSubstr("SMA holds no tetrahedra"));
   mesh = strip(2, 10, 10);
   add_input_index(mesh);
-  EXPECT_THAT(error_of([&] { stream_bytes(mesh, MeshFormat::kSma); }),
+  EXPECT_THAT(error_of([&] { stream_bytes(mesh, kSmaMesh); }),
               HasSubstr("SMA holds no input index"));
 }
 
 TEST(Sma, IsToldFromObjAndReadAsAWholeMesh) {
   const StreamedMesh mesh = strip(2, 20, 6);
   FaultyFileSystem files;
-  files.files["mesh"] = stream_bytes(mesh, MeshFormat::kSma);
+  files.files["mesh"] = stream_bytes(mesh, kSmaMesh);
   EXPECT_TRUE(is_mesh(files, "mesh"));
   const Mesh whole = read_mesh(files, "mesh");
   EXPECT_EQ(whole.header.lattice, mesh.header.lattice);

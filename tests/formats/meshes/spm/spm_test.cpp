@@ -37,9 +37,9 @@ TEST(Spm, RoundTripInBlocksThatImportFromEachOther) {
       for (const bool with_index : {false, true}) {
         StreamedMesh mesh = strip(dimension, 47, size);
         if (with_index) add_input_index(mesh);
-        expect_same(mesh, read_stream("-", stream_bytes(mesh, MeshFormat::kSpm)));
+        expect_same(mesh, read_stream("-", stream_bytes(mesh, kSpmMesh)));
         leave_lattice(mesh);
-        expect_same(mesh, read_stream("-", stream_bytes(mesh, MeshFormat::kSpm)));
+        expect_same(mesh, read_stream("-", stream_bytes(mesh, kSpmMesh)));
       }
     }
   }
@@ -50,9 +50,9 @@ TEST(Spm, RoundTripOfTheHeader) {
   mesh.header.points = 13;
   mesh.header.extent = Box<3>{{0, -1, 2}, {3, 4, 5.5}};
   mesh.header.crs = "PROJCS[\"a\",\n  UNIT[\"m\",1]]";
-  expect_same(mesh, read_stream("-", stream_bytes(mesh, MeshFormat::kSpm)));
+  expect_same(mesh, read_stream("-", stream_bytes(mesh, kSpmMesh)));
   mesh.header.extent = Box<3>{};
-  const StreamedMesh read = read_stream("-", stream_bytes(mesh, MeshFormat::kSpm));
+  const StreamedMesh read = read_stream("-", stream_bytes(mesh, kSpmMesh));
   EXPECT_FALSE(read.header.extent) << "an empty box is no extent";
 }
 
@@ -60,7 +60,7 @@ TEST(Spm, LatticeThatDoesNotKeepVerticesApart) {
   for (const double offset : {1e15, 1e305}) {
     StreamedMesh mesh = strip(2, 10, 4);
     mesh.header.lattice = Lattice{{0.01, 0.01, 0.01}, {0, offset, 0}};
-    const std::string bytes = stream_bytes(mesh, MeshFormat::kSpm);
+    const std::string bytes = stream_bytes(mesh, kSpmMesh);
     EXPECT_THAT(error_of_stream("a.spm", bytes),
                 AllOf(HasSubstr("byte"), HasSubstr("y is an integer times 0.01 plus")));
   }
@@ -71,7 +71,7 @@ TEST(Spm, RoundTripOfDoublesToTheBit) {
   mesh.blocks.resize(1);
   mesh.blocks[0].vertices = awkward_mesh(2).vertices;
   mesh.totals.vertices = mesh.blocks[0].vertices.size();
-  const StreamedMesh read = read_stream("-", stream_bytes(mesh, MeshFormat::kSpm));
+  const StreamedMesh read = read_stream("-", stream_bytes(mesh, kSpmMesh));
   ASSERT_EQ(read.blocks.size(), 1U);
   for (std::size_t i = 0; i < mesh.blocks[0].vertices.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -82,16 +82,16 @@ TEST(Spm, RoundTripOfDoublesToTheBit) {
 }
 
 TEST(Spm, RoundTripOfNothing) {
-  expect_same({}, read_stream("-", stream_bytes({}, MeshFormat::kSpm)));
+  expect_same({}, read_stream("-", stream_bytes({}, kSpmMesh)));
   StreamedMesh mesh;
   mesh.blocks.resize(2);
-  expect_same(mesh, read_stream("-", stream_bytes(mesh, MeshFormat::kSpm)));
+  expect_same(mesh, read_stream("-", stream_bytes(mesh, kSpmMesh)));
 }
 
 TEST(Spm, BytesDoNotDependOnPrepare) {
   for (const int dimension : {2, 3}) {
     const StreamedMesh mesh = strip(dimension, 100, 9);
-    EXPECT_EQ(stream_bytes(mesh, MeshFormat::kSpm), stream_bytes(mesh, MeshFormat::kSpm, true));
+    EXPECT_EQ(stream_bytes(mesh, kSpmMesh), stream_bytes(mesh, kSpmMesh, true));
   }
 }
 
@@ -99,7 +99,7 @@ TEST(Spm, PrepareFreesWhatItHasEncoded) {
   FaultyFileSystem files;
   StreamedMesh mesh = strip(2, 100, 100);
   const auto scratch = make_scratch_folder("", std::nullopt);
-  const auto writer = open_mesh_stream_writer(files, "a", MeshFormat::kSpm, mesh.header, *scratch);
+  const auto writer = open_mesh_stream_writer(files, "a", kSpmMesh, mesh.header, *scratch);
   writer->prepare(mesh.blocks[0]);
   EXPECT_EQ(mesh.blocks[0].vertices.capacity(), 0U);
   EXPECT_EQ(mesh.blocks[0].corners.capacity(), 0U);
@@ -121,7 +121,7 @@ TEST(Spm, LargeAndClosedFansComeBack) {
     }
     mesh.totals.vertices = degree + 1;
     mesh.totals.simplices = degree;
-    const StreamedMesh read = read_stream("-", stream_bytes(mesh, MeshFormat::kSpm));
+    const StreamedMesh read = read_stream("-", stream_bytes(mesh, kSpmMesh));
     EXPECT_TRUE(flat(mesh) == flat(read)) << degree;
   }
 }
@@ -193,7 +193,7 @@ TEST(Spm, TrianglesAroundACornerComeBackWhateverTheyAre) {
 TEST(Spm, ATerrainTakesLessThan24BytesAPoint) {
   for (const std::size_t count : {4096, 32768}) {
     const StreamedMesh mesh = terrain_block(count);
-    const std::string bytes = stream_bytes(mesh, MeshFormat::kSpm);
+    const std::string bytes = stream_bytes(mesh, kSpmMesh);
     EXPECT_LT(bytes.size(), 10 * count) << "far below the 24 bytes promised";
     EXPECT_TRUE(flat(mesh) == flat(read_stream("-", bytes)));
   }
@@ -217,7 +217,7 @@ StreamedMesh two_triangles() {
 std::string error_of_imports(std::vector<std::uint64_t> imported) {
   StreamedMesh mesh = two_triangles();
   mesh.blocks[1].imported = std::move(imported);
-  return error_of_stream("a.spm", stream_bytes(mesh, MeshFormat::kSpm));
+  return error_of_stream("a.spm", stream_bytes(mesh, kSpmMesh));
 }
 
 TEST(Spm, ReaderRefusesImportsOfVerticesThatAreNotLive) {
@@ -228,7 +228,7 @@ TEST(Spm, ReaderRefusesImportsOfVerticesThatAreNotLive) {
 std::string error_of_writing(const StreamedMesh& mesh) {
   FaultyFileSystem files;
   const auto scratch = make_scratch_folder("", std::nullopt);
-  const auto writer = open_mesh_stream_writer(files, "a", MeshFormat::kSpm, mesh.header, *scratch);
+  const auto writer = open_mesh_stream_writer(files, "a", kSpmMesh, mesh.header, *scratch);
   std::string message = error_of([&] { write_blocks(*writer, mesh); });
   EXPECT_TRUE(files.files.empty());
   EXPECT_THAT(message, HasSubstr("cannot write a: "));
@@ -264,7 +264,7 @@ TEST(Spm, WriterRefusesWhatCannotBeRead) {
 }
 
 TEST(Spm, Truncated) {
-  const std::string bytes = stream_bytes(strip(2, 30, 8), MeshFormat::kSpm);
+  const std::string bytes = stream_bytes(strip(2, 30, 8), kSpmMesh);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     EXPECT_THAT(error_of_stream("a.spm", bytes.substr(0, size)), HasSubstr("a.spm")) << size;
   }
@@ -276,7 +276,7 @@ TEST(Spm, Truncated) {
 TEST(Spm, EveryByteIsProtected) {
   StreamedMesh mesh = strip(3, 20, 7);
   add_input_index(mesh);
-  const std::string good = stream_bytes(mesh, MeshFormat::kSpm);
+  const std::string good = stream_bytes(mesh, kSpmMesh);
   for (std::size_t at = 0; at < good.size(); ++at) {
     for (const int change : {0x01, 0x10, 0x80, 0xff}) {
       std::string bytes = good;
@@ -310,13 +310,13 @@ TEST(Spm, BadHeader) {
   EXPECT_THAT(error(header_content(1, 2, kSpmHasExtent) + bytes_of(Point<3>{1, 1, 1}) +
                     bytes_of(Point<3>{1, 0, 1})),
               HasSubstr("extent"));
-  EXPECT_THAT(error_of_stream("a.spm", stream_of({{kSpmMesh, ""}})), HasSubstr("no header"));
+  EXPECT_THAT(error_of_stream("a.spm", stream_of({{kSpmMeshBlock, ""}})), HasSubstr("no header"));
 }
 
 /// The error of a mesh block with this content, whose checksum fits.
 std::string error_of_content(const std::string& content) {
-  return error_of_stream("a.spm",
-                         stream_of({{kSpmHeader, header_content(1, 2, 0)}, {kSpmMesh, content}}));
+  return error_of_stream(
+      "a.spm", stream_of({{kSpmHeader, header_content(1, 2, 0)}, {kSpmMeshBlock, content}}));
 }
 
 TEST(Spm, BadContent) {
@@ -356,7 +356,7 @@ TEST(Spm, EveryByteOfAContentChangedGivesAMeshOrAnError) {
         std::string changed = good;
         changed[at] = static_cast<char>(changed[at] ^ change);
         FaultyFileSystem files;
-        files.files["a"] = stream_of({{kSpmHeader, header}, {kSpmMesh, changed}});
+        files.files["a"] = stream_of({{kSpmHeader, header}, {kSpmMeshBlock, changed}});
         const auto reader = open_mesh_stream_reader(files, "a", "spm");
         MeshBlock block;
         try {
@@ -386,7 +386,7 @@ TEST(Spm, IsKnownByItsMagicAndReadAsAWholeMesh) {
   StreamedMesh mesh = strip(2, 20, 6);
   mesh.header.crs = "EPSG:25832";
   FaultyFileSystem files;
-  files.files["mesh"] = stream_bytes(mesh, MeshFormat::kSpm);
+  files.files["mesh"] = stream_bytes(mesh, kSpmMesh);
   EXPECT_TRUE(is_mesh(files, "mesh"));
   const Mesh whole = read_mesh(files, "mesh");
   EXPECT_EQ(whole.header.lattice, mesh.header.lattice);

@@ -1,4 +1,5 @@
 #include "formats/meshes/spool/mesh_spool.h"
+#include "formats/meshes/spm/spm_format.h"
 
 #include "tests/formats/meshes/stream_test_helpers.h"
 
@@ -10,7 +11,7 @@ using ::testing::HasSubstr;
 TEST(MeshSpool, CanBeReadAnyNumberOfTimesWhereverItLies) {
   StreamedMesh mesh = strip(3, 500, 60);
   add_input_index(mesh);
-  const std::string bytes = stream_bytes(mesh, MeshFormat::kSpm);
+  const std::string bytes = stream_bytes(mesh, kSpmMesh);
   for (const std::size_t memory : {kSpoolMemory, std::size_t{1000}, std::size_t{0}}) {
     const auto scratch = make_scratch_folder("", std::nullopt);
     MeshSpool spool(mesh.header, "a.ply", *scratch, memory);

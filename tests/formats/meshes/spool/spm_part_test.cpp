@@ -1,5 +1,6 @@
 #include "formats/meshes/spool/spm_part.h"
 #include "formats/meshes/spm/spm_encoding.h"
+#include "formats/meshes/spm/spm_format.h"
 
 #include "formats/bytes/bytes.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
@@ -36,7 +37,7 @@ TEST(SpmParts, OneAloneIsTheStreamItself) {
     append(stream, spm_head(mesh.header));
     append_part(stream, mesh, 0);
     append(stream, spm_trailer(mesh.totals));
-    EXPECT_EQ(stream, stream_bytes(mesh, MeshFormat::kSpm));
+    EXPECT_EQ(stream, stream_bytes(mesh, kSpmMesh));
   }
 }
 

@@ -1,5 +1,13 @@
 #include "formats/meshes/spooled_mesh_writer.h"
 #include "formats/meshes/create_mesh.h"
+#include "formats/meshes/glb/glb_format.h"
+#include "formats/meshes/landxml/landxml_format.h"
+#include "formats/meshes/npy/npy_format.h"
+#include "formats/meshes/obj/obj_format.h"
+#include "formats/meshes/off/off_format.h"
+#include "formats/meshes/ply/ply_format.h"
+#include "formats/meshes/spm/spm_format.h"
+#include "formats/meshes/vtu/vtu_format.h"
 
 #include "tests/error_facts.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
@@ -9,17 +17,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr MeshFormat kAll[] = {MeshFormat::kPly, MeshFormat::kPlyAscii, MeshFormat::kObj,
-                               MeshFormat::kOff, MeshFormat::kVtu,      MeshFormat::kNpy,
-                               MeshFormat::kGlb, MeshFormat::kLandXml};
-
-bool triangles_only(MeshFormat format) {
-  return format == MeshFormat::kObj || format == MeshFormat::kOff || format == MeshFormat::kGlb ||
-         format == MeshFormat::kLandXml;
-}
+constexpr const MeshFormat* kAll[] = {&kPlyMesh, &kPlyAsciiMesh, &kObjMesh, &kOffMesh,
+                                      &kVtuMesh, &kNpyMesh,      &kGlbMesh, &kLandXmlMesh};
 
 /// The files of a mesh that is written with a spool of `memory` bytes before it goes to the disk.
-std::map<std::string, std::string> spooled(const StreamedMesh& mesh, MeshFormat format,
+std::map<std::string, std::string> spooled(const StreamedMesh& mesh, const MeshFormat& format,
                                            std::size_t memory, bool expect_disk) {
   FaultyFileSystem files;
   const auto scratch = make_scratch_folder("", std::nullopt);
@@ -36,9 +38,9 @@ std::map<std::string, std::string> spooled(const StreamedMesh& mesh, MeshFormat 
 }
 
 /// The files of the same mesh written at once, simplices in the order of the stream.
-std::map<std::string, std::string> direct(const StreamedMesh& mesh, MeshFormat format) {
+std::map<std::string, std::string> direct(const StreamedMesh& mesh, const MeshFormat& format) {
   FaultyFileSystem files;
-  files.files["a.spm"] = stream_bytes(mesh, MeshFormat::kSpm);
+  files.files["a.spm"] = stream_bytes(mesh, kSpmMesh);
   const Mesh whole = read_mesh(files, "a.spm");
   files.files.clear();
   write_mesh(files, "a.x", format, whole);
@@ -46,23 +48,23 @@ std::map<std::string, std::string> direct(const StreamedMesh& mesh, MeshFormat f
 }
 
 TEST(SpooledMeshWriter, WritesWhatTheMeshWriterDoes) {
-  for (const MeshFormat format : kAll) {
+  for (const MeshFormat* const format : kAll) {
     for (const int dimension : {2, 3}) {
-      if (dimension == 3 && triangles_only(format)) continue;
+      if (dimension == 3 && !format->holds_tetrahedra) continue;
       StreamedMesh mesh = strip(dimension, 500, 60);
       mesh.header.crs = "EPSG:25832";
-      if (!triangles_only(format)) add_input_index(mesh);
-      const auto expected = direct(mesh, format);
-      EXPECT_EQ(spooled(mesh, format, kSpoolMemory, false), expected);
-      EXPECT_EQ(spooled(mesh, format, 1000, true), expected);
-      EXPECT_EQ(spooled(mesh, format, 0, true), expected);
+      if (format->holds_input_index) add_input_index(mesh);
+      const auto expected = direct(mesh, *format);
+      EXPECT_EQ(spooled(mesh, *format, kSpoolMemory, false), expected);
+      EXPECT_EQ(spooled(mesh, *format, 1000, true), expected);
+      EXPECT_EQ(spooled(mesh, *format, 0, true), expected);
     }
   }
 }
 
 TEST(SpooledMeshWriter, NothingAtAll) {
-  for (const MeshFormat format : kAll) {
-    EXPECT_EQ(spooled({}, format, kSpoolMemory, false), direct({}, format));
+  for (const MeshFormat* const format : kAll) {
+    EXPECT_EQ(spooled({}, *format, kSpoolMemory, false), direct({}, *format));
   }
 }
 
@@ -71,8 +73,7 @@ TEST(SpooledMeshWriter, RefusesTotalsThatAreNotWhatCame) {
   StreamedMesh mesh = strip(2, 10, 5);
   ++mesh.totals.vertices;
   const auto scratch = make_scratch_folder("", std::nullopt);
-  const auto writer =
-      open_mesh_stream_writer(files, "a.ply", MeshFormat::kPly, mesh.header, *scratch);
+  const auto writer = open_mesh_stream_writer(files, "a.ply", kPlyMesh, mesh.header, *scratch);
   EXPECT_THAT(error_of([&] { write_blocks(*writer, mesh); }),
               HasSubstr("cannot write a.ply: 11 vertices"));
   EXPECT_TRUE(files.files.empty());
@@ -81,8 +82,8 @@ TEST(SpooledMeshWriter, RefusesTotalsThatAreNotWhatCame) {
 TEST(SpooledMeshWriter, LeavesNothingBehind) {
   FaultyFileSystem files;
   const auto scratch = make_scratch_folder("", std::nullopt);
-  for (const MeshFormat format : kAll) {
-    open_mesh_stream_writer(files, "a.x", format, {}, *scratch).reset();
+  for (const MeshFormat* const format : kAll) {
+    open_mesh_stream_writer(files, "a.x", *format, {}, *scratch).reset();
   }
   EXPECT_TRUE(files.files.empty());
   EXPECT_TRUE(files.parts.empty());
@@ -93,14 +94,14 @@ TEST(SpooledMeshWriter, RefusesAtOnceWhatTheFormatDoesNotHold) {
   const auto scratch = make_scratch_folder("", std::nullopt);
   MeshStreamHeader header;
   header.dimension = 3;
-  const auto error = [&](const std::string& path, MeshFormat format) {
+  const auto error = [&](const std::string& path, const MeshFormat& format) {
     return error_of([&] { open_mesh_stream_writer(files, path, format, header, *scratch); });
   };
-  EXPECT_THAT(error("a.obj", MeshFormat::kObj), HasSubstr("holds no tetrahedra"));
-  EXPECT_THAT(error("-", MeshFormat::kNpy), HasSubstr("standard output cannot take an npy mesh"));
+  EXPECT_THAT(error("a.obj", kObjMesh), HasSubstr("holds no tetrahedra"));
+  EXPECT_THAT(error("-", kNpyMesh), HasSubstr("standard output cannot take an npy mesh"));
   header.dimension = 2;
   header.has_input_index = true;
-  EXPECT_THAT(error("a.off", MeshFormat::kOff), HasSubstr("holds no input index"));
+  EXPECT_THAT(error("a.off", kOffMesh), HasSubstr("holds no input index"));
   EXPECT_EQ(files.count(Call::kCreate), 0);
 }
 
@@ -109,7 +110,7 @@ TEST(SpooledMeshWriter, AFullDiskIsReported) {
   const auto scratch = make_scratch_folder("", std::uint64_t{1000});
   FaultyFileSystem files;
   const auto writer = open_spooled_mesh_writer(
-      create_mesh_files(files, "a.ply", MeshFormat::kPly, 2, false), mesh.header, *scratch, 100);
+      create_mesh_files(files, "a.ply", kPlyMesh, 2, false), mesh.header, *scratch, 100);
   EXPECT_EQ(facts_of([&] { write_blocks(*writer, mesh); }).remedy, Remedy::kScratchLimit);
 }
 

@@ -10,6 +10,7 @@
 
 #include "formats/disk/unfinished_files.h"
 #include "formats/gdal/gdal.h"
+#include "formats/meshes/vector/vector_format.h"
 #include "tests/formats/meshes/export_test_helpers.h"
 
 namespace spillway::detail::testing {
@@ -134,8 +135,8 @@ TEST(VectorMesh, UnfinishedFoldersAreRemovedAfterASignal) {
   TestFolder folder;
   StreamedMesh mesh = strip(2, 20, 8);
   const auto scratch = make_scratch_folder("", std::nullopt);
-  const auto writer = open_mesh_stream_writer(disk(), folder.file("tin.shp"), MeshFormat::kShp,
-                                              mesh.header, *scratch);
+  const auto writer =
+      open_mesh_stream_writer(disk(), folder.file("tin.shp"), kShpMesh, mesh.header, *scratch);
   writer->write(std::move(mesh.blocks[0]));
   EXPECT_THAT(folder.names(), ElementsAre(MatchesRegex("tin.shp.*.part")));
   EXPECT_EXIT(

@@ -9,6 +9,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/points/common/point_writer.h"
 #include "formats/points/create_points.h"
+#include "formats/points/spp/spp_coordinates.h"
 #include "formats/points/spp/spp_format.h"
 #include "tests/formats/point_test_helpers.h"
 
@@ -186,14 +187,15 @@ TEST(Spp, ABlockMissing) {
                              bytes_of(std::uint64_t{0});
   const std::pair header{kSppHeader, header_content(1, 2, 0)};
   const std::pair trailer{kSppTrailer, bytes_of(std::uint64_t{2})};
-  EXPECT_EQ(
-      read_content("a.spp",
-                   stream_of_blocks({header, {kSppPoints, points}, {kSppPoints, points}, trailer}))
-          .points.size(),
-      2U);
-  EXPECT_THAT(error_of_content("a.spp", stream_of_blocks({header, {kSppPoints, points}, trailer})),
-              HasSubstr("1 came, and the end tells of 2"));
-  EXPECT_THAT(error_of_content("a.spp", stream_of_blocks({{kSppPoints, points}, trailer})),
+  EXPECT_EQ(read_content("a.spp",
+                         stream_of_blocks(
+                             {header, {kSppPointBlock, points}, {kSppPointBlock, points}, trailer}))
+                .points.size(),
+            2U);
+  EXPECT_THAT(
+      error_of_content("a.spp", stream_of_blocks({header, {kSppPointBlock, points}, trailer})),
+      HasSubstr("1 came, and the end tells of 2"));
+  EXPECT_THAT(error_of_content("a.spp", stream_of_blocks({{kSppPointBlock, points}, trailer})),
               HasSubstr("no header"));
 }
 
@@ -213,10 +215,11 @@ TEST(Spp, BlocksThatMakeNoSense) {
               HasSubstr("the extent"));
   EXPECT_THAT(error(good, 9, ""), HasSubstr("unknown kind"));
   EXPECT_THAT(error(good, kSppTrailer, "123"), HasSubstr("ends early"));
-  EXPECT_THAT(error(good, kSppPoints, bytes_of(std::uint32_t{0})), HasSubstr("makes no sense"));
-  EXPECT_THAT(error(good, kSppPoints, bytes_of(std::uint32_t{65537})), HasSubstr("makes no sense"));
-  EXPECT_THAT(error(good, kSppPoints, bytes_of(std::uint32_t{5})), HasSubstr("ends early"));
-  EXPECT_THAT(error(good, kSppPoints, std::string(kSppLargestBlock + 1, 'x')),
+  EXPECT_THAT(error(good, kSppPointBlock, bytes_of(std::uint32_t{0})), HasSubstr("makes no sense"));
+  EXPECT_THAT(error(good, kSppPointBlock, bytes_of(std::uint32_t{65537})),
+              HasSubstr("makes no sense"));
+  EXPECT_THAT(error(good, kSppPointBlock, bytes_of(std::uint32_t{5})), HasSubstr("ends early"));
+  EXPECT_THAT(error(good, kSppPointBlock, std::string(kSppLargestBlock + 1, 'x')),
               HasSubstr("larger than any is"));
 }
 
@@ -242,12 +245,12 @@ TEST(Spp, WhatIsNoCoordinateIsNeitherWrittenNorRead) {
   };
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_THAT(error_of_content("a.spp", stream_of_blocks({{kSppHeader, header_content(1, 2, 0)},
-                                                          {kSppPoints, points(infinity)}})),
+                                                          {kSppPointBlock, points(infinity)}})),
               AllOf(HasSubstr("coordinate inf of point 0"), HasSubstr("not finite")));
   const std::string lattice = bytes_of(kCentimetres.scale) + bytes_of(kCentimetres.offset);
   EXPECT_THAT(
       error_of_content("a.spp", stream_of_blocks({{kSppHeader, header_content(1, 2, 1) + lattice},
-                                                  {kSppPoints, points(0.5)}})),
+                                                  {kSppPointBlock, points(0.5)}})),
       HasSubstr("coordinate 0.5 of point 0 is not an integer"));
 }
 

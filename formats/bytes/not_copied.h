@@ -1,0 +1,12 @@
+#pragma once
+
+namespace spillway::detail {
+
+/// For members of structures whose objects are told apart by their addresses.
+struct NotCopied {
+  constexpr NotCopied() = default;
+  NotCopied(const NotCopied&) = delete;
+  NotCopied& operator=(const NotCopied&) = delete;
+};
+
+}  // namespace spillway::detail

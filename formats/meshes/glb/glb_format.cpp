@@ -1,0 +1,29 @@
+#include "formats/meshes/glb/glb_format.h"
+
+#include <utility>
+
+#include "formats/meshes/glb/glb_reader.h"
+#include "formats/meshes/glb/glb_writer.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::string_view kExtensions[] = {"glb"};
+
+}  // namespace
+
+constinit const MeshFormat kGlbMesh = {
+    .name = "glb",
+    .title = "glTF",
+    .extensions = kExtensions,
+    .rounds_coordinates = true,
+    .needs_regular_file = true,
+    .recognises = [](std::string_view text) { return text.starts_with(glb::kMagic); },
+    .read = read_glb,
+    .open_writer =
+        [](MeshFiles files, const MeshHeader& header) {
+          return open_glb_writer(std::move(files.main), header);
+        },
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,28 @@
+#include "formats/meshes/landxml/landxml_format.h"
+
+#include <utility>
+
+#include "formats/meshes/landxml/landxml_reader.h"
+#include "formats/meshes/landxml/landxml_writer.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::string_view kExtensions[] = {"landxml", "xml"};
+
+}  // namespace
+
+constinit const MeshFormat kLandXmlMesh = {
+    .name = "landxml",
+    .title = "LandXML",
+    .extensions = kExtensions,
+    .name_tells = false,
+    .recognises = [](std::string_view text) { return text.find("<LandXML") != text.npos; },
+    .read = read_landxml,
+    .open_writer =
+        [](MeshFiles files, const MeshHeader& header) {
+          return open_landxml_writer(std::move(files.main), header);
+        },
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "formats/meshes/common/mesh_format.h"
+
+namespace spillway::detail {
+
+/// A mesh as arrays side by side.
+extern const MeshFormat kNpyMesh;
+
+}  // namespace spillway::detail

@@ -1,0 +1,32 @@
+#include "formats/meshes/stl/stl_format.h"
+
+#include <utility>
+
+#include "formats/meshes/stl/stl_reader.h"
+#include "formats/meshes/stl/stl_writer.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::string_view kExtensions[] = {"stl"};
+
+}  // namespace
+
+constinit const MeshFormat kStlMesh = {
+    .name = "stl",
+    .title = "STL",
+    .extensions = kExtensions,
+    .rounds_coordinates = true,
+    .needs_regular_file = true,
+    .recognises =
+        [](std::string_view text) {
+          return text.starts_with(kStlOrigin) || looks_like_ascii_stl(text);
+        },
+    .read = read_stl,
+    .open_block_writer =
+        [](MeshFiles files, const MeshStreamHeader& header) {
+          return open_stl_writer(std::move(files.main), header);
+        },
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "formats/meshes/common/mesh_format.h"
+
+namespace spillway::detail {
+
+// Tables that GDAL reads and writes.
+extern const MeshFormat kGpkgMesh;
+extern const MeshFormat kShpMesh;
+
+}  // namespace spillway::detail

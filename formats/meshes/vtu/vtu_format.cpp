@@ -1,0 +1,40 @@
+#include "formats/meshes/vtu/vtu_format.h"
+
+#include <utility>
+
+#include "formats/meshes/vtu/vtu_index.h"
+#include "formats/meshes/vtu/vtu_reader.h"
+#include "formats/meshes/vtu/vtu_writer.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::string_view kExtensions[] = {"vtu"};
+constexpr MeshPartIndex kIndex = {.extension = "pvtu", .text = pvtu_text};
+
+}  // namespace
+
+constinit const MeshFormat kVtuMesh = {
+    .name = "vtu",
+    .title = "VTU",
+    .extensions = kExtensions,
+    .holds_tetrahedra = true,
+    .holds_input_index = true,
+    .stands_in_parts = true,
+    .recognises =
+        [](std::string_view text) {
+          return text.starts_with('<') && text.find("<VTKFile") != text.npos;
+        },
+    .read =
+        [](InputSource& source) {
+          check_is_no_pvtu(source);
+          return read_vtu(source);
+        },
+    .open_writer =
+        [](MeshFiles files, const MeshHeader& header) {
+          return open_vtu_writer(std::move(files.main), header);
+        },
+    .part_index = &kIndex,
+};
+
+}  // namespace spillway::detail

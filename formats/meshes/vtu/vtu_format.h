@@ -1,0 +1,9 @@
+#pragma once
+
+#include "formats/meshes/common/mesh_format.h"
+
+namespace spillway::detail {
+
+extern const MeshFormat kVtuMesh;
+
+}  // namespace spillway::detail

@@ -1,0 +1,50 @@
+#include "formats/meshes/vtu/vtu_index.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "formats/bytes/bytes.h"
+#include "formats/bytes/xml_scanner.h"
+#include "formats/meshes/vtu/vtu_names.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::size_t kProbe = 1024;
+
+}  // namespace
+
+std::string pvtu_text(std::span<const std::string> names, bool has_input_index) {
+  const auto array = [](std::string_view type, std::string_view name, int components) {
+    return fmt::format(R"(      <PDataArray type="{}" Name="{}" NumberOfComponents="{}"/>)"
+                       "\n",
+                       type, name, components);
+  };
+  std::string text =
+      R"(<?xml version="1.0"?>
+<VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+  <PUnstructuredGrid GhostLevel="0">
+    <PPoints>
+)";
+  text += array("Float64", "Points", 3);
+  text += fmt::format("    </PPoints>\n    <PPointData GlobalIds=\"{}\">\n", vtu::kGlobalIds);
+  if (has_input_index) text += array("Int64", vtu::kInputIndex, 1);
+  text += array("Int64", vtu::kGlobalIds, 1);
+  text += "    </PPointData>\n";
+  for (const std::string& name : names) {
+    text += fmt::format("    <Piece Source=\"{}\"/>\n", xml_escaped(name));
+  }
+  return text + "  </PUnstructuredGrid>\n</VTKFile>\n";
+}
+
+void check_is_no_pvtu(InputSource& source) {
+  if (as_text(source.peek(kProbe)).find("\"PUnstructuredGrid\"") == std::string_view::npos) return;
+  throw Error(fmt::format("{}: this is the index of a mesh's parts, which is for viewers; name one "
+                          "of the parts, or, to check the whole, write it to one file",
+                          source.name()),
+              ErrorCode::kBadInput, {.file = source.name(), .remedy = Remedy::kOneFile});
+}
+
+}  // namespace spillway::detail

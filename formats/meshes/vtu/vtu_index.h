@@ -1,0 +1,17 @@
+#pragma once
+// VTK's index of a mesh in parts (.pvtu): docs/formats-meshes.md ("Parts").
+
+#include <span>
+#include <string>
+
+#include "formats/bytes/input_source.h"
+
+namespace spillway::detail {
+
+/// The index of the parts of these names.
+std::string pvtu_text(std::span<const std::string> names, bool has_input_index);
+
+/// Throws Error if this is such an index.
+void check_is_no_pvtu(InputSource& source);
+
+}  // namespace spillway::detail

@@ -1,0 +1,70 @@
+#pragma once
+// What a format of points is. Each format's folder defines its own;
+// formats/points/point_formats.cpp lists them all. docs/formats-points.md ("Adding a format") tells
+// how another one is added.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "formats/bytes/input_source.h"
+#include "formats/bytes/not_copied.h"
+#include "formats/disk/file_system.h"
+#include "formats/points/common/point_reader.h"
+#include "formats/points/common/point_writer.h"
+
+namespace spillway::detail {
+
+struct LasVariant;
+
+/// An input whose format is known.
+struct PointInput {
+  std::unique_ptr<InputSource> source;
+  std::string path;                    ///< as the user gave it
+  std::unique_ptr<InputFile> content;  ///< what the source holds, decompressed, if it is compressed
+};
+
+/// A format of points: a constant, of which there is one object. What it cannot do is null.
+struct PointFormat {
+  std::string_view name;   ///< in options of the command, and PointHeader::format
+  std::string_view title;  ///< in messages
+  /// Of its files, in lower case; the first is the usual one.
+  std::span<const std::string_view> extensions;
+
+  bool is_text = false;  ///< lines that people read; what looks so is this, compressed or not
+  bool holds_crs = false;
+  bool wants_wkt = false;         ///< of a coordinate system that is a code
+  bool holds_attributes = false;  ///< PointAttributes
+  bool needs_heights = false;     ///< points without z get 0
+  bool needs_lattice = false;
+  bool has_versions = false;  ///< PointWriterOptions::version chooses
+  bool has_levels = false;    ///< PointReaderOptions::resolution chooses
+  /// No integer of a lattice in such a file is larger, signs aside.
+  double largest_integer = 0x1p31;
+
+  /// Whether a file that begins so (512 bytes, or all there are) is of this format. Null if the
+  /// first bytes do not tell.
+  bool (*recognises)(std::string_view first_bytes) = nullptr;
+  std::unique_ptr<PointReader> (*open_reader)(PointInput input,
+                                              const PointReaderOptions& options) = nullptr;
+  /// Set instead where files begin as LAS: the header tells which of these formats a file has.
+  const LasVariant* las_variant = nullptr;
+
+  /// `path` is the output's.
+  std::unique_ptr<PointWriter> (*open_writer)(std::unique_ptr<OutputFile> file,
+                                              const std::string& path,
+                                              const PointWriterOptions& options) = nullptr;
+  /// Whether the header is only right once all points are written. Null: there is none that tells
+  /// their number.
+  bool (*header_comes_last)(const PointWriterOptions& options) = nullptr;
+  [[no_unique_address]] NotCopied not_copied{};
+
+  /// Whether both are the same object.
+  bool operator==(const PointFormat& other) const { return this == &other; }
+};
+
+/// Some formats of points, in the order in which they are listed.
+using PointFormats = std::span<const PointFormat* const>;
+
+}  // namespace spillway::detail

@@ -1,0 +1,32 @@
+#include "formats/points/laz/laz_format.h"
+
+#include <utility>
+
+#include "formats/points/las/las_variant.h"
+#include "formats/points/laz/laz_reader.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::string_view kExtensions[] = {"laz"};
+
+constexpr LasVariant kVariant = {
+    .is_told = [](const LasHeader& las) { return las.laz && !las.copc; },
+    .open =
+        [](std::unique_ptr<InputSource> source, const LasHeader& las, const std::string& path,
+           const PointReaderOptions& options) {
+          return open_laz_reader(std::move(source), las, path, options);
+        }};
+
+}  // namespace
+
+constinit const PointFormat kLazPoints = {
+    .name = "laz",
+    .title = "LAZ",
+    .extensions = kExtensions,
+    .holds_crs = true,
+    .holds_attributes = true,
+    .las_variant = &kVariant,
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,33 @@
+#include "formats/points/text/text_format.h"
+
+#include <utility>
+
+#include "formats/disk/extension.h"
+#include "formats/points/text/text_reader.h"
+#include "formats/points/text/text_writer.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::string_view kExtensions[] = {"txt", "xyz", "csv", "asc"};
+
+}  // namespace
+
+constinit const PointFormat kTextPoints = {
+    .name = "text",
+    .title = "text",
+    .extensions = kExtensions,
+    .is_text = true,
+    .open_reader =
+        [](PointInput input, const PointReaderOptions& /*options*/) {
+          return open_text_reader(std::move(input.source), input.path, std::move(input.content));
+        },
+    .open_writer =
+        [](std::unique_ptr<OutputFile> file, const std::string& path,
+           const PointWriterOptions& options) {
+          return open_text_writer(std::move(file), options,
+                                  extension_of(path) == "csv" ? ',' : ' ');
+        },
+};
+
+}  // namespace spillway::detail

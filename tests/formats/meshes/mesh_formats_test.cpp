@@ -1,0 +1,161 @@
+// The table of mesh formats, and that one more line in it is enough for another format.
+
+#include "formats/meshes/mesh_formats.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "formats/bytes/bytes.h"
+#include "formats/bytes/whole_file.h"
+#include "formats/inputs/input_kind.h"
+#include "formats/inputs/open_mesh.h"
+#include "formats/meshes/common/checked_mesh_writer.h"
+#include "formats/meshes/ply/ply_format.h"
+#include "formats/meshes/spm/spm_format.h"
+#include "tests/formats/meshes/stream_test_helpers.h"
+
+namespace spillway::detail::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(MeshFormatTable, NamesAreDistinct) {
+  std::set<std::string_view> names;
+  for (const MeshFormat* const format : mesh_formats()) {
+    EXPECT_TRUE(names.insert(format->name).second) << format->name;
+    EXPECT_FALSE(format->title.empty()) << format->name;
+    EXPECT_EQ(mesh_format("-", std::string(format->name)), *format);
+  }
+  EXPECT_EQ(mesh_format_names().size(), names.size());
+}
+
+TEST(MeshFormatTable, NoExtensionIsOfTwoFormats) {
+  std::set<std::string_view> extensions;
+  for (const MeshFormat* const format : mesh_formats()) {
+    ASSERT_FALSE(format->extensions.empty()) << format->name;
+    for (const std::string_view extension : format->extensions) {
+      EXPECT_TRUE(extensions.insert(extension).second) << extension;
+      EXPECT_EQ(mesh_format_of_extension("a." + std::string(extension)), format);
+      EXPECT_EQ(mesh_format_of_name("a." + std::string(extension)),
+                format->name_tells ? format : nullptr);
+    }
+  }
+}
+
+TEST(MeshFormatTable, EachFormatIsReadInOneWayAndWrittenInOne) {
+  for (const MeshFormat* const format : mesh_formats()) {
+    const int ways = (format->read != nullptr ? 1 : 0) + (format->is_stream() ? 1 : 0) +
+                     (format->is_table() ? 1 : 0) + (format->file_set != nullptr ? 1 : 0);
+    EXPECT_EQ(ways, 1) << format->name;
+    EXPECT_NE(format->open_writer != nullptr, format->open_block_writer != nullptr) << format->name;
+  }
+}
+
+/// What no name tells of must be told by the first bytes, or by several files.
+TEST(MeshFormatTable, EachFormatCanBeFoundOut) {
+  for (const MeshFormat* const format : mesh_formats()) {
+    EXPECT_TRUE(format->name_tells || format->is_variant || format->recognises != nullptr ||
+                format->file_set != nullptr)
+        << format->name;
+  }
+}
+
+TEST(MeshFormatTable, ListsForMessagesBeginWithSpillwaysOwn) {
+  const auto hold = [](const MeshFormat& format) { return format.holds_tetrahedra; };
+  EXPECT_EQ(list_of_formats(hold, "or"), "spm, ply, vtu or npy");
+  const auto is_stream = [](const MeshFormat& format) { return format.is_stream(); };
+  EXPECT_EQ(list_of_formats(is_stream, "and"), "spm and sma");
+}
+
+// A format as its folder would have it: "TOY", the numbers of vertices and triangles, and both.
+
+class ToyWriter : public CheckedMeshWriter {
+ public:
+  ToyWriter(std::unique_ptr<OutputFile> file, const MeshHeader& header)
+      : CheckedMeshWriter(header, file->name()), file_(std::move(file)) {
+    put(fmt::format("TOY {} {}\n", header.vertices, header.simplices));
+  }
+
+ private:
+  void put(const std::string& text) { file_->write(as_bytes_of(text)); }
+  void put_vertices(std::span<const Point<3>> vertices,
+                    std::span<const std::uint64_t> /*input_index*/) override {
+    for (const Point<3>& v : vertices) put(fmt::format("{} {} {}\n", v[0], v[1], v[2]));
+  }
+  void put_simplices(std::span<const std::uint64_t> corners) override {
+    for (const std::uint64_t corner : corners) put(fmt::format("{}\n", corner));
+  }
+  void complete() override { file_->commit(); }
+
+  std::unique_ptr<OutputFile> file_;
+};
+
+Mesh read_toy(InputSource& source) {
+  std::istringstream text{std::string(as_text(read_whole(source)))};
+  std::string word;
+  Mesh mesh;
+  text >> word >> mesh.header.vertices >> mesh.header.simplices;
+  mesh.vertices.resize(mesh.header.vertices);
+  for (Point<3>& v : mesh.vertices) text >> v[0] >> v[1] >> v[2];
+  mesh.corners.resize(3 * mesh.header.simplices);
+  for (std::uint64_t& corner : mesh.corners) text >> corner;
+  return mesh;
+}
+
+constexpr std::string_view kToyExtensions[] = {"toy"};
+
+constinit const MeshFormat kToyMesh = {
+    .name = "toy",
+    .title = "TOY",
+    .extensions = kToyExtensions,
+    .recognises = [](std::string_view text) { return text.starts_with("TOY "); },
+    .read = read_toy,
+    .open_writer = [](MeshFiles files, const MeshHeader& header) -> std::unique_ptr<MeshWriter> {
+      return std::make_unique<ToyWriter>(std::move(files.main), header);
+    },
+};
+
+constexpr const MeshFormat* kTable[] = {&kPlyMesh, &kSpmMesh, &kToyMesh};
+
+TEST(AnotherMeshFormat, IsChosenByNameAndExtension) {
+  EXPECT_EQ(mesh_format("a.toy", "", kTable), kToyMesh);
+  EXPECT_EQ(mesh_format("a.ply", "toy", kTable), kToyMesh);
+  EXPECT_THAT(error_of([] { mesh_format("a.obj", "", kTable); }),
+              HasSubstr("choose one of ply, spm, toy"));
+  EXPECT_THROW(mesh_format("a.toy", ""), InvalidArgument);
+}
+
+TEST(AnotherMeshFormat, IsWrittenAsAWholeAndReadByItsFirstBytes) {
+  FaultyFileSystem files;
+  const Mesh mesh = awkward_mesh(2);
+  write_mesh(files, "a.x", kToyMesh, mesh);
+  EXPECT_TRUE(is_mesh(files, "a.x", kTable));
+  EXPECT_FALSE(is_mesh(files, "a.x"));
+  const Mesh read = read_mesh(files, "a.x", "", kTable);
+  EXPECT_EQ(read.vertices, mesh.vertices);
+  EXPECT_EQ(read.corners, mesh.corners);
+  ProbedInput input(files, "a.x");
+  EXPECT_EQ(kind_of_input(input, kTable), InputKind::kMesh);
+}
+
+TEST(AnotherMeshFormat, TakesBlocks) {
+  FaultyFileSystem files;
+  const StreamedMesh mesh = strip(2, 20, 8);
+  const auto scratch = make_scratch_folder("", std::nullopt);
+  write_blocks(*open_mesh_stream_writer(files, "a.toy", kToyMesh, mesh.header, *scratch), mesh);
+  EXPECT_EQ(read_mesh(files, "a.toy", "", kTable).vertices.size(), 20U);
+}
+
+TEST(AnotherMeshFormat, RefusesWhatItDoesNotHold) {
+  FaultyFileSystem files;
+  EXPECT_THAT(error_of([&] { create_mesh_files(files, "a.toy", kToyMesh, 3, false); }),
+              HasSubstr("TOY holds no tetrahedra; choose spm, ply, vtu or npy"));
+  EXPECT_THAT(error_of([&] { create_mesh_files(files, "a.toy", kToyMesh, 2, true); }),
+              HasSubstr("TOY holds no input index"));
+}
+
+}  // namespace
+}  // namespace spillway::detail::testing
