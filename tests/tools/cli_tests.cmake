@@ -1,7 +1,7 @@
 # The command, run as a process, and its parts that need none.
 spillway_test(command_unit_tests unit
   SOURCES tools/command_unit_test.cpp
-  LIBS spillway_command)
+  LIBS spillway_command nlohmann_json::nlohmann_json)
 
 function(spillway_command_test name label)
   spillway_test(${name} ${label}

@@ -35,7 +35,7 @@ constexpr const char* kExamples =
     "Exit code 0: proved. 1: refuted, with the first offending simplices, or not readable.";
 
 struct CheckCommandOptions {
-  const CLI::App* app = nullptr;
+  const CommandLine* app = nullptr;
   std::string mesh;
   std::string mesh_format;
   std::vector<std::string> points;
@@ -134,7 +134,7 @@ bool is_stream(ProbedInput& input, const CheckCommandOptions& options) {
 
 std::string json_report(const Outcome& outcome, const CheckCommandOptions& options) {
   const CheckReport& report = outcome.report;
-  nlohmann::ordered_json json;
+  Json json;
   json["name"] = options.mesh;
   json["proved"] = report.fault_count == 0;
   json["dimension"] = outcome.dimension;
@@ -188,30 +188,30 @@ int run(const CheckCommandOptions& options) {
 
 }  // namespace
 
-Subcommand add_check(CLI::App& root) {
+Subcommand add_check(CommandLine& root) {
   const auto options = std::make_shared<CheckCommandOptions>();
-  CLI::App* app = root.add_subcommand("check", "Prove that a mesh is a Delaunay triangulation");
-  options->app = app;
-  app->footer(kExamples);
-  app->add_option("MESH", options->mesh, "Mesh file; - is a mesh stream from a pipe")->required();
-  app->add_option("--points", options->points,
-                  "Prove, too, that the vertices are the distinct points of these files, in the "
-                  "plane by x and y, with heights that these have")
-      ->type_name("FILE");
-  app->add_flag("--any-delaunay", options->any_delaunay,
-                "Accept either way of splitting cocircular facets, for meshes of other programs");
-  app->add_flag("--json", options->json, "Print the report as one JSON object");
-  add_choice(*app, "--mesh-format", options->mesh_format, mesh_format_names(),
+  CommandLine& app = root.add_subcommand("check", "Prove that a mesh is a Delaunay triangulation");
+  options->app = &app;
+  app.set_footer(kExamples);
+  app.add_option("MESH", options->mesh, "Mesh file; - is a mesh stream from a pipe").required();
+  app.add_option("--points", options->points,
+                 "Prove, too, that the vertices are the distinct points of these files, in the "
+                 "plane by x and y, with heights that these have")
+      .value_name("FILE");
+  app.add_flag("--any-delaunay", options->any_delaunay,
+               "Accept either way of splitting cocircular facets, for meshes of other programs");
+  app.add_flag("--json", options->json, "Print the report as one JSON object");
+  add_choice(app, "--mesh-format", options->mesh_format, mesh_format_names(),
              "Format of the mesh, where the name does not tell");
-  take_whole_number(app->add_option("--threads", options->threads,
-                                    "Threads to prove a mesh stream with; 0: all there are"),
+  take_whole_number(app.add_option("--threads", options->threads,
+                                   "Threads to prove a mesh stream with; 0: all there are"),
                     0, kMostThreads)
-      ->type_name("N")
-      ->capture_default_str();
-  add_memory_options(*app, options->memory);
-  add_input_options(*app, options->input);
-  add_report_options(*app, options->report);
-  return {app, [options] { return run(*options); }};
+      .value_name("N")
+      .show_default();
+  add_memory_options(app, options->memory);
+  add_input_options(app, options->input);
+  add_report_options(app, options->report);
+  return {&app, [options] { return run(*options); }};
 }
 
 }  // namespace spillway::detail
