@@ -32,6 +32,12 @@ constexpr const char* kExamples =
     "  spillway generate terrain -n 1e6 -o hills.las  points to try things with\n"
     "`-` is standard input or output. `spillway SUBCOMMAND --help` tells more.";
 
+/// The version, and on a line of its own what this build lacks.
+std::string version_text() {
+  const std::string lacks = SPILLWAY_LACKS;
+  return "spillway " SPILLWAY_VERSION + (lacks.empty() ? "" : "\n" + lacks);
+}
+
 /// Says what is wrong with the command line, and what may have been meant.
 UsageError usage_error(const CommandLine& root, const std::string& wrong) {
   const CommandLine* const given = root.given_subcommand();
@@ -113,7 +119,7 @@ class CommandTree {
   }
 
  private:
-  CommandLine root_{"spillway", kDescription, "spillway " SPILLWAY_VERSION};
+  CommandLine root_{"spillway", kDescription, version_text()};
   std::vector<Subcommand> subcommands_;
 };
 
