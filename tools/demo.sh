@@ -21,10 +21,13 @@ if (($# > 0)); then
 fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-tools/install_packages.sh
+tools/install_packages.sh build
 
 echo "== build"
-cmake --preset release --log-level=WARNING
+options=()
+# Where tests are built already, they stay.
+[[ -f build/release/CMakeCache.txt ]] || options=(-DSPILLWAY_TESTS=OFF)
+cmake --preset release "${options[@]}" --log-level=WARNING
 cmake --build --preset release -j "$(nproc)" --target spillway spillway_manual
 spillway=build/release/bin/spillway
 mkdir -p build/demo

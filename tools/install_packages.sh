@@ -1,9 +1,20 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages in tools/packages.txt. Needs root, or sudo, only if
 # something is missing.
+#
+#   tools/install_packages.sh build   what a build of the library and the command needs
+#   tools/install_packages.sh [test]  what tests and benchmarks need, too
 set -euo pipefail
 
 list=$(dirname "${BASH_SOURCE[0]}")/packages.txt
+case ${1:-test} in
+  build) sections='build' ;;
+  test) sections='build test' ;;
+  *)
+    echo "install_packages.sh: '$1' is neither build nor test" >&2
+    exit 2
+    ;;
+esac
 
 if ! command -v dpkg-query >/dev/null; then
   echo "install_packages.sh: this is no Debian; install what corresponds to $list yourself" >&2
@@ -14,7 +25,9 @@ missing=()
 while read -r package; do
   status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
   [[ $status == installed ]] || missing+=("$package")
-done < <(grep -v '^#' "$list")
+done < <(awk -v wanted=" $sections " '
+  /^\[/ { section = substr($0, 2, length($0) - 2); next }
+  /^[^#]/ && index(wanted, " " section " ") { print }' "$list")
 ((${#missing[@]} > 0)) || exit 0
 
 as_root=()

@@ -12,10 +12,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=${1:-release}
 shift || true
 
-tools/install_packages.sh
+tools/install_packages.sh test
 
 jobs=$(nproc)
-options=()
+options=(-DSPILLWAY_TESTS=ON)
 [[ -z ${CI:-} ]] || options+=(-DSPILLWAY_WERROR=ON)
 
 echo "== configure $preset"

@@ -68,7 +68,7 @@ class Gdal {
   [[nodiscard]] virtual RasterGrid read_raster_grid(const std::string& path) const = 0;
 };
 
-/// The module, loaded at the first call. Throws Error if it is not installed.
+/// The module, loaded at the first call. Throws Error if it, or GDAL in this build, is not there.
 const Gdal& gdal();
 
 /// What the module has under the name kGdalFactory: it returns what gdal() gives.

@@ -1,6 +1,6 @@
 #pragma once
-// The seam to MPI (Open MPI): nothing else includes its headers. A rank is one process of a job
-// that mpirun or Slurm has started; a group of them works together by calling the same functions in
+// The seam to MPI: only ranks.cpp includes its headers, and one_rank.cpp where a build has none.
+// A rank is a process of a job of mpirun or Slurm; a group works together by calling functions in
 // the same order.
 
 #include <cstddef>

@@ -1,7 +1,11 @@
 # spillway_mpi_test(NAME SOURCES file... LIBS target... RANKS number... [TIMEOUT seconds])
 # One test program, run with each number of ranks as the ctest test NAME.with_N_ranks, label mpi. Its
 # cases reach the ranks by world(), tests/distributed/world.h.
+# Nothing in a build without MPI.
 function(spillway_mpi_test name)
+  if(NOT SPILLWAY_MPI)
+    return()
+  endif()
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS;RANKS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)

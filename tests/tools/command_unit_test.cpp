@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -21,12 +22,9 @@
 namespace spillway::detail {
 namespace {
 
-/// All options but --help.
-std::vector<std::string> long_names(const CLI::App& app) {
+std::vector<std::string> long_names(const CommandLine& app) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
-    if (option != app.get_help_ptr()) names.push_back(option->get_name());
-  }
+  for (const OptionInfo& option : app.options()) names.push_back(option.names.back());
   return names;
 }
 
@@ -70,12 +68,12 @@ TEST(Count, TakesDigitsAndExponents) {
 }
 
 TEST(OptionNames, AreThoseThatThereAre) {
-  CLI::App input;
+  CommandLine input;
   InputOptions input_options;
   add_input_options(input, input_options);
   std::vector<std::string> known(kInputOptionNames.begin(), kInputOptionNames.end());
   EXPECT_THAT(long_names(input), testing::UnorderedElementsAreArray(known));
-  CLI::App all;
+  CommandLine all;
   TriangulationOptions options;
   add_triangulation_options(all, options);
   known.insert(known.end(), kTriangulationOptionNames.begin(), kTriangulationOptionNames.end());

@@ -5,12 +5,12 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/input_source.h"
+#include "formats/bytes/json.h"
 #include "formats/bytes/whole_file.h"
 #include "formats/disk/extension.h"
 #include "formats/disk/file_system.h"
@@ -18,8 +18,6 @@
 
 namespace spillway::detail {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string read_text(const std::string& path) {
   InputSource source(disk().open(path));
@@ -48,9 +46,10 @@ Json parse_list(const std::string& path) {
   const std::string text = read_text(path);
   if (extension_of(path) == "json") {
     try {
-      return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-      throw Error(fmt::format("{}, byte {}: this is no JSON; {}", path, error.byte, error.what()));
+      return parse_json(text);
+    } catch (const JsonError& error) {
+      throw Error(
+          fmt::format("{}, byte {}: this is no JSON; {}", path, error.byte(), error.what()));
     }
   }
   try {
@@ -71,13 +70,15 @@ class ListReader {
     where_ = path_;
     expect_keys(list, {"to", "options", "jobs"});
     Job defaults;
-    defaults.to = list.contains("to") ? texts(list["to"], "to") : to;
-    if (list.contains("options")) add_options(list["options"], defaults.options);
-    if (!list.contains("jobs") || !list["jobs"].is_array() || list["jobs"].empty()) {
+    const Json* const outputs = list.find("to");
+    defaults.to = outputs != nullptr ? texts(*outputs, "to") : to;
+    if (const Json* const common = list.find("options")) add_options(*common, defaults.options);
+    const Json* const entries = list.find("jobs");
+    if (entries == nullptr || !entries->is_array() || entries->elements().empty()) {
       fail("there is no list \"jobs\" with at least one job");
     }
     std::vector<Job> jobs;
-    for (const Json& entry : list["jobs"]) {
+    for (const Json& entry : entries->elements()) {
       where_ = fmt::format("{}, job {}", path_, jobs.size() + 1);
       jobs.push_back(read_job(entry, defaults));
       for (const auto& [name, values] : options) jobs.back().options[name] = values;
@@ -92,7 +93,7 @@ class ListReader {
 
   void expect_keys(const Json& object, const std::set<std::string>& known) const {
     if (!object.is_object()) fail("this is no table of keys and values");
-    for (const auto& [key, value] : object.items()) {
+    for (const auto& [key, value] : object.members()) {
       if (!known.contains(key)) fail(fmt::format("the key \"{}\" is not known", key));
     }
   }
@@ -100,27 +101,29 @@ class ListReader {
   Job read_job(const Json& entry, const Job& defaults) const {
     expect_keys(entry, {"name", "in", "to", "options"});
     Job job = defaults;
-    if (!entry.contains("in")) fail("the key \"in\" is missing: it names the points");
-    for (const std::string& input : texts(entry["in"], "in")) {
+    const Json* const inputs = entry.find("in");
+    if (inputs == nullptr) fail("the key \"in\" is missing: it names the points");
+    for (const std::string& input : texts(*inputs, "in")) {
       const bool list = input.starts_with('@');
       job.inputs.push_back(
           fmt::format("{}{}", list ? "@" : "", (folder_ / input.substr(list ? 1 : 0)).string()));
     }
     if (job.inputs.empty()) fail("\"in\" is empty: it names the points");
-    if (entry.contains("to")) job.to = texts(entry["to"], "to");
+    if (const Json* const to = entry.find("to")) job.to = texts(*to, "to");
     if (job.to.empty()) fail("\"to\" is missing: it names the outputs, like [\"ply\"]");
-    if (entry.contains("options")) add_options(entry["options"], job.options);
-    job.name = entry.contains("name") ? text(entry["name"], "name")
-                                      : std::filesystem::path(job.inputs.front()).stem().string();
+    if (const Json* const own = entry.find("options")) add_options(*own, job.options);
+    const Json* const name = entry.find("name");
+    job.name = name != nullptr ? text(*name, "name")
+                               : std::filesystem::path(job.inputs.front()).stem().string();
     return job;
   }
 
   void add_options(const Json& object, JobOptions& options) const {
     if (!object.is_object()) fail("\"options\" is no table of names and values");
-    for (const auto& [name, value] : object.items()) {
+    for (const auto& [name, value] : object.members()) {
       if (value.is_boolean()) {
         options.erase(name);
-        if (value.get<bool>()) options[name] = {};
+        if (value.boolean()) options[name] = {};
       } else {
         options[name] = texts(value, name);
       }
@@ -130,13 +133,13 @@ class ListReader {
   std::vector<std::string> texts(const Json& value, const std::string& key) const {
     std::vector<std::string> result;
     if (!value.is_array()) return {text(value, key)};
-    for (const Json& element : value) result.push_back(text(element, key));
+    for (const Json& element : value.elements()) result.push_back(text(element, key));
     return result;
   }
 
   std::string text(const Json& value, const std::string& key) const {
-    if (value.is_string()) return value.get<std::string>();
-    if (value.is_number()) return value.dump();
+    if (value.is_text()) return value.text();
+    if (value.is_number()) return json_to_text(value);
     fail(fmt::format("\"{}\" is neither text nor a number", key));
   }
 

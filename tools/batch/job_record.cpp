@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <exception>
 #include <fstream>
+#include <iterator>
+#include <string>
 
 #include "stream/source/input_list.h"
 #include "tools/report/json_text.h"
@@ -13,8 +15,6 @@
 
 namespace spillway::detail {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// A file's path, size and time of change; the latter two are null where there is none.
 Json fingerprint(const std::string& path) {
@@ -66,9 +66,11 @@ bool is_complete_and_unchanged(const JobRun& run) {
   std::ifstream file(run.record);
   if (!file) return false;
   try {
-    const Json record = Json::parse(file);
-    return record.at("status") == "done" &&
-           record.at("job") == description(run, input_fingerprints(run.job));
+    const Json record = parse_json(std::string(std::istreambuf_iterator(file), {}));
+    const Json* const status = record.find("status");
+    const Json* const job = record.find("job");
+    return status != nullptr && *status == Json("done") && job != nullptr &&
+           *job == description(run, input_fingerprints(run.job));
   } catch (const std::exception&) {
     return false;  // no record, or inputs that are not there: the job itself says so
   }

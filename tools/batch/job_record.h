@@ -2,10 +2,10 @@
 // What is remembered of a job beside its outputs, so that --resume knows what is complete and
 // unchanged.
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "formats/bytes/json.h"
 #include "tools/batch/job_steps.h"
 
 namespace spillway::detail {
@@ -19,12 +19,12 @@ struct JobRun {
   std::string status = "waiting";  ///< "waiting", "running", "done", "failed", "unchanged"
   std::string error;               ///< the last line of a failed one's log
   double seconds = 0;
-  nlohmann::ordered_json inputs;  ///< input_fingerprints() when it began
+  Json inputs;  ///< input_fingerprints() when it began
 };
 
 /// Size and time of change of all inputs, to be taken before a job begins. Throws Error if there
 /// are none.
-nlohmann::ordered_json input_fingerprints(const Job& job);
+Json input_fingerprints(const Job& job);
 
 /// Writes the record of a job that is done or has failed.
 void save_record(const JobRun& run);

@@ -101,13 +101,12 @@ const std::vector<std::string>& job_subcommands() {
   return names;
 }
 
-JobPlanner::JobPlanner(const CLI::App& root, std::string folder, std::string scratch)
+JobPlanner::JobPlanner(const CommandLine& root, std::string folder, std::string scratch)
     : root_(root), folder_(std::move(folder)), scratch_(std::move(scratch)) {}
 
-const CLI::Option* JobPlanner::option(const std::string& subcommand,
-                                      const std::string& name) const {
-  if (name == "help") return nullptr;  // no output comes of it
-  return root_.get_subcommand(subcommand)->get_option_no_throw("--" + name);
+bool JobPlanner::has_option(const std::string& subcommand, const std::string& name) const {
+  if (name == "help") return false;  // no output comes of it
+  return root_.subcommand(subcommand).has_option("--" + name);
 }
 
 std::vector<JobStep> JobPlanner::plan(const Job& job) const {
@@ -169,7 +168,7 @@ JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
 bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_points,
                               const std::string& name) const {
   const std::string& subcommand = kind.subcommand;
-  if (option(subcommand, name) == nullptr) return false;
+  if (!has_option(subcommand, name)) return false;
   if (subcommand == "dem") {
     const std::string products = products_of(kind, job);
     if (name == "product") return kind.arguments.empty();
@@ -183,7 +182,7 @@ bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_po
       job.to.begin(), job.to.end(),
       [&](const std::string& other) { return kind_by_name(job, other).subcommand == "dem"; });
   if (makes_raster && (name == "bounds" || name == "resolution")) return subcommand == "dem";
-  return of_points || option("triangulate", name) == nullptr;
+  return of_points || !has_option("triangulate", name);
 }
 
 void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps) const {
@@ -203,18 +202,17 @@ void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps
       throw UsageError(fmt::format("{}: --{} is for all jobs together: give it to batch itself",
                                    job.name, name));
     }
-    const CLI::Option* known = nullptr;
-    for (const JobStep& step : steps) {
+    const auto taker = std::ranges::find_if(steps, [&, &name = name](const JobStep& step) {
       const bool used =
           std::find(step.options.begin(), step.options.end(), name) != step.options.end();
-      if (used && known == nullptr) known = option(step.arguments.front(), name);
-    }
-    if (known == nullptr) {
+      return used && has_option(step.arguments.front(), name);
+    });
+    if (taker == steps.end()) {
       throw UsageError(
           fmt::format("{}: none of its outputs has a use for the option --{}", job.name, name));
     }
     // The parser would take the next argument for it.
-    const bool wants_value = known->get_expected_min() > 0;
+    const bool wants_value = root_.subcommand(taker->arguments.front()).takes_value("--" + name);
     const bool empty = std::find(values.begin(), values.end(), "") != values.end();
     if (empty || (wants_value && values.empty())) {
       throw UsageError(

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <string>
 #include <vector>
 
 #include "tools/batch/job_list.h"
+#include "tools/options/command_line.h"
 
 namespace spillway::detail {
 
@@ -27,16 +27,15 @@ class JobPlanner {
  public:
   /// `root` has all subcommands; outputs go to `folder`, what is only needed meanwhile to
   /// `scratch`.
-  JobPlanner(const CLI::App& root, std::string folder, std::string scratch);
+  JobPlanner(const CommandLine& root, std::string folder, std::string scratch);
 
   /// The steps of a job, in order: a single output is made of the points at once, several are made
   /// of one triangulation. Throws UsageError that names the job for a kind of output or an option
   /// that there is not.
   [[nodiscard]] std::vector<JobStep> plan(const Job& job) const;
 
-  /// The option that a subcommand knows by this long name, or null.
-  [[nodiscard]] const CLI::Option* option(const std::string& subcommand,
-                                          const std::string& name) const;
+  /// Whether a subcommand knows an option by this long name, of which an output comes.
+  [[nodiscard]] bool has_option(const std::string& subcommand, const std::string& name) const;
 
  private:
   [[nodiscard]] JobStep step(const Job& job, const std::string& kind,
@@ -45,7 +44,7 @@ class JobPlanner {
                                   const std::string& name) const;
   void check_options(const Job& job, const std::vector<JobStep>& steps) const;
 
-  const CLI::App& root_;
+  const CommandLine& root_;
   std::string folder_;
   std::string scratch_;
 };

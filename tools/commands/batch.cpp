@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -71,23 +70,24 @@ struct BatchOptions {
 };
 
 /// Takes every option of the subcommands that make outputs, those apart that batch decides on.
-void add_options_of_subcommands(const CLI::App& root, CLI::App& app, BatchOptions& options) {
+void add_options_of_subcommands(const CommandLine& root, CommandLine& app, BatchOptions& options) {
   for (const std::string& subcommand : job_subcommands()) {
-    for (const CLI::Option* option : root.get_subcommand(subcommand)->get_options()) {
-      if (option->get_lnames().empty()) continue;
-      const std::string& name = option->get_lnames().front();
-      const std::string flag = "--" + name;
+    for (const OptionInfo& option : root.subcommand(subcommand).options()) {
+      const std::string& flag = option.names.back();
+      if (!flag.starts_with("--")) continue;
+      const std::string name = flag.substr(2);
       const bool own = name == "help" || name == "output" || name == "stats" ||
                        name == "simulate-cores" || name == "output-format";
-      if (own || app.get_option_no_throw(flag) != nullptr) continue;
-      CLI::Option* passed = nullptr;
-      if (option->get_expected_max() == 0) {
-        passed = app.add_flag(flag, options.passed_flags[name], option->get_description());
+      if (own || app.has_option(flag)) continue;
+      const std::string group = "Passed on to the jobs";
+      if (option.value_name.empty()) {
+        app.add_flag(flag, options.passed_flags[name], option.description).group(group);
       } else {
-        passed = app.add_option(flag, options.passed_values[name], option->get_description());
-        passed->expected(1)->type_name(option->get_type_name());
+        app.add_option(flag, options.passed_values[name], option.description)
+            .once()
+            .value_name(option.value_name)
+            .group(group);
       }
-      passed->group("Passed on to the jobs");
     }
   }
 }
@@ -119,7 +119,7 @@ void make_output_folder(const std::string& folder) {
 
 class Batch {
  public:
-  Batch(const CLI::App& root, const BatchOptions& options)
+  Batch(const CommandLine& root, const BatchOptions& options)
       : root_(root),
         options_(options),
         progress_(make_progress(options.report)),
@@ -224,9 +224,9 @@ class Batch {
 
   void start_step(const Running& job) {
     std::vector<std::string> arguments = job.run->steps[job.step].arguments;
-    const CLI::App& subcommand = *root_.get_subcommand(arguments.front());
+    const CommandLine& subcommand = root_.subcommand(arguments.front());
     const auto add = [&](const std::string& option, const std::string& value) {
-      if (subcommand.get_option_no_throw("--" + option) != nullptr) {
+      if (subcommand.has_option("--" + option)) {
         arguments.push_back(fmt::format("--{}={}", option, value));
       }
     };
@@ -302,7 +302,7 @@ class Batch {
     return failed == 0 ? kExitDone : kExitFailed;
   }
 
-  const CLI::App& root_;
+  const CommandLine& root_;
   const BatchOptions& options_;
   Progress progress_;
   std::vector<JobRun> runs_;
@@ -317,34 +317,36 @@ class Batch {
 
 }  // namespace
 
-Subcommand add_batch(CLI::App& root) {
+Subcommand add_batch(CommandLine& root) {
   const auto options = std::make_shared<BatchOptions>();
-  CLI::App* app = root.add_subcommand("batch", "Do many jobs, one after the other or side by side");
-  app->footer(kExamples);
-  app->add_option("JOBS", options->sources,
-                  "A list of jobs (.json, .toml), or point files, globs, folders: a job each")
-      ->required();
-  app->add_option("--output-dir", options->folder, "Where outputs, logs and records go")
-      ->required()
-      ->type_name("DIR");
-  take_one_list(
-      app->add_option("--to", options->to, "Outputs of each job, like ply,dem.tif,hillshade.tif"))
-      ->type_name("KIND,...");
+  CommandLine& app =
+      root.add_subcommand("batch", "Do many jobs, one after the other or side by side");
+  app.set_footer(kExamples);
+  app.add_option("JOBS", options->sources,
+                 "A list of jobs (.json, .toml), or point files, globs, folders: a job each")
+      .required();
+  app.add_option("--output-dir", options->folder, "Where outputs, logs and records go")
+      .required()
+      .value_name("DIR");
+  app.add_option("--to", options->to, "Outputs of each job, like ply,dem.tif,hillshade.tif")
+      .one_argument()
+      .commas_separate()
+      .value_name("KIND,...");
   take_whole_number(
-      app->add_option("-j,--jobs", options->at_a_time, "Most jobs at a time; 0: one a thread"), 0,
+      app.add_option("-j,--jobs", options->at_a_time, "Most jobs at a time; 0: one a thread"), 0,
       kMostThreads)
-      ->type_name("N")
-      ->capture_default_str();
-  app->add_flag("--resume", options->resume, "Leave out jobs that are complete and unchanged");
-  take_whole_number(app->add_option("--threads", options->threads,
-                                    "Threads of all jobs together; 0: all there are"),
+      .value_name("N")
+      .show_default();
+  app.add_flag("--resume", options->resume, "Leave out jobs that are complete and unchanged");
+  take_whole_number(app.add_option("--threads", options->threads,
+                                   "Threads of all jobs together; 0: all there are"),
                     0, kMostThreads)
-      ->type_name("N")
-      ->capture_default_str();
-  add_memory_options(*app, options->memory);
-  add_report_options(*app, options->report);
-  add_options_of_subcommands(root, *app, *options);
-  return {app, [options, &root] { return Batch(root, *options).run(); }};
+      .value_name("N")
+      .show_default();
+  add_memory_options(app, options->memory);
+  add_report_options(app, options->report);
+  add_options_of_subcommands(root, app, *options);
+  return {&app, [options, &root] { return Batch(root, *options).run(); }};
 }
 
 }  // namespace spillway::detail

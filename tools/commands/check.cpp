@@ -37,7 +37,7 @@ constexpr const char* kExamples =
     "Exit code 0: proved. 1: refuted, with the first offending simplices, or not readable.";
 
 struct CheckCommandOptions {
-  const CLI::App* app = nullptr;
+  const CommandLine* app = nullptr;
   std::string mesh;
   std::string mesh_format;
   std::vector<std::string> points;
@@ -135,7 +135,7 @@ bool is_stream(ProbedInput& input, const CheckCommandOptions& options) {
 
 std::string json_report(const Outcome& outcome, const CheckCommandOptions& options) {
   const CheckReport& report = outcome.report;
-  nlohmann::ordered_json json;
+  Json json;
   json["name"] = options.mesh;
   json["proved"] = report.fault_count == 0;
   json["dimension"] = outcome.dimension;
@@ -201,31 +201,31 @@ int run(const CheckCommandOptions& options) {
 
 }  // namespace
 
-Subcommand add_check(CLI::App& root) {
+Subcommand add_check(CommandLine& root) {
   const auto options = std::make_shared<CheckCommandOptions>();
-  CLI::App* app = root.add_subcommand("check", "Prove that a mesh is a Delaunay triangulation");
-  options->app = app;
+  CommandLine& app = root.add_subcommand("check", "Prove that a mesh is a Delaunay triangulation");
+  options->app = &app;
   const auto is_stream = [](const MeshFormat& format) { return format.is_stream(); };
-  app->footer(fmt::format(fmt::runtime(kExamples), fmt::join(names_of_formats(is_stream), ", ")));
-  app->add_option("MESH", options->mesh, "Mesh file; - is a mesh stream from a pipe")->required();
-  app->add_option("--points", options->points,
-                  "Prove, too, that the vertices are the distinct points of these files, in the "
-                  "plane by x and y, with heights that these have")
-      ->type_name("FILE");
-  app->add_flag("--any-delaunay", options->any_delaunay,
-                "Accept either way of splitting cocircular facets, for meshes of other programs");
-  app->add_flag("--json", options->json, "Print the report as one JSON object");
-  add_choice(*app, "--mesh-format", options->mesh_format, mesh_format_names(),
+  app.set_footer(fmt::format(fmt::runtime(kExamples), fmt::join(names_of_formats(is_stream), ", ")));
+  app.add_option("MESH", options->mesh, "Mesh file; - is a mesh stream from a pipe").required();
+  app.add_option("--points", options->points,
+                 "Prove, too, that the vertices are the distinct points of these files, in the "
+                 "plane by x and y, with heights that these have")
+      .value_name("FILE");
+  app.add_flag("--any-delaunay", options->any_delaunay,
+               "Accept either way of splitting cocircular facets, for meshes of other programs");
+  app.add_flag("--json", options->json, "Print the report as one JSON object");
+  add_choice(app, "--mesh-format", options->mesh_format, mesh_format_names(),
              "Format of the mesh, where the name does not tell");
-  take_whole_number(app->add_option("--threads", options->threads,
-                                    "Threads to prove a mesh stream with; 0: all there are"),
+  take_whole_number(app.add_option("--threads", options->threads,
+                                   "Threads to prove a mesh stream with; 0: all there are"),
                     0, kMostThreads)
-      ->type_name("N")
-      ->capture_default_str();
-  add_memory_options(*app, options->memory);
-  add_input_options(*app, options->input);
-  add_report_options(*app, options->report);
-  return {app, [options] { return run(*options); }};
+      .value_name("N")
+      .show_default();
+  add_memory_options(app, options->memory);
+  add_input_options(app, options->input);
+  add_report_options(app, options->report);
+  return {&app, [options] { return run(*options); }};
 }
 
 }  // namespace spillway::detail

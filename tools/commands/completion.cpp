@@ -7,7 +7,6 @@
 
 #include "tools/commands/command.h"
 #include "tools/options/command_options.h"
-#include "tools/options/option_tree.h"
 #include "tools/report/text_output.h"
 
 namespace spillway::detail {
@@ -29,17 +28,19 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 }
 
 /// Text inside single quotes of a POSIX-like shell.
-std::string quoted(const std::string& text) { return "'" + replaced(text, "'", "'\\''") + "'"; }
+std::string quoted(const std::string& text) {
+  return fmt::format("'{}'", replaced(text, "'", "'\\''"));
+}
 
-std::string bash_script(const CLI::App& root) {
+std::string bash_script(const CommandLine& root) {
   std::string subcommands = "--help --version";
   std::string options;
   std::string values;
-  for (const CLI::App* app : subcommands_of(root)) {
-    subcommands += " " + app->get_name();
+  for (const CommandLine* app : root.subcommands()) {
+    subcommands += fmt::format(" {}", app->name());
     std::string names;
     std::string words;
-    for (const OptionInfo& option : options_of(*app)) {
+    for (const OptionInfo& option : app->options()) {
       if (option.positional) {
         words = fmt::format("{}", fmt::join(option.words, " "));
         continue;
@@ -47,13 +48,12 @@ std::string bash_script(const CLI::App& root) {
       for (const std::string& name : option.names) {
         names += (names.empty() ? "" : " ") + name;
         if (option.value_name.empty()) continue;
-        values += fmt::format("    {}:{}) words=\"{}\" ;;\n", app->get_name(), name,
+        values += fmt::format("    {}:{}) words=\"{}\" ;;\n", app->name(), name,
                               fmt::join(option.words, " "));
       }
     }
-    options += fmt::format("    {}:-*) words=\"{}\" ;;\n", app->get_name(), names);
-    if (!words.empty())
-      options += fmt::format("    {}:*) words=\"{}\" ;;\n", app->get_name(), words);
+    options += fmt::format("    {}:-*) words=\"{}\" ;;\n", app->name(), names);
+    if (!words.empty()) options += fmt::format("    {}:*) words=\"{}\" ;;\n", app->name(), words);
   }
   return "# bash completion for spillway\n"
          "_spillway() {\n"
@@ -88,7 +88,7 @@ std::string zsh_argument(const OptionInfo& option) {
           : fmt::format(":{}:{}",
                         replaced(option.words.empty() ? option.value_name : "value", ":", ""),
                         zsh_action(option));
-  if (option.positional) return quoted((option.many ? "*" : "") + value);
+  if (option.positional) return quoted(fmt::format("{}{}", option.many ? "*" : "", value));
   std::string description = replaced(option.description, ":", "\\:");
   description = replaced(replaced(description, "[", "\\["), "]", "\\]");
   std::string all;
@@ -100,14 +100,15 @@ std::string zsh_argument(const OptionInfo& option) {
   return all;
 }
 
-std::string zsh_script(const CLI::App& root) {
+std::string zsh_script(const CommandLine& root) {
   std::string subcommands;
   std::string cases;
-  for (const CLI::App* app : subcommands_of(root)) {
-    subcommands += "    " + quoted(app->get_name() + ":" + app->get_description()) + "\n";
-    cases += fmt::format("    {})\n      _arguments", app->get_name());
-    for (const OptionInfo& option : options_of(*app)) {
-      cases += " \\\n        " + zsh_argument(option);
+  for (const CommandLine* app : root.subcommands()) {
+    subcommands +=
+        fmt::format("    {}\n", quoted(fmt::format("{}:{}", app->name(), app->description())));
+    cases += fmt::format("    {})\n      _arguments", app->name());
+    for (const OptionInfo& option : app->options()) {
+      cases += fmt::format(" \\\n        {}", zsh_argument(option));
     }
     cases += "\n      ;;\n";
   }
@@ -145,23 +146,23 @@ std::string fish_option(const OptionInfo& option) {
   return text + " -d " + replaced(quoted(option.description), "'\\''", "\\'");
 }
 
-std::string fish_script(const CLI::App& root) {
+std::string fish_script(const CommandLine& root) {
   std::string script = "# fish completion for spillway\n";
-  for (const CLI::App* app : subcommands_of(root)) {
+  for (const CommandLine* app : root.subcommands()) {
     script += fmt::format("complete -c spillway -n __fish_use_subcommand -f -a {} -d {}\n",
-                          app->get_name(), quoted(app->get_description()));
+                          app->name(), quoted(app->description()));
   }
-  for (const CLI::App* app : subcommands_of(root)) {
-    for (const OptionInfo& option : options_of(*app)) {
+  for (const CommandLine* app : root.subcommands()) {
+    for (const OptionInfo& option : app->options()) {
       if (option.positional && option.words.empty()) continue;  // files, as everywhere in fish
       script += fmt::format("complete -c spillway -n '__fish_seen_subcommand_from {}'{}\n",
-                            app->get_name(), fish_option(option));
+                            app->name(), fish_option(option));
     }
   }
   return script;
 }
 
-int run(const CLI::App& root, const std::string& shell) {
+int run(const CommandLine& root, const std::string& shell) {
   write_text("-", shell == "bash"  ? bash_script(root)
                   : shell == "zsh" ? zsh_script(root)
                                    : fish_script(root));
@@ -170,12 +171,12 @@ int run(const CLI::App& root, const std::string& shell) {
 
 }  // namespace
 
-Subcommand add_completion(CLI::App& root) {
+Subcommand add_completion(CommandLine& root) {
   const auto shell = std::make_shared<std::string>();
-  CLI::App* app = root.add_subcommand("completion", "Print a shell's completion script");
-  app->footer(kExamples);
-  add_choice(*app, "SHELL", *shell, {"bash", "zsh", "fish"}, "Which shell")->required();
-  return {app, [&root, shell] { return run(root, *shell); }};
+  CommandLine& app = root.add_subcommand("completion", "Print a shell's completion script");
+  app.set_footer(kExamples);
+  add_choice(app, "SHELL", *shell, {"bash", "zsh", "fish"}, "Which shell").required();
+  return {&app, [&root, shell] { return run(root, *shell); }};
 }
 
 }  // namespace spillway::detail

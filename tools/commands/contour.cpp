@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -154,7 +153,7 @@ int run(const ContourCommandOptions& options) {
                            statistics.stream.totals.vertices, statistics.stream.totals.simplices,
                            use.writer().lines(), use.points(), statistics.seconds));
   if (options.stats_path.empty()) return kExitDone;
-  nlohmann::ordered_json json = to_json(statistics);
+  Json json = to_json(statistics);
   json["contours"] = {{"lines", use.writer().lines()},
                       {"points", use.points()},
                       {"spilled_bytes", use.writer().spilled_bytes()}};
@@ -164,23 +163,23 @@ int run(const ContourCommandOptions& options) {
 
 }  // namespace
 
-Subcommand add_contour(CLI::App& root) {
+Subcommand add_contour(CommandLine& root) {
   const auto options = std::make_shared<ContourCommandOptions>();
-  CLI::App* app = root.add_subcommand("contour", "Draw lines of equal height");
-  app->footer(kExamples);
-  app->add_option("-o,--output", options->output, "Vector file: " + vector_extensions(false))
-      ->required()
-      ->type_name("FILE");
-  take_positive_number(app->add_option("--interval", options->interval, "Height between two lines"))
-      ->type_name("H");
-  take_number(app->add_option("--base", options->base, "A height that intervals are counted from"))
-      ->type_name("H")
-      ->capture_default_str();
-  add_number_list(*app, "--levels", options->levels, "Heights of lines, instead of an interval")
-      ->type_name("H,...");
-  add_terrain_options(*app, *options);
-  add_report_options(*app, options->report);
-  return {app, [options] { return run(*options); }};
+  CommandLine& app = root.add_subcommand("contour", "Draw lines of equal height");
+  app.set_footer(kExamples);
+  app.add_option("-o,--output", options->output, "Vector file: " + vector_extensions(false))
+      .required()
+      .value_name("FILE");
+  take_positive_number(app.add_option("--interval", options->interval, "Height between two lines"))
+      .value_name("H");
+  take_number(app.add_option("--base", options->base, "A height that intervals are counted from"))
+      .value_name("H")
+      .show_default();
+  add_number_list(app, "--levels", options->levels, "Heights of lines, instead of an interval")
+      .value_name("H,...");
+  add_terrain_options(app, *options);
+  add_report_options(app, options->report);
+  return {&app, [options] { return run(*options); }};
 }
 
 }  // namespace spillway::detail

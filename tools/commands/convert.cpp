@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -34,7 +33,7 @@ constexpr const char* kExamples =
     "a whole.";
 
 struct ConvertOptions {
-  const CLI::App* app = nullptr;
+  const CommandLine* app = nullptr;
   std::vector<std::string> inputs;
   InputOptions input;
   std::string mesh_format;
@@ -154,33 +153,33 @@ int run(const ConvertOptions& options) {
 
 }  // namespace
 
-Subcommand add_convert(CLI::App& root) {
+Subcommand add_convert(CommandLine& root) {
   const auto options = std::make_shared<ConvertOptions>();
-  CLI::App* app = root.add_subcommand("convert", "Write points or a mesh in another format");
-  options->app = app;
-  app->footer(kExamples);
-  app->add_option(
+  CommandLine& app = root.add_subcommand("convert", "Write points or a mesh in another format");
+  options->app = &app;
+  app.set_footer(kExamples);
+  app.add_option(
          "IN", options->inputs,
          "Point files, folders, 'patterns', @lists, which become one, or a mesh; - is a pipe")
-      ->required();
-  app->add_option("-o,--output", options->output.path, "Point file or mesh; - is standard output")
-      ->required()
-      ->type_name("FILE");
-  add_choice(*app, "--output-format", options->output.format, output_format_names(),
+      .required();
+  app.add_option("-o,--output", options->output.path, "Point file or mesh; - is standard output")
+      .required()
+      .value_name("FILE");
+  add_choice(app, "--output-format", options->output.format, output_format_names(),
              "Format of the output, where the name does not tell");
-  add_choice(*app, "--mesh-format", options->mesh_format, mesh_format_names(),
+  add_choice(app, "--mesh-format", options->mesh_format, mesh_format_names(),
              "The input is a mesh of this format, which neither content nor name tell");
-  add_las_version(*app, options->output);
-  add_number_list(*app, "--scale", options->lattice.scale,
+  add_las_version(app, options->output);
+  add_number_list(app, "--scale", options->lattice.scale,
                   "Round coordinates to multiples of this; one number, or one for each axis", true)
-      ->type_name("N[,N,N]");
-  add_number_list(*app, "--offset", options->lattice.offset,
+      .value_name("N[,N,N]");
+  add_number_list(app, "--offset", options->lattice.offset,
                   "Count these multiples from here on; likewise")
-      ->type_name("N[,N,N]");
-  add_input_options(*app, options->input);
-  add_memory_options(*app, options->memory);
-  add_report_options(*app, options->report);
-  return {app, [options] { return run(*options); }};
+      .value_name("N[,N,N]");
+  add_input_options(app, options->input);
+  add_memory_options(app, options->memory);
+  add_report_options(app, options->report);
+  return {&app, [options] { return run(*options); }};
 }
 
 }  // namespace spillway::detail

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -191,7 +190,7 @@ class Run : public TerrainUse {
                     stream.totals.vertices, stream.totals.simplices, grid.columns, grid.rows,
                     grid.resolution, dem.pixels_with_data(), statistics_.seconds));
     if (options_.stats_path.empty()) return;
-    nlohmann::ordered_json json = to_json(statistics_);
+    Json json = to_json(statistics_);
     json["raster"] = {{"columns", grid.columns},
                       {"rows", grid.rows},
                       {"resolution", grid.resolution},
@@ -244,12 +243,12 @@ int run(const DemCommandOptions& options) {
 
 }  // namespace
 
-Subcommand add_dem(CLI::App& root) {
+Subcommand add_dem(CommandLine& root) {
   const auto options = std::make_shared<DemCommandOptions>();
-  CLI::App* app = root.add_subcommand("dem", "Make a raster of heights, slopes or shades");
-  app->footer(kExamples);
-  add_dem_options(*app, *options);
-  return {app, [options] { return run(*options); }, true};
+  CommandLine& app = root.add_subcommand("dem", "Make a raster of heights, slopes or shades");
+  app.set_footer(kExamples);
+  add_dem_options(app, *options);
+  return {&app, [options] { return run(*options); }, true};
 }
 
 }  // namespace spillway::detail

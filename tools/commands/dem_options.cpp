@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
+#include <string>
 
 #include "formats/gdal/gdal.h"
 #include "tools/process/usage_error.h"
@@ -35,7 +36,8 @@ float parse_nodata(const std::string& text) {
 std::vector<DemProduct> parse_products(const std::string& text) {
   const std::vector<std::string>& names = dem_product_names();
   std::vector<DemProduct> products;
-  for (const std::string& name : CLI::detail::split(text, ',')) {
+  std::istringstream words(text);
+  for (std::string name; std::getline(words, name, ',');) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
       throw UsageError(fmt::format("\"{}\" is none; give {}, several separated by commas", name,
@@ -49,7 +51,7 @@ std::vector<DemProduct> parse_products(const std::string& text) {
   return products;
 }
 
-void check_products(const CLI::App& app, const std::vector<DemProduct>& products) {
+void check_products(const CommandLine& app, const std::vector<DemProduct>& products) {
   const auto has = [&](DemProduct product) {
     return std::find(products.begin(), products.end(), product) != products.end();
   };
@@ -71,60 +73,60 @@ Box<2> parse_raster_bounds(const std::string& text) {
 
 }  // namespace
 
-void add_dem_options(CLI::App& app, DemCommandOptions& options) {
-  app.add_option("-o,--output", options.output, "GeoTIFF file")->required()->type_name("FILE");
+void add_dem_options(CommandLine& app, DemCommandOptions& options) {
+  app.add_option("-o,--output", options.output, "GeoTIFF file").required().value_name("FILE");
   add_terrain_options(app, options);
   // These are filters of points there; here they say what the raster is like.
-  app.remove_option(app.get_option("--bounds"));
-  app.remove_option(app.get_option("--resolution"));
+  app.remove_option("--bounds");
+  app.remove_option("--resolution");
   options.own_options = {"--bounds", "--resolution"};
   const std::string group = "Raster";
   take_parsed(
       app.add_option("--resolution", options.resolution, "Side of a pixel, in units of x and y"),
       parse_resolution)
-      ->type_name("R")
-      ->group(group);
+      .value_name("R")
+      .group(group);
   take_parsed(app.add_option("--bounds", options.bounds, "Cover xmin,ymin,xmax,ymax [all points]"),
               parse_raster_bounds)
-      ->type_name("BOX")
-      ->group(group);
+      .value_name("BOX")
+      .group(group);
   app.add_flag("--force-size", options.force_size,
                "Cover all points, though some may lie far away and pixels be very many")
-      ->group(group);
-  app.add_flag("--align", options.align, "Put edges of pixels on multiples of R")->group(group);
+      .group(group);
+  app.add_flag("--align", options.align, "Put edges of pixels on multiples of R").group(group);
   app.add_option("--like", options.like, "Put pixels where this raster has them")
-      ->type_name("FILE")
-      ->group(group)
+      .value_name("FILE")
+      .group(group)
       // Its coordinate system is compared with that of a mesh, too.
-      ->each([&options](const std::string&) { options.own_options.emplace_back("--force-crs"); });
+      .each([&options](const std::string&) { options.own_options.emplace_back("--force-crs"); });
   take_parsed(app.add_option(
                   "--product", options.products,
                   "height, slope, aspect, hillshade, density; several, with commas, become bands"),
               parse_products)
-      ->type_name("LIST")
-      ->capture_default_str()
-      ->group(group);
+      .value_name("LIST")
+      .show_default()
+      .group(group);
   take_number_between(
       app.add_option("--azimuth", options.light.azimuth, "Where a hillshade's light comes from"), 0,
       360)
-      ->type_name("DEGREES")
-      ->capture_default_str()
-      ->group(group);
+      .value_name("DEGREES")
+      .show_default()
+      .group(group);
   take_number_between(
       app.add_option("--altitude", options.light.altitude, "Its height above the horizon"), 0, 90)
-      ->type_name("DEGREES")
-      ->capture_default_str()
-      ->group(group);
+      .value_name("DEGREES")
+      .show_default()
+      .group(group);
   take_parsed(app.add_option("--nodata", options.nodata, "Value of pixels without data"),
               parse_nodata)
-      ->type_name("V")
-      ->capture_default_str()
-      ->group(group);
+      .value_name("V")
+      .show_default()
+      .group(group);
   add_choice(app, "--compress", options.compression, {"deflate", "zstd", "none"},
              "Compression of the file")
-      ->group(group);
+      .group(group);
   app.add_flag("--cog", options.cloud_optimized, "Make it cloud optimized, with overviews")
-      ->group(group);
+      .group(group);
   add_report_options(app, options.report);
 }
 

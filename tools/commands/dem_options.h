@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <string>
 #include <vector>
 
@@ -25,7 +24,7 @@ struct DemCommandOptions : TerrainOptions {
   Light light;
 };
 
-void add_dem_options(CLI::App& app, DemCommandOptions& options);
+void add_dem_options(CommandLine& app, DemCommandOptions& options);
 
 /// What is to be made. Opens the raster of --like, whose grid and coordinate system go to `like`.
 /// Throws UsageError for options that are wrong or contradict each other.

@@ -30,7 +30,7 @@ constexpr const char* kExamples =
 constexpr std::size_t kBlockSize = 65536;  // points made and written at a time
 
 struct GenerateOptions {
-  const CLI::App* app = nullptr;
+  const CommandLine* app = nullptr;
   std::string family;
   std::string count;
   std::string dimension = "2";
@@ -86,30 +86,30 @@ int run(const GenerateOptions& options) {
 
 }  // namespace
 
-Subcommand add_generate(CLI::App& root) {
+Subcommand add_generate(CommandLine& root) {
   const auto options = std::make_shared<GenerateOptions>();
-  CLI::App* app = root.add_subcommand("generate", "Make points to try things with");
-  options->app = app;
-  app->footer(
+  CommandLine& app = root.add_subcommand("generate", "Make points to try things with");
+  options->app = &app;
+  app.set_footer(
       fmt::format("FAMILY is one of {}.\n\n{}", fmt::join(family_names(), ", "), kExamples));
-  add_choice(*app, "FAMILY", options->family, family_names(), "What the points look like")
-      ->required();
-  take_parsed(app->add_option("-n,--count", options->count, "How many points; 1e6 is a million"),
+  add_choice(app, "FAMILY", options->family, family_names(), "What the points look like")
+      .required();
+  take_parsed(app.add_option("-n,--count", options->count, "How many points; 1e6 is a million"),
               parse_point_count)
-      ->required()
-      ->type_name("N");
-  add_choice(*app, "--dim", options->dimension, {"2", "3"}, "Dimension; terrain always has z");
-  take_whole_number(app->add_option("--seed", options->seed, "Another seed, other points"))
-      ->type_name("S")
-      ->capture_default_str();
-  app->add_option("-o,--output", options->output.path, "Point file; - is standard output")
-      ->type_name("FILE")
-      ->capture_default_str();
-  add_choice(*app, "--output-format", options->output.format, written_point_format_names(),
+      .required()
+      .value_name("N");
+  add_choice(app, "--dim", options->dimension, {"2", "3"}, "Dimension; terrain always has z");
+  take_whole_number(app.add_option("--seed", options->seed, "Another seed, other points"))
+      .value_name("S")
+      .show_default();
+  app.add_option("-o,--output", options->output.path, "Point file; - is standard output")
+      .value_name("FILE")
+      .show_default();
+  add_choice(app, "--output-format", options->output.format, written_point_format_names(),
              "Format, where the name does not tell; spp on a pipe");
-  add_las_version(*app, options->output);
-  add_report_options(*app, options->report);
-  return {app, [options] { return run(*options); }};
+  add_las_version(app, options->output);
+  add_report_options(app, options->report);
+  return {&app, [options] { return run(*options); }};
 }
 
 }  // namespace spillway::detail

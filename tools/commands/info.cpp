@@ -31,8 +31,6 @@
 namespace spillway::detail {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kExamples =
     "Examples:\n"
     "  spillway info survey.las\n"
@@ -41,7 +39,7 @@ constexpr const char* kExamples =
     "All points are read, so extents and counts are exact, whatever headers say.";
 
 struct InfoOptions {
-  const CLI::App* app = nullptr;
+  const CommandLine* app = nullptr;
   std::vector<std::string> files;
   bool json = false;
   InputOptions input;
@@ -205,11 +203,11 @@ Json describe_input(ProbedInput& input, const InfoOptions& options, Progress& pr
 
 std::string value_text(const Json& value) {
   if (value.is_null()) return "-";
-  if (value.is_string()) return printable(value.get<std::string>());
-  if (value.is_number_float()) return fmt::format("{:.15g}", value.get<double>());
+  if (value.is_text()) return printable(value.text());
+  if (value.is_float()) return fmt::format("{:.15g}", value.number());
   if (!value.is_array()) return json_text(value);
   std::string text;
-  for (const Json& item : value) {
+  for (const Json& item : value.elements()) {
     if (!text.empty()) text += "  ";
     text += value_text(item);
   }
@@ -218,19 +216,18 @@ std::string value_text(const Json& value) {
 
 /// The same keys and values as the JSON, laid out for people: no more digits than mean something.
 std::string describe(const Json& json) {
-  std::string text = printable(json["name"].get<std::string>()) + "\n";
-  for (const auto& [key, value] : json.items()) {
+  std::string text = printable(json.find("name")->text()) + "\n";
+  for (const auto& [key, value] : json.members()) {
     if (key == "name") continue;
     if (value.is_object()) {
-      for (const auto& [inner_key, inner_value] : value.items()) {
+      for (const auto& [inner_key, inner_value] : value.members()) {
         const std::string path = fmt::format("{} {}", key, inner_key);
         text += fmt::format("  {:16} {}\n", path, value_text(inner_value));
       }
     } else {
       const bool estimate = key == "density" && value.is_number();
-      text +=
-          fmt::format("  {:16} {}\n", key,
-                      estimate ? fmt::format("{:.6g}", value.get<double>()) : value_text(value));
+      text += fmt::format("  {:16} {}\n", key,
+                          estimate ? fmt::format("{:.6g}", value.number()) : value_text(value));
     }
   }
   return text;
@@ -319,20 +316,20 @@ int run(const InfoOptions& options) {
 
 }  // namespace
 
-Subcommand add_info(CLI::App& root) {
+Subcommand add_info(CommandLine& root) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* app = root.add_subcommand("info", "Tell what point files and meshes hold");
-  options->app = app;
-  app->footer(kExamples);
-  app->add_option("FILE", options->files,
-                  "Point files and meshes; - is points or a mesh stream from a pipe")
-      ->required();
-  app->add_flag("--json", options->json, "One JSON object a line for each file");
-  add_input_options(*app, options->input);
-  app->remove_option(app->get_option("--force-crs"));  // each file is told of for itself
-  add_memory_options(*app, options->memory);
-  add_report_options(*app, options->report);
-  return {app, [options] { return run(*options); }};
+  CommandLine& app = root.add_subcommand("info", "Tell what point files and meshes hold");
+  options->app = &app;
+  app.set_footer(kExamples);
+  app.add_option("FILE", options->files,
+                 "Point files and meshes; - is points or a mesh stream from a pipe")
+      .required();
+  app.add_flag("--json", options->json, "One JSON object a line for each file");
+  add_input_options(app, options->input);
+  app.remove_option("--force-crs");  // each file is told of for itself
+  add_memory_options(app, options->memory);
+  add_report_options(app, options->report);
+  return {&app, [options] { return run(*options); }};
 }
 
 }  // namespace spillway::detail

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "tools/commands/command.h"
-#include "tools/options/option_tree.h"
 #include "tools/report/text_output.h"
 
 namespace spillway::detail {
@@ -28,7 +27,7 @@ std::string roff(const std::string& text) {
   return out;
 }
 
-std::string bold(const std::string& text) { return "\\fB" + roff(text) + "\\fR"; }
+std::string bold(const std::string& text) { return fmt::format("\\fB{}\\fR", roff(text)); }
 
 /// Where it lists words, it may be broken after each.
 std::string italic(const std::string& text) {
@@ -40,13 +39,13 @@ std::string italic(const std::string& text) {
   return out + "\\fR";
 }
 
-std::string synopsis(const CLI::App& app) {
-  std::string text = ".br\n" + bold("spillway " + app.get_name());
-  for (const OptionInfo& option : options_of(app)) {
+std::string synopsis(const CommandLine& app) {
+  std::string text = fmt::format(".br\n{}", bold("spillway " + app.name()));
+  for (const OptionInfo& option : app.options()) {
     if (option.positional) {
-      text += " " + italic(option.names.front()) + (option.many ? "..." : "");
+      text += fmt::format(" {}{}", italic(option.names.front()), option.many ? "..." : "");
     } else if (option.required) {
-      text += " " + bold(option.names.front()) + " " + italic(option.value_name);
+      text += fmt::format(" {} {}", bold(option.names.front()), italic(option.value_name));
     }
   }
   return text + " [" + italic("options") + "]\n";
@@ -58,42 +57,43 @@ std::string entry(const OptionInfo& option) {
     if (&name != &option.names.front()) text += ", ";
     text += option.positional ? italic(name) : bold(name);
   }
-  if (!option.positional && !option.value_name.empty()) text += " " + italic(option.value_name);
+  if (!option.positional && !option.value_name.empty())
+    text += fmt::format(" {}", italic(option.value_name));
   if (option.many) text += "...";
-  text += "\n" + roff(option.description);
+  text += fmt::format("\n{}", roff(option.description));
   if (option.positional && !option.words.empty()) {
     text += ": ";
     for (const std::string& word : option.words) {
       text += (&word == &option.words.front() ? "" : ", ") + roff(word);
     }
   }
-  if (!option.default_value.empty()) text += " [" + roff(option.default_value) + "]";
+  if (!option.default_value.empty()) text += fmt::format(" [{}]", roff(option.default_value));
   return text + ".\n";
 }
 
 /// The examples below a subcommand's help: a heading, indented lines, and closing remarks.
 std::string examples(const std::string& footer) {
-  return footer.empty() ? "" : ".PP\n.nf\n" + roff(footer) + "\n.fi\n";
+  return footer.empty() ? "" : fmt::format(".PP\n.nf\n{}\n.fi\n", roff(footer));
 }
 
-std::string manual(const CLI::App& root) {
+std::string manual(const CommandLine& root) {
   std::string text = ".TH SPILLWAY 1 \"\" \"spillway " SPILLWAY_VERSION
                      "\" \"User Commands\"\n"
                      ".ad l\n"
                      ".SH NAME\nspillway \\- exact, parallel Delaunay triangulation of points\n"
                      ".SH SYNOPSIS\n" +
                      bold("spillway") + " " + italic("subcommand") + " ...\n";
-  for (const CLI::App* app : subcommands_of(root)) text += synopsis(*app);
-  text += ".SH DESCRIPTION\n" + roff(root.get_description()) + "\n" +
+  for (const CommandLine* app : root.subcommands()) text += synopsis(*app);
+  text += ".SH DESCRIPTION\n" + roff(root.description()) + "\n" +
           ".PP\nData goes to standard output, everything else to standard error. Where a file is "
           "asked for,\n" +
           bold("-") +
           " is standard input or output. An output file appears under "
           "its name only when it is\ncomplete, and replaces one that was there.\n";
-  for (const CLI::App* app : subcommands_of(root)) {
-    text += fmt::format(".SH {}\n{}.\n", app->get_name(), roff(app->get_description()));
-    for (const OptionInfo& option : options_of(*app)) text += entry(option);
-    text += examples(app->get_footer());
+  for (const CommandLine* app : root.subcommands()) {
+    text += fmt::format(".SH {}\n{}.\n", app->name(), roff(app->description()));
+    for (const OptionInfo& option : app->options()) text += entry(option);
+    text += examples(app->footer());
   }
   return text +
          ".SH EXIT STATUS\n"
@@ -105,17 +105,17 @@ std::string manual(const CLI::App& root) {
          ".TP\n141\nThe reader of standard output went away.\n";
 }
 
-int run(const CLI::App& root) {
+int run(const CommandLine& root) {
   write_text("-", manual(root));
   return kExitDone;
 }
 
 }  // namespace
 
-Subcommand add_manual(CLI::App& root) {
-  CLI::App* app = root.add_subcommand("manual", "Print the man page");
-  app->footer("Example:\n  spillway manual | man -l -");
-  return {app, [&root] { return run(root); }};
+Subcommand add_manual(CommandLine& root) {
+  CommandLine& app = root.add_subcommand("manual", "Print the man page");
+  app.set_footer("Example:\n  spillway manual | man -l -");
+  return {&app, [&root] { return run(root); }};
 }
 
 }  // namespace spillway::detail

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -195,7 +194,7 @@ int run(const RenderCommandOptions& options) {
                            picture->columns(), picture->rows(), use.scene().description(),
                            statistics.seconds));
   if (options.stats_path.empty()) return kExitDone;
-  nlohmann::ordered_json json = to_json(statistics);
+  Json json = to_json(statistics);
   json["picture"] = {{"columns", picture->columns()}, {"rows", picture->rows()}};
   write_text(options.stats_path, json_text(json, 2) + "\n");
   return kExitDone;
@@ -203,46 +202,45 @@ int run(const RenderCommandOptions& options) {
 
 }  // namespace
 
-Subcommand add_render(CLI::App& root) {
+Subcommand add_render(CommandLine& root) {
   const auto options = std::make_shared<RenderCommandOptions>();
   options->tetrahedra = true;
-  CLI::App* app = root.add_subcommand("render", "Draw a picture: a relief, a hull or a slice");
-  app->footer(kExamples);
-  app->add_option("-o,--output", options->output, "PNG file; - is standard output")
-      ->required()
-      ->type_name("FILE");
-  add_choice(*app, "--dim", options->dimension, {"2", "3"},
+  CommandLine& app = root.add_subcommand("render", "Draw a picture: a relief, a hull or a slice");
+  app.set_footer(kExamples);
+  app.add_option("-o,--output", options->output, "PNG file; - is standard output")
+      .required()
+      .value_name("FILE");
+  add_choice(app, "--dim", options->dimension, {"2", "3"},
              "How points are triangulated: a terrain, or tetrahedra");
   const std::string group = "Picture";
-  take_whole_number(app->add_option("--size", options->size, "Pixels of the longer side"),
+  take_whole_number(app.add_option("--size", options->size, "Pixels of the longer side"),
                     kLeastSize, kMostSize)
-      ->type_name("N")
-      ->capture_default_str()
-      ->group(group);
-  add_number_list(*app, "--zoom", options->zoom, "Show xmin,ymin,xmax,ymax only [everything]")
-      ->type_name("BOX")
-      ->group(group);
-  app->add_flag("--wireframe", options->wireframe, "Draw the edges of triangles")->group(group);
+      .value_name("N")
+      .show_default()
+      .group(group);
+  add_number_list(app, "--zoom", options->zoom, "Show xmin,ymin,xmax,ymax only [everything]")
+      .value_name("BOX")
+      .group(group);
+  app.add_flag("--wireframe", options->wireframe, "Draw the edges of triangles").group(group);
   take_positive_number(
-      app->add_option("--exaggerate", options->exaggeration,
-                      "Shade a terrain as if it were Z times as high [such that slopes are seen]"))
-      ->type_name("Z")
-      ->group(group);
-  add_number_list(*app, "--view", options->view,
+      app.add_option("--exaggerate", options->exaggeration,
+                     "Shade a terrain as if it were Z times as high [such that slopes are seen]"))
+      .value_name("Z")
+      .group(group);
+  add_number_list(app, "--view", options->view,
                   "Look at tetrahedra from AZIMUTH,ELEVATION in degrees [30,25]")
-      ->type_name("A,E")
-      ->group(group);
-  take_parsed(app->add_option("--slice", options->slice,
-                              "Cut tetrahedra by a plane: x=VALUE, y=... or z=..."),
+      .value_name("A,E")
+      .group(group);
+  take_parsed(app.add_option("--slice", options->slice,
+                             "Cut tetrahedra by a plane: x=VALUE, y=... or z=..."),
               parse_slice)
-      ->type_name("PLANE")
-      ->group(group);
-  app->add_flag("--transparent", options->transparent,
-                "Leave the background transparent, not white")
-      ->group(group);
-  add_terrain_options(*app, *options);
-  add_report_options(*app, options->report);
-  return {app, [options] { return run(*options); }};
+      .value_name("PLANE")
+      .group(group);
+  app.add_flag("--transparent", options->transparent, "Leave the background transparent, not white")
+      .group(group);
+  add_terrain_options(app, *options);
+  add_report_options(app, options->report);
+  return {&app, [options] { return run(*options); }};
 }
 
 }  // namespace spillway::detail

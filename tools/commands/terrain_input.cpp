@@ -304,9 +304,9 @@ class TerrainFeed {
 
 }  // namespace
 
-void add_terrain_options(CLI::App& app, TerrainOptions& options) {
+void add_terrain_options(CommandLine& app, TerrainOptions& options) {
   app.add_option("IN", options.inputs, "Point files, as `triangulate` takes them, or one mesh")
-      ->required();
+      .required();
   add_triangulation_options(app, options);
   add_choice(app, "--mesh-format", options.mesh_format, mesh_format_names(),
              "Format of a mesh, where neither content nor name tell");

@@ -31,7 +31,7 @@ struct TerrainOptions : TriangulationOptions {
 };
 
 /// IN, --mesh-format and what triangulate has.
-void add_terrain_options(CLI::App& app, TerrainOptions& options);
+void add_terrain_options(CommandLine& app, TerrainOptions& options);
 
 /// What is known of a terrain before its triangles come.
 struct TerrainHeader {

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -61,13 +60,13 @@ struct TriangulateOptions : TriangulationOptions {
   [[nodiscard]] bool simulates() const { return !core_list.empty(); }
 };
 
-void add_options(CLI::App& app, TriangulateOptions& options) {
+void add_options(CommandLine& app, TriangulateOptions& options) {
   app.add_option("IN", options.inputs,
                  "Point files, folders, 'patterns', @lists: one triangulation; - is a pipe")
-      ->required();
+      .required();
   app.add_option("-o,--output", options.output, "Mesh file; - is standard output, as spm")
-      ->required()
-      ->type_name("FILE");
+      .required()
+      .value_name("FILE");
   add_choice(app, "--dim", options.dimension, {"2", "3"},
              "2: triangles over x, y, with z carried along; 3: tetrahedra");
   app.add_flag("--id", options.input_index, "Write each vertex's index in the input");
@@ -81,7 +80,7 @@ void add_options(CLI::App& app, TriangulateOptions& options) {
                   "--simulate-cores", options.core_list,
                   "Run on one thread and print what so many cores would take, as 1,2,4,...,1024"),
               parse_core_list)
-      ->type_name("LIST");
+      .value_name("LIST");
   add_report_options(app, options.report);
 }
 
@@ -258,12 +257,12 @@ int run(const TriangulateOptions& options) {
 
 }  // namespace
 
-Subcommand add_triangulate(CLI::App& root) {
+Subcommand add_triangulate(CommandLine& root) {
   const auto options = std::make_shared<TriangulateOptions>();
-  CLI::App* app = root.add_subcommand("triangulate", "Make a Delaunay mesh of points");
-  app->footer(kExamples);
-  add_options(*app, *options);
-  return {app, [options] { return run(*options); }, true};
+  CommandLine& app = root.add_subcommand("triangulate", "Make a Delaunay mesh of points");
+  app.set_footer(kExamples);
+  add_options(app, *options);
+  return {&app, [options] { return run(*options); }, true};
 }
 
 }  // namespace spillway::detail

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
@@ -20,12 +19,6 @@
 
 namespace spillway::detail {
 namespace {
-
-/// A check that help does not speak of; `wrong` says what is wrong with a text, nothing if it is
-/// right, and may write it in another way.
-CLI::Option* check_by(CLI::Option* option, std::function<std::string(std::string&)> wrong) {
-  return option->transform(CLI::Validator(std::move(wrong), ""));
-}
 
 std::vector<double> parse_numbers(const std::string& text) {
   std::vector<double> numbers;
@@ -45,35 +38,19 @@ std::vector<double> parse_numbers(const std::string& text) {
 
 }  // namespace
 
-HelpFormatter::HelpFormatter() { column_width(34); }
-
-std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
-  const bool many = takes_many(*option);
-  if (option->get_positional()) return many ? "..." : "";
-  if (option->get_type_size() == 0) return "";
-  return " " + option->get_type_name() + (many ? "..." : "");
-}
-
-std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
-  std::string text = option->get_description();
-  if (option->get_required() && !option->get_positional()) text += " [required]";
-  if (!option->get_default_str().empty()) text += " [" + option->get_default_str() + "]";
-  return text;
-}
-
-void add_memory_options(CLI::App& app, MemoryOptions& options) {
+void add_memory_options(CommandLine& app, MemoryOptions& options) {
   take_parsed(
       app.add_option("--memory", options.limit,
                      "Memory to keep to, as 512M or 2G [a quarter of the machine's, at most 2G]"),
       parse_memory_size)
-      ->type_name("SIZE");
+      .value_name("SIZE");
   app.add_option("--tmpdir", options.scratch_parent,
                  "Folder for what does not fit into memory [$TMPDIR, else /tmp]")
-      ->type_name("DIR");
+      .value_name("DIR");
   take_parsed(app.add_option("--max-tmp", options.scratch_cap,
                              "Most of the disk to use for that [no limit]"),
               parse_memory_size)
-      ->type_name("SIZE");
+      .value_name("SIZE");
 }
 
 std::uint64_t memory_limit(const MemoryOptions& options) {
@@ -93,17 +70,16 @@ std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options)
   return make_scratch_folder(parent, cap);
 }
 
-std::vector<std::string_view> given_options(const CLI::App& app,
+std::vector<std::string_view> given_options(const CommandLine& app,
                                             std::span<const std::string_view> options) {
   std::vector<std::string_view> given;
   for (const std::string_view name : options) {
-    const CLI::Option* const option = app.get_option_no_throw(std::string(name));
-    if (option != nullptr && option->count() > 0) given.push_back(name);
+    if (app.is_given(name)) given.push_back(name);
   }
   return given;
 }
 
-void refuse_given(const CLI::App& app, std::span<const std::string_view> options,
+void refuse_given(const CommandLine& app, std::span<const std::string_view> options,
                   std::string_view where) {
   std::vector<std::string_view> given = given_options(app, options);
   if (given.empty()) return;
@@ -114,30 +90,20 @@ void refuse_given(const CLI::App& app, std::span<const std::string_view> options
                                where, given.empty() ? "it" : "them"));
 }
 
-CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,
-                        const std::vector<std::string>& words, const std::string& description) {
-  CLI::Option* option = app.add_option(name, value, description);
-  option->check(CLI::IsMember(words).description(""));
-  option->type_name(fmt::format("{}", fmt::join(words, "|")));
-  if (!value.empty()) option->default_str(value);
+Option add_choice(CommandLine& app, const std::string& name, std::string& value,
+                  const std::vector<std::string>& words, const std::string& description) {
+  Option option = app.add_option(name, value, description);
+  option.one_of(words).value_name(fmt::format("{}", fmt::join(words, "|")));
+  if (!value.empty()) option.show_default(value);
   return option;
 }
 
-CLI::Option* take_one_list(CLI::Option* option) {
-  return option->delimiter(',')->allow_extra_args(false);
-}
-
-bool takes_many(const CLI::Option& option) {
-  return option.get_expected_max() == CLI::detail::expected_max_vector_size &&
-         option.get_allow_extra_args();
-}
-
-void add_report_options(CLI::App& app, ReportOptions& options) {
+void add_report_options(CommandLine& app, ReportOptions& options) {
   add_choice(app, "--progress", options.progress, {"auto", "plain", "json", "none"},
              "Progress on standard error");
-  CLI::Option* quiet =
+  const Option quiet =
       app.add_flag("-q,--quiet", options.quiet, "Say nothing on standard error but errors");
-  app.add_flag("-v,--verbose", options.verbose, "Say more")->excludes(quiet);
+  app.add_flag("-v,--verbose", options.verbose, "Say more").excludes(quiet);
 }
 
 Progress make_progress(const ReportOptions& options, bool reads_pipe) {
@@ -164,8 +130,8 @@ std::optional<double> parse_number(std::string_view text) {
   return whole && std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
-CLI::Option* take_whole_number(CLI::Option* option, std::uint64_t least, std::uint64_t most) {
-  return check_by(option, [least, most](std::string& text) -> std::string {
+Option take_whole_number(Option option, std::uint64_t least, std::uint64_t most) {
+  return option.check([least, most](std::string& text) -> std::string {
     std::uint64_t number = 0;
     const char* const last = text.data() + text.size();
     const auto [end, fault] = std::from_chars(text.data(), last, number);
@@ -180,29 +146,29 @@ CLI::Option* take_whole_number(CLI::Option* option, std::uint64_t least, std::ui
   });
 }
 
-CLI::Option* take_number(CLI::Option* option) {
-  return check_by(option, [](std::string& text) -> std::string {
+Option take_number(Option option) {
+  return option.check([](std::string& text) -> std::string {
     return parse_number(text) ? "" : fmt::format("\"{}\" is no number", text);
   });
 }
 
-CLI::Option* take_positive_number(CLI::Option* option) {
-  return check_by(option, [](std::string& text) -> std::string {
+Option take_positive_number(Option option) {
+  return option.check([](std::string& text) -> std::string {
     return parse_number(text).value_or(0) > 0 ? ""
                                               : fmt::format("\"{}\" is no number above 0", text);
   });
 }
 
-CLI::Option* take_number_between(CLI::Option* option, double least, double most) {
-  return check_by(option, [least, most](std::string& text) -> std::string {
+Option take_number_between(Option option, double least, double most) {
+  return option.check([least, most](std::string& text) -> std::string {
     const auto number = parse_number(text);
     if (number && *number >= least && *number <= most) return "";
     return fmt::format("\"{}\" is no number from {} to {}", text, least, most);
   });
 }
 
-CLI::Option* take_parsed(CLI::Option* option, std::function<void(const std::string& text)> parse) {
-  return check_by(option, [parse = std::move(parse)](std::string& text) -> std::string {
+Option take_parsed(Option option, std::function<void(const std::string& text)> parse) {
+  return option.check([parse = std::move(parse)](std::string& text) -> std::string {
     try {
       parse(text);
       return "";
@@ -212,8 +178,8 @@ CLI::Option* take_parsed(CLI::Option* option, std::function<void(const std::stri
   });
 }
 
-CLI::Option* add_number_list(CLI::App& app, const std::string& name, std::vector<double>& values,
-                             const std::string& description, bool positive) {
+Option add_number_list(CommandLine& app, const std::string& name, std::vector<double>& values,
+                       const std::string& description, bool positive) {
   const auto keep = [&values](const std::vector<std::string>& texts) {
     values.clear();
     for (const std::string& text : texts) {
@@ -221,15 +187,14 @@ CLI::Option* add_number_list(CLI::App& app, const std::string& name, std::vector
       values.insert(values.end(), numbers.begin(), numbers.end());
     }
   };
-  CLI::Option* const option =
-      app.add_option_function<std::vector<std::string>>(name, keep, description);
-  return take_parsed(option->allow_extra_args(false), [positive](const std::string& text) {
-    const std::vector<double> numbers = parse_numbers(text);
-    const auto wrong = std::ranges::find_if(numbers, [](double number) { return number <= 0; });
-    if (positive && wrong != numbers.end()) {
-      throw UsageError(fmt::format("\"{}\" is no number above 0", *wrong));
-    }
-  });
+  return take_parsed(
+      app.add_option(name, keep, description).one_argument(), [positive](const std::string& text) {
+        const std::vector<double> numbers = parse_numbers(text);
+        const auto wrong = std::ranges::find_if(numbers, [](double number) { return number <= 0; });
+        if (positive && wrong != numbers.end()) {
+          throw UsageError(fmt::format("\"{}\" is no number above 0", *wrong));
+        }
+      });
 }
 
 std::uint64_t parse_point_count(std::string_view text) {

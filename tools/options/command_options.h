@@ -1,8 +1,6 @@
 #pragma once
-// What several subcommands' options have in common, and how help shows them.
+// What several subcommands' options have in common.
 
-#include <CLI/App.hpp>
-#include <CLI/Formatter.hpp>
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include "formats/disk/scratch_folder.h"
+#include "tools/options/command_line.h"
 #include "tools/report/progress.h"
 
 namespace spillway::detail {
@@ -22,21 +21,13 @@ namespace spillway::detail {
 /// Most that --threads takes.
 inline constexpr unsigned kMostThreads = 4096;
 
-/// Help with `--option VALUE  description [default]`.
-class HelpFormatter : public CLI::Formatter {
- public:
-  HelpFormatter();
-  std::string make_option_opts(const CLI::Option* option) const override;
-  std::string make_option_desc(const CLI::Option* option) const override;
-};
-
 /// --progress, -q, -v.
 struct ReportOptions {
   std::string progress = "auto";
   bool quiet = false;
   bool verbose = false;
 };
-void add_report_options(CLI::App& app, ReportOptions& options);
+void add_report_options(CommandLine& app, ReportOptions& options);
 
 /// The reporter that the options ask for. "auto" is a rewritten line on a terminal, else plain
 /// lines; of several ranks the first one reports; but nothing, messages apart, where the input is a
@@ -49,7 +40,7 @@ struct MemoryOptions {
   std::string scratch_parent;
   std::string scratch_cap;
 };
-void add_memory_options(CLI::App& app, MemoryOptions& options);
+void add_memory_options(CommandLine& app, MemoryOptions& options);
 
 /// What --memory says, or the default. Throws UsageError.
 std::uint64_t memory_limit(const MemoryOptions& options);
@@ -59,29 +50,22 @@ std::uint64_t memory_limit(const MemoryOptions& options);
 std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options);
 
 /// Those of these options that were given to the subcommand. What it does not have is never given.
-std::vector<std::string_view> given_options(const CLI::App& app,
+std::vector<std::string_view> given_options(const CommandLine& app,
                                             std::span<const std::string_view> options);
 
 /// Throws UsageError if any of these options was given to the subcommand: "--id and --every have no
 /// effect WHERE: leave them away".
-void refuse_given(const CLI::App& app, std::span<const std::string_view> options,
+void refuse_given(const CommandLine& app, std::span<const std::string_view> options,
                   std::string_view where);
-inline void refuse_given(const CLI::App& app, std::initializer_list<std::string_view> options,
+inline void refuse_given(const CommandLine& app, std::initializer_list<std::string_view> options,
                          std::string_view where) {
   refuse_given(app, std::span(options.begin(), options.size()), where);
 }
 
 /// An option that takes one of some words. The words become its value name, separated by `|`, which
 /// is also where completion and manual find them.
-CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,
-                        const std::vector<std::string>& words, const std::string& description);
-
-/// Makes an option of several values take one argument, in which commas separate them: what follows
-/// it is not its own.
-CLI::Option* take_one_list(CLI::Option* option);
-
-/// Whether an option, or a positional, takes any number of arguments.
-bool takes_many(const CLI::Option& option);
+Option add_choice(CommandLine& app, const std::string& name, std::string& value,
+                  const std::vector<std::string>& words, const std::string& description);
 
 /// A finite decimal number, like 12, -0.5 or 1e6; nothing for any other text, hexadecimal numbers
 /// and such with blanks included.
@@ -89,19 +73,19 @@ std::optional<double> parse_number(std::string_view text);
 
 /// Make an option refuse what is no such number: a whole one is of digits only, others are as
 /// parse_number() reads them. They return the option.
-CLI::Option* take_whole_number(CLI::Option* option, std::uint64_t least = 0,
-                               std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
-CLI::Option* take_number(CLI::Option* option);
-CLI::Option* take_positive_number(CLI::Option* option);
-CLI::Option* take_number_between(CLI::Option* option, double least, double most);
+Option take_whole_number(Option option, std::uint64_t least = 0,
+                         std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+Option take_number(Option option);
+Option take_positive_number(Option option);
+Option take_number_between(Option option, double least, double most);
 
 /// Makes an option refuse what `parse` throws a UsageError for, which says what is wrong with the
 /// text but does not name the option. Returns the option.
-CLI::Option* take_parsed(CLI::Option* option, std::function<void(const std::string& text)> parse);
+Option take_parsed(Option option, std::function<void(const std::string& text)> parse);
 
 /// An option of several numbers, separated by commas, above 0 if `positive`.
-CLI::Option* add_number_list(CLI::App& app, const std::string& name, std::vector<double>& values,
-                             const std::string& description, bool positive = false);
+Option add_number_list(CommandLine& app, const std::string& name, std::vector<double>& values,
+                       const std::string& description, bool positive = false);
 
 /// Reads a number of things: digits, or with an exponent (1e6, 2.5e6). Throws UsageError for
 /// anything else, negative and fractional numbers included.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -82,22 +81,22 @@ bool InputOptions::filters() const {
          !returns.empty() || !bounds.empty() || !thin.empty();
 }
 
-void add_input_options(CLI::App& app, InputOptions& options) {
+void add_input_options(CommandLine& app, InputOptions& options) {
   add_choice(app, "--input-format", options.format, point_format_names(),
              "Format of the points, where neither name nor first bytes tell");
   app.add_flag("--force-crs", options.force_crs,
                "Take coordinates as they are, though inputs have different coordinate systems");
   const std::string group = "Filters (of the points that are read)";
   const auto add = [&](const char* name, std::string& value, const char* type, const char* what) {
-    return app.add_option(name, value, what)->type_name(type)->group(group);
+    return app.add_option(name, value, what).value_name(type).group(group);
   };
   app.add_flag("--keep-withheld", options.keep_withheld,
                "Use points that LAS files flag as withheld, too")
-      ->group(group);
+      .group(group);
   take_whole_number(
       app.add_option("--every", options.every, "Use records 0, N, 2N, ... of each input"), 1)
-      ->type_name("N")
-      ->group(group);
+      .value_name("N")
+      .group(group);
   take_parsed(
       add("--keep-class", options.keep_class, "LIST", "Use points of these classes, as 2,3-5"),
       parse_classes);
@@ -116,8 +115,8 @@ void add_input_options(CLI::App& app, InputOptions& options) {
   take_positive_number(
       app.add_option("--resolution", options.resolution,
                      "Of COPC files, read the levels needed for points so far apart; others whole"))
-      ->type_name("R")
-      ->group(group);
+      .value_name("R")
+      .group(group);
 }
 
 std::bitset<256> parse_classes(std::string_view text) {

@@ -1,7 +1,6 @@
 #pragma once
 // What all subcommands that read points have in common: which inputs, and which of their points.
 
-#include <CLI/App.hpp>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "src/distributed/ranks.h"
 #include "stream/source/point_filter.h"
 #include "stream/source/point_source.h"
+#include "tools/options/command_line.h"
 #include "tools/report/progress.h"
 
 namespace spillway::detail {
@@ -41,7 +41,7 @@ inline constexpr std::array<std::string_view, 10> kInputOptionNames = {
     "--drop-class",   "--returns",   "--bounds",        "--thin",  "--resolution"};
 
 /// --input-format, --force-crs, and the group "Filters".
-void add_input_options(CLI::App& app, InputOptions& options);
+void add_input_options(CommandLine& app, InputOptions& options);
 
 /// What a source is made for.
 struct SourceUse {

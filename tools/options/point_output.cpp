@@ -10,7 +10,7 @@
 
 namespace spillway::detail {
 
-void add_las_version(CLI::App& app, PointOutput& output) {
+void add_las_version(CommandLine& app, PointOutput& output) {
   add_choice(app, "--las-version", output.las_version, {"1.2", "1.4"},
              "Version of LAS to write, with point format 0 or 6");
 }

@@ -1,8 +1,9 @@
 #pragma once
 // What `generate` and `convert` have in common: where points go, and as what.
 
-#include <CLI/App.hpp>
 #include <string>
+
+#include "tools/options/command_line.h"
 
 namespace spillway::detail {
 
@@ -17,7 +18,7 @@ struct PointOutput {
 };
 
 /// Adds --las-version.
-void add_las_version(CLI::App& app, PointOutput& output);
+void add_las_version(CommandLine& app, PointOutput& output);
 
 /// Throws UsageError if a version of LAS was asked for, but the output is none.
 void check_las_version(const PointOutput& output, bool is_las);

@@ -4,7 +4,6 @@
 #include <malloc.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "src/delaunay/base_case.h"
@@ -23,38 +22,38 @@ DivisionScheme division_by_name(const std::string& name) {
 
 }  // namespace
 
-void add_triangulation_options(CLI::App& app, TriangulationOptions& options) {
+void add_triangulation_options(CommandLine& app, TriangulationOptions& options) {
   options.app = &app;
   add_choice(app, "--duplicates", options.duplicates, height_choice_names(),
              "Which z a vertex of several points of equal x, y gets");
   take_positive_number(app.add_option("--max-edge", options.max_edge,
                                       "Leave out simplices with an edge longer than L"))
-      ->type_name("L");
+      .value_name("L");
   add_input_options(app, options.input);
   take_whole_number(
       app.add_option("--threads", options.threads, "Threads to use; 0: all there are"), 0,
       kMostThreads)
-      ->type_name("N")
-      ->capture_default_str();
+      .value_name("N")
+      .show_default();
   add_memory_options(app, options.memory);
   app.add_option("--stats", options.stats_path, "Write figures and the task tree of the run")
-      ->type_name("FILE");
+      .value_name("FILE");
   take_whole_number(app.add_option("--base-case", options.base_case_size,
                                    "Most points of one sequential base case (a leaf); 0: chosen by "
                                    "number and memory"))
-      ->type_name("N")
-      ->capture_default_str();
+      .value_name("N")
+      .show_default();
   take_whole_number(
       app.add_option("--tile", options.tile_capacity,
                      "Most points of a tile that is loaded at a time; 0: chosen by the memory"))
-      ->type_name("N")
-      ->capture_default_str();
+      .value_name("N")
+      .show_default();
   add_choice(app, "--division", options.division, {"longest", "cycling", "constant"},
              "Which axis the division of points cuts");
   take_whole_number(
       app.add_option("--children", options.children, "Parts that are merged at a time"), 2, 1024)
-      ->type_name("K")
-      ->capture_default_str();
+      .value_name("K")
+      .show_default();
   add_choice(app, "--kernel", options.kernel, {"spillway", "cgal"},
              "What triangulates base cases; both give the same mesh");
 }

@@ -1,7 +1,6 @@
 #pragma once
 // What subcommands that triangulate points have in common.
 
-#include <CLI/App.hpp>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "stream/pipeline.h"
+#include "tools/options/command_line.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 
@@ -17,7 +17,7 @@ namespace spillway::detail {
 
 /// As on the command line.
 struct TriangulationOptions {
-  const CLI::App* app = nullptr;  ///< the subcommand
+  const CommandLine* app = nullptr;  ///< the subcommand
   std::vector<std::string> inputs;
   InputOptions input;
   std::string duplicates = "first";
@@ -35,7 +35,7 @@ struct TriangulationOptions {
 
 /// All but IN and those of ReportOptions: --duplicates, --max-edge, the input's, --threads, the
 /// memory's, --stats, and how the work is divided.
-void add_triangulation_options(CLI::App& app, TriangulationOptions& options);
+void add_triangulation_options(CommandLine& app, TriangulationOptions& options);
 
 /// Of these the names of those that have no effect where a mesh is read, beside those of
 /// add_input_options().

@@ -4,9 +4,8 @@
 
 namespace spillway::detail {
 
-std::string json_text(const nlohmann::ordered_json& json, int indent) {
-  const std::string text =
-      json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+std::string json_text(const Json& json, int indent) {
+  const std::string text = json_to_text(json, indent);
   // Of control characters JSON escapes those of ASCII itself; the others are escaped as it does.
   return indent < 0 ? printable(text) : text;
 }

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include "formats/bytes/json.h"
 
 namespace spillway::detail {
 
-/// JSON as text, on one line or indented. Bytes that are no UTF-8 (of a file's name, say) become
-/// U+FFFD, since JSON cannot hold them. A line has no control characters.
-std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
+/// As json_to_text(), but a line has no control characters.
+std::string json_text(const Json& json, int indent = -1);
 
 }  // namespace spillway::detail

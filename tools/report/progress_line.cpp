@@ -51,9 +51,9 @@ std::string progress_line(const PhaseState& state) {
 }
 
 std::string progress_json(const PhaseState& state) {
-  nlohmann::ordered_json json;
+  Json json;
   const auto or_null = [](const std::optional<double>& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+    return value ? Json(*value) : Json(nullptr);
   };
   json["phase"] = state.phase;
   json["done"] = state.done;

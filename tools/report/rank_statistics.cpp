@@ -10,7 +10,6 @@
 namespace spillway::detail {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using distributed::Ranks;
 using distributed::Reduction;
 
@@ -105,7 +104,7 @@ void share_statistics(RunStatistics& statistics, const RankMesh& mesh, const Ran
   const std::string own = json_text(rank_json(mesh, ranks), -1);
   Json all = Json::array();
   for (const auto& bytes : ranks.gather(as_bytes_of(own), 0)) {
-    all.push_back(Json::parse(as_text(bytes)));
+    all.push_back(parse_json(as_text(bytes)));
   }
   statistics.ranks = {{"count", ranks.size()},
                       {"point_bytes_sent_per_point", ratio(sent[0], mesh.totals.points)},

@@ -7,8 +7,6 @@
 namespace spillway::detail {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json to_json(const Task& task) {
   Json json = {{"kind", task.kind},
                {"points", task.points},

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "formats/bytes/json.h"
 #include "stream/pipeline.h"
 #include "stream/source/point_filter.h"
 #include "tools/report/core_simulation.h"
@@ -27,13 +27,13 @@ struct RunStatistics {
   double seconds = 0;        ///< of the whole run
   double write_seconds = 0;  ///< completing the output, after the last simplex
   std::vector<SimulatedRun> simulated;
-  std::optional<nlohmann::ordered_json> ranks{};  ///< of a run over ranks: what each has done
+  std::optional<Json> ranks{};  ///< of a run over ranks: what each has done
 };
 
-nlohmann::ordered_json to_json(const RunStatistics& statistics);
+Json to_json(const RunStatistics& statistics);
 
 /// "filters" of --stats and of `info`.
-nlohmann::ordered_json to_json(const PointCounts& counts);
+Json to_json(const PointCounts& counts);
 
 /// The most memory this process has held so far, in bytes.
 std::uint64_t peak_rss_bytes();

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
 #include "formats/bytes/block_output.h"
 #include "formats/bytes/bytes.h"
+#include "formats/bytes/json.h"
 #include "formats/meshes/common/checked_mesh_writer.h"
 #include "formats/meshes/common/local_origin.h"
 #include "formats/meshes/glb/glb_format.h"
@@ -18,7 +18,6 @@
 namespace spillway::detail {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Position = std::array<float, 3>;
 
 constexpr std::uint64_t kTriangleBytes = 3 * sizeof(std::uint32_t);
@@ -117,27 +116,26 @@ class GlbWriter : public CheckedMeshWriter {
   [[nodiscard]] std::string json_text() const {
     Json json;
     json["asset"] = {{"version", "2.0"}, {"generator", glb::kGenerator}};
-    if (!header().crs.empty()) json["asset"]["extras"] = {{"crs", header().crs}};
+    if (!header().crs.empty()) json["asset"]["extras"] = Json{{"crs", header().crs}};
     json["scene"] = 0;
-    json["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
+    json["scenes"] = Json::array({Json{{"nodes", Json::array({0})}}});
     Json turned = {{"name", "z up"},
-                   {"matrix", {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}},
+                   {"matrix", Json::array({1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1})},
                    {"children", Json::array({1})}};
     Json moved = {{"name", "tin"}, {"translation", origin_}};
     if (header().vertices > 0) moved["mesh"] = 0;
     json["nodes"] = Json::array({turned, moved});
     if (header().vertices > 0) add_mesh(json);
-    // Of text that is no UTF-8, what is wrong is replaced: JSON has no other.
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return json_to_text(json);
   }
 
   void add_mesh(Json& json) const {
     const bool has_triangles = header().simplices > 0;
-    Json primitive = {{"attributes", {{"POSITION", 0}}},
+    Json primitive = {{"attributes", Json{{"POSITION", 0}}},
                       {"mode", has_triangles ? glb::kTriangles : glb::kPoints}};
     if (has_triangles) primitive["indices"] = 1;
-    json["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
-    json["buffers"] = Json::array({{{"byteLength", binary_size()}}});
+    json["meshes"] = Json::array({Json{{"primitives", Json::array({primitive})}}});
+    json["buffers"] = Json::array({Json{{"byteLength", binary_size()}}});
     const Json positions = {{"buffer", 0},
                             {"byteOffset", 0},
                             {"byteLength", positions_size()},

@@ -1,0 +1,299 @@
+#include "tools/options/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <utility>
+
+namespace spillway::detail {
+namespace {
+
+/// Whether an option, or a positional, takes any number of arguments.
+bool takes_many(const CLI::Option& option) {
+  return option.get_expected_max() == CLI::detail::expected_max_vector_size &&
+         option.get_allow_extra_args();
+}
+
+/// Help with `--option VALUE  description [default]`.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() { column_width(34); }
+
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const bool many = takes_many(*option);
+    if (option->get_positional()) return many ? "..." : "";
+    if (option->get_type_size() == 0) return "";
+    return " " + option->get_type_name() + (many ? "..." : "");
+  }
+
+  std::string make_option_desc(const CLI::Option* option) const override {
+    std::string text = option->get_description();
+    if (option->get_required() && !option->get_positional()) text += " [required]";
+    if (!option->get_default_str().empty()) text += " [" + option->get_default_str() + "]";
+    return text;
+  }
+};
+
+std::vector<std::string> split_words(const std::string& type_name) {
+  if (type_name.find('|') == std::string::npos) return {};
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin <= type_name.size();) {
+    const std::size_t end = std::min(type_name.find('|', begin), type_name.size());
+    words.push_back(type_name.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+OptionInfo describe(const CLI::Option& option) {
+  OptionInfo info;
+  info.positional = option.get_positional();
+  if (info.positional) {
+    info.names = {option.get_name(true, false)};
+  } else {
+    for (const std::string& name : option.get_snames()) info.names.push_back("-" + name);
+    for (const std::string& name : option.get_lnames()) info.names.push_back("--" + name);
+  }
+  if (option.get_type_size() != 0) {
+    info.words = split_words(option.get_type_name());
+    info.value_name = info.positional ? info.names.front() : option.get_type_name();
+  }
+  info.description = option.get_description();
+  info.default_value = option.get_default_str();
+  info.required = option.get_required();
+  info.many = takes_many(option);
+  return info;
+}
+
+}  // namespace
+
+Option Option::required() {
+  option_->required();
+  return *this;
+}
+
+Option Option::value_name(const std::string& name) {
+  option_->type_name(name);
+  return *this;
+}
+
+Option Option::group(const std::string& heading) {
+  option_->group(heading);
+  return *this;
+}
+
+Option Option::show_default() {
+  option_->capture_default_str();
+  return *this;
+}
+
+Option Option::show_default(const std::string& text) {
+  option_->default_str(text);
+  return *this;
+}
+
+Option Option::excludes(const Option& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+Option Option::one_of(const std::vector<std::string>& words) {
+  option_->check(CLI::IsMember(words).description(""));
+  return *this;
+}
+
+Option Option::check(std::function<std::string(std::string&)> wrong) {
+  option_->transform(CLI::Validator(std::move(wrong), ""));
+  return *this;
+}
+
+Option Option::each(std::function<void(const std::string&)> tell) {
+  option_->each(tell);
+  return *this;
+}
+
+Option Option::one_argument() {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
+Option Option::once() {
+  option_->expected(1);
+  return *this;
+}
+
+Option Option::commas_separate() {
+  option_->delimiter(',');
+  return *this;
+}
+
+bool OptionInfo::names_file() const {
+  return words.empty() && (value_name == "FILE" || value_name == "IN" || value_name == "MESH");
+}
+
+struct CommandLine::Parts {
+  std::unique_ptr<CLI::App> root;  ///< null for a subcommand
+  CLI::App* app;
+  std::vector<std::unique_ptr<CommandLine>> subcommands;
+};
+
+CommandLine::CommandLine() : parts_(std::make_unique<Parts>()) {
+  parts_->root = std::make_unique<CLI::App>();
+  parts_->app = parts_->root.get();
+  parts_->app->set_help_flag();
+}
+
+CommandLine::CommandLine(const std::string& name, const std::string& description,
+                         const std::string& version)
+    : parts_(std::make_unique<Parts>()) {
+  parts_->root = std::make_unique<CLI::App>(description, name);
+  CLI::App& app = *parts_->root;
+  parts_->app = &app;
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.set_version_flag("-V,--version", version, "Print the version and exit");
+  app.require_subcommand(1);
+}
+
+CommandLine::CommandLine(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+CommandLine::~CommandLine() = default;
+
+CommandLine& CommandLine::add_subcommand(const std::string& name, const std::string& description) {
+  auto parts = std::make_unique<Parts>();
+  parts->app = parts_->app->add_subcommand(name, description);
+  parts_->subcommands.emplace_back(new CommandLine(std::move(parts)));
+  return *parts_->subcommands.back();
+}
+
+void CommandLine::set_footer(const std::string& footer) { parts_->app->footer(footer); }
+
+Option CommandLine::add_flag(const std::string& names, bool& given,
+                             const std::string& description) {
+  return Option(parts_->app->add_flag(names, given, description));
+}
+
+Option CommandLine::add_option(const std::string& names, std::string& value,
+                               const std::string& description) {
+  return Option(parts_->app->add_option(names, value, description));
+}
+
+Option CommandLine::add_option(const std::string& names, double& value,
+                               const std::string& description) {
+  return Option(parts_->app->add_option(names, value, description));
+}
+
+Option CommandLine::add_option(const std::string& names, std::optional<double>& value,
+                               const std::string& description) {
+  return Option(parts_->app->add_option(names, value, description));
+}
+
+Option CommandLine::add_option(const std::string& names, unsigned& value,
+                               const std::string& description) {
+  return Option(parts_->app->add_option(names, value, description));
+}
+
+Option CommandLine::add_option(const std::string& names, std::uint64_t& value,
+                               const std::string& description) {
+  return Option(parts_->app->add_option(names, value, description));
+}
+
+Option CommandLine::add_option(const std::string& names, std::vector<std::string>& values,
+                               const std::string& description) {
+  return Option(parts_->app->add_option(names, values, description));
+}
+
+Option CommandLine::add_option(const std::string& names,
+                               std::function<void(const std::vector<std::string>&)> keep,
+                               const std::string& description) {
+  return Option(
+      parts_->app->add_option_function<std::vector<std::string>>(names, keep, description));
+}
+
+void CommandLine::remove_option(const std::string& name) {
+  CLI::Option* const option = parts_->app->get_option_no_throw(name);
+  if (option == nullptr) throw std::invalid_argument("there is no option " + name);
+  parts_->app->remove_option(option);
+}
+
+const std::string& CommandLine::name() const { return parts_->app->get_name(); }
+
+std::string CommandLine::description() const { return parts_->app->get_description(); }
+
+std::string CommandLine::footer() const { return parts_->app->get_footer(); }
+
+std::vector<OptionInfo> CommandLine::options() const {
+  const CLI::App& app = *parts_->app;
+  std::vector<OptionInfo> options;
+  for (const bool positional : {true, false}) {
+    for (const CLI::Option* option : app.get_options()) {
+      if (option->get_positional() == positional) options.push_back(describe(*option));
+    }
+  }
+  return options;
+}
+
+bool CommandLine::has_option(const std::string& name) const {
+  return parts_->app->get_option_no_throw(name) != nullptr;
+}
+
+bool CommandLine::takes_value(const std::string& name) const {
+  return parts_->app->get_option_no_throw(name)->get_expected_min() > 0;
+}
+
+std::vector<const CommandLine*> CommandLine::subcommands() const {
+  std::vector<const CommandLine*> all;
+  for (const auto& subcommand : parts_->subcommands) all.push_back(subcommand.get());
+  return all;
+}
+
+const CommandLine& CommandLine::subcommand(const std::string& name) const {
+  for (const auto& subcommand : parts_->subcommands) {
+    if (subcommand->name() == name) return *subcommand;
+  }
+  throw std::out_of_range("there is no subcommand " + name);
+}
+
+Request CommandLine::parse(std::vector<std::string> arguments) {
+  std::reverse(arguments.begin(), arguments.end());  // CLI11 wants the last one first
+  try {
+    parts_->app->parse(std::move(arguments));
+    return Request::kRun;
+  } catch (const CLI::CallForHelp&) {
+    return Request::kHelp;
+  } catch (const CLI::CallForVersion&) {
+    return Request::kVersion;
+  } catch (const CLI::ParseError& error) {
+    throw ArgumentError(error.what());
+  }
+}
+
+std::string CommandLine::help() const { return parts_->app->help(); }
+
+std::string CommandLine::version() const { return parts_->app->version(); }
+
+const CommandLine* CommandLine::given_subcommand() const {
+  const auto given = parts_->app->get_subcommands();
+  return given.empty() ? nullptr : &subcommand(given.front()->get_name());
+}
+
+std::vector<std::string> CommandLine::unknown_arguments(bool deep) const {
+  return parts_->app->remaining(deep);
+}
+
+bool CommandLine::is_given(std::string_view name) const {
+  const CLI::Option* const option = parts_->app->get_option_no_throw(std::string(name));
+  return option != nullptr && option->count() > 0;
+}
+
+std::vector<GivenOption> CommandLine::given_options() const {
+  std::vector<GivenOption> given;
+  const CLI::App& app = *parts_->app;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() > 0) given.push_back({option->get_name(), option->results()});
+  }
+  return given;
+}
+
+std::string CommandLine::given_text() const { return parts_->app->config_to_str(); }
+
+}  // namespace spillway::detail
