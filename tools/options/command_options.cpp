@@ -43,6 +43,12 @@ std::vector<double> parse_numbers(const std::string& text) {
   return numbers;
 }
 
+/// Makes an option refuse all but these words, which become its value name.
+CLI::Option* take_choice(CLI::Option* option, const std::vector<std::string>& words) {
+  return option->check(CLI::IsMember(words).description(""))
+      ->type_name(fmt::format("{}", fmt::join(words, "|")));
+}
+
 }  // namespace
 
 HelpFormatter::HelpFormatter() { column_width(34); }
@@ -116,11 +122,14 @@ void refuse_given(const CLI::App& app, std::span<const std::string_view> options
 
 CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,
                         const std::vector<std::string>& words, const std::string& description) {
-  CLI::Option* option = app.add_option(name, value, description);
-  option->check(CLI::IsMember(words).description(""));
-  option->type_name(fmt::format("{}", fmt::join(words, "|")));
+  CLI::Option* option = take_choice(app.add_option(name, value, description), words);
   if (!value.empty()) option->default_str(value);
   return option;
+}
+
+CLI::Option* add_dimension(CLI::App& app, int& dimension, const std::string& description) {
+  return take_choice(app.add_option("--dim", dimension, description), {"2", "3"})
+      ->default_str(std::to_string(dimension));
 }
 
 CLI::Option* take_one_list(CLI::Option* option) {

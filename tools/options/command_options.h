@@ -76,6 +76,9 @@ inline void refuse_given(const CLI::App& app, std::initializer_list<std::string_
 CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value,
                         const std::vector<std::string>& words, const std::string& description);
 
+/// --dim: 2 or 3.
+CLI::Option* add_dimension(CLI::App& app, int& dimension, const std::string& description);
+
 /// Makes an option of several values take one argument, in which commas separate them: what follows
 /// it is not its own.
 CLI::Option* take_one_list(CLI::Option* option);
