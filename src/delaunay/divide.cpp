@@ -46,7 +46,7 @@ class Divider {
 
   /// Divides `part` down to its leaves.
   void divide(Part<D>& part, std::size_t depth, Task& task) const {
-    task.kind = "divide";
+    task.kind = TaskKind::kDivide;
     task.points = part.size();
     if (part.size() <= options_.leaf_size || part.box.lo == part.box.hi) {
       const Stopwatch watch(task.seconds);

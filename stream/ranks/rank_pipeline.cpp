@@ -222,7 +222,7 @@ class RankRun {
     Task steps;
     Settled<D> settled = engine_.merge(borders, *node.tiles, node.outside, {number, 0}, steps);
     for (const Task& step : steps.after) {
-      if (step.kind == "border") figures.retriangulated = step.points;
+      if (step.kind == TaskKind::kBorder) figures.retriangulated = step.points;
     }
     MergedPart part;
     part.part = number;
