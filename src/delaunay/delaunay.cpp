@@ -112,7 +112,7 @@ class Run {
   }
 
   PartSurface triangulate_leaf(const Part<D>& part, const Box<D>& cell, Task& task) {
-    task.kind = "base_case";
+    task.kind = TaskKind::kBaseCase;
     const Stopwatch watch(task.seconds);
     BaseCase<D> leaf = triangulate_base_case<D>(
         {.points = std::span(result_.points).subspan(part.begin, part.size()),
@@ -139,7 +139,7 @@ class Run {
   }
 
   PartSurface triangulate_node(const Part<D>& part, const Box<D>& cell, Task& task) {
-    task.kind = "node";
+    task.kind = TaskKind::kNode;
     task.children.resize(part.children.size());
     std::vector<PartSurface> surfaces(part.children.size());
     TaskGroup group;

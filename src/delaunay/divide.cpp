@@ -48,7 +48,7 @@ class Divider {
   /// Divides `part` down to its leaves.
   void divide(Part<D>& part, std::size_t depth, Task& task) const {
     if (options_.stop.stop_requested()) throw Interrupted();
-    task.kind = "divide";
+    task.kind = TaskKind::kDivide;
     task.points = part.size();
     if (part.size() <= options_.leaf_size || part.box.lo == part.box.hi) {
       const Stopwatch watch(task.seconds);

@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "src/delaunay/acceptance.h"
 #include "src/delaunay/hash.h"
 #include "src/delaunay/schedule.h"
-#include "src/delaunay/simplex_index.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
@@ -45,10 +45,7 @@ class Merge {
  public:
   Merge(Triangulation<D>& triangulation, std::span<BlockMarks> marks, const Part<D>& part,
         std::span<PartSurface> children)
-      : triangulation_(triangulation), marks_(marks), part_(part), children_(children) {
-    for (std::size_t c = 0; c + 1 < part.children.size(); ++c)
-      ends_.push_back(part.children[c].end);
-  }
+      : triangulation_(triangulation), marks_(marks), part_(part), children_(children) {}
 
   /// Step 1: border_ and border_vertices_.
   void find_borders(Task& task);
@@ -71,7 +68,7 @@ class Merge {
 
  private:
   using Vertices = std::array<VertexId, D + 1>;
-  using BorderIndex = SimplexIndex<D + 1>;
+  using Questions = typename Acceptance<D>::template Questions<SimplexId*>;
 
   /// A facet between a simplex of the border that is removed and one outside of the border.
   struct OpenFacet {
@@ -86,19 +83,6 @@ class Merge {
     SimplexId old;
   };
 
-  /// The child that has all finite vertices, or kSpans. Without branches for each vertex.
-  static constexpr std::size_t kSpans = ~std::size_t{0};
-  [[nodiscard]] std::size_t only_child(const Vertices& vertices) const {
-    std::size_t lowest = ends_.size();
-    std::size_t highest = 0;
-    for (const VertexId v : vertices) {
-      std::size_t child = 0;
-      for (const VertexId end : ends_) child += v >= end ? 1 : 0;
-      lowest = std::min(lowest, child);  // of the infinite vertex it is the last one
-      highest = std::max(highest, v == kInfiniteVertex ? 0 : child);
-    }
-    return lowest == highest ? lowest : kSpans;
-  }
   SimplexBlock<D>& new_block() { return triangulation_.blocks[part_.block]; }
   [[nodiscard]] bool created(SimplexId target) const { return target.block == part_.block; }
   [[nodiscard]] std::size_t flat(SimplexId id) const {
@@ -110,7 +94,7 @@ class Merge {
                                                          const Part<D>& child);
   template <typename Body>
   void for_mesh_simplices(std::size_t begin, std::size_t end, const Body& body) const;
-  std::uint32_t accept_grain(std::size_t begin, std::size_t end, const BorderIndex& index);
+  std::uint32_t accept_grain(std::size_t begin, std::size_t end, Questions questions);
   [[nodiscard]] std::vector<OpenFacet> open_facets();
   void link_simplex(SimplexId in_border_mesh, SimplexId created, const ConcurrentIndex& facet_index,
                     const std::vector<OpenFacet>& facets, std::vector<Link>& links);
@@ -121,7 +105,6 @@ class Merge {
   std::span<BlockMarks> marks_;
   const Part<D>& part_;
   std::span<PartSurface> children_;
-  std::vector<VertexId> ends_;  ///< of all children but the last
 
   std::vector<SimplexId> border_;          ///< of all children
   BlockArray<Vertices> border_corners_;    ///< its simplices' vertices
@@ -138,7 +121,7 @@ class Merge {
 
 template <int D>
 void Merge<D>::find_borders(Task& task) {
-  task.kind = "border";
+  task.kind = TaskKind::kBorder;
   const Stopwatch watch(task.seconds);
   const std::size_t count = children_.size();
   std::vector<std::vector<SimplexId>> borders(count);
@@ -234,41 +217,27 @@ void Merge<D>::for_mesh_simplices(std::size_t begin, std::size_t end, const Body
 
 /// Sets the targets of mesh simplices. New ones are numbered from 0 on; returns their number.
 template <int D>
-std::uint32_t Merge<D>::accept_grain(std::size_t begin, std::size_t end, const BorderIndex& index) {
-  std::array<Vertices, BorderIndex::kBatch> candidates;
-  std::array<SimplexId*, BorderIndex::kBatch> targets;
-  std::size_t count = 0;
-  const auto search = [&] {
-    const auto found = index.find(std::span(candidates).first(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      if (found[i] == BorderIndex::kNotFound) continue;
-      *targets[i] = border_[found[i]];
-      survived_[found[i]] = 1;
-    }
-    count = 0;
+std::uint32_t Merge<D>::accept_grain(std::size_t begin, std::size_t end, Questions questions) {
+  const auto found = [this](const Vertices&, SimplexId* target, std::uint32_t place) {
+    *target = border_[place];
+    survived_[place] = 1;
   };
   std::uint32_t created = 0;
   for_mesh_simplices(begin, end, [&](std::size_t number, SimplexId id) {
-    Vertices& candidate = border_mesh_.blocks[id.block].simplices[id.index].vertices;
-    for (VertexId& v : candidate) {
+    Vertices& simplex = border_mesh_.blocks[id.block].simplices[id.index].vertices;
+    for (VertexId& v : simplex) {
       if (v != kInfiniteVertex) v = renumbered_[v];
     }
-    const std::size_t c = only_child(candidate);
-    if (c == kSpans || children_[c].open) {
-      targets_[number] = {part_.block, created++};
-      return;
-    }
-    candidates[count] = candidate;
-    targets[count++] = &targets_[number];
-    if (count == BorderIndex::kBatch) search();
+    SimplexId& target = targets_[number];
+    if (questions.is_new(simplex, &target, found)) target = {part_.block, created++};
   });
-  search();
+  questions.answer(found);
   return created;
 }
 
 template <int D>
 void Merge<D>::accept(Task& task) {
-  task.kind = "accept";
+  task.kind = TaskKind::kAccept;
   task.points = border_vertices_.size();
   const Stopwatch watch(task.seconds);
 
@@ -284,10 +253,14 @@ void Merge<D>::accept(Task& task) {
   targets_.assign(total, kNoSimplex);
   survived_.assign(border_.size(), 0);
 
-  const BorderIndex index(border_corners_);
+  std::vector<VertexId> ends;
+  std::vector<bool> open;
+  for (const Part<D>& child : part_.children) ends.push_back(child.end);
+  for (const PartSurface& child : children_) open.push_back(child.open);
+  const Acceptance<D> acceptance(ends, std::move(open), border_corners_);
   std::vector<std::size_t> first_created(grain_count(total, kGrain) + 1);
   parallel_for(total, kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
-    first_created[g + 1] = accept_grain(begin, end, index);
+    first_created[g + 1] = accept_grain(begin, end, Questions(acceptance));
   });
   std::partial_sum(first_created.begin(), first_created.end(), first_created.begin());
   const std::size_t created_count = first_created.back();
@@ -362,7 +335,7 @@ void Merge<D>::link_simplex(SimplexId in_border_mesh, SimplexId created,
 
 template <int D>
 void Merge<D>::link(Task& task) {
-  task.kind = "neighbours";
+  task.kind = TaskKind::kNeighbours;
   task.points = border_vertices_.size();
   task.pieces = std::max<std::size_t>(1, grain_count(targets_.size(), kGrain));
   std::vector<std::vector<Link>> links(grain_count(targets_.size(), kGrain));
@@ -418,7 +391,7 @@ void Merge<D>::link_new_block(const std::vector<std::vector<Link>>& links) {
 /// child's blocks are a task of their own.
 template <int D>
 void Merge<D>::link_children(const std::vector<std::vector<Link>>& links, Task& task) {
-  task.kind = "neighbours";
+  task.kind = TaskKind::kNeighbours;
   task.points = border_vertices_.size();
   task.pieces = part_.children.size();
   const Stopwatch watch(task.seconds);

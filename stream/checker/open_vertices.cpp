@@ -2,35 +2,37 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "src/error.h"
 
 namespace spillway::detail {
 
 template <int D>
-void OpenVertices<D>::enter(const MeshBlock& block, const std::vector<bool>& finalized_here,
-                            std::vector<Point<D>>& points, std::vector<std::uint32_t>& slots) {
+void OpenVertices<D>::enter(const MeshBlock& block, std::vector<Point<D>>& points,
+                            std::vector<std::uint32_t>& slots) {
   slots.clear();
   for (std::size_t v = 0; v < points.size(); ++v) {
-    slots.push_back(add(points[v], !finalized_here[v]));
+    slots.push_back(add(points[v], importable_.announced() + v));
   }
   for (const std::uint64_t number : block.imported) {
-    Importable* found = importable_.find({number, 0});
-    if (found == nullptr) {
+    const std::uint32_t* const slot = importable_.find(number);
+    if (slot == nullptr) {
       throw Error(
           fmt::format("the mesh stream uses vertex {}, which has not come yet or comes no "
                       "more; write the file again",
                       number));
     }
-    slots.push_back(found->slot);
-    points.push_back(vertices_[found->slot].point);
-    if (finalized_here[slots.size() - 1]) importable_.erase(found);
+    slots.push_back(*slot);
+    points.push_back(vertices_[*slot].point);
   }
+  importable_.settle(block, slots);
 }
 
 template <int D>
-std::uint32_t OpenVertices<D>::add(const Point<D>& point, bool importable) {
+std::uint32_t OpenVertices<D>::add(const Point<D>& point, std::uint64_t number) {
   if (free_.empty()) {
-    if (vertices_.size() == Importable::kEmpty) {
+    if (vertices_.size() > std::numeric_limits<std::uint32_t>::max()) {
       throw Error(fmt::format("the mesh stream has {} vertices open at a time, too many to check",
                               vertices_.size()));
     }
@@ -39,8 +41,7 @@ std::uint32_t OpenVertices<D>::add(const Point<D>& point, bool importable) {
   }
   const std::uint32_t slot = free_.back();
   free_.pop_back();
-  vertices_[slot] = {.point = point, .number = announced_++, .holders = 0};
-  if (importable) importable_.insert({vertices_[slot].number, slot});
+  vertices_[slot] = {.point = point, .number = number, .holders = 0};
   return slot;
 }
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/geometry/point.h"
-#include "stream/checker/probing_table.h"
 
 namespace spillway::detail {
 
@@ -27,10 +27,10 @@ class OpenVertices {
 
   /// Gives the block's new vertices, whose coordinates are `points`, their numbers and slots.
   /// Appends the points of imported ones, and sets `slots`: both are then by short number.
-  /// `finalized_here` tells for each short number whether the block finalizes it: later blocks
-  /// cannot import those. Throws Error for a vertex that cannot be imported.
-  void enter(const MeshBlock& block, const std::vector<bool>& finalized_here,
-             std::vector<Point<D>>& points, std::vector<std::uint32_t>& slots);
+  /// Later blocks cannot import what the block finalizes. Throws Error for a vertex that cannot be
+  /// imported.
+  void enter(const MeshBlock& block, std::vector<Point<D>>& points,
+             std::vector<std::uint32_t>& slots);
 
   /// The vertex is needed no more, unless it is held. Throws Error if it has been finalized before.
   void finalize(std::uint32_t slot);
@@ -43,7 +43,7 @@ class OpenVertices {
   }
 
   /// Number of vertices that have come so far.
-  [[nodiscard]] std::uint64_t announced() const { return announced_; }
+  [[nodiscard]] std::uint64_t announced() const { return importable_.announced(); }
 
   /// The most slots that were in use at a time.
   [[nodiscard]] std::uint64_t peak() const { return vertices_.size(); }
@@ -57,22 +57,11 @@ class OpenVertices {
   }
 
  private:
-  struct Importable {
-    static constexpr std::uint32_t kEmpty = ~0U;
-    std::uint64_t number = 0;
-    std::uint32_t slot = kEmpty;
-
-    [[nodiscard]] bool empty() const { return slot == kEmpty; }
-    [[nodiscard]] std::uint64_t scattered() const { return scatter(number); }
-    [[nodiscard]] bool same_key(const Importable& other) const { return number == other.number; }
-  };
-
-  std::uint32_t add(const Point<D>& point, bool importable);
+  std::uint32_t add(const Point<D>& point, std::uint64_t number);
 
   std::vector<Vertex> vertices_;  // by slot
   std::vector<std::uint32_t> free_;
-  ProbingTable<Importable> importable_;
-  std::uint64_t announced_ = 0;
+  LiveVertices<std::uint32_t> importable_;  // slots
 };
 
 }  // namespace spillway::detail

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/meshes/common/stream_numbers.h"
 #include "src/geometry/point.h"
 #include "stream/checker/checker.h"
 #include "stream/checker/fault_text.h"
@@ -58,7 +59,6 @@ class StreamBlock {
   std::uint64_t first_simplex = 0;   ///< number of the first simplex
   std::vector<std::uint32_t> slots;  ///< of vertices, by short number
   std::vector<Point<D>> points;      ///< of vertices, by short number; for the predicates
-  std::vector<bool> finalized;       ///< by short number
 
   // Set by examine().
   std::vector<bool> used;      ///< by short number: whether a simplex has the vertex
@@ -85,9 +85,7 @@ class StreamBlock {
   }
   [[nodiscard]] NamedVertex<D> named(std::uint32_t vertex,
                                      const StreamCoordinates<D>& coordinates) const {
-    const std::size_t fresh = block.vertices.size();
-    return {vertex < fresh ? first_vertex + vertex : block.imported[vertex - fresh],
-            coordinates.to_output(points[vertex])};
+    return {StreamNumbers(first_vertex, block)[vertex], coordinates.to_output(points[vertex])};
   }
   /// The simplex in the words of faults.
   [[nodiscard]] std::string text(std::size_t s, const StreamCoordinates<D>& coordinates) const {

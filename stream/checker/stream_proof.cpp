@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "formats/meshes/common/probing_table.h"
 #include "src/geometry/canonical_hash.h"
 #include "src/parallel/parallel.h"
 #include "stream/checker/mesh_proof.h"
 #include "stream/checker/open_vertices.h"
-#include "stream/checker/probing_table.h"
 
 namespace spillway::detail {
 namespace {
@@ -106,8 +106,6 @@ class StreamProof {
     block.first_vertex = vertices_.announced();
     block.first_simplex = simplices_entered_;
     simplices_entered_ += block.simplices();
-    block.finalized.assign(mesh.vertices.size() + mesh.imported.size(), false);
-    for (const std::uint32_t vertex : mesh.finalized) block.finalized[vertex] = true;
     block.points.clear();
     for (const Point<3>& vertex : mesh.vertices) {
       const Point<D> point = coordinates_.for_predicates(vertex);
@@ -116,7 +114,7 @@ class StreamProof {
       block.points.push_back(point);
       if (options_.vertex) options_.vertex(coordinates_.block_to_output(vertex));
     }
-    vertices_.enter(mesh, block.finalized, block.points, block.slots);
+    vertices_.enter(mesh, block.points, block.slots);
   }
 
   void report_off_lattice(std::uint64_t number, const Point<3>& vertex, int axis) {

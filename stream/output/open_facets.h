@@ -6,6 +6,7 @@
 #include <span>
 #include <unordered_set>
 
+#include "formats/meshes/common/stream_numbers.h"
 #include "src/delaunay/hash.h"
 
 namespace spillway::detail {
@@ -23,6 +24,15 @@ class OpenFacets {
       std::copy(corners.begin() + i + 1, corners.end(), facet.begin() + i);
       std::sort(facet.begin(), facet.end());
       toggle(facet);
+    }
+  }
+
+  /// The simplices of a block, of D + 1 short numbers each.
+  void add_block(std::span<const std::uint32_t> corners, const StreamNumbers& numbers) {
+    for (std::size_t i = 0; i < corners.size(); i += D + 1) {
+      std::array<std::uint64_t, D + 1> simplex;
+      for (int k = 0; k <= D; ++k) simplex[k] = numbers[corners[i + k]];
+      add(simplex);
     }
   }
 

@@ -8,10 +8,10 @@ namespace spillway::detail {
 
 /// What the output looks like.
 struct OutputOptions {
-  std::optional<Lattice> lattice;  ///< coordinates are on it
-  std::optional<double> max_edge;  ///< leave out simplices with a longer edge, output units
-  bool input_index = false;        ///< vertices carry their index in the input
-  bool imported_vertices = false;  ///< fill Settled::imported_vertices
+  std::optional<Lattice> lattice{};  ///< coordinates are on it
+  std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, output units
+  bool input_index = false;          ///< vertices carry their index in the input
+  bool imported_vertices = false;    ///< fill Settled::imported_vertices
 };
 
 }  // namespace spillway::detail

@@ -78,14 +78,7 @@ void Sequencer<D>::write(Waiting&& waiting) {
     mesh.imported.push_back(number_of_written(place));
   }
   if (counts_facets_) {
-    for (std::size_t i = 0; i < waiting.corners.size(); i += D + 1) {
-      std::array<std::uint64_t, D + 1> corners;
-      for (int k = 0; k <= D; ++k) {
-        const std::uint32_t v = waiting.corners[i + k];
-        corners[k] = v < waiting.vertices ? vertices_ + v : mesh.imported[v - waiting.vertices];
-      }
-      open_facets_.add(corners);
-    }
+    open_facets_.add_block(waiting.corners, {vertices_, waiting.vertices, mesh.imported});
   }
   vertices_ += waiting.vertices;
   simplices_ += waiting.simplices;

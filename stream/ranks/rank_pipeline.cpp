@@ -222,7 +222,7 @@ class RankRun {
     Task steps;
     Settled<D> settled = engine_.merge(borders, *node.tiles, node.outside, {number, 0}, steps);
     for (const Task& step : steps.after) {
-      if (step.kind == "border") figures.retriangulated = step.points;
+      if (step.kind == TaskKind::kBorder) figures.retriangulated = step.points;
     }
     MergedPart part;
     part.part = number;
@@ -299,16 +299,7 @@ class RankRun {
     }
     for (const MergedPart& merged : result_.merged) {
       const std::uint64_t first = result_.parts[merged.part].first_vertex;
-      const MeshBlock& mesh = merged.mesh;
-      for (std::size_t i = 0; i < mesh.corners.size(); i += D + 1) {
-        std::array<std::uint64_t, D + 1> corners;
-        for (int k = 0; k <= D; ++k) {
-          const std::uint32_t v = mesh.corners[i + k];
-          const std::size_t own_vertices = mesh.vertices.size();
-          corners[k] = v < own_vertices ? first + v : mesh.imported[v - own_vertices];
-        }
-        own.add(corners);
-      }
+      own.add_block(merged.mesh.corners, {first, merged.mesh});
     }
     const std::vector<std::array<std::uint64_t, D>> facets(own.begin(), own.end());
     OpenFacets<D> all;

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "formats/meshes/common/stream_numbers.h"
 #include "src/geometry/longest_edge.h"
 
 namespace spillway::detail {
@@ -16,22 +17,15 @@ ContourWriter::ContourWriter(ContourOptions options, Sink sink, ScratchFolder& s
           },
           options_.memory, scratch) {}
 
-Corner ContourWriter::placed(std::uint64_t number, const Point<3>& vertex) const {
-  if (!options_.lattice) return {number, vertex};
-  return {number, options_.lattice->to_world(vertex)};
-}
-
-/// The block's vertices by their short numbers.
-std::vector<Corner> ContourWriter::corners_of(const MeshBlock& block) const {
-  std::vector<Corner> corners;
-  corners.reserve(block.vertices.size() + block.imported.size());
-  for (std::size_t v = 0; v < block.vertices.size(); ++v) {
-    corners.push_back(placed(announced_ + v, block.vertices[v]));
+/// The block's vertices in output coordinates, by their short numbers.
+std::vector<Point<3>> ContourWriter::points_of(const MeshBlock& block) const {
+  std::vector<Point<3>> points;
+  points.reserve(block.vertices.size() + block.imported.size());
+  for (const Point<3>& vertex : block.vertices) {
+    points.push_back(options_.lattice ? options_.lattice->to_world(vertex) : vertex);
   }
-  for (const std::uint64_t number : block.imported) {
-    corners.push_back({number, live_.at(number)});
-  }
-  return corners;
+  live_.append_imported(block, points);
+  return points;
 }
 
 bool ContourWriter::too_long(const std::array<Corner, 3>& corners) const {
@@ -41,10 +35,12 @@ bool ContourWriter::too_long(const std::array<Corner, 3>& corners) const {
 }
 
 void ContourWriter::write(MeshBlock&& block) {
-  const std::vector<Corner> corners = corners_of(block);
+  const std::vector<Point<3>> points = points_of(block);
+  const StreamNumbers numbers(live_.announced(), block);
+  const auto corner = [&](std::uint32_t v) { return Corner{numbers[v], points[v]}; };
   for (std::size_t c = 0; c < block.corners.size(); c += 3) {
-    const std::array<Corner, 3> triangle = {
-        corners[block.corners[c]], corners[block.corners[c + 1]], corners[block.corners[c + 2]]};
+    const std::array<Corner, 3> triangle = {corner(block.corners[c]), corner(block.corners[c + 1]),
+                                            corner(block.corners[c + 2])};
     if (too_long(triangle)) {
       ++left_out_;
       continue;
@@ -54,18 +50,10 @@ void ContourWriter::write(MeshBlock&& block) {
     for (const IsoSegment& segment : segments_) joiner_.add(segment);
   }
   for (std::size_t v = 0; v < block.vertices.size(); ++v) {
-    lowest_ = std::min(lowest_, corners[v].point[2]);
-    highest_ = std::max(highest_, corners[v].point[2]);
+    lowest_ = std::min(lowest_, points[v][2]);
+    highest_ = std::max(highest_, points[v][2]);
   }
-  std::vector<bool> finalized(corners.size());
-  for (const std::uint32_t v : block.finalized) {
-    finalized[v] = true;
-    if (v >= block.vertices.size()) live_.erase(corners[v].number);
-  }
-  for (std::size_t v = 0; v < block.vertices.size(); ++v) {
-    if (!finalized[v]) live_.emplace(corners[v].number, corners[v].point);
-  }
-  announced_ += block.vertices.size();
+  live_.settle(block, points);
   // An edge gets no further triangle once one of its ends gets none.
   joiner_.release([this](const Crossing& crossing) {
     return !live_.contains(crossing.edge[0]) || !live_.contains(crossing.edge[1]);

@@ -4,9 +4,9 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <unordered_map>
 #include <vector>
 
+#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/geometry/lattice.h"
 #include "src/terrain/isolines.h"
@@ -43,15 +43,13 @@ class ContourWriter : public MeshStreamWriter {
   [[nodiscard]] std::uint64_t spilled_bytes() const { return joiner_.spilled_bytes(); }
 
  private:
-  [[nodiscard]] Corner placed(std::uint64_t number, const Point<3>& vertex) const;
-  [[nodiscard]] std::vector<Corner> corners_of(const MeshBlock& block) const;
+  [[nodiscard]] std::vector<Point<3>> points_of(const MeshBlock& block) const;
   [[nodiscard]] bool too_long(const std::array<Corner, 3>& corners) const;
 
   const ContourOptions options_;
   LineJoiner joiner_;
   std::vector<IsoSegment> segments_;
-  std::unordered_map<std::uint64_t, Point<3>> live_;  ///< vertices to come again, placed
-  std::uint64_t announced_ = 0;
+  LiveVertices<Point<3>> live_;  ///< in output coordinates
   double lowest_ = std::numeric_limits<double>::infinity();
   double highest_ = -std::numeric_limits<double>::infinity();
   std::uint64_t left_out_ = 0;

@@ -64,16 +64,14 @@ void DemWriter::write(MeshBlock&& block) {
   std::vector<Point<3>> vertices = std::move(block.vertices);
   std::vector<std::uint64_t> numbers(vertices.size());
   for (std::size_t v = 0; v < vertices.size(); ++v) {
-    numbers[v] = announced_ + number(v + 1);
-    live_.emplace(numbers[v], vertices[v]);
+    numbers[v] = live_.announced() + number(v + 1);
+    live_.enter(numbers[v], vertices[v]);
   }
-  for (const std::uint64_t v : block.imported) {
-    vertices.push_back(live_.at(v));
-    numbers.push_back(v);
-  }
+  numbers.insert(numbers.end(), block.imported.begin(), block.imported.end());
+  live_.append_imported(block, vertices);
   dem_.paint(vertices, block.corners);
-  for (const std::uint32_t v : block.finalized) live_.erase(numbers[v]);
-  announced_ += number(0);
+  for (const std::uint32_t v : block.finalized) live_.forget(numbers[v]);
+  live_.announce(number(0));
 }
 
 void DemWriter::finish(const MeshTotals& /*totals*/) {}

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_map>
 
+#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "stream/sinks/dem.h"
 
@@ -23,8 +23,7 @@ class DemWriter : public MeshStreamWriter {
 
  private:
   Dem& dem_;
-  std::uint64_t announced_ = 0;
-  std::unordered_map<std::uint64_t, Point<3>> live_;  ///< by stream number, placed
+  LiveVertices<Point<3>> live_;  ///< placed
 };
 
 }  // namespace spillway::detail

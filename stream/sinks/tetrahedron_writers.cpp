@@ -4,6 +4,7 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "formats/meshes/common/stream_numbers.h"
 #include "src/geometry/longest_edge.h"
 
 namespace spillway::detail {
@@ -25,17 +26,13 @@ double volume(const std::array<Point<3>, 4>& corners) {
 }  // namespace
 
 void TetrahedronWriter::write(MeshBlock&& block) {
-  std::vector<std::uint64_t> numbers;
+  const StreamNumbers numbers(live_.announced(), block);
   std::vector<Point<3>> vertices;
   for (const Point<3>& vertex : block.vertices) {
-    numbers.push_back(announced_++);
     vertices.push_back(lattice_ ? lattice_->to_world(vertex) : vertex);
     extent_.expand(vertices.back());
   }
-  for (const std::uint64_t number : block.imported) {
-    numbers.push_back(number);
-    vertices.push_back(live_.at(number));
-  }
+  live_.append_imported(block, vertices);
   for (std::size_t c = 0; c < block.corners.size(); c += 4) {
     std::array<std::uint64_t, 4> of{};
     Corners corners{};
@@ -49,20 +46,13 @@ void TetrahedronWriter::write(MeshBlock&& block) {
       add(of, corners);
     }
   }
-  std::vector<bool> finalized(vertices.size());
-  for (const std::uint32_t v : block.finalized) {
-    finalized[v] = true;
-    live_.erase(numbers[v]);
-    retire(numbers[v], vertices[v]);
-  }
-  for (std::size_t v = 0; v < block.vertices.size(); ++v) {
-    if (!finalized[v]) live_.emplace(numbers[v], vertices[v]);
-  }
+  live_.settle(block, vertices);
+  for (const std::uint32_t v : block.finalized) retire(numbers[v], vertices[v]);
 }
 
 void TetrahedronWriter::finish(const MeshTotals& /*totals*/) {
-  for (const auto& [number, vertex] : live_) retire(number, vertex);
-  live_.clear();
+  live_.for_each([this](std::uint64_t number, const Point<3>& vertex) { retire(number, vertex); });
+  live_ = {};
 }
 
 void HullWriter::add(const std::array<std::uint64_t, 4>& numbers,

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/geometry/lattice.h"
 #include "src/picture/tetrahedron_cut.h"
@@ -40,8 +41,7 @@ class TetrahedronWriter : public MeshStreamWriter {
 
   const std::optional<Lattice> lattice_;
   const std::optional<double> max_edge_;
-  std::unordered_map<std::uint64_t, Point<3>> live_;  ///< by stream number
-  std::uint64_t announced_ = 0;
+  LiveVertices<Point<3>> live_;  ///< in output coordinates
   Box<3> extent_;
   std::uint64_t left_out_ = 0;
 };

@@ -37,6 +37,9 @@ struct TileNode {
   std::uint64_t points = 0;
   std::vector<TileNode> children;     ///< none for a tile
   std::vector<std::uint32_t> stored;  ///< of a tile: the stored tiles it is made of
+
+  [[nodiscard]] std::uint64_t size() const { return points; }
+  [[nodiscard]] bool leaf() const { return children.empty(); }
 };
 
 /// A tile's points as they lay in the tree: on the disk, encoded, and in memory.

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <numeric>
-#include <type_traits>
 #include <utility>
 
+#include "src/delaunay/acceptance.h"
 #include "src/delaunay/delaunay.h"
 #include "src/delaunay/divide.h"
 #include "src/delaunay/schedule.h"
-#include "src/delaunay/simplex_index.h"
 #include "src/parallel/parallel.h"
 #include "src/runtime/memory_budget.h"
 #include "stream/tiles/tile_tree.h"
@@ -32,10 +31,10 @@ template <int D>
 constexpr std::uint64_t kBorderBytes = sizeof(BorderVertex<D>) +
                                        (D == 2 ? 2 : 8) * sizeof(std::array<VertexId, D + 1>);
 
-template <int D, typename Tree>
+template <int D, PointTree Tree>
 class Merge {
   using Corners = std::array<VertexId, D + 1>;
-  using ExposedIndex = SimplexIndex<D + 1>;
+  using Questions = typename Acceptance<D>::template Questions<>;
 
  public:
   Merge(std::span<Border<D>> children, std::span<const Tree* const> trees, MemoryBudget& budget)
@@ -59,20 +58,14 @@ class Merge {
  private:
   [[nodiscard]] std::uint64_t points_below() const {
     std::uint64_t points = 0;
-    for (const Tree* tree : trees_) {
-      if constexpr (std::is_same_v<Tree, Part<D>>) {
-        points += tree->size();
-      } else {
-        points += tree->points;
-      }
-    }
+    for (const Tree* tree : trees_) points += tree->size();
     return points;
   }
 
   /// Numbers all vertices, sorts the children's simplices into those that a sibling may change and
   /// those that stay, and collects the vertices to be triangulated.
   void find_exposed(Task& task) {
-    task.kind = "border";
+    task.kind = TaskKind::kBorder;
     const Stopwatch watch(task.seconds);
     auto& vertices = result_.border.vertices;
     first_vertex_.assign(1, 0);
@@ -134,10 +127,11 @@ class Merge {
   }
 
   void accept(Task& task) {
-    task.kind = "accept";
+    task.kind = TaskKind::kAccept;
     task.points = border_vertices_.size();
     const Stopwatch watch(task.seconds);
-    const ExposedIndex index(exposed_);
+    const Acceptance<D> acceptance(std::span<const VertexId>(first_vertex_).subspan(1), open_,
+                                   exposed_);
     std::vector<VertexId> number(mesh_.input_index.size());
     for (std::size_t v = 0; v < number.size(); ++v) {
       number[v] = border_vertices_[mesh_.input_index[v]];
@@ -145,52 +139,34 @@ class Merge {
     for (const SimplexBlock<D>& block : mesh_.blocks) {
       const std::span simplices(block.simplices.data(), block.simplices.size());
       std::vector<std::vector<Corners>> accepted(grain_count(simplices.size(), kGrain));
-      parallel_for(simplices.size(), kGrain,
-                   [&](std::size_t g, std::size_t begin, std::size_t end) {
-                     for (std::size_t first = begin; first < end; first += ExposedIndex::kBatch) {
-                       const std::size_t count = std::min(ExposedIndex::kBatch, end - first);
-                       append_accepted(simplices.subspan(first, count), number, index, accepted[g]);
-                     }
-                   });
+      parallel_for(
+          simplices.size(), kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
+            Questions questions(acceptance);
+            for (std::size_t first = begin; first < end; first += Questions::kBatch) {
+              const std::size_t count = std::min(Questions::kBatch, end - first);
+              append_accepted(simplices.subspan(first, count), number, questions, accepted[g]);
+            }
+          });
       auto& result = result_.border.simplices;
       for (const auto& some : accepted) result.insert(result.end(), some.begin(), some.end());
     }
     task.pieces = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
   }
 
-  /// Of a batch of the mesh's simplices, appends those to be accepted. `number` has the mesh's
-  /// vertices in the numbering of the merge.
+  /// Of a batch of the mesh's simplices, appends those to be accepted: first the new ones. `number`
+  /// has the mesh's vertices in the numbering of the merge.
   void append_accepted(std::span<const Simplex<D>> batch, const std::vector<VertexId>& number,
-                       const ExposedIndex& index, std::vector<Corners>& accepted) const {
-    std::array<Corners, ExposedIndex::kBatch> candidates;
-    std::size_t count = 0;
+                       Questions& questions, std::vector<Corners>& accepted) const {
+    const auto found = [&accepted](const Corners& corners, std::monostate, std::uint32_t) {
+      accepted.push_back(corners);
+    };
     for (const Simplex<D>& simplex : batch) {
       if (simplex.removed()) continue;
       Corners corners = simplex.vertices;
       for (VertexId& v : corners) v = v == kInfiniteVertex ? v : number[v];
-      if (is_new(corners)) {
-        accepted.push_back(corners);
-      } else {
-        candidates[count++] = corners;
-      }
+      if (questions.is_new(corners, {}, found)) accepted.push_back(corners);
     }
-    const auto found = index.find(std::span(candidates).first(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      if (found[i] != ExposedIndex::kNotFound) accepted.push_back(candidates[i]);
-    }
-  }
-
-  /// Whether a simplex spans children or lies in an open one.
-  [[nodiscard]] bool is_new(const Corners& corners) const {
-    VertexId lowest = kInfiniteVertex;
-    VertexId highest = 0;
-    for (const VertexId v : corners) {
-      lowest = std::min(lowest, v);
-      highest = std::max(highest, v == kInfiniteVertex ? 0 : v);
-    }
-    std::size_t child = 0;
-    while (lowest >= first_vertex_[child + 1]) ++child;
-    return highest >= first_vertex_[child + 1] || open_[child];
+    questions.answer(found);
   }
 
   std::span<Border<D>> children_;
@@ -211,7 +187,7 @@ std::uint64_t enough_memory(std::uint64_t points) {
   return points * (kLoadedPointBytes + 2 * kBorderBytes<D> + kAllBorderMergeBytes<D>);
 }
 
-template <int D, typename Tree>
+template <int D, PointTree Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
                               MemoryBudget& budget, Task& task) {
   return Merge<D, Tree>(children, trees, budget).run(task);

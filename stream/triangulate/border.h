@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "src/delaunay/finality.h"
+#include "src/delaunay/point_tree.h"
 #include "src/geometry/point.h"
 #include "stream/output/stream_place.h"
 
@@ -58,12 +59,12 @@ template <int D>
 std::uint64_t enough_memory(std::uint64_t points);
 
 /// Makes one of the borders of parts that are children of one node. `trees[c]` is child c's tree of
-/// boxes (Part or TileNode). The vertices of simplices that a sibling may change, and all vertices
+/// points (Part or TileNode). The vertices of simplices that a sibling may change, and all vertices
 /// of open children, are triangulated; of that, simplices are accepted that span children, or that
 /// their own child has in its border, facing the same way (Funke, Sanders 2017, Algorithm 1). All
 /// others of the children are kept as they are.
 /// Leases the memory of that from `budget`; throws Error if there is not enough.
-template <int D, typename Tree>
+template <int D, PointTree Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
                               MemoryBudget& budget, Task& task);
 

@@ -26,10 +26,14 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, MeshStreamWriter& writ
       budget_(budget),
       plan_(plan_memory(budget.limit(), D, options.threads)),
       planned_tile_(plan_.tile_capacity),
-      tile_options_(tile_options(expected.lattice)),
       counts_(budget),
       tree_(tree_options(expected), scratch, counts_.times),
-      sequencer_(writer, tile_options_.output, counts_.times) {}
+      sequencer_(writer, {.max_edge = options.max_edge}, counts_.times),
+      context_{.options = tile_options(expected.lattice),
+               .budget = budget,
+               .sequencer = sequencer_,
+               .counts = counts_,
+               .progress = [this] { report_progress(); }} {}
 
 template <int D>
 TileOptions TileEngine<D>::tile_options(const std::optional<Lattice>& lattice) const {
@@ -37,7 +41,6 @@ TileOptions TileEngine<D>::tile_options(const std::optional<Lattice>& lattice) c
   tile.division = options_.division;
   tile.children = options_.children;
   tile.heights = options_.heights;
-  tile.budget = &budget_;
   tile.output = {lattice, options_.max_edge, options_.input_index};
   return tile;
 }
@@ -78,11 +81,12 @@ std::uint64_t TileEngine<D>::divide_large() {
 template <int D>
 Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& outside) {
   const Stopwatch watch(figures_.triangulate_seconds);
-  tile_options_.leaf_size =
+  context_.options.leaf_size =
       options_.leaf_size > 0 ? options_.leaf_size : leaf_size_for(tree_.points(), D, plan_);
-  add_node(root, nullptr, outside, figures_.tasks);
-  figures_.tiles = tiles_.size();
-  figures_.final_by_level.resize(nodes_.back()->level);
+  nodes_.emplace(root, figures_.tasks);
+  prepare_nodes(outside);
+  figures_.tiles = nodes_->leaves().size();
+  figures_.final_by_level.resize(nodes_->root().level);
   TaskGroup lanes;
   // Isolated, since a merge that took up the other lane while it waits could end up waiting for
   // room in the sequencer, which only it can make.
@@ -90,33 +94,20 @@ Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& 
   for (std::size_t other = 1; other < kTilesAtATime; ++other) lanes.run(lane);
   lane();
   lanes.wait();
-  return std::move(nodes_.back()->border);
+  return std::move(nodes_->root().border);
 }
 
+/// `outside` is that of the root.
 template <int D>
-typename TileEngine<D>::Node* TileEngine<D>::add_node(const TileNode<D>& tiles, Node* parent,
-                                                      const Outside<D>& outside, Task& task) {
-  auto node = std::make_unique<Node>();
-  node->tiles = &tiles;
-  node->parent = parent;
-  node->outside = outside;
-  node->task = &task;
-  node->children_missing = tiles.children.size();
-  task.kind = "node";
-  task.points = tiles.points;
-  task.children.resize(tiles.children.size());
-  for (std::size_t c = 0; c < tiles.children.size(); ++c) {
-    Outside<D> others = outside;
-    for (std::size_t o = 0; o < tiles.children.size(); ++o) {
-      if (o != c) others.push_back(&tiles.children[o]);
-    }
-    node->children.push_back(add_node(tiles.children[c], node.get(), others, task.children[c]));
-    node->level = std::max(node->level, node->children.back()->level + 1);
+void TileEngine<D>::prepare_nodes(const Outside<D>& outside) {
+  const std::span<Node> nodes = nodes_->nodes();
+  for (Node& node : nodes) {
+    for (const Node* child : node.children) node.level = std::max(node.level, child->level + 1);
   }
-  node->slot = static_cast<std::uint32_t>(nodes_.size());
-  if (tiles.children.empty()) tiles_.push_back(node.get());
-  nodes_.push_back(std::move(node));
-  return nodes_.back().get();
+  for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {  // parents before children
+    node->outside = node->parent == nullptr ? outside : node->parent->outside;
+    Tree::append_siblings(*node, node->outside);
+  }
 }
 
 /// Takes tiles in order as long as there are any; after the last child of a merge, does that too.
@@ -133,13 +124,9 @@ void TileEngine<D>::work_off_tiles() {
         const MemoryLease lease(
             budget_, std::min(points.points.size(), planned_tile_) * kLoadedPointBytes, "a tile");
         node->border = triangulate_tile<D>(
-            std::move(points), node->outside, tile_options_, sequencer_, counts_, node->slot,
-            [&] { report_progress(); }, *node->task);
+            context_, {std::move(points), node->outside, node->number}, *node->task);
       }
-      for (node = node->parent; node != nullptr && --node->children_missing == 0;
-           node = node->parent) {
-        merge_node(*node);
-      }
+      nodes_->leaf_done(*node, [this](Node& above) { merge_node(above); });
     }
   } catch (...) {
     failed_ = true;
@@ -158,13 +145,14 @@ typename TileEngine<D>::Node* TileEngine<D>::take_tile(TilePoints<D>& points) {
   Node* node = nullptr;
   {
     const std::lock_guard lock(take_mutex_);
-    if (taken_ == tiles_.size() || failed_) return nullptr;
-    node = tiles_[taken_++];
-    sequencer_.wait_for_room(plan_.waiting_bytes, node->slot);
-    stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.read(*node->tiles);
-    if (taken_ < tiles_.size()) {
-      reading_ahead_ = std::async(
-          std::launch::async, [this, next = tiles_[taken_]->tiles] { return tree_.read(*next); });
+    const std::vector<Node*>& tiles = nodes_->leaves();
+    if (taken_ == tiles.size() || failed_) return nullptr;
+    node = tiles[taken_++];
+    sequencer_.wait_for_room(plan_.waiting_bytes, node->number);
+    stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.read(*node->tree);
+    if (taken_ < tiles.size()) {
+      reading_ahead_ = std::async(std::launch::async,
+                                  [this, next = tiles[taken_]->tree] { return tree_.read(*next); });
     }
   }
   points = tree_.template decode<D>(std::move(stored));
@@ -176,20 +164,24 @@ template <int D>
 void TileEngine<D>::merge_node(Node& node) {
   std::vector<Border<D>> borders;
   for (Node* child : node.children) borders.push_back(std::exchange(child->border, {}));
-  std::uint64_t final_simplices = 0;
-  node.border = merge_tiles<D>(borders, *node.tiles, node.outside, tile_options_, sequencer_,
-                               counts_, node.slot, final_simplices, *node.task);
+  MergedTiles<D> merged =
+      merge_tiles<D>(context_, {borders, *node.tree, node.outside, {node.number, 0}}, *node.task);
+  node.border = std::move(merged.border);
   const std::lock_guard lock(figures_mutex_);
-  figures_.final_by_level[node.level - 1] += final_simplices;
+  figures_.final_by_level[node.level - 1] += merged.final_simplices;
 }
 
 /// Nothing of this is for the sequencer: `place` is one of a stream of many processes.
 template <int D>
 Settled<D> TileEngine<D>::merge(std::span<Border<D>> children, const TileNode<D>& node,
                                 const Outside<D>& outside, BlockPlace place, Task& task) {
-  TileOptions options = tile_options_;
-  options.output.imported_vertices = true;
-  return merge_borders_of<D>(children, node, outside, options, counts_, place, task);
+  return merge_borders_of<D>(context_,
+                             {.children = children,
+                              .node = node,
+                              .outside = outside,
+                              .place = place,
+                              .imported_vertices = true},
+                             task);
 }
 
 template <int D>
@@ -218,7 +210,7 @@ StreamFigures TileEngine<D>::figures() {
   figures_.left_out = counts_.left_out;
   figures_.leaves = counts_.leaves;
   figures_.tile_capacity = plan_.tile_capacity;
-  figures_.leaf_size = tile_options_.leaf_size;
+  figures_.leaf_size = context_.options.leaf_size;
   figures_.spilled_points = tree_.points_written();
   figures_.spilled_bytes = tree_.bytes_written();
   figures_.final_in_leaves = counts_.final_in_leaves;

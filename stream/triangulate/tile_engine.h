@@ -3,7 +3,6 @@
 #include <atomic>
 #include <functional>
 #include <future>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "stream/plan/stream_options.h"
 #include "stream/tiles/point_span.h"
 #include "stream/tiles/tile_tree.h"
+#include "stream/triangulate/merge_tree.h"
 #include "stream/triangulate/tile_triangulation.h"
 
 namespace spillway::detail {
@@ -89,23 +89,18 @@ class TileEngine {
   [[nodiscard]] StreamFigures figures();
 
  private:
-  /// A tile, or a merge of tiles. Its place in nodes_, which is post-order, is its slot of the
-  /// stream.
-  struct Node {
-    const TileNode<D>* tiles = nullptr;
-    Node* parent = nullptr;
+  /// What a node has, which is a tile or a merge of tiles. Its number is its slot of the stream.
+  struct State {
     Outside<D> outside;
-    Task* task = nullptr;
-    std::uint32_t slot = 0;
     std::size_t level = 0;  ///< merges below, at most
-    std::vector<Node*> children;
-    std::atomic<std::size_t> children_missing = 0;
-    Border<D> border;
+    Border<D> border;       ///< once it is done
   };
+  using Tree = MergeTree<TileNode<D>, State>;
+  using Node = typename Tree::Node;
 
   [[nodiscard]] TileOptions tile_options(const std::optional<Lattice>& lattice) const;
   TileTreeOptions tree_options(const ExpectedPoints& expected);
-  Node* add_node(const TileNode<D>& tiles, Node* parent, const Outside<D>& outside, Task& task);
+  void prepare_nodes(const Outside<D>& outside);
   void work_off_tiles();
   Node* take_tile(TilePoints<D>& points);
   void merge_node(Node& node);
@@ -115,13 +110,12 @@ class TileEngine {
   MemoryBudget& budget_;
   MemoryPlan plan_;
   const std::size_t planned_tile_;  ///< points of a tile, unless --tile is given
-  TileOptions tile_options_;
   StreamCounts counts_;
   PointSpan<D> span_;
   TileTree tree_;
   Sequencer<D> sequencer_;
-  std::vector<std::unique_ptr<Node>> nodes_;  ///< in post-order
-  std::vector<Node*> tiles_;                  ///< those of nodes_ without children, in order
+  TileContext<D> context_;
+  std::optional<Tree> nodes_;
   std::function<void(std::span<std::uint64_t>)> replace_indices_;
   std::mutex take_mutex_;  ///< guards the next three
   std::size_t taken_ = 0;

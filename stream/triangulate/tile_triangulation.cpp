@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "src/delaunay/base_case.h"
 #include "src/delaunay/finality.h"
 #include "src/parallel/parallel.h"
+#include "stream/triangulate/merge_tree.h"
 
 namespace spillway::detail {
 namespace {
@@ -32,37 +32,36 @@ Border<D> submit(Settled<D> settled, BlockPlace block, Sequencer<D>& sequencer) 
 
 /// The same, and counts what has been settled.
 template <int D>
-Border<D> pass_on(Settled<D> settled, BlockPlace block, Sequencer<D>& sequencer,
-                  StreamCounts& counts) {
-  count_settled(settled, counts);
-  return submit(std::move(settled), block, sequencer);
+Border<D> pass_on(const TileContext<D>& context, Settled<D> settled, BlockPlace block) {
+  count_settled(settled, context.counts);
+  return submit(std::move(settled), block, context.sequencer);
+}
+
+/// An open border goes up as it is; the stream's block of that number stays empty.
+template <int D>
+Border<D> pass_up(const TileContext<D>& context, Border<D> border, BlockPlace block) {
+  context.sequencer.submit(block, {}, {}, {});
+  context.counts.borders.add(0, border.bytes());
+  return border;
 }
 
 /// merge_borders() of borders that are counted as resident; its result is not yet.
-template <int D, typename Tree>
-MergedBorder<D> merge_resident(std::span<Border<D>> children, const std::vector<const Tree*>& trees,
-                               MemoryBudget& budget, StreamCounts& counts, Task& task) {
+template <int D, PointTree Tree>
+MergedBorder<D> merge_resident(const TileContext<D>& context, std::span<Border<D>> children,
+                               const std::vector<Tree>& trees, Task& task) {
   std::uint64_t simplices = 0;
   std::uint64_t bytes = 0;
   for (const Border<D>& child : children) {
     simplices += child.simplices.size();
     bytes += child.bytes();
   }
-  const StageTimer timer(counts.times, Stage::kMerge);
-  MergedBorder<D> merged =
-      merge_borders<D, Tree>(children, std::span<const Tree* const>(trees), budget, task);
-  counts.borders.remove(simplices, bytes);
-  counts.retriangulated += merged.retriangulated;
+  std::vector<const Tree*> of_children;
+  for (const Tree& tree : trees) of_children.push_back(&tree);
+  const StageTimer timer(context.counts.times, Stage::kMerge);
+  MergedBorder<D> merged = merge_borders<D, Tree>(children, of_children, context.budget, task);
+  context.counts.borders.remove(simplices, bytes);
+  context.counts.retriangulated += merged.retriangulated;
   return merged;
-}
-
-/// An open border goes up as it is; the stream's block of that number stays empty.
-template <int D>
-Border<D> pass_up(Border<D> border, BlockPlace block, Sequencer<D>& sequencer,
-                  StreamCounts& counts) {
-  sequencer.submit(block, {}, {}, {});
-  counts.borders.add(0, border.bytes());
-  return border;
 }
 
 template <int D>
@@ -94,16 +93,12 @@ Settled<D> settle_merged(const MergedBorder<D>& merged, BlockPlace block,
 template <int D>
 class TileRun {
  public:
-  TileRun(TilePoints<D> tile, const Outside<D>& outside, const TileOptions& options,
-          Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t slot,
-          const std::function<void()>& progress)
-      : tile_(std::move(tile)),
-        outside_(outside),
-        options_(options),
-        sequencer_(sequencer),
-        counts_(counts),
-        slot_(slot),
-        progress_(progress) {}
+  TileRun(const TileContext<D>& context, TileInput<D> tile)
+      : context_(context),
+        counts_(context.counts),
+        tile_(std::move(tile.points)),
+        outside_(tile.outside),
+        slot_(tile.slot) {}
 
   Border<D> run(Task& task) {
     task.points = tile_.points.size();
@@ -112,72 +107,29 @@ class TileRun {
     std::iota(input_index_.begin(), input_index_.end(), VertexId{0});
     {
       const StageTimer timer(counts_.times, Stage::kDivide);
+      const TileOptions& options = context_.options;
       root_ =
           divide<D>(tile_.points, input_index_,
-                    {options_.leaf_size, options_.division, options_.children}, task.before.data());
+                    {options.leaf_size, options.division, options.children}, task.before.data());
     }
-    sequencer_.open_slot(slot_, root_.block + 1);
-    nodes_.resize(root_.block + 1);
-    add_node(root_, kNoParent, 0, task);
-    parallel_for(leaves_.size(), 1, [&](std::size_t, std::size_t begin, std::size_t) {
-      work_from_leaf(leaves_[begin]);
+    context_.sequencer.open_slot(slot_, root_.block + 1);
+    tree_.emplace(root_, task);
+    const std::vector<Node*>& leaves = tree_->leaves();
+    parallel_for(leaves.size(), 1, [&](std::size_t, std::size_t begin, std::size_t) {
+      Node& leaf = *leaves[begin];
+      leaf.border = triangulate_leaf(leaf);
+      if (context_.progress) context_.progress();
+      tree_->leaf_done(leaf, [this](Node& node) { node.border = merge_node(node); });
     });
-    return std::move(nodes_[root_.block].border);
+    return std::move(tree_->root().border);
   }
 
  private:
-  static constexpr std::uint32_t kNoParent = ~std::uint32_t{0};
-
-  /// A part of the tile, by its block number.
-  struct Node {
-    const Part<D>* part = nullptr;
-    std::uint32_t parent = kNoParent;
-    std::size_t place = 0;  ///< among its parent's children
-    Task* task = nullptr;
-    std::unique_ptr<std::atomic<std::size_t>> children_missing;
-    Border<D> border;
+  struct State {
+    Border<D> border;  ///< once the node is done
   };
-
-  void add_node(const Part<D>& part, std::uint32_t parent, std::size_t place, Task& task) {
-    Node& node = nodes_[part.block];
-    node.part = &part;
-    node.parent = parent;
-    node.place = place;
-    node.task = &task;
-    task.points = part.size();
-    task.kind = part.leaf() ? "base_case" : "node";
-    if (part.leaf()) {
-      leaves_.push_back(part.block);
-      return;
-    }
-    node.children_missing = std::make_unique<std::atomic<std::size_t>>(part.children.size());
-    task.children.resize(part.children.size());
-    for (std::size_t c = 0; c < part.children.size(); ++c) {
-      add_node(part.children[c], part.block, c, task.children[c]);
-    }
-  }
-
-  /// Does a leaf, and all nodes above whose last child is done thereby.
-  void work_from_leaf(std::uint32_t leaf) {
-    nodes_[leaf].border = triangulate_leaf(nodes_[leaf]);
-    if (progress_) progress_();
-    std::uint32_t above = nodes_[leaf].parent;
-    while (above != kNoParent && --*nodes_[above].children_missing == 0) {
-      nodes_[above].border = merge_node(nodes_[above]);
-      above = nodes_[above].parent;
-    }
-  }
-
-  [[nodiscard]] std::vector<const Part<D>*> siblings_up(const Node& node) const {
-    std::vector<const Part<D>*> siblings;
-    for (const Node* n = &node; n->parent != kNoParent; n = &nodes_[n->parent]) {
-      const auto& children = nodes_[n->parent].part->children;
-      for (std::size_t c = 0; c < children.size(); ++c) {
-        if (c != n->place) siblings.push_back(&children[c]);
-      }
-    }
-    return siblings;
-  }
+  using Tree = MergeTree<Part<D>, State>;
+  using Node = typename Tree::Node;
 
   [[nodiscard]] auto change_test(std::vector<const Part<D>*> siblings) const {
     return [this, siblings = std::move(siblings)](const ConflictRegion<D>& region) {
@@ -190,38 +142,39 @@ class TileRun {
 
   Border<D> triangulate_leaf(const Node& node) {
     const Stopwatch watch(node.task->seconds);
-    const Part<D>& part = *node.part;
+    const Part<D>& part = *node.tree;
     const auto points = std::span(tile_.points).subspan(part.begin, part.size());
     BaseCase<D> leaf = base_case(node, points);
     counts_.points += part.size();
     counts_.duplicates += leaf.duplicates.size();
     ++counts_.leaves;
     if constexpr (D == 2) {
-      choose_heights(leaf.duplicates, options_.heights, input_index_, tile_.heights, tile_.index);
+      choose_heights(leaf.duplicates, context_.options.heights, input_index_, tile_.heights,
+                     tile_.index);
     } else {
       keep_first(leaf.duplicates, input_index_, tile_.index);
     }
     if (leaf.dimension < D) {
-      return pass_up(open_border(part, leaf), BlockPlace{slot_, part.block}, sequencer_, counts_);
+      return pass_up(context_, open_border(part, leaf), place_of(node));
     }
     Settled<D> settled = settle_leaf(node, leaf);
     recycle(std::move(leaf.simplices));
     counts_.final_in_leaves += settled.final_simplices;
-    return pass_on(std::move(settled), BlockPlace{slot_, part.block}, sequencer_, counts_);
+    return pass_on(context_, std::move(settled), place_of(node));
   }
 
   Settled<D> settle_leaf(const Node& node, const BaseCase<D>& base_case) {
     const StageTimer timer(counts_.times, Stage::kFinality);
-    LeafToSettle<D> leaf = leaf_of(*node.part);
+    LeafToSettle<D> leaf = leaf_of(*node.tree);
     leaf.simplices = {base_case.simplices.data(), base_case.simplices.size()};
     const std::vector<Fate> fates = fates_in_leaf(node, leaf, base_case.not_inside);
     leaf.fates = fates;
-    return settle<D>(leaf, options_.output);
+    return settle<D>(leaf, context_.options.output);
   }
 
   BaseCase<D> base_case(const Node& node, std::span<const Point<D>> points) {
     const StageTimer timer(counts_.times, Stage::kLeaves);
-    const Part<D>& part = *node.part;
+    const Part<D>& part = *node.tree;
     return triangulate_base_case<D>(
         {.points = points,
          .input_index = std::span(input_index_).subspan(part.begin, part.size()),
@@ -233,8 +186,8 @@ class TileRun {
   /// The box around a leaf that has nothing in common with the box of any other part.
   [[nodiscard]] Box<D> cell_of(const Node& node) const {
     Box<D> cell = whole_space<D>();
-    for (const Part<D>* part : siblings_up(node)) cut_back(cell, node.part->box, part->box);
-    for (const TileNode<D>* tile : outside_) cut_back(cell, node.part->box, tile->box);
+    for (const Part<D>* part : tree_->siblings_up(node)) cut_back(cell, node.tree->box, part->box);
+    for (const TileNode<D>* tile : outside_) cut_back(cell, node.tree->box, tile->box);
     return cell;
   }
 
@@ -294,7 +247,7 @@ class TileRun {
   [[nodiscard]] std::vector<Fate> fates_in_leaf(
       const Node& node, const LeafToSettle<D>& leaf,
       const std::optional<std::vector<std::uint32_t>>& not_inside) const {
-    const auto may_be_changed = change_test(siblings_up(node));
+    const auto may_be_changed = change_test(tree_->siblings_up(node));
     std::vector<std::uint32_t> asked;
     if (!not_inside) asked = open_questions(node, leaf);
     const std::span<const std::uint32_t> open = not_inside ? *not_inside : asked;
@@ -308,96 +261,68 @@ class TileRun {
   }
 
   Border<D> merge_node(const Node& node) {
-    const Part<D>& part = *node.part;
     std::vector<Border<D>> children;
-    std::vector<const Part<D>*> trees;
-    for (const Part<D>& child : part.children) {
-      children.push_back(std::exchange(nodes_[child.block].border, {}));
-      trees.push_back(&child);
-    }
-    MergedBorder<D> merged = merge_resident(std::span<Border<D>>(children), trees, *options_.budget,
-                                            counts_, *node.task);
-    const BlockPlace block{slot_, part.block};
-    if (merged.border.open()) {
-      return pass_up(std::move(merged.border), block, sequencer_, counts_);
-    }
-    Settled<D> settled = settle_merged(merged, block, options_.output,
-                                       change_test(siblings_up(node)), counts_.times);
+    for (Node* child : node.children) children.push_back(std::exchange(child->border, {}));
+    MergedBorder<D> merged = merge_resident<D>(context_, children, node.tree->children, *node.task);
+    const BlockPlace block = place_of(node);
+    if (merged.border.open()) return pass_up(context_, std::move(merged.border), block);
+    Settled<D> settled = settle_merged(merged, block, context_.options.output,
+                                       change_test(tree_->siblings_up(node)), counts_.times);
     counts_.final_in_tiles += settled.final_simplices;
-    return pass_on(std::move(settled), block, sequencer_, counts_);
+    return pass_on(context_, std::move(settled), block);
   }
 
+  [[nodiscard]] BlockPlace place_of(const Node& node) const { return {slot_, node.number}; }
+
+  const TileContext<D>& context_;
+  StreamCounts& counts_;
   TilePoints<D> tile_;
   std::vector<VertexId> input_index_;
   const Outside<D>& outside_;
-  const TileOptions& options_;
-  Sequencer<D>& sequencer_;
-  StreamCounts& counts_;
   const std::uint32_t slot_;
-  const std::function<void()>& progress_;
   Part<D> root_;
-  std::vector<Node> nodes_;
-  std::vector<std::uint32_t> leaves_;
+  std::optional<Tree> tree_;
 };
 
 }  // namespace
 
 template <int D>
-Border<D> triangulate_tile(TilePoints<D> tile, const Outside<D>& outside,
-                           const TileOptions& options, Sequencer<D>& sequencer,
-                           StreamCounts& counts, std::uint32_t slot,
-                           const std::function<void()>& progress, Task& task) {
-  return TileRun<D>(std::move(tile), outside, options, sequencer, counts, slot, progress).run(task);
+Border<D> triangulate_tile(const TileContext<D>& context, TileInput<D> tile, Task& task) {
+  return TileRun<D>(context, std::move(tile)).run(task);
 }
 
 template <int D>
-Settled<D> merge_borders_of(std::span<Border<D>> children, const TileNode<D>& node,
-                            const Outside<D>& outside, const TileOptions& options,
-                            StreamCounts& counts, BlockPlace place, Task& task) {
-  std::vector<const TileNode<D>*> trees;
-  for (const TileNode<D>& child : node.children) trees.push_back(&child);
-  MergedBorder<D> merged = merge_resident(children, trees, *options.budget, counts, task);
+Settled<D> merge_borders_of(const TileContext<D>& context, const MergeInput<D>& input, Task& task) {
+  MergedBorder<D> merged = merge_resident<D>(context, input.children, input.node.children, task);
   Settled<D> settled;
   if (merged.border.open()) {
     settled.border = std::move(merged.border);
   } else {
     const auto may_be_changed = [&](const ConflictRegion<D>& region) {
-      return std::any_of(outside.begin(), outside.end(),
+      return std::any_of(input.outside.begin(), input.outside.end(),
                          [&](const TileNode<D>* tile) { return region.may_meet_leaf(*tile); });
     };
-    settled = settle_merged(merged, place, options.output, may_be_changed, counts.times);
+    OutputOptions output = context.options.output;
+    output.imported_vertices = input.imported_vertices;
+    settled = settle_merged(merged, input.place, output, may_be_changed, context.counts.times);
   }
-  count_settled(settled, counts);
+  count_settled(settled, context.counts);
   return settled;
 }
 
 template <int D>
-Border<D> merge_tiles(std::span<Border<D>> children, const TileNode<D>& node,
-                      const Outside<D>& outside, const TileOptions& options,
-                      Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t slot,
-                      std::uint64_t& final_simplices, Task& task) {
-  const BlockPlace place{slot, 0};
-  sequencer.open_slot(slot, 1);
-  Settled<D> settled = merge_borders_of(children, node, outside, options, counts, place, task);
-  final_simplices += settled.final_simplices;
-  return submit(std::move(settled), place, sequencer);
+MergedTiles<D> merge_tiles(const TileContext<D>& context, const MergeInput<D>& input, Task& task) {
+  context.sequencer.open_slot(input.place.slot, 1);
+  Settled<D> settled = merge_borders_of(context, input, task);
+  const std::uint64_t final_simplices = settled.final_simplices;
+  return {submit(std::move(settled), input.place, context.sequencer), final_simplices};
 }
 
-template Border<2> triangulate_tile(TilePoints<2>, const Outside<2>&, const TileOptions&,
-                                    Sequencer<2>&, StreamCounts&, std::uint32_t,
-                                    const std::function<void()>&, Task&);
-template Border<3> triangulate_tile(TilePoints<3>, const Outside<3>&, const TileOptions&,
-                                    Sequencer<3>&, StreamCounts&, std::uint32_t,
-                                    const std::function<void()>&, Task&);
-template Settled<2> merge_borders_of(std::span<Border<2>>, const TileNode<2>&, const Outside<2>&,
-                                     const TileOptions&, StreamCounts&, BlockPlace, Task&);
-template Settled<3> merge_borders_of(std::span<Border<3>>, const TileNode<3>&, const Outside<3>&,
-                                     const TileOptions&, StreamCounts&, BlockPlace, Task&);
-template Border<2> merge_tiles(std::span<Border<2>>, const TileNode<2>&, const Outside<2>&,
-                               const TileOptions&, Sequencer<2>&, StreamCounts&, std::uint32_t,
-                               std::uint64_t&, Task&);
-template Border<3> merge_tiles(std::span<Border<3>>, const TileNode<3>&, const Outside<3>&,
-                               const TileOptions&, Sequencer<3>&, StreamCounts&, std::uint32_t,
-                               std::uint64_t&, Task&);
+template Border<2> triangulate_tile(const TileContext<2>&, TileInput<2>, Task&);
+template Border<3> triangulate_tile(const TileContext<3>&, TileInput<3>, Task&);
+template Settled<2> merge_borders_of(const TileContext<2>&, const MergeInput<2>&, Task&);
+template Settled<3> merge_borders_of(const TileContext<3>&, const MergeInput<3>&, Task&);
+template MergedTiles<2> merge_tiles(const TileContext<2>&, const MergeInput<2>&, Task&);
+template MergedTiles<3> merge_tiles(const TileContext<3>&, const MergeInput<3>&, Task&);
 
 }  // namespace spillway::detail

@@ -26,7 +26,6 @@ struct TileOptions {
   unsigned children = 2;
   HeightChoice heights = HeightChoice::kFirst;
   OutputOptions output;
-  MemoryBudget* budget = nullptr;  ///< for the triangulations of borders
 };
 
 /// How much of borders is in memory, and the most there was. It grows with the input: the budget
@@ -85,28 +84,55 @@ struct StreamCounts {
 template <int D>
 using Outside = std::vector<const TileNode<D>*>;
 
+/// What all tiles and merges of a run share; used by many threads at once.
+template <int D>
+struct TileContext {
+  TileOptions options;
+  MemoryBudget& budget;     ///< for the triangulations of borders
+  Sequencer<D>& sequencer;  ///< takes what is final
+  StreamCounts& counts;
+  std::function<void()> progress;  ///< called after each leaf, by any thread
+};
+
+/// A loaded tile.
+template <int D>
+struct TileInput {
+  TilePoints<D> points;
+  const Outside<D>& outside;
+  std::uint32_t slot = 0;  ///< of the stream
+};
+
+/// A node of the tree over tiles whose children are done.
+template <int D>
+struct MergeInput {
+  std::span<Border<D>> children;  ///< which are used up
+  const TileNode<D>& node;
+  const Outside<D>& outside;
+  BlockPlace place;  ///< of the stream
+  /// Whether to tell what the vertices are that the block imports.
+  bool imported_vertices = false;
+};
+
+/// What a merge leaves.
+template <int D>
+struct MergedTiles {
+  Border<D> border;
+  std::uint64_t final_simplices = 0;
+};
+
 /// Triangulates a loaded tile: divides it into leaves, works them off in order by all threads, and
-/// merges what is left of them; everything that is final goes to `sequencer`, as the blocks of
-/// `slot`. Returns what is not final. `progress` is called after each leaf, by any thread.
+/// merges what is left of them; everything that is final goes to the sequencer, as the blocks of
+/// the tile's slot. Returns what is not final.
 template <int D>
-Border<D> triangulate_tile(TilePoints<D> tile, const Outside<D>& outside,
-                           const TileOptions& options, Sequencer<D>& sequencer,
-                           StreamCounts& counts, std::uint32_t slot,
-                           const std::function<void()>& progress, Task& task);
+Border<D> triangulate_tile(const TileContext<D>& context, TileInput<D> tile, Task& task);
 
-/// Merges the borders of a node of the tree over tiles and settles what is final now, as block
-/// `place`; counts it, but writes nothing.
+/// Merges the borders of a node of the tree over tiles and settles what is final now, as a block of
+/// the stream; counts it, but writes nothing.
 template <int D>
-Settled<D> merge_borders_of(std::span<Border<D>> children, const TileNode<D>& node,
-                            const Outside<D>& outside, const TileOptions& options,
-                            StreamCounts& counts, BlockPlace place, Task& task);
+Settled<D> merge_borders_of(const TileContext<D>& context, const MergeInput<D>& input, Task& task);
 
-/// The same, and sends what is final to `sequencer`, as the one block of `slot`. Adds the number of
-/// simplices that became final to `final_simplices`.
+/// The same, and sends what is final to the sequencer, as the one block of its slot.
 template <int D>
-Border<D> merge_tiles(std::span<Border<D>> children, const TileNode<D>& node,
-                      const Outside<D>& outside, const TileOptions& options,
-                      Sequencer<D>& sequencer, StreamCounts& counts, std::uint32_t slot,
-                      std::uint64_t& final_simplices, Task& task);
+MergedTiles<D> merge_tiles(const TileContext<D>& context, const MergeInput<D>& input, Task& task);
 
 }  // namespace spillway::detail

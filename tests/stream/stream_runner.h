@@ -8,9 +8,12 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/meshes/common/stream_numbers.h"
 #include "formats/points/common/point_writer.h"
 #include "formats/points/create_points.h"
 #include "stream/pipeline.h"
@@ -26,15 +29,12 @@ class KeepingWriter : public MeshStreamWriter {
 
   void write(MeshBlock&& block) override {
     ASSERT_EQ(block.corners.size() % corners_, 0U);
-    std::vector<std::uint64_t> numbers;
-    for (std::size_t i = 0; i < block.vertices.size(); ++i) {
-      live_.insert(next_);
-      numbers.push_back(next_++);
-    }
+    const StreamNumbers numbers(live_.announced(), block);
     for (const std::uint64_t v : block.imported) {
       EXPECT_TRUE(live_.contains(v)) << "vertex " << v << " is imported, but not alive";
-      numbers.push_back(v);
     }
+    for (std::size_t v = 0; v < block.vertices.size(); ++v) live_.enter(numbers[v], {});
+    live_.announce(block.vertices.size());
     std::set<std::uint32_t> used(block.finalized.begin(), block.finalized.end());
     for (const std::uint32_t c : block.corners) {
       ASSERT_LT(c, numbers.size());
@@ -47,7 +47,7 @@ class KeepingWriter : public MeshStreamWriter {
     }
     for (const std::uint32_t v : block.finalized) {
       ASSERT_LT(v, numbers.size());
-      EXPECT_EQ(live_.erase(numbers[v]), 1U) << "vertex finalized twice";
+      EXPECT_TRUE(live_.forget(numbers[v])) << "vertex finalized twice";
     }
     vertices.insert(vertices.end(), block.vertices.begin(), block.vertices.end());
     index.insert(index.end(), block.input_index.begin(), block.input_index.end());
@@ -66,8 +66,7 @@ class KeepingWriter : public MeshStreamWriter {
 
  private:
   std::size_t corners_;
-  std::uint64_t next_ = 0;
-  std::set<std::uint64_t> live_;
+  LiveVertices<std::monostate> live_;
 };
 
 /// A file of points in the test's temporary folder, of this process alone.

@@ -1,6 +1,7 @@
 spillway_test(stream_unit_test unit
   SOURCES stream/sinks/contour_test.cpp stream/output/heights_test.cpp stream/plan/memory_plan_test.cpp
           stream/tiles/point_span_test.cpp stream/tiles/tile_tree_test.cpp
+          stream/triangulate/merge_tree_test.cpp
   LIBS spillway_stream)
 
 spillway_test(stream_property_test property

@@ -33,7 +33,7 @@ struct GenerateOptions {
   const CommandLine* app = nullptr;
   std::string family;
   std::string count;
-  std::string dimension = "2";
+  int dimension = 2;
   std::uint64_t seed = 1;
   PointOutput output;
   ReportOptions report;
@@ -44,7 +44,7 @@ int run(const GenerateOptions& options) {
   GeneratorOptions what;
   what.family = family_by_name(options.family);
   what.count = parse_point_count(options.count);
-  what.dimension = options.dimension == "3" ? 3 : 2;
+  what.dimension = options.dimension;
   what.seed = options.seed;
   if (what.family == Family::kTerrain) {
     refuse_given(*options.app, {"--dim"}, "on terrain, which always has z");
@@ -98,7 +98,7 @@ Subcommand add_generate(CommandLine& root) {
               parse_point_count)
       .required()
       .value_name("N");
-  add_choice(app, "--dim", options->dimension, {"2", "3"}, "Dimension; terrain always has z");
+  add_dimension(app, options->dimension, "Dimension; terrain always has z");
   take_whole_number(app.add_option("--seed", options->seed, "Another seed, other points"))
       .value_name("S")
       .show_default();

@@ -210,8 +210,7 @@ Subcommand add_render(CommandLine& root) {
   app.add_option("-o,--output", options->output, "PNG file; - is standard output")
       .required()
       .value_name("FILE");
-  add_choice(app, "--dim", options->dimension, {"2", "3"},
-             "How points are triangulated: a terrain, or tetrahedra");
+  add_dimension(app, options->dimension, "How points are triangulated: a terrain, or tetrahedra");
   const std::string group = "Picture";
   take_whole_number(app.add_option("--size", options->size, "Pixels of the longer side"),
                     kLeastSize, kMostSize)

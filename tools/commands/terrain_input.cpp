@@ -125,7 +125,7 @@ class TerrainFeed {
   }
 
   void feed_points(FileSystem& files) {
-    if (options_.dimension == "3") {
+    if (options_.dimension == 3) {
       feed_points_in<3>(files);
     } else {
       feed_points_in<2>(files);

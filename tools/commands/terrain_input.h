@@ -24,8 +24,8 @@ namespace spillway::detail {
 /// The command line of such a subcommand.
 struct TerrainOptions : TriangulationOptions {
   std::string mesh_format;
-  std::string dimension = "2";  ///< in which points are triangulated: 2 or 3
-  bool tetrahedra = false;      ///< whether a mesh may be of tetrahedra, too
+  int dimension = 2;        ///< in which points are triangulated: 2 or 3
+  bool tetrahedra = false;  ///< whether a mesh may be of tetrahedra, too
   /// Options that tell of points elsewhere, and have a meaning of their own here.
   std::vector<std::string_view> own_options;
 };

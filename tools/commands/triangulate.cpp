@@ -52,7 +52,7 @@ constexpr const char* kExamples =
 struct TriangulateOptions : TriangulationOptions {
   std::string output;
   std::string output_format;
-  std::string dimension = "2";
+  int dimension = 2;
   bool input_index = false;
   std::string core_list;
   bool parts = false;
@@ -67,8 +67,8 @@ void add_options(CommandLine& app, TriangulateOptions& options) {
   app.add_option("-o,--output", options.output, "Mesh file; - is standard output, as spm")
       .required()
       .value_name("FILE");
-  add_choice(app, "--dim", options.dimension, {"2", "3"},
-             "2: triangles over x, y, with z carried along; 3: tetrahedra");
+  add_dimension(app, options.dimension,
+                "2: triangles over x, y, with z carried along; 3: tetrahedra");
   app.add_flag("--id", options.input_index, "Write each vertex's index in the input");
   app.add_flag(
       "--parts", options.parts,
@@ -244,7 +244,7 @@ int run(const TriangulateOptions& options) {
     throw UsageError("a mesh stream is nothing for a terminal: name a file, or pipe it on");
   }
   RunStatistics statistics;
-  statistics.dimension = options.dimension == "3" ? 3 : 2;
+  statistics.dimension = options.dimension;
   statistics.inputs = options.inputs;
   statistics.output = options.output;
   statistics.output_format = target.format->name;

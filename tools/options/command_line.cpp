@@ -187,6 +187,11 @@ Option CommandLine::add_option(const std::string& names, std::optional<double>& 
   return Option(parts_->app->add_option(names, value, description));
 }
 
+Option CommandLine::add_option(const std::string& names, int& value,
+                               const std::string& description) {
+  return Option(parts_->app->add_option(names, value, description));
+}
+
 Option CommandLine::add_option(const std::string& names, unsigned& value,
                                const std::string& description) {
   return Option(parts_->app->add_option(names, value, description));

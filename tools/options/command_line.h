@@ -103,6 +103,7 @@ class CommandLine {
   Option add_option(const std::string& names, double& value, const std::string& description);
   Option add_option(const std::string& names, std::optional<double>& value,
                     const std::string& description);
+  Option add_option(const std::string& names, int& value, const std::string& description);
   Option add_option(const std::string& names, unsigned& value, const std::string& description);
   Option add_option(const std::string& names, std::uint64_t& value, const std::string& description);
   /// Any number of values.

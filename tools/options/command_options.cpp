@@ -98,6 +98,13 @@ Option add_choice(CommandLine& app, const std::string& name, std::string& value,
   return option;
 }
 
+Option add_dimension(CommandLine& app, int& dimension, const std::string& description) {
+  return app.add_option("--dim", dimension, description)
+      .one_of({"2", "3"})
+      .value_name("2|3")
+      .show_default(std::to_string(dimension));
+}
+
 void add_report_options(CommandLine& app, ReportOptions& options) {
   add_choice(app, "--progress", options.progress, {"auto", "plain", "json", "none"},
              "Progress on standard error");

@@ -67,6 +67,9 @@ inline void refuse_given(const CommandLine& app, std::initializer_list<std::stri
 Option add_choice(CommandLine& app, const std::string& name, std::string& value,
                   const std::vector<std::string>& words, const std::string& description);
 
+/// --dim: 2 or 3.
+Option add_dimension(CommandLine& app, int& dimension, const std::string& description);
+
 /// A finite decimal number, like 12, -0.5 or 1e6; nothing for any other text, hexadecimal numbers
 /// and such with blanks included.
 std::optional<double> parse_number(std::string_view text);

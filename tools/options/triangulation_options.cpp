@@ -58,8 +58,8 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
              "What triangulates base cases; both give the same mesh");
 }
 
-void check_duplicates(const TriangulationOptions& options, const std::string& dimension) {
-  if (dimension != "3") return;
+void check_duplicates(const TriangulationOptions& options, int dimension) {
+  if (dimension != 3) return;
   refuse_given(*options.app, {"--duplicates"},
                "with --dim 3, as it chooses a height for points of equal x and y");
 }

@@ -44,7 +44,7 @@ inline constexpr std::array<std::string_view, 6> kTriangulationOptionNames = {
 
 /// Throws UsageError if --duplicates is given, though points of equal x and y are no duplicates:
 /// in three dimensions.
-void check_duplicates(const TriangulationOptions& options, const std::string& dimension);
+void check_duplicates(const TriangulationOptions& options, int dimension);
 
 /// Throws UsageError if --duplicates is given for points without heights.
 void check_heights(const TriangulationOptions& options, const PointSource& source);

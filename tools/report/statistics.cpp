@@ -7,8 +7,26 @@
 namespace spillway::detail {
 namespace {
 
+const char* name_of(TaskKind kind) {
+  switch (kind) {
+    case TaskKind::kNode:
+      return "node";
+    case TaskKind::kBaseCase:
+      return "base_case";
+    case TaskKind::kDivide:
+      return "divide";
+    case TaskKind::kBorder:
+      return "border";
+    case TaskKind::kAccept:
+      return "accept";
+    case TaskKind::kNeighbours:
+      return "neighbours";
+  }
+  return "";
+}
+
 Json to_json(const Task& task) {
-  Json json = {{"kind", task.kind},
+  Json json = {{"kind", name_of(task.kind)},
                {"points", task.points},
                {"seconds", task.seconds},
                {"pieces", task.pieces}};

@@ -1,16 +1,18 @@
 #include "formats/meshes/common/mesh_block.h"
 
+#include <algorithm>
+
+#include "formats/meshes/common/stream_numbers.h"
+
 namespace spillway::detail {
 
 void append_stream_numbers(const MeshBlock& block, std::uint64_t first,
                            std::vector<std::uint64_t>& corners) {
+  const StreamNumbers numbers(first, block);
   const std::size_t begin = corners.size();
   corners.resize(begin + block.corners.size());
-  const std::size_t vertices = block.vertices.size();
-  for (std::size_t i = 0; i < block.corners.size(); ++i) {
-    const std::uint32_t number = block.corners[i];
-    corners[begin + i] = number < vertices ? first + number : block.imported[number - vertices];
-  }
+  std::transform(block.corners.begin(), block.corners.end(), corners.begin() + begin,
+                 [&numbers](std::uint32_t v) { return numbers[v]; });
 }
 
 MeshHeader header_of_mesh(const MeshStreamHeader& header, const MeshTotals& totals) {

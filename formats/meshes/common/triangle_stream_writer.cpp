@@ -16,25 +16,22 @@ TriangleStreamWriter::TriangleStreamWriter(MeshStreamHeader header, std::string 
 void TriangleStreamWriter::write(MeshBlock&& block) {
   move_to_world(header_, block);
   take_positions(block);
+  check_short_numbers(block);
   if (block.corners.size() % 3 != 0) fail("a block's corners make no whole number of triangles");
   for (std::size_t i = 0; i < block.corners.size(); i += 3) {
     std::array<Point<3>, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t number = block.corners[i + k];
-      if (number >= positions_.size()) fail(fmt::format("a block has no short number {}", number));
-      corners[k] = positions_[number];
-    }
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = positions_[block.corners[i + k]];
     put_triangle(corners);
     ++triangles_;
   }
-  settle_vertices(block);
+  live_.settle(block, positions_);
   block.clear();
 }
 
 void TriangleStreamWriter::finish(const MeshTotals& totals) {
-  if (totals.vertices != vertices_ || totals.simplices != triangles_) {
+  if (totals.vertices != live_.announced() || totals.simplices != triangles_) {
     fail(fmt::format("{} vertices and {} triangles were promised, but {} and {} came",
-                     totals.vertices, totals.simplices, vertices_, triangles_));
+                     totals.vertices, totals.simplices, live_.announced(), triangles_));
   }
   complete();
 }
@@ -49,27 +46,20 @@ void TriangleStreamWriter::take_positions(const MeshBlock& block) {
   }
   positions_ = block.vertices;
   for (const std::uint64_t number : block.imported) {
-    const auto found = live_.find(number);
-    if (found == live_.end()) {
+    const Point<3>* const position = live_.find(number);
+    if (position == nullptr) {
       fail(fmt::format("a block imports vertex {}, which has not come or comes no more", number));
     }
-    positions_.push_back(found->second);
+    positions_.push_back(*position);
   }
 }
 
-/// Forgets the vertices that come no more and keeps the new ones that may.
-void TriangleStreamWriter::settle_vertices(const MeshBlock& block) {
-  const std::size_t fresh = block.vertices.size();
-  finalized_.assign(positions_.size(), false);
-  for (const std::uint32_t number : block.finalized) {
-    if (number >= positions_.size()) fail(fmt::format("a block has no short number {}", number));
-    finalized_[number] = true;
-    if (number >= fresh) live_.erase(block.imported[number - fresh]);
+void TriangleStreamWriter::check_short_numbers(const MeshBlock& block) const {
+  for (const auto* const numbers : {&block.corners, &block.finalized}) {
+    for (const std::uint32_t number : *numbers) {
+      if (number >= positions_.size()) fail(fmt::format("a block has no short number {}", number));
+    }
   }
-  for (std::size_t i = 0; i < fresh; ++i) {
-    if (!finalized_[i]) live_.emplace(vertices_ + i, block.vertices[i]);
-  }
-  vertices_ += fresh;
 }
 
 void TriangleStreamWriter::fail(const std::string& what) const {

@@ -3,9 +3,9 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
+#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
 
 namespace spillway::detail {
@@ -34,15 +34,13 @@ class TriangleStreamWriter : public MeshStreamWriter {
 
  private:
   void take_positions(const MeshBlock& block);
-  void settle_vertices(const MeshBlock& block);
+  void check_short_numbers(const MeshBlock& block) const;
 
   MeshStreamHeader header_;
   std::string name_;
-  std::unordered_map<std::uint64_t, Point<3>> live_;  // vertices that may still be used
-  std::vector<Point<3>> positions_;                   // of the block in work, by short number
-  std::vector<bool> finalized_;                       // likewise
-  std::uint64_t vertices_ = 0;                        // written so far
-  std::uint64_t triangles_ = 0;                       // written so far
+  LiveVertices<Point<3>> live_;
+  std::vector<Point<3>> positions_;  // of the block in work, by short number
+  std::uint64_t triangles_ = 0;      // written so far
 };
 
 }  // namespace spillway::detail

@@ -9,7 +9,7 @@
 
 #include "formats/bytes/fields.h"
 #include "formats/bytes/line_reader.h"
-#include "formats/meshes/common/live_vertices.h"
+#include "formats/meshes/common/import_check.h"
 #include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/common/mesh_notes.h"
@@ -62,7 +62,6 @@ class SmaReader : public MeshStreamReader {
     first_ = totals_.vertices;
     gone_.clear();
     imported_.clear();
-    live_.begin_block();
     for (; has_line_; has_line_ = lines_.next(line_)) {
       if (is_full(block)) break;
       read_line(block);
@@ -225,7 +224,7 @@ class SmaReader : public MeshStreamReader {
     }
     const auto [entry, is_new] = imported_.try_emplace(vertex);
     if (is_new) {
-      if (!live_.import(vertex)) fail_for_gone(vertex);
+      if (!imports_.import(vertex)) fail_for_gone(vertex);
       entry->second.place = static_cast<std::uint32_t>(block.imported.size());
       block.imported.push_back(vertex);
     }
@@ -246,12 +245,7 @@ class SmaReader : public MeshStreamReader {
         if ((number & kImportedMark) != 0) number = vertices + (number & ~kImportedMark);
       }
     }
-    for (std::uint32_t i = 0; i < vertices; ++i) {
-      if (!gone_[i]) live_.announce(first_ + i);
-    }
-    for (const auto& [vertex, state] : imported_) {
-      if (state.gone) live_.finalize(vertex);
-    }
+    imports_.settle(block);
   }
 
   void check_end() const {
@@ -286,7 +280,7 @@ class SmaReader : public MeshStreamReader {
   std::optional<std::uint64_t> expected_vertices_;
   std::optional<std::uint64_t> expected_triangles_;
   MeshTotals totals_;  // so far
-  LiveVertices live_;
+  ImportCheck imports_;
 
   // Of the block in work:
   std::uint64_t first_ = 0;  // number of its first vertex

@@ -13,6 +13,7 @@
 #include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/mesh_block.h"
 #include "formats/meshes/common/mesh_notes.h"
+#include "formats/meshes/common/stream_numbers.h"
 #include "formats/meshes/sma/sma_reader.h"
 #include "src/error.h"
 
@@ -120,14 +121,11 @@ class SmaWriter : public MeshStreamWriter {
       fmt::format_to(std::back_inserter(text), FMT_COMPILE("f {} {} {}\n"), written(i),
                      written(i + 1), written(i + 2));
     }
-    const std::uint64_t first = vertices_ - block.vertices.size();
+    const StreamNumbers stream_number(vertices_ - block.vertices.size(), block);
     for (const std::uint32_t number : block.finalized) {
       if (!ends[number]) continue;
       ends[number] = false;
-      const std::uint64_t vertex = number < block.vertices.size()
-                                       ? first + number
-                                       : block.imported[number - block.vertices.size()];
-      fmt::format_to(std::back_inserter(text), FMT_COMPILE("x {}\n"), vertex + 1);
+      fmt::format_to(std::back_inserter(text), FMT_COMPILE("x {}\n"), stream_number[number] + 1);
     }
     put({text.data(), text.size()});
   }

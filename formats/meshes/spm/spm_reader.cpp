@@ -7,7 +7,7 @@
 
 #include "formats/blocks/block_stream.h"
 #include "formats/blocks/columns.h"
-#include "formats/meshes/common/live_vertices.h"
+#include "formats/meshes/common/import_check.h"
 #include "formats/meshes/common/mesh_notes.h"
 #include "formats/meshes/spm/spm_block.h"
 #include "formats/meshes/spm/spm_format.h"
@@ -31,7 +31,6 @@ class SpmReader : public MeshStreamReader {
   bool read(MeshBlock& block) override {
     block.clear();
     if (ended_) return false;
-    live_.begin_block();
     std::uint32_t kind = stream_.next();
     if (kind == kSpmTrailer) {
       parse_trailer();
@@ -76,14 +75,14 @@ class SpmReader : public MeshStreamReader {
 
   void parse_imported(std::vector<std::uint64_t>& imported) {
     const auto count = stream_.take<std::uint32_t>();
-    if (count == 0 || count > live_.size()) {
+    if (count == 0 || count > imports_.live()) {
       stream_.fail("a block imports more vertices than there are, or none");
     }
     ColumnReader columns(stream_.left(), stream_.where());
     columns.read(count, imported);
     columns.expect_end();
     for (const std::uint64_t number : imported) {
-      if (!live_.import(number)) {
+      if (!imports_.import(number)) {
         stream_.fail(
             fmt::format("a block imports vertex {}, which has not come, is finalized, or is "
                         "imported twice",
@@ -101,18 +100,7 @@ class SpmReader : public MeshStreamReader {
     if (counts.numbers > counts.vertices + block.imported.size()) {
       stream_.fail("a block has short numbers that stand for no vertex");
     }
-    // Numbers in `finalized` are sorted: those of new vertices come first.
-    auto finalized = block.finalized.begin();
-    for (std::uint32_t i = 0; i < counts.vertices; ++i) {
-      if (finalized != block.finalized.end() && *finalized == i) {
-        ++finalized;
-      } else {
-        live_.announce(vertices_ + i);
-      }
-    }
-    for (; finalized != block.finalized.end(); ++finalized) {
-      live_.finalize(block.imported[*finalized - counts.vertices]);
-    }
+    imports_.settle(block);
     vertices_ += counts.vertices;
     simplices_ += counts.simplices;
   }
@@ -133,7 +121,7 @@ class SpmReader : public MeshStreamReader {
 
   BlockStream stream_;
   MeshStreamHeader header_;
-  LiveVertices live_;
+  ImportCheck imports_;
   std::uint64_t vertices_ = 0;   // given out so far
   std::uint64_t simplices_ = 0;  // given out so far
   MeshTotals totals_;

@@ -71,16 +71,14 @@ inline std::vector<Triangle> triangles_of(const StreamedMesh& mesh) {
   std::vector<Point<3>> vertices;
   std::vector<Triangle> result;
   for (const MeshBlock& block : mesh.blocks) {
-    const std::size_t first = vertices.size();
+    const StreamNumbers numbers(vertices.size(), block);
     for (const Point<3>& vertex : block.vertices) {
       vertices.push_back(mesh.header.lattice ? mesh.header.lattice->to_world(vertex) : vertex);
     }
     for (std::size_t i = 0; i < block.corners.size(); i += 3) {
       Triangle triangle;
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t n = block.corners[i + k];
-        triangle[k] = vertices.at(
-            n < block.vertices.size() ? first + n : block.imported.at(n - block.vertices.size()));
+        triangle[k] = vertices.at(numbers[block.corners[i + k]]);
       }
       result.push_back(turned(triangle));
     }

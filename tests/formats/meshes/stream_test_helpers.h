@@ -10,6 +10,7 @@
 
 #include "formats/inputs/open_mesh_stream.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/meshes/common/stream_numbers.h"
 #include "formats/meshes/mesh_stream_writer.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
@@ -152,21 +153,18 @@ inline std::vector<std::uint64_t> turned(std::vector<std::uint64_t> simplex) {
 inline FlatMesh flat(const StreamedMesh& mesh) {
   FlatMesh all;
   for (const MeshBlock& block : mesh.blocks) {
-    const std::uint64_t first = all.vertices.size();
-    const auto number = [&](std::uint32_t n) {
-      return n < block.vertices.size() ? first + n : block.imported.at(n - block.vertices.size());
-    };
+    const StreamNumbers number(all.vertices.size(), block);
     all.vertices.insert(all.vertices.end(), block.vertices.begin(), block.vertices.end());
     all.input_index.insert(all.input_index.end(), block.input_index.begin(),
                            block.input_index.end());
     const std::size_t corners = mesh.header.dimension + 1;
     for (std::size_t i = 0; i < block.corners.size(); i += corners) {
       std::vector<std::uint64_t> simplex;
-      for (std::size_t k = 0; k < corners; ++k) simplex.push_back(number(block.corners[i + k]));
+      for (std::size_t k = 0; k < corners; ++k) simplex.push_back(number[block.corners[i + k]]);
       all.simplices.push_back(turned(simplex));
     }
     for (const std::uint32_t n : block.finalized) {
-      EXPECT_TRUE(all.finalized.emplace(number(n), all.simplices.size()).second);
+      EXPECT_TRUE(all.finalized.emplace(number[n], all.simplices.size()).second);
     }
   }
   std::sort(all.simplices.begin(), all.simplices.end());

@@ -13,7 +13,6 @@
 #include "src/generators/generators.h"
 #include "stream/checker/checker.h"
 #include "stream/checker/open_vertices.h"
-#include "stream/checker/probing_table.h"
 #include "tests/stream/checker/mesh_streaming.h"
 #include "tests/stream/checker/mesh_surgery.h"
 
@@ -329,14 +328,15 @@ TEST(OpenVerticesTest, RefusesVerticesThatComeNoMore) {
   block.vertices.resize(3);
   std::vector<Point<2>> points = {{0, 0}, {1, 0}, {0, 1}};
   std::vector<std::uint32_t> slots;
-  live.enter(block, {false, true, false}, points, slots);
+  block.finalized = {1};
+  live.enter(block, points, slots);
   live.finalize(slots[1]);
   EXPECT_THROW(live.finalize(slots[1]), Error);
-  block.vertices.clear();
+  block.clear();
   for (const std::uint64_t imported : {1, 3}) {
     block.imported = {imported};
     points.clear();
-    EXPECT_THROW(live.enter(block, {false}, points, slots), Error);
+    EXPECT_THROW(live.enter(block, points, slots), Error);
   }
 }
 
@@ -344,10 +344,11 @@ TEST(OpenVerticesTest, SlotsOfHeldVerticesAreNotUsedAgainBeforeRelease) {
   OpenVertices<2> live;
   MeshBlock block;
   block.vertices.resize(1);
+  block.finalized = {0};
   std::vector<std::uint32_t> slots;
   const auto add = [&] {
     std::vector<Point<2>> points = {{3, 4}};
-    live.enter(block, {true}, points, slots);
+    live.enter(block, points, slots);
     return slots[0];
   };
   const std::uint32_t first = add();
@@ -356,33 +357,6 @@ TEST(OpenVerticesTest, SlotsOfHeldVerticesAreNotUsedAgainBeforeRelease) {
   EXPECT_NE(add(), first);
   live.release(first);
   EXPECT_EQ(add(), first);
-}
-
-struct Key {
-  std::uint64_t number = 0;
-  [[nodiscard]] bool empty() const { return number == 0; }
-  [[nodiscard]] std::uint64_t scattered() const { return number << 60; }  // sixteen homes only
-  [[nodiscard]] bool same_key(const Key& other) const { return number == other.number; }
-};
-
-TEST(ProbingTableTest, FindsWhatIsThereAndNothingElseAfterManyErasures) {
-  ProbingTable<Key> table;
-  std::vector<bool> there(401);
-  std::mt19937 random(2);  // NOLINT(bugprone-random-generator-seed)
-  for (int step = 0; step < 5000; ++step) {
-    const std::uint64_t number = 1 + random() % (there.size() - 1);
-    if (there[number]) {
-      table.erase(table.find({number}));
-    } else {
-      table.insert({number});
-    }
-    there[number] = !there[number];
-    if (step % 50 != 0) continue;
-    for (std::uint64_t n = 1; n < there.size(); ++n) {
-      ASSERT_EQ(table.find({n}) != nullptr, there[n]);
-    }
-  }
-  EXPECT_EQ(table.size(), static_cast<std::size_t>(std::count(there.begin(), there.end(), true)));
 }
 
 }  // namespace

@@ -24,13 +24,16 @@ class ProbingTable {
   [[nodiscard]] std::size_t size() const { return size_; }
 
   /// The entry with the same key, or nullptr. Valid until the next insert() or erase().
-  [[nodiscard]] Entry* find(const Entry& key) {
+  [[nodiscard]] const Entry* find(const Entry& key) const {
     std::size_t i = home(key);
     while (!entries_[i].empty()) {
       if (entries_[i].same_key(key)) return &entries_[i];
       i = after(i);
     }
     return nullptr;
+  }
+  [[nodiscard]] Entry* find(const Entry& key) {
+    return const_cast<Entry*>(std::as_const(*this).find(key));
   }
 
   /// Adds an entry whose key is not there yet.
