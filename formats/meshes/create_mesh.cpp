@@ -16,7 +16,7 @@ void check_holds(const MeshFormat& format, const std::string& path, int dimensio
   if (dimension != 2 && !format.holds_tetrahedra) {
     const auto hold = [](const MeshFormat& other) { return other.holds_tetrahedra; };
     throw InvalidArgument(fmt::format("cannot write {}: {} holds no tetrahedra; choose {}", path,
-                                 format.title, list_of_formats(hold, "or")));
+                                      format.title, list_of_formats(hold, "or")));
   }
   if (has_input_index && !format.holds_input_index) {
     const auto hold = [](const MeshFormat& other) { return other.holds_input_index; };

@@ -23,8 +23,8 @@ const MeshFormat* mesh_format_of_extension(const std::string& path,
                                            MeshFormats formats = mesh_formats());
 
 /// The format to write `path` in: the one called `format_name`, or, if that is empty, the one of
-/// the path's extension; own_mesh_stream() for standard output. Throws InvalidArgument that lists what
-/// there is if neither names a format.
+/// the path's extension; own_mesh_stream() for standard output. Throws InvalidArgument that lists
+/// what there is if neither names a format.
 const MeshFormat& mesh_format(const std::string& path, const std::string& format_name,
                               MeshFormats formats = mesh_formats());
 

@@ -14,8 +14,8 @@ std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::str
                                                const PointWriterOptions& options,
                                                PointFormats formats = point_formats());
 
-/// The format that open_point_writer() chooses, which is one that is written. Throws InvalidArgument as
-/// it does.
+/// The format that open_point_writer() chooses, which is one that is written. Throws
+/// InvalidArgument as it does.
 const PointFormat& point_format_to_write(const std::string& path, const std::string& format_name,
                                          PointFormats formats = point_formats());
 

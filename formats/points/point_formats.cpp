@@ -66,7 +66,7 @@ const PointFormat* find_point_format(std::string_view name, PointFormats formats
 const PointFormat& point_format_by_name(std::string_view name, PointFormats formats) {
   if (const PointFormat* const format = find_point_format(name, formats)) return *format;
   throw InvalidArgument(fmt::format("there is no point format \"{}\"; choose {}", name,
-                               word_list(point_format_names(formats), "or")));
+                                    word_list(point_format_names(formats), "or")));
 }
 
 const PointFormat* point_format_of_bytes(std::string_view first_bytes, PointFormats formats) {

@@ -25,8 +25,8 @@ std::vector<std::string> written_point_format_names(PointFormats formats = point
 /// The format of that name; null if there is none.
 const PointFormat* find_point_format(std::string_view name, PointFormats formats = point_formats());
 
-/// The format of that name. Throws InvalidArgument that lists them otherwise. Which of those that begin
-/// as LAS a file has, its header tells, whatever the name says.
+/// The format of that name. Throws InvalidArgument that lists them otherwise. Which of those that
+/// begin as LAS a file has, its header tells, whatever the name says.
 const PointFormat& point_format_by_name(std::string_view name,
                                         PointFormats formats = point_formats());
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "formats/disk/scratch_folder.h"
-#include "formats/meshes/common/mesh_stream.h"
 #include "formats/meshes/common/mesh_format.h"
+#include "formats/meshes/common/mesh_stream.h"
 
 namespace spillway::detail {
 

@@ -363,8 +363,9 @@ MeshTarget mesh_target(const std::string& path, const std::string& format_name, 
   }
   if (parts && !format.stands_in_parts) {
     const auto stand = [](const MeshFormat& other) { return other.stands_in_parts; };
-    throw InvalidArgument(fmt::format("a mesh in parts is written as {}, not as {}: choose one of these",
-                                 list_of_formats(stand, "or"), format.name));
+    throw InvalidArgument(
+        fmt::format("a mesh in parts is written as {}, not as {}: choose one of these",
+                    list_of_formats(stand, "or"), format.name));
   }
   return {path, &format, parts};
 }

@@ -21,8 +21,8 @@ struct MeshTarget {
 };
 
 /// What the command line says, as mesh_format() takes it; the name of an index (`NAME.pvtu`) means
-/// its format in parts. Throws InvalidArgument for no format, and for parts on standard output or in a
-/// format that does not stand in parts. Looks at no file.
+/// its format in parts. Throws InvalidArgument for no format, and for parts on standard output or
+/// in a format that does not stand in parts. Looks at no file.
 MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts);
 
 /// The output of triangulate_over_ranks(). One of:

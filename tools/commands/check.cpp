@@ -206,7 +206,8 @@ Subcommand add_check(CommandLine& root) {
   CommandLine& app = root.add_subcommand("check", "Prove that a mesh is a Delaunay triangulation");
   options->app = &app;
   const auto is_stream = [](const MeshFormat& format) { return format.is_stream(); };
-  app.set_footer(fmt::format(fmt::runtime(kExamples), fmt::join(names_of_formats(is_stream), ", ")));
+  app.set_footer(
+      fmt::format(fmt::runtime(kExamples), fmt::join(names_of_formats(is_stream), ", ")));
   app.add_option("MESH", options->mesh, "Mesh file; - is a mesh stream from a pipe").required();
   app.add_option("--points", options->points,
                  "Prove, too, that the vertices are the distinct points of these files, in the "
