@@ -18,6 +18,8 @@ constexpr const char* kModule = "spillway_gdal.so";
 /// in the folder of libraries when installed.
 constexpr std::array<std::string_view, 3> kFolders = {".", "../lib/spillway",
                                                       "../" SPILLWAY_LIBRARY_FOLDER "/spillway"};
+/// The same, seen from the folder of Spillway's shared library: when installed, and when built.
+constexpr std::array<std::string_view, 2> kLibraryFolders = {"spillway", "../bin"};
 
 std::filesystem::path program_folder() {
   std::error_code error;
@@ -26,7 +28,22 @@ std::filesystem::path program_folder() {
   return program.parent_path();
 }
 
+/// The folder of the file that this code is in: of a program that has it in itself, or of the
+/// shared library. Empty if the system does not tell.
+std::filesystem::path own_folder() {
+  Dl_info info{};
+  if (::dladdr(reinterpret_cast<const void*>(&own_folder), &info) == 0) return {};
+  std::error_code ignored;
+  return std::filesystem::canonical(info.dli_fname, ignored).parent_path();
+}
+
 std::filesystem::path find_module() {
+  const std::filesystem::path library = own_folder();
+  for (const std::string_view candidate : kLibraryFolders) {
+    std::error_code ignored;  // what cannot be looked at is not there
+    const std::filesystem::path path = (library / candidate / kModule).lexically_normal();
+    if (!library.empty() && std::filesystem::is_regular_file(path, ignored)) return path;
+  }
   const std::filesystem::path folder = program_folder();
   for (const std::string_view candidate : kFolders) {
     std::error_code ignored;  // what cannot be looked at is not there

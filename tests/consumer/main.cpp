@@ -4,12 +4,15 @@
 #include <spillway/delaunay.h>
 #include <spillway/version.h>
 
+#include "streams.h"
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <random>
 #include <set>
+#include <stdexcept>
 #include <vector>
 
 namespace {
@@ -168,4 +171,9 @@ int main() {
   catch_errors();
   cancel();
   keep_subnormal_numbers();
+  try {
+    use_streams();
+  } catch (const std::logic_error& error) {
+    expect(false, error.what());
+  }
 }

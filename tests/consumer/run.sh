@@ -9,7 +9,7 @@
 #   fast-math        the same where the program is built with -ffast-math
 #   headers          every header compiles alone, without warnings, and includes nothing but the standard's and its own
 #   symbols          the shared library exports the public names alone
-#   docs             the code in docs/library.md is that of main.cpp
+#   docs             the code in docs/library.md is that of the program
 #   refusal          Spillway itself is not built with -ffast-math
 set -euo pipefail
 build=$(realpath "$1")
@@ -68,11 +68,11 @@ case $what in
     export PKG_CONFIG_PATH=${pc%/*}
     read -ra flags <<<"$(pkg-config --cflags spillway)"
     read -ra libraries <<<"$(pkg-config --libs spillway)"
-    "$CXX" "${strict[@]}" "${flags[@]}" "$here/main.cpp" -o "$work/main" "${libraries[@]}"
+    "$CXX" "${strict[@]}" "${flags[@]}" "$here/main.cpp" "$here/streams.cpp" -o "$work/main" "${libraries[@]}"
     LD_LIBRARY_PATH=$(pkg-config --variable=libdir spillway) "$work/main"
     read -ra libraries <<<"$(pkg-config --static --libs spillway)"
     find "$prefix" -name 'libspillway.so*' -delete
-    "$CXX" "${strict[@]}" "${flags[@]}" "$here/main.cpp" -o "$work/main" "${libraries[@]}"
+    "$CXX" "${strict[@]}" "${flags[@]}" "$here/main.cpp" "$here/streams.cpp" -o "$work/main" "${libraries[@]}"
     "$work/main"
     ;;
   headers)
@@ -96,17 +96,17 @@ case $what in
     install_and_move
     nm -DC --defined-only "$(find "$prefix" -name libspillway.so)" | cut -d' ' -f3- >"$work/symbols"
     grep -q '^spillway::Delaunay<3, int>::locate' "$work/symbols" || fail "locate is not exported"
-    if grep -vE '^((typeinfo|typeinfo name|vtable) for )?spillway::(Delaunay<[23], (int|long)>|Error)(::|$)|^spillway::(to_string|version)\(' \
+    if grep -vE '^((typeinfo|typeinfo name|vtable) for )?spillway::(Delaunay<[23], (int|long)>|Error|Context|PointSource|MeshSink|MeshInMemory)(::|$)|^spillway::(to_string|version|open_points|points_in_memory|open_mesh|mesh_to|triangulate)[[(]' \
       "$work/symbols"; then
       fail "is exported, too"
     fi
     ;;
   docs)
-    tr -d ' \n' <"$here/main.cpp" >"$work/program"
+    cat "$here/main.cpp" "$here/streams.cpp" | tr -d ' \n' >"$work/program"
     sed -n '/^```cpp/,/^```$/{/^```/d;s# *//.*##;s/ //g;/./p}' "$here/../../docs/library.md" >"$work/lines"
     (($(wc -l <"$work/lines") > 30)) || fail "there is no code"
     while read -r line; do
-      grep -qF -- "$line" "$work/program" || fail "not in main.cpp: $line"
+      grep -qF -- "$line" "$work/program" || fail "in neither source: $line"
     done <"$work/lines"
     ;;
   refusal)

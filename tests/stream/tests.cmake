@@ -20,17 +20,17 @@ spillway_test(point_input_test unit
 
 spillway_test(dem_test property
   SOURCES stream/sinks/dem_test.cpp stream/sinks/dem_oracle_test.cpp
-  LIBS spillway_stream
+  LIBS spillway_stream_ranks
   TIMEOUT 300)
 
 spillway_mpi_test(rank_pipeline_test
   SOURCES stream/ranks/rank_pipeline_test.cpp
-  LIBS spillway_stream spillway_generators
+  LIBS spillway_stream_ranks spillway_generators
   RANKS 1 2 3 4 5 8
   TIMEOUT 600)
 
 spillway_mpi_test(rank_output_test
   SOURCES stream/ranks/rank_output_test.cpp
-  LIBS spillway_stream
+  LIBS spillway_stream_ranks
   RANKS 1 2 3 5
   TIMEOUT 300)
