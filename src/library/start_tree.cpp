@@ -9,7 +9,7 @@
 namespace spillway::detail {
 namespace {
 
-/// Smaller parts are built by the thread that made them.
+/// Smaller parts are built by one thread.
 constexpr std::size_t kSmallestTask = std::size_t{1} << 13;
 
 }  // namespace
@@ -31,7 +31,6 @@ void StartTree<D, Index>::build(std::size_t node, std::span<StartPoint<D, Index>
   Box<D> box;
   for (const auto& start : sample) box.expand(start.point);
   const int axis = box.longest_axis();
-  // The places of all coordinates and cells are in order, so the tree is the same every time.
   const auto less = [axis](const StartPoint<D, Index>& a, const StartPoint<D, Index>& b) {
     return a.point[axis] != b.point[axis] ? a.point[axis] < b.point[axis] : a.point < b.point;
   };
@@ -39,16 +38,14 @@ void StartTree<D, Index>::build(std::size_t node, std::span<StartPoint<D, Index>
   const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(half);
   std::nth_element(sample.begin(), middle, sample.end(), less);
   cuts_[node] = {middle->point[axis], static_cast<std::uint32_t>(axis)};
-  TaskGroup group;
-  for (const bool upper : {false, true}) {
-    const auto part = upper ? sample.subspan(half) : sample.first(half);
-    const auto work = [this, node, upper, part] { build(2 * node + (upper ? 1 : 0), part); };
-    if (part.size() < kSmallestTask) {
-      work();
-    } else {
-      group.run(work);
-    }
+  if (sample.size() < kSmallestTask) {
+    build(2 * node, sample.first(half));
+    build(2 * node + 1, sample.subspan(half));
+    return;
   }
+  TaskGroup group;
+  group.run([=, this] { build(2 * node, sample.first(half)); });
+  group.run([=, this] { build(2 * node + 1, sample.subspan(half)); });
   group.wait();
 }
 
