@@ -8,13 +8,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <numeric>
-#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>

@@ -29,6 +29,12 @@ spillway_mpi_test(ranks_test
   LIBS spillway_ranks
   RANKS 1 2 3 5 8)
 
+if(NOT SPILLWAY_MPI)
+  spillway_test(one_rank_test unit
+    SOURCES distributed/one_rank_test.cpp
+    LIBS spillway_ranks)
+endif()
+
 spillway_mpi_test(distributed_delaunay_test
   SOURCES distributed/delaunay_test.cpp
   LIBS spillway_distributed spillway_generators

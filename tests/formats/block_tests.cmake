@@ -5,3 +5,6 @@ spillway_test(blocks_test unit
     formats/disk/scratch_folder_test.cpp
     formats/points/spp/spp_test.cpp
   LIBS spillway_formats fmt::fmt)
+spillway_test(json_test unit
+  SOURCES formats/bytes/json_test.cpp
+  LIBS spillway_formats)
