@@ -45,19 +45,18 @@ void run(TileEngine<D>& engine, PointSource& source, MemoryBudget& budget,
 }  // namespace
 
 template <int D>
-StreamFigures triangulate_stream(PointSource& source, MeshStreamWriter& writer,
-                                 ScratchFolder& scratch, MemoryBudget& budget,
-                                 const StreamOptions& options) {
-  TileEngine<D> engine({source.lattice(), source.expected(), source.extent()}, writer, scratch,
+StreamFigures triangulate_stream(PointSource& source, BlockSink& sink, ScratchFolder& scratch,
+                                 MemoryBudget& budget, const StreamOptions& options) {
+  TileEngine<D> engine({source.lattice(), source.expected(), source.extent()}, sink, scratch,
                        budget, options);
   with_threads(engine.threads(), [&] { run(engine, source, budget, options); });
   release_base_case_memory();
   return engine.figures();
 }
 
-template StreamFigures triangulate_stream<2>(PointSource&, MeshStreamWriter&, ScratchFolder&,
+template StreamFigures triangulate_stream<2>(PointSource&, BlockSink&, ScratchFolder&,
                                              MemoryBudget&, const StreamOptions&);
-template StreamFigures triangulate_stream<3>(PointSource&, MeshStreamWriter&, ScratchFolder&,
+template StreamFigures triangulate_stream<3>(PointSource&, BlockSink&, ScratchFolder&,
                                              MemoryBudget&, const StreamOptions&);
 
 }  // namespace spillway::detail
