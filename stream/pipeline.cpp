@@ -45,19 +45,18 @@ void run(TileEngine<D>& engine, PointInput& source, MemoryBudget& budget,
 }  // namespace
 
 template <int D>
-StreamFigures triangulate_stream(PointInput& source, MeshStreamWriter& writer,
-                                 ScratchFolder& scratch, MemoryBudget& budget,
-                                 const StreamOptions& options) {
-  TileEngine<D> engine({source.lattice(), source.expected(), source.extent()}, writer, scratch,
+StreamFigures triangulate_stream(PointInput& source, BlockSink& sink, ScratchFolder& scratch,
+                                 MemoryBudget& budget, const StreamOptions& options) {
+  TileEngine<D> engine({source.lattice(), source.expected(), source.extent()}, sink, scratch,
                        budget, options);
   with_threads(engine.threads(), [&] { run(engine, source, budget, options); });
   release_base_case_memory();
   return engine.figures();
 }
 
-template StreamFigures triangulate_stream<2>(PointInput&, MeshStreamWriter&, ScratchFolder&,
+template StreamFigures triangulate_stream<2>(PointInput&, BlockSink&, ScratchFolder&,
                                              MemoryBudget&, const StreamOptions&);
-template StreamFigures triangulate_stream<3>(PointInput&, MeshStreamWriter&, ScratchFolder&,
+template StreamFigures triangulate_stream<3>(PointInput&, BlockSink&, ScratchFolder&,
                                              MemoryBudget&, const StreamOptions&);
 
 }  // namespace spillway::detail

@@ -9,11 +9,10 @@
 namespace spillway::detail {
 
 /// The pipeline: reads all points of `source`, deals them into tiles, triangulates tile by tile and
-/// writes what is final to `writer`, which is not finished yet. Throws Error if the points do not
+/// gives what is final to `sink`, which is not finished yet. Throws Error if the points do not
 /// span D dimensions, or if the memory or the disk do not suffice.
 template <int D>
-StreamFigures triangulate_stream(PointInput& source, MeshStreamWriter& writer,
-                                 ScratchFolder& scratch, MemoryBudget& budget,
-                                 const StreamOptions& options);
+StreamFigures triangulate_stream(PointInput& source, BlockSink& sink, ScratchFolder& scratch,
+                                 MemoryBudget& budget, const StreamOptions& options);
 
 }  // namespace spillway::detail

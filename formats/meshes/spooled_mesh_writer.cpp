@@ -41,7 +41,7 @@ class SpooledMeshWriter : public MeshStreamWriter {
     }
   }
 
-  void prepare(MeshBlock& block) const override { spool_.prepare(block); }
+  void absorb(MeshBlock& block) override { spool_.absorb(block); }
   void write(MeshBlock&& block) override { spool_.write(std::move(block)); }
 
   void finish(const MeshTotals& totals) override {

@@ -21,10 +21,10 @@ namespace spillway::detail {
 namespace {
 
 /// A program's sink, as the engine writes to it.
-class SinkWriter final : public MeshStreamWriter {
+class SinkBlocks final : public BlockSink {
  public:
   /// `sink` must outlive it.
-  SinkWriter(spillway::MeshSink& sink, MeshStreamHeader header)
+  SinkBlocks(spillway::MeshSink& sink, MeshStreamHeader header)
       : sink_(sink), header_(std::move(header)) {
     sink_.begin(public_header(header_));
   }
@@ -35,7 +35,6 @@ class SinkWriter final : public MeshStreamWriter {
     sink_.write(public_block(header_, std::move(block), first));
   }
   void finish(const MeshTotals& totals) override { sink_.finish(public_totals(totals)); }
-  [[nodiscard]] std::uint64_t bytes_written() const override { return 0; }
 
  private:
   spillway::MeshSink& sink_;
@@ -133,14 +132,14 @@ void open_input(spillway::PointSource& source, const TriangulateOptions& options
   input.header.extent = input.program->extent();
 }
 
-StreamFigures run(PointInput& points, MeshStreamWriter& writer, const Context& context,
+StreamFigures run(PointInput& points, BlockSink& blocks, const Context& context,
                   const TriangulateOptions& options, RunWatch& watch) {
   MemoryBudget budget(context.memory());
   const auto scratch =
       make_scratch_folder(context.options().scratch_folder, context.scratch_limit());
   const StreamOptions stream = stream_options(options, context, watch);
-  return options.dimension == 2 ? triangulate_stream<2>(points, writer, *scratch, budget, stream)
-                                : triangulate_stream<3>(points, writer, *scratch, budget, stream);
+  return options.dimension == 2 ? triangulate_stream<2>(points, blocks, *scratch, budget, stream)
+                                : triangulate_stream<3>(points, blocks, *scratch, budget, stream);
 }
 
 }  // namespace
@@ -156,11 +155,11 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   watch.check();
   Input input;
   open_input(source, options, input);
-  std::optional<SinkWriter> to_sink;
+  std::optional<SinkBlocks> to_sink;
   auto* const file = dynamic_cast<FileMesh*>(&sink);
-  MeshStreamWriter& writer =
-      file != nullptr ? file->open(input.header) : to_sink.emplace(sink, input.header);
-  const StreamFigures figures = run(*input.points, writer, context, options, watch);
+  BlockSink& blocks = file != nullptr ? static_cast<BlockSink&>(file->open(input.header))
+                                      : to_sink.emplace(sink, input.header);
+  const StreamFigures figures = run(*input.points, blocks, context, options, watch);
   if (figures.totals.simplices == 0) {
     throw detail::Error(
         fmt::format("every one of {} simplices has an edge longer than {}: nothing is left",
@@ -168,7 +167,7 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
         ErrorCode::kDegenerateInput);
   }
   watch.begin("write");
-  writer.finish(figures.totals);
+  blocks.finish(figures.totals);
   watch.end(figures.totals.points);
   return public_report(figures, input.points->counts());
 }

@@ -5,8 +5,8 @@
 namespace spillway::detail {
 
 template <int D>
-Sequencer<D>::Sequencer(MeshStreamWriter& writer, const OutputOptions& output, StageTimes& times)
-    : writer_(writer), times_(times), counts_facets_(output.max_edge.has_value()) {}
+Sequencer<D>::Sequencer(BlockSink& sink, const OutputOptions& output, StageTimes& times)
+    : sink_(sink), times_(times), counts_facets_(output.max_edge.has_value()) {}
 
 template <int D>
 void Sequencer<D>::open_slot(std::uint32_t slot, std::uint32_t blocks) {
@@ -24,7 +24,7 @@ void Sequencer<D>::submit(BlockPlace place, MeshBlock mesh, std::vector<StreamPl
   if (counts_facets_) waiting.corners = waiting.mesh.corners;
   {
     const StageTimer timer(times_, Stage::kEncode);
-    writer_.prepare(waiting.mesh);
+    sink_.absorb(waiting.mesh);
   }
   waiting.bytes = waiting.mesh.bytes() + waiting.imported.size() * sizeof(StreamPlace) +
                   waiting.corners.size() * sizeof(std::uint32_t);
@@ -83,7 +83,7 @@ void Sequencer<D>::write(Waiting&& waiting) {
   vertices_ += waiting.vertices;
   simplices_ += waiting.simplices;
   const bool empty = waiting.vertices == 0 && waiting.simplices == 0 && mesh.imported.empty();
-  if (!empty) writer_.write(std::move(mesh));
+  if (!empty) sink_.write(std::move(mesh));
 }
 
 template <int D>

@@ -20,14 +20,14 @@ namespace spillway::detail {
 template <int D>
 class Sequencer {
  public:
-  /// `writer` and `times` must outlive it.
-  Sequencer(MeshStreamWriter& writer, const OutputOptions& output, StageTimes& times);
+  /// `sink` and `times` must outlive it.
+  Sequencer(BlockSink& sink, const OutputOptions& output, StageTimes& times);
 
   /// Tells how many blocks a slot has, at least one; once for every slot, in any order.
   void open_slot(std::uint32_t slot, std::uint32_t blocks);
 
-  /// Takes what settle() made for one block; each comes once, from any thread. What can be done
-  /// before its turn is done in the calling thread.
+  /// Takes what settle() made for one block; each comes once, from any thread. The sink absorbs it
+  /// at once, in the calling thread.
   void submit(BlockPlace place, MeshBlock mesh, std::vector<StreamPlace> imported,
               const CanonicalHash<D>& hash);
 
@@ -61,7 +61,7 @@ class Sequencer {
   void write(Waiting&& waiting);
   [[nodiscard]] std::uint64_t number_of_written(const StreamPlace& place) const;
 
-  MeshStreamWriter& writer_;
+  BlockSink& sink_;
   StageTimes& times_;
   mutable std::mutex mutex_;
   std::condition_variable turned_;

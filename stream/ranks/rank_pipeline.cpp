@@ -50,14 +50,14 @@ std::uint64_t number_in_part(const StreamPlace& place) {
 template <int D>
 class RankRun {
  public:
-  RankRun(PointSource& source, MeshStreamWriter& writer, ScratchFolder& scratch,
-          MemoryBudget& budget, const StreamOptions& options, const Ranks& ranks)
+  RankRun(PointSource& source, BlockSink& sink, ScratchFolder& scratch, MemoryBudget& budget,
+          const StreamOptions& options, const Ranks& ranks)
       : source_(source),
         scratch_(scratch),
         budget_(budget),
         options_(options),
         ranks_(ranks),
-        engine_({source.lattice(), expected_share(), std::nullopt, is_indexed(options)}, writer,
+        engine_({source.lattice(), expected_share(), std::nullopt, is_indexed(options)}, sink,
                 scratch, budget, options) {}
 
   RankMesh run() {
@@ -328,16 +328,16 @@ class RankRun {
 }  // namespace
 
 template <int D>
-RankMesh triangulate_over_ranks(PointSource& source, MeshStreamWriter& writer,
-                                ScratchFolder& scratch, MemoryBudget& budget,
-                                const StreamOptions& options, const Ranks& ranks) {
-  return RankRun<D>(source, writer, scratch, budget, options, ranks).run();
+RankMesh triangulate_over_ranks(PointSource& source, BlockSink& sink, ScratchFolder& scratch,
+                                MemoryBudget& budget, const StreamOptions& options,
+                                const Ranks& ranks) {
+  return RankRun<D>(source, sink, scratch, budget, options, ranks).run();
 }
 
-template RankMesh triangulate_over_ranks<2>(PointSource&, MeshStreamWriter&, ScratchFolder&,
-                                            MemoryBudget&, const StreamOptions&, const Ranks&);
-template RankMesh triangulate_over_ranks<3>(PointSource&, MeshStreamWriter&, ScratchFolder&,
-                                            MemoryBudget&, const StreamOptions&, const Ranks&);
+template RankMesh triangulate_over_ranks<2>(PointSource&, BlockSink&, ScratchFolder&, MemoryBudget&,
+                                            const StreamOptions&, const Ranks&);
+template RankMesh triangulate_over_ranks<3>(PointSource&, BlockSink&, ScratchFolder&, MemoryBudget&,
+                                            const StreamOptions&, const Ranks&);
 
 std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<std::string> paths,
                                                 PointSourceOptions options, const Ranks& ranks) {

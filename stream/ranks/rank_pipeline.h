@@ -50,7 +50,7 @@ struct RankMesh {
   MeshTotals totals;                      ///< of the whole mesh; the same at all ranks
   std::uint64_t left_out = 0;             ///< likewise
   std::vector<StreamPart> parts;          ///< likewise, in the order of the stream
-  std::optional<std::uint32_t> own_part;  ///< what the local writer was given, from number 0 on
+  std::optional<std::uint32_t> own_part;  ///< what the local sink was given, from number 0 on
   std::vector<MergedPart> merged;         ///< by this rank, in the order of the stream
   StreamFigures figures;                  ///< of this rank alone
   std::vector<MergeFigures> merges;       ///< of this rank
@@ -63,13 +63,13 @@ struct RankMesh {
 /// The pipeline over ranks: they share the reading of `source`, whose points have an index; each
 /// gets the points of its part of space and triangulates them against the boxes of all tiles
 /// everywhere; what is left at the borders between them is merged by fewer and fewer ranks.
-/// `writer` takes what the tiles of this rank make final, and is not finished yet; `scratch` and
+/// `sink` takes what the tiles of this rank make final, and is not finished yet; `scratch` and
 /// `budget` are those of the rank. Collective. Errors that all ranks share are thrown by rank 0,
 /// while the others wait to be ended.
 template <int D>
-RankMesh triangulate_over_ranks(PointSource& source, MeshStreamWriter& writer,
-                                ScratchFolder& scratch, MemoryBudget& budget,
-                                const StreamOptions& options, const distributed::Ranks& ranks);
+RankMesh triangulate_over_ranks(PointSource& source, BlockSink& sink, ScratchFolder& scratch,
+                                MemoryBudget& budget, const StreamOptions& options,
+                                const distributed::Ranks& ranks);
 
 /// The inputs, looked at by rank 0 alone, as a source for triangulate_over_ranks(), points with
 /// their index; only rank 0's `paths` count. Collective.

@@ -52,10 +52,10 @@ class Inbox {
 }  // namespace
 
 void paint_merged(Dem& dem, const MergedPart& part) {
-  std::vector<Point<3>> vertices;
-  for (const Point<3>& vertex : part.mesh.vertices) vertices.push_back(dem.placed(vertex));
+  std::vector<PlacedPoint> vertices = dem.placed(part.mesh.vertices);
   dem.count(vertices);
-  for (const Point<3>& vertex : part.imported_vertices) vertices.push_back(dem.placed(vertex));
+  const std::vector<PlacedPoint> imported = dem.placed(part.imported_vertices);
+  vertices.insert(vertices.end(), imported.begin(), imported.end());
   dem.paint(vertices, part.mesh.corners);
 }
 

@@ -17,12 +17,12 @@ ContourWriter::ContourWriter(ContourOptions options, Sink sink, ScratchFolder& s
           },
           options_.memory, scratch) {}
 
-/// The block's vertices in output coordinates, by their short numbers.
-std::vector<Point<3>> ContourWriter::points_of(const MeshBlock& block) const {
-  std::vector<Point<3>> points;
+/// The block's vertices by their short numbers.
+std::vector<WorldPoint> ContourWriter::points_of(const MeshBlock& block) const {
+  std::vector<WorldPoint> points;
   points.reserve(block.vertices.size() + block.imported.size());
   for (const Point<3>& vertex : block.vertices) {
-    points.push_back(options_.lattice ? options_.lattice->to_world(vertex) : vertex);
+    points.push_back(in_world(options_.lattice, vertex));
   }
   live_.append_imported(block, points);
   return points;
@@ -35,7 +35,7 @@ bool ContourWriter::too_long(const std::array<Corner, 3>& corners) const {
 }
 
 void ContourWriter::write(MeshBlock&& block) {
-  const std::vector<Point<3>> points = points_of(block);
+  const std::vector<WorldPoint> points = points_of(block);
   const StreamNumbers numbers(live_.announced(), block);
   const auto corner = [&](std::uint32_t v) { return Corner{numbers[v], points[v]}; };
   for (std::size_t c = 0; c < block.corners.size(); c += 3) {

@@ -8,6 +8,7 @@
 
 #include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 #include "src/terrain/isolines.h"
 #include "stream/sinks/line_joiner.h"
@@ -23,7 +24,7 @@ struct ContourOptions {
 
 /// Draws the isolines of a mesh of triangles as its blocks come. Of the mesh only vertices that are
 /// still to come again stay in memory, of the lines only what may still grow.
-class ContourWriter : public MeshStreamWriter {
+class ContourWriter : public BlockSink {
  public:
   /// Receives each whole line, in output coordinates.
   using Sink = std::function<void(std::span<const Point<2>> points, double height)>;
@@ -32,7 +33,6 @@ class ContourWriter : public MeshStreamWriter {
 
   void write(MeshBlock&& block) override;
   void finish(const MeshTotals& totals) override;
-  [[nodiscard]] std::uint64_t bytes_written() const override { return 0; }
 
   [[nodiscard]] std::uint64_t lines() const { return joiner_.lines(); }
   /// The least and the greatest height that came; in reverse order if none did.
@@ -43,13 +43,13 @@ class ContourWriter : public MeshStreamWriter {
   [[nodiscard]] std::uint64_t spilled_bytes() const { return joiner_.spilled_bytes(); }
 
  private:
-  [[nodiscard]] std::vector<Point<3>> points_of(const MeshBlock& block) const;
+  [[nodiscard]] std::vector<WorldPoint> points_of(const MeshBlock& block) const;
   [[nodiscard]] bool too_long(const std::array<Corner, 3>& corners) const;
 
   const ContourOptions options_;
   LineJoiner joiner_;
   std::vector<IsoSegment> segments_;
-  LiveVertices<Point<3>> live_;  ///< in output coordinates
+  LiveVertices<WorldPoint> live_;
   double lowest_ = std::numeric_limits<double>::infinity();
   double highest_ = -std::numeric_limits<double>::infinity();
   std::uint64_t left_out_ = 0;

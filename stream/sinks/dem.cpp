@@ -147,17 +147,23 @@ void Dem::begin(const PixelGrid& grid) {
   store_.emplace(std::move(rules), options_.memory - index, scratch_);
 }
 
-Point<3> Dem::placed(const Point<3>& vertex) const {
-  if (!lattice_) return vertex;
-  if (!on_lattice_) return lattice_->to_world(vertex);
+PlacedPoint Dem::placed(const Point<3>& vertex) const {
+  if (!on_lattice_) return {in_world(lattice_, vertex)};
   return {vertex[0], vertex[1], lattice_->to_world(2, vertex[2])};
+}
+
+std::vector<PlacedPoint> Dem::placed(std::span<const Point<3>> vertices) const {
+  std::vector<PlacedPoint> result;
+  result.reserve(vertices.size());
+  for (const Point<3>& vertex : vertices) result.push_back(placed(vertex));
+  return result;
 }
 
 std::uint64_t Dem::tile_number(std::uint32_t row, std::uint32_t column) const {
   return std::uint64_t{row / kRasterTile} * tiles_across_ + column / kRasterTile;
 }
 
-void Dem::paint(std::span<const Point<3>> vertices, std::span<const std::uint32_t> corners) {
+void Dem::paint(std::span<const PlacedPoint> vertices, std::span<const std::uint32_t> corners) {
   struct Large {
     Triangle canonical;
     PixelWindow window;
@@ -267,14 +273,14 @@ void Dem::paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work)
   }
 }
 
-void Dem::count(std::span<const Point<3>> vertices) {
+void Dem::count(std::span<const PlacedPoint> vertices) {
   const auto found =
       std::find(options_.products.begin(), options_.products.end(), DemProduct::kDensity);
   if (found == options_.products.end()) return;
   const auto band = static_cast<std::size_t>(found - options_.products.begin());
   const auto count_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
     Work work(*store_, options_.products.size());
-    for (const Point<3>& vertex : vertices.subspan(begin, end - begin)) {
+    for (const PlacedPoint& vertex : vertices.subspan(begin, end - begin)) {
       const auto column =
           column_of(grid_, on_lattice_ ? lattice_->to_world(0, vertex[0]) : vertex[0]);
       const auto row = row_of(grid_, on_lattice_ ? lattice_->to_world(1, vertex[1]) : vertex[1]);

@@ -12,6 +12,7 @@
 
 #include "formats/gdal/raster.h"
 #include "src/geometry/box.h"
+#include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 #include "src/terrain/grid_choice.h"
 #include "src/terrain/pixel_centres.h"
@@ -62,16 +63,15 @@ class Dem {
   /// A box around vertices as they come, in output coordinates.
   [[nodiscard]] Box<2> in_output(const Box<2>& extent) const;
 
-  /// A vertex as it comes, in the coordinates in which triangles are painted: x and y on the
-  /// lattice, z in output units.
-  [[nodiscard]] Point<3> placed(const Point<3>& vertex) const;
+  /// Vertices as they come, in the coordinates in which triangles are painted.
+  [[nodiscard]] std::vector<PlacedPoint> placed(std::span<const Point<3>> vertices) const;
 
-  /// Paints triangles, three numbers of placed vertices each; those with numbers beyond these are
-  /// left out. By any number of threads, and shared out among more.
-  void paint(std::span<const Point<3>> vertices, std::span<const std::uint32_t> corners);
+  /// Paints triangles, three numbers of vertices each; those with numbers beyond these are left
+  /// out. By any number of threads at once, and shared out among more.
+  void paint(std::span<const PlacedPoint> vertices, std::span<const std::uint32_t> corners);
 
-  /// Counts placed vertices for the density.
-  void count(std::span<const Point<3>> vertices);
+  /// Counts vertices for the density. By any number of threads at once.
+  void count(std::span<const PlacedPoint> vertices);
 
   [[nodiscard]] const PixelGrid& grid() const { return grid_; }
   [[nodiscard]] RasterOptions raster_options() const;
@@ -103,6 +103,7 @@ class Dem {
     std::uint32_t columns;
   };
 
+  [[nodiscard]] PlacedPoint placed(const Point<3>& vertex) const;
   [[nodiscard]] Triangle in_output(const Triangle& placed) const;
   void paint_pixels(const Triangle& canonical, const PixelWindow& window, Work& work);
   void paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work);

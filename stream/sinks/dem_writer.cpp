@@ -6,17 +6,13 @@
 #include "formats/bytes/bytes.h"
 
 namespace spillway::detail {
+namespace {
 
-// A prepared block has only what is still needed: placed vertices that come again or that triangles
-// with imported vertices have, and these triangles. `prepared` holds how many vertices the block
-// announces, then for each that is left its place among them; short numbers are of those left.
-
-void DemWriter::prepare(MeshBlock& block) const {
+/// Leaves in a block only what write() needs: vertices that come again or that triangles with
+/// imported vertices have, and these triangles. `prepared` then holds how many vertices the block
+/// announces, then for each that is left its place among them; short numbers are of those left.
+void keep_rest(MeshBlock& block) {
   const auto announced = static_cast<std::uint32_t>(block.vertices.size());
-  for (Point<3>& vertex : block.vertices) vertex = dem_.placed(vertex);
-  dem_.count(block.vertices);
-  dem_.paint(block.vertices, block.corners);
-
   std::vector<std::uint8_t> is_left(announced, 1);
   for (const std::uint32_t v : block.finalized) {
     if (v < announced) is_left[v] = 0;
@@ -56,12 +52,21 @@ void DemWriter::prepare(MeshBlock& block) const {
   block.input_index = {};
 }
 
+}  // namespace
+
+void DemWriter::absorb(MeshBlock& block) {
+  const std::vector<PlacedPoint> vertices = dem_.placed(block.vertices);
+  dem_.count(vertices);
+  dem_.paint(vertices, block.corners);
+  keep_rest(block);
+}
+
 void DemWriter::write(MeshBlock&& block) {
-  if (block.prepared.empty()) prepare(block);
+  if (block.prepared.empty()) absorb(block);
   const auto number = [&block](std::size_t i) {
     return load<std::uint32_t>(block.prepared.data() + i * sizeof(std::uint32_t));
   };
-  std::vector<Point<3>> vertices = std::move(block.vertices);
+  std::vector<PlacedPoint> vertices = dem_.placed(block.vertices);
   std::vector<std::uint64_t> numbers(vertices.size());
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     numbers[v] = live_.announced() + number(v + 1);

@@ -27,9 +27,9 @@ double volume(const std::array<Point<3>, 4>& corners) {
 
 void TetrahedronWriter::write(MeshBlock&& block) {
   const StreamNumbers numbers(live_.announced(), block);
-  std::vector<Point<3>> vertices;
+  std::vector<WorldPoint> vertices;
   for (const Point<3>& vertex : block.vertices) {
-    vertices.push_back(lattice_ ? lattice_->to_world(vertex) : vertex);
+    vertices.push_back(in_world(lattice_, vertex));
     extent_.expand(vertices.back());
   }
   live_.append_imported(block, vertices);
@@ -51,7 +51,8 @@ void TetrahedronWriter::write(MeshBlock&& block) {
 }
 
 void TetrahedronWriter::finish(const MeshTotals& /*totals*/) {
-  live_.for_each([this](std::uint64_t number, const Point<3>& vertex) { retire(number, vertex); });
+  live_.for_each(
+      [this](std::uint64_t number, const WorldPoint& vertex) { retire(number, vertex); });
   live_ = {};
 }
 
@@ -60,7 +61,7 @@ void HullWriter::add(const std::array<std::uint64_t, 4>& numbers,
   open_.add(numbers);
 }
 
-void HullWriter::retire(std::uint64_t number, const Point<3>& vertex) {
+void HullWriter::retire(std::uint64_t number, const WorldPoint& vertex) {
   retired_.emplace(number, vertex);
   if (retired_.size() > std::max<std::size_t>(most_retired_, open_.count())) {
     forget_inner_vertices();

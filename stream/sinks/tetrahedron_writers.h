@@ -9,6 +9,7 @@
 
 #include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 #include "src/picture/tetrahedron_cut.h"
 #include "stream/output/open_facets.h"
@@ -17,7 +18,7 @@ namespace spillway::detail {
 
 /// Hands out the tetrahedra of a mesh stream with their corners in output coordinates. Of the mesh
 /// only vertices that are still to come again stay in memory.
-class TetrahedronWriter : public MeshStreamWriter {
+class TetrahedronWriter : public BlockSink {
  public:
   /// `lattice` is that of the vertices to come; tetrahedra with an edge longer than `max_edge`, in
   /// output units, are left out.
@@ -26,7 +27,6 @@ class TetrahedronWriter : public MeshStreamWriter {
 
   void write(MeshBlock&& block) override;
   void finish(const MeshTotals& totals) override;
-  [[nodiscard]] std::uint64_t bytes_written() const override { return 0; }
 
   [[nodiscard]] const Box<3>& extent() const { return extent_; }
   /// Tetrahedra with too long an edge.
@@ -37,11 +37,11 @@ class TetrahedronWriter : public MeshStreamWriter {
 
   virtual void add(const std::array<std::uint64_t, 4>& numbers, const Corners& corners) = 0;
   /// A vertex that comes no more.
-  virtual void retire(std::uint64_t number, const Point<3>& vertex) = 0;
+  virtual void retire(std::uint64_t number, const WorldPoint& vertex) = 0;
 
   const std::optional<Lattice> lattice_;
   const std::optional<double> max_edge_;
-  LiveVertices<Point<3>> live_;  ///< in output coordinates
+  LiveVertices<WorldPoint> live_;
   Box<3> extent_;
   std::uint64_t left_out_ = 0;
 };
@@ -58,11 +58,11 @@ class HullWriter : public TetrahedronWriter {
  private:
   void add(const std::array<std::uint64_t, 4>& numbers,
            const std::array<Point<3>, 4>& corners) override;
-  void retire(std::uint64_t number, const Point<3>& vertex) override;
+  void retire(std::uint64_t number, const WorldPoint& vertex) override;
   void forget_inner_vertices();
 
   OpenFacets<3> open_;
-  std::unordered_map<std::uint64_t, Point<3>> retired_;  ///< some of them inner ones
+  std::unordered_map<std::uint64_t, WorldPoint> retired_;  ///< some of them inner ones
   std::size_t most_retired_ = std::size_t{1} << 16;
 };
 
@@ -84,7 +84,7 @@ class SliceWriter : public TetrahedronWriter {
  private:
   void add(const std::array<std::uint64_t, 4>& numbers,
            const std::array<Point<3>, 4>& corners) override;
-  void retire(std::uint64_t /*number*/, const Point<3>& /*vertex*/) override {}
+  void retire(std::uint64_t /*number*/, const WorldPoint& /*vertex*/) override {}
 
   const AxisPlane plane_;
   std::vector<CellCut> cuts_;

@@ -19,16 +19,15 @@ constexpr std::size_t kTilesAtATime = 2;
 }  // namespace
 
 template <int D>
-TileEngine<D>::TileEngine(const ExpectedPoints& expected, MeshStreamWriter& writer,
-                          ScratchFolder& scratch, MemoryBudget& budget,
-                          const StreamOptions& options)
+TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, ScratchFolder& scratch,
+                          MemoryBudget& budget, const StreamOptions& options)
     : options_(options),
       budget_(budget),
       plan_(plan_memory(budget.limit(), D, options.threads)),
       planned_tile_(plan_.tile_capacity),
       counts_(budget),
       tree_(tree_options(expected), scratch, counts_.times),
-      sequencer_(writer, {.max_edge = options.max_edge}, counts_.times),
+      sequencer_(sink, {.max_edge = options.max_edge}, counts_.times),
       context_{.options = tile_options(expected.lattice),
                .budget = budget,
                .sequencer = sequencer_,

@@ -37,7 +37,7 @@ template <int D>
 class TileEngine {
  public:
   /// All but `expected` must outlive it.
-  TileEngine(const ExpectedPoints& expected, MeshStreamWriter& writer, ScratchFolder& scratch,
+  TileEngine(const ExpectedPoints& expected, BlockSink& sink, ScratchFolder& scratch,
              MemoryBudget& budget, const StreamOptions& options);
 
   [[nodiscard]] unsigned threads() const { return plan_.threads; }
@@ -66,7 +66,7 @@ class TileEngine {
   [[nodiscard]] std::optional<TileNode<D>> nodes() const { return tree_.template nodes<D>(); }
 
   /// Triangulates the tiles of `root`, one by one, and merges them. What nothing `outside` can
-  /// change has gone to the writer when it returns; the rest is returned.
+  /// change has gone to the sink when it returns; the rest is returned.
   Border<D> triangulate(const TileNode<D>& root, const Outside<D>& outside);
 
   /// Merges borders of children of `node`, which need not be tiles of this process, as block
@@ -78,11 +78,11 @@ class TileEngine {
   void take_in(const Border<D>& border);
   void hand_over(const Border<D>& border);
 
-  /// The number in the writer's stream of a vertex that has been announced there.
+  /// The number in the sink's stream of a vertex that has been announced there.
   [[nodiscard]] std::uint64_t number_of(const StreamPlace& place) const {
     return sequencer_.number_of(place);
   }
-  /// The open facets of the writer's stream, where simplices are left out.
+  /// The open facets of the sink's stream, where simplices are left out.
   [[nodiscard]] const OpenFacets<D>& open_facets() const { return sequencer_.open_facets(); }
 
   /// Of all that has been done; to be called once, at the end.

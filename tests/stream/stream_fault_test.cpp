@@ -90,29 +90,28 @@ class FaultyScratch : public ScratchFolder {
 };
 
 /// Takes blocks and does nothing, but fails at the n-th.
-class FailingWriter : public MeshStreamWriter {
+class FailingWriter : public BlockSink {
  public:
-  enum class Way { kNever, kError, kClosedPipe, kInPrepare };
+  enum class Way { kNever, kError, kClosedPipe, kInAbsorb };
   FailingWriter(Way way, int n) : way_(way), failing_(n) {}
 
-  void prepare(MeshBlock&) const override {
-    if (way_ == Way::kInPrepare && ++prepared_ == failing_) throw Error("injected fault");
+  void absorb(MeshBlock&) override {
+    if (way_ == Way::kInAbsorb && ++absorbed_ == failing_) throw Error("injected fault");
   }
   void write(MeshBlock&&) override {
     EXPECT_FALSE(failed_) << "a block was written after the output had failed";
-    failed_ = ++written_ == failing_ && way_ != Way::kInPrepare;
+    failed_ = ++written_ == failing_ && way_ != Way::kInAbsorb;
     if (failed_ && way_ == Way::kError) throw Error("injected fault");
     if (failed_ && way_ == Way::kClosedPipe) throw ClosedPipe();
   }
   void finish(const MeshTotals&) override {}
-  [[nodiscard]] std::uint64_t bytes_written() const override { return 0; }
   [[nodiscard]] int written() const { return written_; }
 
  private:
   Way way_;
   int failing_;
   int written_ = 0;
-  mutable std::atomic<int> prepared_ = 0;
+  std::atomic<int> absorbed_ = 0;
   bool failed_ = false;
 };
 
@@ -135,7 +134,7 @@ class StreamFault : public ::testing::TestWithParam<unsigned> {
     files_.files["points.txt"] = points_as_text(kPoints);
   }
 
-  StreamFigures run(MeshStreamWriter& writer) {
+  StreamFigures run(BlockSink& writer) {
     PointSource source(files_, {"points.txt"}, {.dimension = 2, .index = true});
     return triangulate_stream<2>(source, writer, scratch_, budget_,
                                  {.threads = GetParam(),
@@ -211,7 +210,7 @@ TEST_P(StreamFault, OfTheOutputEndsTheRunAtOnce) {
   for (const int n : {1, blocks / 2, blocks}) {
     EXPECT_EQ(error_of_run(FailingWriter::Way::kError, n), "injected fault");
     EXPECT_EQ(error_of_run(FailingWriter::Way::kClosedPipe, n), "closed pipe");
-    EXPECT_EQ(error_of_run(FailingWriter::Way::kInPrepare, n), "injected fault");
+    EXPECT_EQ(error_of_run(FailingWriter::Way::kInAbsorb, n), "injected fault");
   }
 }
 

@@ -23,7 +23,7 @@ namespace spillway::detail {
 
 /// Keeps all blocks, and checks on the way that vertices are announced before and finalized after
 /// their last use, once each, and that a block imports what it uses or finalizes, and nothing else.
-class KeepingWriter : public MeshStreamWriter {
+class KeepingWriter : public BlockSink {
  public:
   explicit KeepingWriter(int dimension) : corners_(dimension + 1) {}
 
@@ -55,7 +55,6 @@ class KeepingWriter : public MeshStreamWriter {
     blocks.push_back(std::move(block));
   }
   void finish(const MeshTotals&) override {}
-  [[nodiscard]] std::uint64_t bytes_written() const override { return 0; }
   [[nodiscard]] std::size_t live() const { return live_.size(); }
 
   std::vector<Point<3>> vertices;

@@ -1,7 +1,9 @@
 spillway_test(stream_unit_test unit
-  SOURCES stream/sinks/contour_test.cpp stream/output/heights_test.cpp stream/plan/memory_plan_test.cpp
-          stream/tiles/point_span_test.cpp stream/tiles/tile_tree_test.cpp
-          stream/triangulate/merge_tree_test.cpp
+  SOURCES stream/output/heights_test.cpp stream/output/sequencer_test.cpp stream/plan/memory_plan_test.cpp
+          stream/sinks/contour_test.cpp
+          stream/tiles/cut_tree_test.cpp stream/tiles/point_span_test.cpp stream/tiles/tile_tree_test.cpp
+          stream/triangulate/border_test.cpp stream/triangulate/merge_tree_test.cpp
+          stream/triangulate/settle_test.cpp
   LIBS spillway_stream)
 
 spillway_test(stream_property_test property

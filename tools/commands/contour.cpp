@@ -65,7 +65,7 @@ class ContourUse : public TerrainUse {
   ContourUse(const ContourCommandOptions& options, std::uint64_t memory, ScratchFolder& scratch)
       : options_(options), levels_(levels_of(options)), memory_(memory), scratch_(scratch) {}
 
-  MeshStreamWriter& begin(const TerrainHeader& header) override {
+  BlockSink& begin(const TerrainHeader& header) override {
     VectorLayerOptions layer;
     layer.path = options_.output;
     layer.lines = true;

@@ -80,7 +80,7 @@ class Run : public TerrainUse {
     return kExitDone;
   }
 
-  MeshStreamWriter& begin(const TerrainHeader& header) override {
+  BlockSink& begin(const TerrainHeader& header) override {
     check_crs(header.crs);
     crs_ = header.crs.empty() ? like_.crs : header.crs;
     dem_options_.max_edge = header.max_edge;

@@ -53,7 +53,7 @@ class ReliefScene : public Scene {
         dem_(dem_options(header, memory, threads), header.lattice, scratch),
         writer_(dem_) {}
 
-  MeshStreamWriter& writer() override { return writer_; }
+  BlockSink& writer() override { return writer_; }
 
   void extent_known(const Box<2>& extent) override {
     const Box<2> box = request_.zoom.value_or(dem_.in_output(extent));

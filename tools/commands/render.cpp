@@ -98,7 +98,7 @@ class RenderUse : public TerrainUse {
             ScratchFolder& scratch)
       : request_(request), memory_(memory), threads_(threads), scratch_(scratch) {}
 
-  MeshStreamWriter& begin(const TerrainHeader& header) override {
+  BlockSink& begin(const TerrainHeader& header) override {
     scene_ = header.dimension == 2
                  ? make_relief_scene(request_, header, memory_, threads_, scratch_)
                  : make_space_scene(request_, header);

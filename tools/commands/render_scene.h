@@ -39,7 +39,7 @@ class Scene {
   Scene& operator=(const Scene&) = delete;
 
   /// Where the mesh goes.
-  virtual MeshStreamWriter& writer() = 0;
+  virtual BlockSink& writer() = 0;
   /// As of TerrainUse.
   virtual void extent_known(const Box<2>& extent) = 0;
 

@@ -95,7 +95,7 @@ class HullScene : public PolygonScene {
     up_ = cross(towards_, right_);
   }
 
-  MeshStreamWriter& writer() override { return writer_; }
+  BlockSink& writer() override { return writer_; }
   [[nodiscard]] std::uint64_t left_out() const override { return writer_.left_out(); }
   [[nodiscard]] std::string description() const override {
     return fmt::format("{} facets of the hull", facets_);
@@ -155,7 +155,7 @@ class SliceScene : public PolygonScene {
   SliceScene(const RenderRequest& request, const TerrainHeader& header)
       : PolygonScene(request), writer_(header.lattice, header.max_edge, *request.slice) {}
 
-  MeshStreamWriter& writer() override { return writer_; }
+  BlockSink& writer() override { return writer_; }
   [[nodiscard]] std::uint64_t left_out() const override { return writer_.left_out(); }
   [[nodiscard]] std::string description() const override {
     return fmt::format("{} tetrahedra cut", writer_.cuts().size());

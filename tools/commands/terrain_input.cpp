@@ -147,24 +147,24 @@ class TerrainFeed {
                       "points that have heights",
                       options_.inputs.front()));
     }
-    MeshStreamWriter& writer = use_.begin({D, source->lattice(), source->crs(), std::nullopt});
+    BlockSink& sink = use_.begin({D, source->lattice(), source->crs(), std::nullopt});
     stream.extent_known = [this](const Box<2>& extent, std::uint64_t points) {
       use_.extent_known(extent, points);
     };
     if (tools_.ranks != nullptr) {
-      const RankMesh mesh = triangulate_over_ranks<D>(*source, writer, tools_.scratch,
-                                                      tools_.budget, stream, *tools_.ranks);
+      const RankMesh mesh = triangulate_over_ranks<D>(*source, sink, tools_.scratch, tools_.budget,
+                                                      stream, *tools_.ranks);
       for (const MergedPart& part : mesh.merged) use_.add_merged(part);
       statistics_.input = source->counts();
       share_statistics(statistics_, mesh, *tools_.ranks);
     } else {
       statistics_.stream =
-          triangulate_stream<D>(*source, writer, tools_.scratch, tools_.budget, stream);
+          triangulate_stream<D>(*source, sink, tools_.scratch, tools_.budget, stream);
       statistics_.input = source->counts();
     }
     statistics_.on_lattice = source->lattice().has_value();
     if (statistics_.input.dropped() > 0) tools_.progress.say(describe(statistics_.input));
-    writer.finish(statistics_.stream.totals);
+    sink.finish(statistics_.stream.totals);
   }
 
   void feed_stream(ProbedInput& input) {
@@ -185,15 +185,15 @@ class TerrainFeed {
     const auto reader = open_mesh_stream_reader(*files, path, options_.mesh_format);
     const MeshStreamHeader& header = reader->header();
     check_dimension(header.dimension);
-    MeshStreamWriter& writer =
+    BlockSink& sink =
         use_.begin({header.dimension, header.lattice, header.crs, statistics_.max_edge});
     use_.extent_known(extent, vertices);
     tools_.progress.begin(simplices(), simplices());
-    with_threads(tools_.threads, [&] { pass_on(*reader, writer); });
+    with_threads(tools_.threads, [&] { pass_on(*reader, sink); });
     statistics_.stream.triangulate_seconds = tools_.progress.end(reader->totals().simplices);
     statistics_.stream.totals = reader->totals();
     statistics_.on_lattice = header.lattice.has_value();
-    writer.finish(reader->totals());
+    sink.finish(reader->totals());
   }
 
   std::uint64_t find_extent(MeshStreamReader& reader, Box<2>& extent) {
@@ -208,8 +208,8 @@ class TerrainFeed {
     return vertices;
   }
 
-  /// Several blocks are prepared at a time.
-  void pass_on(MeshStreamReader& reader, MeshStreamWriter& writer) {
+  /// Several blocks are absorbed at a time.
+  void pass_on(MeshStreamReader& reader, BlockSink& sink) {
     struct Slot {
       MeshBlock block;
       std::size_t triangles = 0;
@@ -224,9 +224,9 @@ class TerrainFeed {
       return more;
     };
     const std::vector<PipelineStage> stages = {
-        {.in_order = false, .work = [&](std::size_t slot) { writer.prepare(slots[slot].block); }},
+        {.in_order = false, .work = [&](std::size_t slot) { sink.absorb(slots[slot].block); }},
         {.in_order = true, .work = [&](std::size_t slot) {
-           writer.write(std::move(slots[slot].block));
+           sink.write(std::move(slots[slot].block));
            tools_.progress.update(done += slots[slot].triangles, reader.fraction_read());
          }}};
     run_pipeline(slots.size(), source, stages);
@@ -254,7 +254,7 @@ class TerrainFeed {
     totals.vertices = totals.points = mesh.vertices.size();
     totals.simplices = mesh.corners.size() / corners_per_simplex();
     statistics_.on_lattice = lattice.has_value();
-    MeshStreamWriter& writer =
+    BlockSink& sink =
         use_.begin({mesh.header.dimension, lattice, mesh.header.crs, statistics_.max_edge});
     use_.extent_known(extent, mesh.vertices.size());
     MeshBlock block;
@@ -265,11 +265,11 @@ class TerrainFeed {
     mesh = {};
     tools_.progress.begin(simplices(), simplices());
     with_threads(tools_.threads, [&] {
-      writer.prepare(block);
-      writer.write(std::move(block));
+      sink.absorb(block);
+      sink.write(std::move(block));
     });
     statistics_.stream.triangulate_seconds = tools_.progress.end(totals.simplices);
-    writer.finish(totals);
+    sink.finish(totals);
   }
 
   [[nodiscard]] const char* simplices() const {

@@ -49,7 +49,7 @@ class TerrainUse {
   virtual ~TerrainUse() = default;
 
   /// Returns where the triangles are to go; it must live as long as the use.
-  virtual MeshStreamWriter& begin(const TerrainHeader& header) = 0;
+  virtual BlockSink& begin(const TerrainHeader& header) = 0;
 
   /// Whether extent_known() is needed: a mesh stream has to be read twice then.
   [[nodiscard]] virtual bool wants_extent() const = 0;

@@ -35,7 +35,7 @@ struct MeshBlock {
   std::vector<std::uint64_t> imported;     ///< stream numbers of earlier vertices used here
   std::vector<std::uint32_t> corners;      ///< dimension+1 short numbers a simplex, oriented
   std::vector<std::uint32_t> finalized;    ///< short numbers of vertices that come no more
-  /// What MeshStreamWriter::prepare() made of the members above (`imported` apart).
+  /// What a sink's absorb() made of the members above (`imported` apart).
   std::vector<std::byte> prepared;
 
   /// Bytes that its members take, counted by their sizes.
@@ -67,23 +67,31 @@ struct MeshTotals {
   bool operator==(const MeshTotals&) const = default;
 };
 
-/// Writes a mesh block by block. Nothing appears under the final name before finish(); a writer
-/// that is destroyed without it leaves nothing behind.
-class MeshStreamWriter {
+/// Takes a mesh block by block: a file, a raster, lines, a picture. A block comes twice: absorb()
+/// may have it as soon as it is made, beside others, and write() has it when its turn has come.
+class BlockSink {
  public:
-  virtual ~MeshStreamWriter() = default;
+  virtual ~BlockSink() = default;
 
-  /// Does ahead what does not depend on other blocks, such as compression. May be called for many
-  /// blocks at once, by many threads, or not at all.
-  virtual void prepare(MeshBlock& /*block*/) const {}
+  /// Takes from a block what needs no other one, or encodes it; write() gets what this leaves of
+  /// it. Called at most once for a block, by many threads at once and in any order, also beside
+  /// write(): what a sink changes here besides the block must be safe for that. Stream numbers,
+  /// and so `imported`, are not known yet.
+  virtual void absorb(MeshBlock& /*block*/) {}
 
-  /// Appends a block. Its vertices get the next stream numbers.
+  /// Takes the next block of the stream, absorbed or not: its vertices get the next stream numbers.
+  /// By one thread at a time, so that what only write() uses needs no guard.
   virtual void write(MeshBlock&& block) = 0;
 
-  /// Completes the file. Throws Error if the totals' vertices and simplices are not what was
-  /// written.
+  /// Combines what has come and ends. Called once, after the last block.
   virtual void finish(const MeshTotals& totals) = 0;
+};
 
+/// Writes a mesh to a file. Nothing appears under the final name before finish(); a writer that is
+/// destroyed without it leaves nothing behind. finish() throws Error if the totals' vertices and
+/// simplices are not what was written.
+class MeshStreamWriter : public BlockSink {
+ public:
   /// Bytes of output so far.
   [[nodiscard]] virtual std::uint64_t bytes_written() const = 0;
 };

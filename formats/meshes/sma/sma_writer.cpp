@@ -38,7 +38,7 @@ std::string header_text(const MeshStreamHeader& header) {
   return text;
 }
 
-/// A prepared block is the lines of its vertices.
+/// An absorbed block is the lines of its vertices.
 class SmaWriter : public MeshStreamWriter {
  public:
   SmaWriter(std::unique_ptr<OutputFile> file, MeshStreamHeader header)
@@ -46,25 +46,10 @@ class SmaWriter : public MeshStreamWriter {
     put(header_text(header_));
   }
 
-  void prepare(MeshBlock& block) const override {
-    if (!block.prepared.empty() || block.vertices.empty()) return;
-    move_to_world(header_, block);
-    fmt::memory_buffer text;
-    for (const Point<3>& vertex : block.vertices) {
-      for (const double coordinate : vertex) {
-        if (!std::isfinite(coordinate)) {
-          fail(fmt::format("a vertex has a coordinate {}; repair the points", coordinate));
-        }
-      }
-      fmt::format_to(std::back_inserter(text), FMT_COMPILE("v {} {} {}\n"), vertex[0], vertex[1],
-                     vertex[2]);
-    }
-    const std::span<const std::byte> bytes = std::as_bytes(std::span(text.data(), text.size()));
-    block.prepared.assign(bytes.begin(), bytes.end());
-  }
+  void absorb(MeshBlock& block) override { encode(block); }
 
   void write(MeshBlock&& block) override {
-    prepare(block);
+    if (block.prepared.empty()) encode(block);
     put(as_text(block.prepared));
     append_stream_numbers_checked(block);
     vertices_ += block.vertices.size();
@@ -87,6 +72,23 @@ class SmaWriter : public MeshStreamWriter {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(fmt::format("cannot write {}: {}", file_->name(), what));
+  }
+
+  /// Of the block alone.
+  void encode(MeshBlock& block) const {
+    move_to_world(header_, block);
+    fmt::memory_buffer text;
+    for (const Point<3>& vertex : block.vertices) {
+      for (const double coordinate : vertex) {
+        if (!std::isfinite(coordinate)) {
+          fail(fmt::format("a vertex has a coordinate {}; repair the points", coordinate));
+        }
+      }
+      fmt::format_to(std::back_inserter(text), FMT_COMPILE("v {} {} {}\n"), vertex[0], vertex[1],
+                     vertex[2]);
+    }
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(text.data(), text.size()));
+    block.prepared.assign(bytes.begin(), bytes.end());
   }
 
   /// Sets corners_.

@@ -20,7 +20,7 @@ void release(std::vector<T>& values) {
   std::vector<T>().swap(values);
 }
 
-/// A prepared block is its counts, as they are in memory, and the bytes for the file.
+/// An absorbed block is its counts, as they are in memory, and the bytes for the file.
 class SpmWriter : public MeshStreamWriter {
  public:
   SpmWriter(std::unique_ptr<OutputFile> file, MeshStreamHeader header)
@@ -28,28 +28,10 @@ class SpmWriter : public MeshStreamWriter {
     put(spm_head(header_));
   }
 
-  void prepare(MeshBlock& block) const override {
-    if (!block.prepared.empty()) return;
-    std::vector<std::byte> content;
-    content.reserve(24 * block.vertices.size() + 4 * block.corners.size());
-    SpmCounts counts;
-    try {
-      counts = append_spm_content(content, header_, block);
-    } catch (const Error& error) {
-      fail(error.what());
-    }
-    block.prepared.resize(sizeof counts);
-    store(block.prepared.data(), counts);
-    append_block(block.prepared, kSpmMeshBlock, content);
-    block.prepared.shrink_to_fit();
-    release(block.vertices);
-    release(block.input_index);
-    release(block.corners);
-    release(block.finalized);
-  }
+  void absorb(MeshBlock& block) override { encode(block); }
 
   void write(MeshBlock&& block) override {
-    prepare(block);
+    if (block.prepared.empty()) encode(block);
     const auto counts = load<SpmCounts>(block.prepared.data());
     if (counts.numbers > counts.vertices + block.imported.size()) {
       fail(fmt::format("a block has a short number {}, but {} vertices and {} imported ones",
@@ -76,6 +58,26 @@ class SpmWriter : public MeshStreamWriter {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(fmt::format("cannot write {}: {}", file_->name(), what));
+  }
+
+  /// Of the block alone.
+  void encode(MeshBlock& block) const {
+    std::vector<std::byte> content;
+    content.reserve(24 * block.vertices.size() + 4 * block.corners.size());
+    SpmCounts counts;
+    try {
+      counts = append_spm_content(content, header_, block);
+    } catch (const Error& error) {
+      fail(error.what());
+    }
+    block.prepared.resize(sizeof counts);
+    store(block.prepared.data(), counts);
+    append_block(block.prepared, kSpmMesh, content);
+    block.prepared.shrink_to_fit();
+    release(block.vertices);
+    release(block.input_index);
+    release(block.corners);
+    release(block.finalized);
   }
 
   void put_imported(std::span<const std::uint64_t> imported) {

@@ -101,7 +101,7 @@ MeshSpool::MeshSpool(const MeshStreamHeader& header, const std::string& name,
 
 MeshSpool::~MeshSpool() = default;
 
-void MeshSpool::prepare(MeshBlock& block) const { encoder_->prepare(block); }
+void MeshSpool::absorb(MeshBlock& block) { encoder_->absorb(block); }
 
 void MeshSpool::write(MeshBlock&& block) { encoder_->write(std::move(block)); }
 

@@ -28,7 +28,7 @@ class MeshSpool : public MeshStreamWriter {
   MeshSpool(const MeshSpool&) = delete;
   MeshSpool& operator=(const MeshSpool&) = delete;
 
-  void prepare(MeshBlock& block) const override;
+  void absorb(MeshBlock& block) override;
   void write(MeshBlock&& block) override;
   void finish(const MeshTotals& totals) override;
   [[nodiscard]] std::uint64_t bytes_written() const override;

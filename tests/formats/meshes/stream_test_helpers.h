@@ -79,11 +79,11 @@ inline void leave_lattice(StreamedMesh& mesh) {
   mesh.header.lattice.reset();
 }
 
-inline void write_blocks(MeshStreamWriter& writer, const StreamedMesh& mesh, bool prepare = false) {
+inline void write_blocks(MeshStreamWriter& writer, const StreamedMesh& mesh, bool absorb = false) {
   for (MeshBlock block : mesh.blocks) {
-    if (prepare) {
+    if (absorb) {
       const std::vector<std::uint64_t> imported = std::exchange(block.imported, {});
-      writer.prepare(block);
+      writer.absorb(block);
       block.imported = imported;
     }
     writer.write(std::move(block));
@@ -93,12 +93,12 @@ inline void write_blocks(MeshStreamWriter& writer, const StreamedMesh& mesh, boo
 
 /// The bytes of the mesh as a stream.
 inline std::string stream_bytes(const StreamedMesh& mesh, const MeshFormat& format,
-                                bool prepare = false) {
+                                bool absorb = false) {
   FaultyFileSystem files;
   files.seekable = false;
   const auto scratch = make_scratch_folder("", std::nullopt);
   const auto writer = open_mesh_stream_writer(files, "a", format, mesh.header, *scratch);
-  write_blocks(*writer, mesh, prepare);
+  write_blocks(*writer, mesh, absorb);
   EXPECT_EQ(writer->bytes_written(), files.files.at("a").size());
   EXPECT_EQ(scratch->bytes_written(), 0U);
   return files.files.at("a");

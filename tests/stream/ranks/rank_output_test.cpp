@@ -72,11 +72,10 @@ class SharedFolder {
   std::string path_;
 };
 
-class KeptBlocks : public MeshStreamWriter {
+class KeptBlocks : public BlockSink {
  public:
   void write(MeshBlock&& block) override { blocks.push_back(std::move(block)); }
   void finish(const MeshTotals&) override {}
-  [[nodiscard]] std::uint64_t bytes_written() const override { return 0; }
 
   std::vector<MeshBlock> blocks;
 };

@@ -83,12 +83,12 @@ inline Rastered raster_of(const std::vector<Triangle>& triangles, const PixelGri
   dem.begin(Box<2>{});
   with_threads(options.threads, [&] {
     for (std::size_t begin = 0; begin < triangles.size(); begin += at_a_time) {
-      std::vector<Point<3>> vertices;
+      std::vector<PlacedPoint> vertices;
       std::vector<std::uint32_t> corners;
       for (std::size_t t = begin; t < std::min(triangles.size(), begin + at_a_time); ++t) {
         for (const Point<3>& corner : triangles[t]) {
           corners.push_back(static_cast<std::uint32_t>(vertices.size()));
-          vertices.push_back(corner);
+          vertices.push_back({corner});
         }
       }
       dem.paint(vertices, corners);

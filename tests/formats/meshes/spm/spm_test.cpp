@@ -100,7 +100,7 @@ TEST(Spm, PrepareFreesWhatItHasEncoded) {
   StreamedMesh mesh = strip(2, 100, 100);
   const auto scratch = make_scratch_folder("", std::nullopt);
   const auto writer = open_mesh_stream_writer(files, "a", kSpmMesh, mesh.header, *scratch);
-  writer->prepare(mesh.blocks[0]);
+  writer->absorb(mesh.blocks[0]);
   EXPECT_EQ(mesh.blocks[0].vertices.capacity(), 0U);
   EXPECT_EQ(mesh.blocks[0].corners.capacity(), 0U);
   EXPECT_EQ(mesh.blocks[0].finalized.capacity(), 0U);

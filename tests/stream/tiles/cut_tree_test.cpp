@@ -1,0 +1,122 @@
+#include "stream/tiles/cut_tree.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "stream/tiles/deal.h"
+
+namespace spillway::detail {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+
+std::vector<std::uint32_t> tiles_of(const CutTree& cuts, const std::vector<Point<3>>& points) {
+  std::vector<std::uint32_t> tiles(points.size());
+  cuts.find_tiles(points, tiles);
+  return tiles;
+}
+
+std::vector<Point<3>> random_points(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> coordinate(0, 1);
+  std::vector<Point<3>> points(count);
+  for (Point<3>& point : points) {
+    for (double& x : point) x = coordinate(random);
+  }
+  return points;
+}
+
+TEST(CutTree, OfNoCutsIsOneTile) {
+  const CutTree cuts(2);
+  EXPECT_EQ(cuts.tiles(), 1U);
+  EXPECT_TRUE(CutTree::is_tile(cuts.root()));
+  EXPECT_THAT(tiles_of(cuts, random_points(20, 1)), Each(0U));
+}
+
+TEST(CutTree, PointsOnACutGoUp) {
+  CutTree cuts(2);
+  cuts.cut(0, 0, 5);
+  cuts.cut(1, 1, 2);
+  EXPECT_EQ(cuts.tiles(), 3U);
+  EXPECT_THAT(tiles_of(cuts, {{4.9, 9, 0}, {5, 1.9, 0}, {5, 2, 0}, {1e300, 1e300, 0}}),
+              ElementsAre(0, 1, 2, 2));
+  ASSERT_FALSE(CutTree::is_tile(cuts.root()));
+  const auto [below, above] = cuts.sides(cuts.root());
+  EXPECT_EQ(CutTree::tile_at(below), 0U);
+  ASSERT_FALSE(CutTree::is_tile(above));
+  EXPECT_EQ(CutTree::tile_at(cuts.sides(above)[1]), 2U);
+}
+
+TEST(CutTree, SplitsASampleIntoEqualShares) {
+  CutTree cuts(3);
+  const std::vector<Point<3>> points = random_points(7000, 2);
+  std::vector<Point<3>> sample = points;
+  cuts.split(0, sample, 7);
+  EXPECT_EQ(cuts.tiles(), 7U);
+  std::vector<int> share(7);
+  for (const std::uint32_t tile : tiles_of(cuts, points)) ++share[tile];
+  for (const int points_of_tile : share) EXPECT_NEAR(points_of_tile, 1000, 10);
+}
+
+TEST(CutTree, CutsOnlyTheFirstAxes) {
+  CutTree cuts(2);
+  std::vector<Point<3>> sample = random_points(100, 3);
+  for (Point<3>& point : sample) point[2] *= 1000;
+  cuts.split(0, sample, 8);
+  for (Point<3> point : sample) {
+    const std::uint32_t tile = tiles_of(cuts, {point})[0];
+    point[2] = -point[2];
+    EXPECT_EQ(tiles_of(cuts, {point})[0], tile);
+  }
+}
+
+TEST(CutTree, EqualPointsStayTogether) {
+  CutTree cuts(2);
+  std::vector<Point<3>> equal(50, Point<3>{1, 2, 3});
+  cuts.split(0, equal, 4);
+  EXPECT_EQ(cuts.tiles(), 1U);
+  std::vector<Point<3>> two(50, Point<3>{1, 2, 3});
+  two.push_back({1, 7, 3});
+  cuts.split(0, two, 4);
+  EXPECT_EQ(cuts.tiles(), 2U);
+  EXPECT_THAT(tiles_of(cuts, {{1, 2, 3}, {1, 7, 3}}), ElementsAre(0, 1));
+}
+
+TEST(DealtPoints, AreGroupedByTileInTheOrderInWhichTheyCame) {
+  CutTree cuts(2);
+  cuts.cut(0, 0, 1);
+  cuts.cut(0, 0, -5);  // nothing is below: tile 0 gets no point
+  PointBlock block;
+  block.points = {{2, 0, 0}, {0, 1, 0}, {3, 2, 0}, {0, 3, 0}, {2, 4, 0}};
+  block.index = {10, 11, 12, 13, 14};
+  DealtPoints dealt;
+  for (int again = 0; again < 2; ++again) {
+    dealt.deal(cuts, block);
+    EXPECT_THAT(dealt.points.index, ElementsAre(10, 12, 14, 11, 13));
+    EXPECT_EQ(dealt.points.points[3], block.points[1]);
+    ASSERT_EQ(dealt.runs.size(), 2U);
+    EXPECT_EQ(dealt.runs[0].tile, 1U);
+    EXPECT_EQ(dealt.runs[0].begin, 0U);
+    EXPECT_EQ(dealt.runs[0].end, 3U);
+    EXPECT_EQ(dealt.runs[0].box.lo, (Point<3>{2, 0, 0}));
+    EXPECT_EQ(dealt.runs[0].box.hi, (Point<3>{3, 4, 0}));
+    EXPECT_EQ(dealt.runs[1].tile, 2U);
+    EXPECT_EQ(dealt.runs[1].end, 5U);
+  }
+}
+
+TEST(DealtPoints, HaveNoIndicesIfTheBlockHasNone) {
+  PointBlock block;
+  block.points = random_points(9, 4);
+  DealtPoints dealt;
+  dealt.deal(CutTree(2), block);
+  EXPECT_EQ(dealt.points.points, block.points);
+  EXPECT_TRUE(dealt.points.index.empty());
+}
+
+}  // namespace
+}  // namespace spillway::detail
