@@ -28,7 +28,7 @@ const MeshFormat* mesh_format_of_extension(const std::string& path,
 const MeshFormat& mesh_format(const std::string& path, const std::string& format_name,
                               MeshFormats formats = mesh_formats());
 
-/// The format of a file that begins so (1024 bytes, or all there are); null if the bytes are not
+/// The format of a file by its first bytes, 512 or more, or all there are; null if these are not
 /// those of a mesh.
 const MeshFormat* mesh_format_of_bytes(std::string_view first_bytes,
                                        MeshFormats formats = mesh_formats());

@@ -30,7 +30,7 @@ const PointFormat* find_point_format(std::string_view name, PointFormats formats
 const PointFormat& point_format_by_name(std::string_view name,
                                         PointFormats formats = point_formats());
 
-/// The format of a file that begins so (512 bytes, or all there are); null if the bytes tell none.
+/// The format of a file by its first bytes, 512 or more, or all there are; null if they tell none.
 const PointFormat* point_format_of_bytes(std::string_view first_bytes,
                                          PointFormats formats = point_formats());
 

@@ -71,8 +71,8 @@ struct MeshFormat {
   /// Whether as a stream it ends with its totals, the canonical hash among them.
   bool has_totals = false;
 
-  /// Whether a file that begins so (1024 bytes, or all there are) is of this format. Null if the
-  /// first bytes never tell.
+  /// Whether a file is of this format, by its first bytes: 512 or more, or all there are. Null if
+  /// they never tell.
   bool (*recognises)(std::string_view first_bytes) = nullptr;
   /// Of a stream: whether what nothing else tells of may be of this format, by its first bytes.
   bool (*resembles)(std::string_view first_bytes) = nullptr;

@@ -43,8 +43,8 @@ struct PointFormat {
   /// No integer of a lattice in such a file is larger, signs aside.
   double largest_integer = 0x1p31;
 
-  /// Whether a file that begins so (512 bytes, or all there are) is of this format. Null if the
-  /// first bytes do not tell.
+  /// Whether a file is of this format, by its first bytes: 512 or more, or all there are. Null if
+  /// they do not tell.
   bool (*recognises)(std::string_view first_bytes) = nullptr;
   std::unique_ptr<PointReader> (*open_reader)(PointInput input,
                                               const PointReaderOptions& options) = nullptr;
