@@ -8,7 +8,7 @@ namespace spillway::detail {
 namespace {
 
 /// Points of a source as a tree of tiles takes them.
-PointFeed feed_of(PointInput& source, const StreamOptions& options, StageTimes& times) {
+PointFeed feed_of(PointStream& source, const StreamOptions& options, StageTimes& times) {
   return {.fetch =
               [&](SourcePiece& piece) {
                 const StageTimer timer(times, Stage::kRead);
@@ -23,7 +23,7 @@ PointFeed feed_of(PointInput& source, const StreamOptions& options, StageTimes& 
 }
 
 template <int D>
-void run(TileEngine<D>& engine, PointInput& source, MemoryBudget& budget,
+void run(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
          const StreamOptions& options) {
   options.begin_phase("read");
   engine.spill(feed_of(source, options, engine.times()));
@@ -45,7 +45,7 @@ void run(TileEngine<D>& engine, PointInput& source, MemoryBudget& budget,
 }  // namespace
 
 template <int D>
-StreamFigures triangulate_stream(PointInput& source, BlockSink& sink, ScratchFolder& scratch,
+StreamFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
                                  MemoryBudget& budget, const StreamOptions& options) {
   TileEngine<D> engine({source.lattice(), source.expected(), source.extent()}, sink, scratch,
                        budget, options);
@@ -54,9 +54,9 @@ StreamFigures triangulate_stream(PointInput& source, BlockSink& sink, ScratchFol
   return engine.figures();
 }
 
-template StreamFigures triangulate_stream<2>(PointInput&, BlockSink&, ScratchFolder&,
+template StreamFigures triangulate_stream<2>(PointStream&, BlockSink&, ScratchFolder&,
                                              MemoryBudget&, const StreamOptions&);
-template StreamFigures triangulate_stream<3>(PointInput&, BlockSink&, ScratchFolder&,
+template StreamFigures triangulate_stream<3>(PointStream&, BlockSink&, ScratchFolder&,
                                              MemoryBudget&, const StreamOptions&);
 
 }  // namespace spillway::detail

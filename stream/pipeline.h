@@ -4,7 +4,7 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/runtime/memory_budget.h"
 #include "stream/plan/stream_options.h"
-#include "stream/source/point_input.h"
+#include "stream/source/point_stream.h"
 
 namespace spillway::detail {
 
@@ -12,7 +12,7 @@ namespace spillway::detail {
 /// gives what is final to `sink`, which is not finished yet. Throws Error if the points do not
 /// span D dimensions, or if the memory or the disk do not suffice.
 template <int D>
-StreamFigures triangulate_stream(PointInput& source, BlockSink& sink, ScratchFolder& scratch,
+StreamFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
                                  MemoryBudget& budget, const StreamOptions& options);
 
 }  // namespace spillway::detail

@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <optional>
 
-#include "stream/source/point_input.h"
+#include "stream/source/point_stream.h"
 
 namespace spillway::detail {
 
 /// The points of a program's own source, as the pipeline takes them.
-class ProgramPoints final : public PointInput {
+class ProgramPoints final : public PointStream {
  public:
   /// `source` must outlive it. Throws Error(kInvalidArgument) for a header that cannot be.
   explicit ProgramPoints(spillway::PointSource& source);

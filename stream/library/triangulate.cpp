@@ -103,7 +103,7 @@ StreamOptions stream_options(const TriangulateOptions& options, const Context& c
 
 /// The points of a run, and what the mesh's header says of them.
 struct Input {
-  PointInput* points = nullptr;
+  PointStream* points = nullptr;
   std::optional<ProgramPoints> program{};
   MeshStreamHeader header{};
 };
@@ -132,7 +132,7 @@ void open_input(spillway::PointSource& source, const TriangulateOptions& options
   input.header.extent = input.program->extent();
 }
 
-StreamFigures run(PointInput& points, BlockSink& blocks, const Context& context,
+StreamFigures run(PointStream& points, BlockSink& blocks, const Context& context,
                   const TriangulateOptions& options, RunWatch& watch) {
   MemoryBudget budget(context.memory());
   const auto scratch =

@@ -17,7 +17,7 @@
 #include "src/geometry/lattice.h"
 #include "stream/source/common_lattice.h"
 #include "stream/source/point_filter.h"
-#include "stream/source/point_input.h"
+#include "stream/source/point_stream.h"
 #include "stream/source/thinning.h"
 #include "stream/tiles/point_feed.h"
 
@@ -63,7 +63,7 @@ struct SourceFacts {
 
 /// All inputs as one: one after the other, each in its own order, filtered, in common coordinates.
 /// If they are thinned, the first fetch() reads all of them.
-class PointSource : public PointInput {
+class PointSource : public PointStream {
  public:
   /// Reads all headers. Throws Error that names all inputs that cannot be opened or do not have
   /// what the filter looks at, or two of different coordinate systems.

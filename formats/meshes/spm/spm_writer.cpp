@@ -72,7 +72,7 @@ class SpmWriter : public MeshStreamWriter {
     }
     block.prepared.resize(sizeof counts);
     store(block.prepared.data(), counts);
-    append_block(block.prepared, kSpmMesh, content);
+    append_block(block.prepared, kSpmMeshBlock, content);
     block.prepared.shrink_to_fit();
     release(block.vertices);
     release(block.input_index);

@@ -11,9 +11,9 @@
 namespace spillway::detail {
 
 /// The points of a run as the pipeline takes them.
-class PointInput {
+class PointStream {
  public:
-  virtual ~PointInput() = default;
+  virtual ~PointStream() = default;
 
   /// Takes the next piece, in order; false at the end.
   virtual bool fetch(SourcePiece& piece) = 0;
