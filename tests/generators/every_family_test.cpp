@@ -121,7 +121,7 @@ TEST(FamilyNames, LeadBackToTheirFamilies) {
   EXPECT_EQ(family_by_name("utm"), Family::kUtm);
 }
 
-TEST(FamilyNames, UnknownIsAInvalidArgumentThatListsThem) {
+TEST(FamilyNames, UnknownIsAnInvalidArgumentThatListsThem) {
   try {
     family_by_name("gaussian");
     FAIL();

@@ -36,3 +36,7 @@ spillway_mpi_test(rank_output_test
   LIBS spillway_stream_ranks
   RANKS 1 2 3 5
   TIMEOUT 300)
+
+spillway_test(stream_library_test unit
+  SOURCES stream/library/triangulate_test.cpp
+  LIBS spillway_stream spillway_library)

@@ -36,7 +36,7 @@ TEST(CoreList, DotsStandForDoubling) {
   EXPECT_EQ(parse_core_list("3,...,20"), (List{3, 6, 12, 20}));
 }
 
-TEST(CoreList, NonsenseIsAInvalidArgument) {
+TEST(CoreList, NonsenseIsAnInvalidArgument) {
   for (const char* text : {"", ",", "0", "-1", "1,", "1,,2", "...", "...,4", "1,...", "1,...,...,8",
                            "two", "1;2", "1e3", "99999999999"}) {
     EXPECT_THROW(parse_core_list(text), InvalidArgument) << text;

@@ -1,0 +1,267 @@
+// The door for programs where points and meshes stream: <spillway/triangulate.h>.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spillway/delaunay.h>
+#include <spillway/triangulate.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace spillway {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::vector<Point<3>> random_points(std::size_t count, std::uint64_t seed = 1) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> coordinate(0, 100);
+  std::vector<Point<3>> points(count);
+  for (auto& point : points) point = {coordinate(random), coordinate(random), coordinate(random)};
+  return points;
+}
+
+/// Gives points in blocks of `step`, and fails before the block of number `fails_at`.
+class Blocks : public PointSource {
+ public:
+  Blocks(std::vector<Point<3>> points, std::size_t step, std::size_t fails_at = ~std::size_t{0})
+      : points_(std::move(points)), step_(step), fails_at_(fails_at) {}
+
+  [[nodiscard]] PointsHeader header() const override { return {}; }
+  bool read(std::vector<Point<3>>& points) override {
+    if (block_++ == fails_at_) throw std::runtime_error("the sensor is off");
+    const std::size_t end = std::min(points_.size(), next_ + step_);
+    points.assign(points_.begin() + static_cast<std::ptrdiff_t>(next_),
+                  points_.begin() + static_cast<std::ptrdiff_t>(end));
+    next_ = end;
+    return !points.empty();
+  }
+
+ private:
+  std::vector<Point<3>> points_;
+  std::size_t step_;
+  std::size_t fails_at_;
+  std::size_t block_ = 0;
+  std::size_t next_ = 0;
+};
+
+class FailingSink : public MeshSink {
+ public:
+  void write(const MeshBlock& /*block*/) override { throw std::runtime_error("the line is cut"); }
+};
+
+class Streams : public testing::Test {
+ protected:
+  Streams() {
+    std::string name = testing::TempDir() + "spillway-test-library-XXXXXX";
+    if (::mkdtemp(name.data()) != nullptr) folder_ = name;
+  }
+  ~Streams() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] ContextOptions options(const char* memory = "64M", unsigned threads = 2) const {
+    ContextOptions options;
+    options.memory = memory;
+    options.threads = threads;
+    options.scratch_folder = folder_;
+    return options;
+  }
+
+  template <typename Work>
+  static ErrorCode code_of(Work&& work) {
+    try {
+      work();
+    } catch (const Error& error) {
+      return error.code();
+    }
+    ADD_FAILURE() << "nothing is thrown";
+    return {};
+  }
+
+  std::string folder_;
+};
+
+TEST_F(Streams, GiveTheMeshThatIsMadeInMemory) {
+  const auto points = random_points(20'000);
+  for (const int dimension : {2, 3}) {
+    const Context context(options(dimension == 2 ? "32M" : "96M"));
+    Blocks source(points, 999);
+    MeshInMemory mesh;
+    TriangulateOptions how;
+    how.dimension = dimension;
+    how.tile_points = 3000;
+    const Report report = triangulate(source, mesh, how, context);
+    std::uint64_t hash = 0;
+    std::size_t cells = 0;
+    if (dimension == 2) {
+      std::vector<Point<2>> plane;
+      for (const auto& p : points) plane.push_back({p[0], p[1]});
+      const Delaunay<2> whole(plane);
+      hash = whole.canonical_hash();
+      cells = whole.cell_count();
+    } else {
+      const Delaunay<3> whole(points);
+      hash = whole.canonical_hash();
+      cells = whole.cell_count();
+    }
+    EXPECT_EQ(report.mesh.canonical_hash, hash);
+    EXPECT_EQ(report.mesh.simplices, cells);
+    EXPECT_EQ(mesh.totals(), report.mesh);
+    EXPECT_EQ(mesh.corners().size(), cells * static_cast<std::size_t>(dimension + 1));
+    EXPECT_EQ(std::set<Point<3>>(mesh.vertices().begin(), mesh.vertices().end()),
+              std::set<Point<3>>(points.begin(), points.end()));
+    EXPECT_GT(report.tiles, 1U);
+    EXPECT_EQ(report.points.read, points.size());
+  }
+}
+
+TEST_F(Streams, UseNoVertexBeforeItComesNorAfterItIsFinalized) {
+  const Context context(options("32M"));
+  Blocks source(random_points(30'000), 5000);
+  std::set<std::uint64_t> live;
+  std::uint64_t next = 0;
+  const auto sink = mesh_to([&](const MeshBlock& block) {
+    EXPECT_EQ(block.first_vertex, next);
+    for (std::size_t i = 0; i < block.vertices.size(); ++i) live.insert(next++);
+    for (const std::uint64_t corner : block.corners) EXPECT_TRUE(live.contains(corner));
+    for (const std::uint64_t vertex : block.finalized) EXPECT_EQ(live.erase(vertex), 1U);
+  });
+  triangulate(source, *sink, {.tile_points = 2000}, context);
+  EXPECT_EQ(next, 30'000U);
+  EXPECT_TRUE(live.empty());
+}
+
+TEST_F(Streams, BesideEachOtherWithDifferentOptionsGiveTheRightResultEach) {
+  const auto points = random_points(60'000);
+  std::vector<std::uint64_t> hashes(4);
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < hashes.size(); ++i) {
+    threads.emplace_back([&, i] {
+      const Context context(options(i % 2 == 0 ? "32M" : "200M", static_cast<unsigned>(i + 1)));
+      Blocks source(points, 1000 * (i + 1));
+      MeshInMemory mesh;
+      TriangulateOptions how;
+      how.kernel = i == 3 ? Kernel::kCgal : Kernel::kSpillway;
+      how.tile_points = i == 0 ? 4000 : 0;
+      hashes[i] = triangulate(source, mesh, how, context).mesh.canonical_hash;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_THAT(hashes, testing::Each(hashes.front()));
+}
+
+TEST_F(Streams, ThatStopLeaveNothingAndSayInterrupted) {
+  for (const std::string phase : {"read", "triangulate", "write"}) {
+    std::stop_source stop;
+    ContextOptions stopped = options("32M");
+    stopped.stop = stop.get_token();
+    stopped.progress = [&](const Progress& progress) {
+      if (progress.phase == phase) stop.request_stop();
+    };
+    const Context context(std::move(stopped));
+    Blocks source(random_points(100'000), 5000);
+    const std::string path = folder_ + "/mesh.ply";
+    {
+      const auto sink = open_mesh(path, {}, context);
+      EXPECT_EQ(code_of([&] { triangulate(source, *sink, {.tile_points = 20'000}, context); }),
+                ErrorCode::kInterrupted)
+          << phase;
+    }
+    EXPECT_TRUE(fs::is_empty(folder_)) << phase;
+  }
+}
+
+TEST_F(Streams, PassOnWhatTheProgramThrows) {
+  const Context context(options());
+  Blocks source(random_points(5000), 1000, 3);
+  MeshInMemory mesh;
+  EXPECT_THROW(
+      {
+        try {
+          triangulate(source, mesh, {}, context);
+        } catch (const std::runtime_error& error) {
+          EXPECT_STREQ(error.what(), "the sensor is off");
+          throw;
+        }
+      },
+      std::runtime_error);
+  Blocks good(random_points(5000), 1000);
+  FailingSink sink;
+  EXPECT_THROW(triangulate(good, sink, {}, context), std::runtime_error);
+}
+
+TEST_F(Streams, RefuseWhatCannotBe) {
+  const Context context(options());
+  MeshInMemory mesh;
+  const auto run = [&](std::vector<Point<3>> points, const TriangulateOptions& how) {
+    Blocks source(std::move(points), 100);
+    return code_of([&] { triangulate(source, mesh, how, context); });
+  };
+  const auto points = random_points(1000);
+  EXPECT_EQ(run(points, {.dimension = 4}), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(run(points, {.max_edge = 0.0}), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(run(points, {.children = 1}), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(run(points, {.max_edge = 1e-9}), ErrorCode::kDegenerateInput);
+  EXPECT_EQ(run({}, {}), ErrorCode::kDegenerateInput);
+  EXPECT_EQ(run({{0, 0, 0}, {1, 1, 0}, {2, 2, 5}}, {}), ErrorCode::kDegenerateInput);
+  EXPECT_EQ(run({{0, 0, 0}, {1, std::numeric_limits<double>::infinity(), 0}}, {}),
+            ErrorCode::kInvalidArgument);
+  EXPECT_EQ(code_of([&] { Context({.threads = 5000}); }), ErrorCode::kInvalidArgument);
+  const std::vector<Point<2>> flat{{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+  const auto plane = points_in_memory(flat);
+  EXPECT_EQ(code_of([&] { triangulate(*plane, mesh, {.dimension = 3}, context); }),
+            ErrorCode::kDegenerateInput);
+}
+
+TEST_F(Streams, WriteBlocksOfAProgramToFiles) {
+  const Context context(options());
+  const std::string path = folder_ + "/square.sma";
+  const auto sink = open_mesh(path, {}, context);
+  sink->begin({});
+  sink->write({.first_vertex = 0,
+               .vertices = {{0, 0, 1}, {1, 0, 2}, {0, 1, 3}},
+               .corners = {0, 1, 2},
+               .finalized = {0}});
+  sink->write(
+      {.first_vertex = 3, .vertices = {{1, 1, 4}}, .corners = {1, 3, 2}, .finalized = {1, 2, 3}});
+  MeshTotals totals;
+  totals.vertices = 4;
+  totals.simplices = 2;
+  sink->finish(totals);
+  EXPECT_TRUE(fs::exists(path));
+  const auto other = open_mesh(folder_ + "/other.spm", {}, context);
+  other->begin({});
+  EXPECT_EQ(code_of([&] { other->write({.corners = {0, 1, 2}}); }), ErrorCode::kInvalidArgument);
+}
+
+TEST_F(Streams, ReadFilesWithFilters) {
+  std::ofstream text(folder_ + "/a.txt");
+  for (int i = 0; i < 1000; ++i) text << i % 40 << ' ' << i / 40 << ' ' << i << '\n';
+  text.close();
+  const Context context(options());
+  const auto source =
+      open_points({folder_}, {.every = 2, .thin = Thin{4, ThinChoice::kHighest}}, context);
+  EXPECT_EQ(source->header().coordinates, 3);
+  MeshInMemory mesh;
+  const Report report = triangulate(*source, mesh, {}, context);
+  EXPECT_EQ(report.points.read, 1000U);
+  EXPECT_EQ(report.points.skipped, 500U);
+  EXPECT_GT(report.points.thinned, 0U);
+  EXPECT_EQ(code_of([&] { open_points({folder_ + "/none.txt"}, {}, context); }),
+            ErrorCode::kInputOutput);
+  EXPECT_EQ(code_of([&] { open_points({folder_}, {.classes = {300}}, context); }),
+            ErrorCode::kInvalidArgument);
+  const auto again = open_points({folder_}, {}, context);
+  EXPECT_EQ(code_of([&] { triangulate(*again, mesh, {.dimension = 3}, context); }),
+            ErrorCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace spillway
