@@ -1,7 +1,6 @@
 #include "src/delaunay/base_case.h"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 
 #include "src/delaunay/affine_basis.h"
@@ -12,8 +11,6 @@
 
 namespace spillway::detail {
 namespace {
-
-std::atomic<BaseCaseKernel> chosen_kernel = BaseCaseKernel::kOwn;
 
 template <int D>
 std::vector<Duplicate> find_duplicates(const BaseCaseInput<D>& input) {
@@ -38,7 +35,7 @@ std::vector<Duplicate> find_duplicates(const BaseCaseInput<D>& input) {
 
 template <int D>
 BaseCase<D> triangulate_spanning(const BaseCaseInput<D>& input, std::span<const VertexId> basis) {
-  if (chosen_kernel == BaseCaseKernel::kCgal) return cgal_base_case<D>(input, basis);
+  if (input.kernel == BaseCaseKernel::kCgal) return cgal_base_case<D>(input, basis);
   if constexpr (D == 2) {
     return kernel_2d_base_case(input, basis);
   } else {
@@ -47,8 +44,6 @@ BaseCase<D> triangulate_spanning(const BaseCaseInput<D>& input, std::span<const 
 }
 
 }  // namespace
-
-void set_base_case_kernel(BaseCaseKernel kernel) { chosen_kernel = kernel; }
 
 template <int D>
 BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input) {

@@ -11,6 +11,12 @@
 
 namespace spillway::detail {
 
+/// What triangulates base cases.
+enum class BaseCaseKernel : std::uint8_t {
+  kOwn,   ///< kernel_2d and kernel_3d
+  kCgal,  ///< CGAL's incremental triangulation: same result, several times the time
+};
+
 /// The points of one base case, neighbours near each other in the list (a Hilbert curve's order, as
 /// divide() leaves them; any order is correct, but slower): point i is vertex first_vertex + i, and
 /// of equal points the one of the lowest input index is kept.
@@ -24,6 +30,7 @@ struct BaseCaseInput {
   /// nothing is copied, and at the peak less memory is used. For results that are soon recycled,
   /// or few.
   bool in_place = false;
+  BaseCaseKernel kernel = BaseCaseKernel::kOwn;
 };
 
 /// The triangulation of one base case: a single block, its neighbours all inside it.
@@ -38,15 +45,6 @@ struct BaseCase {
   /// lies inside the region and touches no side.
   std::optional<std::vector<std::uint32_t>> not_inside;
 };
-
-/// What triangulates base cases.
-enum class BaseCaseKernel : std::uint8_t {
-  kOwn,   ///< kernel_2d and kernel_3d
-  kCgal,  ///< CGAL's incremental triangulation: same result, several times the time
-};
-
-/// Chooses the kernel for the whole process; kOwn if never called. To be called before work starts.
-void set_base_case_kernel(BaseCaseKernel kernel);
 
 /// Triangulates any finite points: none, one, all equal, collinear, coplanar or in general
 /// position. The calling thread does so alone, but those of with_threads() that have nothing else

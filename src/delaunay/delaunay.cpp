@@ -119,7 +119,8 @@ class Run {
          .input_index = std::span(result_.input_index).subspan(part.begin, part.size()),
          .first_vertex = part.begin,
          .region = cell,
-         .in_place = in_place_});
+         .in_place = in_place_,
+         .kernel = options_.kernel});
     PartSurface surface;
     surface.dimension = leaf.dimension;
     surface.open = leaf.dimension < D;
@@ -243,10 +244,10 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
 }
 
 template <int D>
-Triangulation<D> border_delaunay(BlockArray<Point<D>> points, Task& task) {
+Triangulation<D> border_delaunay(BlockArray<Point<D>> points, BaseCaseKernel kernel, Task& task) {
   const std::size_t base_case_size =
       std::max<std::size_t>(points.size() / 4, kGoodBorderBaseCase<D>);
-  const DelaunayOptions options;
+  const DelaunayOptions options{.kernel = kernel};
   return Run<D>(std::move(points), options, false).triangulate(base_case_size, task);
 }
 
@@ -255,8 +256,8 @@ void recycle(Triangulation<D> used) {
   for (SimplexBlock<D>& block : used.blocks) recycle<D>(std::move(block.simplices));
 }
 
-template Triangulation<2> border_delaunay<2>(BlockArray<Point<2>>, Task&);
-template Triangulation<3> border_delaunay<3>(BlockArray<Point<3>>, Task&);
+template Triangulation<2> border_delaunay<2>(BlockArray<Point<2>>, BaseCaseKernel, Task&);
+template Triangulation<3> border_delaunay<3>(BlockArray<Point<3>>, BaseCaseKernel, Task&);
 template Triangulation<2> delaunay<2>(std::span<const Point<2>>, const DelaunayOptions&);
 template Triangulation<3> delaunay<3>(std::span<const Point<3>>, const DelaunayOptions&);
 template void recycle<2>(Triangulation<2>);

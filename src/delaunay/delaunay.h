@@ -6,6 +6,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "src/delaunay/base_case.h"
 #include "src/delaunay/divide.h"
 #include "src/delaunay/triangulation.h"
 
@@ -20,6 +21,7 @@ struct DelaunayOptions {
       0;  ///< largest number of points in one base case; 0: chosen by D and n
   DivisionScheme division = DivisionScheme::kLongestExtent;
   unsigned children = 2;  ///< parts that are merged at a time
+  BaseCaseKernel kernel = BaseCaseKernel::kOwn;
   /// If set, is told after each base case how many points have been through one. Called by many
   /// threads at once.
   std::function<void(std::size_t points)> progress = nullptr;
@@ -41,7 +43,7 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
 /// runs on its threads, divides only what is large (a border's parts are nearly all border, so that
 /// merging them costs as much again), and keeps memory for the base cases to come.
 template <int D>
-Triangulation<D> border_delaunay(BlockArray<Point<D>> points, Task& task);
+Triangulation<D> border_delaunay(BlockArray<Point<D>> points, BaseCaseKernel kernel, Task& task);
 
 /// Keeps the memory of the simplices of a triangulation that is no longer needed for the next call
 /// of delaunay(), which at its end gives the system what it did not use. Without

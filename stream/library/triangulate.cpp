@@ -90,6 +90,7 @@ StreamOptions stream_options(const TriangulateOptions& options, const Context& c
   stream.leaf_size = options.leaf_points;
   stream.division = division_scheme(options.division);
   stream.children = options.children;
+  stream.kernel = options.kernel == Kernel::kCgal ? BaseCaseKernel::kCgal : BaseCaseKernel::kOwn;
   stream.heights = height_choice(options.heights);
   stream.max_edge = options.max_edge;
   stream.input_index = options.input_index;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/meshes/common/mesh_stream.h"
+#include "src/delaunay/base_case.h"
 #include "src/delaunay/divide.h"
 #include "src/delaunay/schedule.h"
 #include "src/geometry/box.h"
@@ -24,6 +25,7 @@ struct StreamOptions {
   std::size_t leaf_size = 0;        ///< points of a leaf; 0: chosen by D, n and the memory limit
   DivisionScheme division = DivisionScheme::kLongestExtent;
   unsigned children = 2;  ///< parts of a tile that are merged at a time
+  BaseCaseKernel kernel = BaseCaseKernel::kOwn;
   HeightChoice heights = HeightChoice::kFirst;
   std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, in output units
   bool input_index = false;

@@ -37,8 +37,9 @@ class Merge {
   using Questions = typename Acceptance<D>::template Questions<>;
 
  public:
-  Merge(std::span<Border<D>> children, std::span<const Tree* const> trees, MemoryBudget& budget)
-      : children_(children), trees_(trees), budget_(budget) {}
+  Merge(std::span<Border<D>> children, std::span<const Tree* const> trees, MemoryBudget& budget,
+        BaseCaseKernel kernel)
+      : children_(children), trees_(trees), budget_(budget), kernel_(kernel) {}
 
   MergedBorder<D> run(Task& task) {
     task.after.resize(3);
@@ -122,7 +123,7 @@ class Merge {
     BlockArray<Point<D>> points(border_vertices_.size());
     std::transform(border_vertices_.begin(), border_vertices_.end(), points.begin(),
                    [&](VertexId v) { return result_.border.vertices[v].position; });
-    mesh_ = border_delaunay<D>(std::move(points), task);
+    mesh_ = border_delaunay<D>(std::move(points), kernel_, task);
     result_.border.dimension = std::max(result_.border.dimension, mesh_.dimension);
   }
 
@@ -172,6 +173,7 @@ class Merge {
   std::span<Border<D>> children_;
   std::span<const Tree* const> trees_;
   MemoryBudget& budget_;
+  BaseCaseKernel kernel_;
   std::vector<VertexId> first_vertex_;  ///< by child, and one more
   std::vector<bool> open_;              ///< by child
   std::vector<Corners> exposed_;
@@ -189,19 +191,19 @@ std::uint64_t enough_memory(std::uint64_t points) {
 
 template <int D, PointTree Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
-                              MemoryBudget& budget, Task& task) {
-  return Merge<D, Tree>(children, trees, budget).run(task);
+                              MemoryBudget& budget, Task& task, BaseCaseKernel kernel) {
+  return Merge<D, Tree>(children, trees, budget, kernel).run(task);
 }
 
 template std::uint64_t enough_memory<2>(std::uint64_t);
 template std::uint64_t enough_memory<3>(std::uint64_t);
 template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const Part<2>* const>,
-                                       MemoryBudget&, Task&);
+                                       MemoryBudget&, Task&, BaseCaseKernel);
 template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const Part<3>* const>,
-                                       MemoryBudget&, Task&);
+                                       MemoryBudget&, Task&, BaseCaseKernel);
 template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const TileNode<2>* const>,
-                                       MemoryBudget&, Task&);
+                                       MemoryBudget&, Task&, BaseCaseKernel);
 template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const TileNode<3>* const>,
-                                       MemoryBudget&, Task&);
+                                       MemoryBudget&, Task&, BaseCaseKernel);
 
 }  // namespace spillway::detail

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "src/delaunay/base_case.h"
 #include "src/delaunay/finality.h"
 #include "src/delaunay/point_tree.h"
 #include "src/geometry/point.h"
@@ -66,6 +67,7 @@ std::uint64_t enough_memory(std::uint64_t points);
 /// Leases the memory of that from `budget`; throws Error if there is not enough.
 template <int D, PointTree Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
-                              MemoryBudget& budget, Task& task);
+                              MemoryBudget& budget, Task& task,
+                              BaseCaseKernel kernel = BaseCaseKernel::kOwn);
 
 }  // namespace spillway::detail

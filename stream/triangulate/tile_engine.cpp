@@ -39,6 +39,7 @@ TileOptions TileEngine<D>::tile_options(const std::optional<Lattice>& lattice) c
   TileOptions tile;
   tile.division = options_.division;
   tile.children = options_.children;
+  tile.kernel = options_.kernel;
   tile.heights = options_.heights;
   tile.output = {lattice, options_.max_edge, options_.input_index};
   return tile;

@@ -58,7 +58,8 @@ MergedBorder<D> merge_resident(const TileContext<D>& context, std::span<Border<D
   std::vector<const Tree*> of_children;
   for (const Tree& tree : trees) of_children.push_back(&tree);
   const StageTimer timer(context.counts.times, Stage::kMerge);
-  MergedBorder<D> merged = merge_borders<D, Tree>(children, of_children, context.budget, task);
+  MergedBorder<D> merged =
+      merge_borders<D, Tree>(children, of_children, context.budget, task, context.options.kernel);
   context.counts.borders.remove(simplices, bytes);
   context.counts.retriangulated += merged.retriangulated;
   return merged;
@@ -180,7 +181,8 @@ class TileRun {
          .input_index = std::span(input_index_).subspan(part.begin, part.size()),
          .first_vertex = part.begin,
          .region = cell_of(node),
-         .in_place = true});
+         .in_place = true,
+         .kernel = context_.options.kernel});
   }
 
   /// The box around a leaf that has nothing in common with the box of any other part.

@@ -24,6 +24,7 @@ struct TileOptions {
   std::size_t leaf_size = 0;
   DivisionScheme division = DivisionScheme::kLongestExtent;
   unsigned children = 2;
+  BaseCaseKernel kernel = BaseCaseKernel::kOwn;
   HeightChoice heights = HeightChoice::kFirst;
   OutputOptions output;
 };

@@ -155,9 +155,9 @@ TEST(Kernel2d, MakesWayForCgalWhenAsked) {
   std::iota(index.begin(), index.end(), VertexId{0});
   const BaseCaseInput<2> input{.points = points, .input_index = index};
   const BaseCase<2> own = triangulate_base_case<2>(input);
-  set_base_case_kernel(BaseCaseKernel::kCgal);
-  const BaseCase<2> cgal = triangulate_base_case<2>(input);
-  set_base_case_kernel(BaseCaseKernel::kOwn);
+  BaseCaseInput<2> with_cgal = input;
+  with_cgal.kernel = BaseCaseKernel::kCgal;
+  const BaseCase<2> cgal = triangulate_base_case<2>(with_cgal);
   EXPECT_EQ(own.simplices.size(), cgal.simplices.size());
   EXPECT_EQ(own.hull.size(), cgal.hull.size());
   EXPECT_EQ(own.duplicates, cgal.duplicates);

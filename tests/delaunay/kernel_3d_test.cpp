@@ -263,9 +263,9 @@ TEST(Kernel3d, MakesWayForCgalWhenAsked) {
   const std::vector<VertexId> index = indices(points.size());
   const BaseCaseInput<3> input{.points = points, .input_index = index};
   const BaseCase<3> own = triangulate_base_case<3>(input);
-  set_base_case_kernel(BaseCaseKernel::kCgal);
-  const BaseCase<3> cgal = triangulate_base_case<3>(input);
-  set_base_case_kernel(BaseCaseKernel::kOwn);
+  BaseCaseInput<3> with_cgal = input;
+  with_cgal.kernel = BaseCaseKernel::kCgal;
+  const BaseCase<3> cgal = triangulate_base_case<3>(with_cgal);
   EXPECT_EQ(own.simplices.size(), cgal.simplices.size());
   EXPECT_EQ(own.hull.size(), cgal.hull.size());
   EXPECT_EQ(own.duplicates, cgal.duplicates);

@@ -14,7 +14,7 @@
 #include "formats/bytes/whole_file.h"
 #include "formats/disk/extension.h"
 #include "formats/disk/file_system.h"
-#include "tools/process/usage_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

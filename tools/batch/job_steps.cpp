@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "formats/meshes/mesh_formats.h"
-#include "tools/process/usage_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

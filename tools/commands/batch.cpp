@@ -24,9 +24,9 @@
 #include "tools/batch/job_steps.h"
 #include "tools/commands/command.h"
 #include "tools/options/command_options.h"
-#include "tools/process/usage_error.h"
 #include "tools/report/json_text.h"
 #include "tools/report/text_output.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

@@ -10,9 +10,9 @@
 #include "tools/options/command_line.h"
 #include "tools/options/suggestion.h"
 #include "tools/process/rank_job.h"
-#include "tools/process/usage_error.h"
 #include "tools/report/standard_error.h"
 #include "tools/report/text_output.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

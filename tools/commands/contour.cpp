@@ -16,10 +16,10 @@
 #include "tools/commands/output_check.h"
 #include "tools/commands/terrain_input.h"
 #include "tools/options/command_options.h"
-#include "tools/process/usage_error.h"
 #include "tools/report/json_text.h"
 #include "tools/report/statistics.h"
 #include "tools/report/text_output.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

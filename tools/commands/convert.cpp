@@ -17,7 +17,7 @@
 #include "tools/commands/convert_points.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
-#include "tools/process/usage_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

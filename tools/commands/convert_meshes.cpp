@@ -16,7 +16,7 @@
 #include "formats/meshes/mesh_stream_writer.h"
 #include "stream/checker/checker.h"
 #include "tools/commands/facet_count.h"
-#include "tools/process/usage_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "formats/gdal/gdal.h"
-#include "tools/process/usage_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

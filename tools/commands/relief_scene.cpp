@@ -12,7 +12,7 @@
 #include "src/picture/relief.h"
 #include "stream/sinks/dem_writer.h"
 #include "tools/commands/render_scene.h"
-#include "tools/process/usage_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

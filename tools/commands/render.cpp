@@ -17,10 +17,10 @@
 #include "tools/commands/command.h"
 #include "tools/commands/output_check.h"
 #include "tools/commands/render_scene.h"
-#include "tools/process/usage_error.h"
 #include "tools/report/json_text.h"
 #include "tools/report/statistics.h"
 #include "tools/report/text_output.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

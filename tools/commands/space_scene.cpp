@@ -10,7 +10,7 @@
 #include "src/picture/polygons.h"
 #include "stream/sinks/tetrahedron_writers.h"
 #include "tools/commands/render_scene.h"
-#include "tools/process/usage_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

@@ -17,8 +17,8 @@
 #include "src/parallel/parallel.h"
 #include "stream/source/input_list.h"
 #include "tools/options/command_options.h"
-#include "tools/process/usage_error.h"
 #include "tools/report/rank_statistics.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

@@ -26,12 +26,12 @@
 #include "tools/options/input_options.h"
 #include "tools/options/triangulation_options.h"
 #include "tools/process/rank_job.h"
-#include "tools/process/usage_error.h"
 #include "tools/report/core_simulation.h"
 #include "tools/report/json_text.h"
 #include "tools/report/rank_statistics.h"
 #include "tools/report/statistics.h"
 #include "tools/report/text_output.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

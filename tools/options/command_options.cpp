@@ -15,7 +15,7 @@
 #include "src/distributed/ranks.h"
 #include "src/runtime/memory_budget.h"
 #include "tools/process/rank_job.h"
-#include "tools/process/usage_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

@@ -12,7 +12,7 @@
 #include "stream/ranks/rank_pipeline.h"
 #include "stream/source/input_list.h"
 #include "tools/options/command_options.h"
-#include "tools/process/usage_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

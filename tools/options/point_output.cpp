@@ -6,7 +6,7 @@
 #include "formats/gdal/gdal.h"
 #include "formats/points/point_formats.h"
 #include "tools/options/command_options.h"
-#include "tools/process/usage_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 

@@ -83,8 +83,8 @@ std::optional<double> max_edge(const TriangulationOptions& options) {
 }
 
 StreamOptions stream_options(const TriangulationOptions& options, Progress& progress) {
-  set_base_case_kernel(options.kernel == "cgal" ? BaseCaseKernel::kCgal : BaseCaseKernel::kOwn);
   StreamOptions stream;
+  stream.kernel = options.kernel == "cgal" ? BaseCaseKernel::kCgal : BaseCaseKernel::kOwn;
   stream.threads = thread_count(options);
   stream.tile_capacity = options.tile_capacity;
   stream.leaf_size = options.base_case_size;

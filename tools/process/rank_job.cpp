@@ -13,10 +13,10 @@
 
 #include "formats/bytes/bytes.h"
 #include "formats/disk/unfinished_files.h"
-#include "tools/process/usage_error.h"
 #include "tools/report/advice.h"
 #include "tools/report/printable_text.h"
 #include "tools/report/standard_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-#include "tools/process/usage_error.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {
