@@ -28,11 +28,11 @@ struct MeshHeader {
 /// come; no simplex comes before its vertices, and none after one of them was finalized. So who
 /// reads along need never hold more than the vertices in use.
 struct MeshBlock {
-  std::uint64_t first_vertex = 0;          ///< the number of the first of `vertices`
-  std::vector<Point<3>> vertices;          ///< that come for the first time
-  std::vector<std::uint64_t> input_index;  ///< of `vertices`, if the header says so
-  std::vector<std::uint64_t> corners;      ///< dimension + 1 vertices a simplex, oriented
-  std::vector<std::uint64_t> finalized;    ///< vertices that are used no more
+  std::uint64_t first_vertex = 0;            ///< the number of the first of `vertices`
+  std::vector<Point<3>> vertices{};          ///< that come for the first time
+  std::vector<std::uint64_t> input_index{};  ///< of `vertices`, if the header says so
+  std::vector<std::uint64_t> corners{};      ///< dimension + 1 vertices a simplex, oriented
+  std::vector<std::uint64_t> finalized{};    ///< vertices that are used no more
 };
 
 /// What is known of a mesh after its last block.

@@ -1,12 +1,12 @@
 # The command, run as a process, and its parts that need none.
 spillway_test(command_unit_tests unit
-  SOURCES tools/command_unit_test.cpp
+  SOURCES tools/command_unit_test.cpp tools/report/advice_test.cpp
   LIBS spillway_command nlohmann_json::nlohmann_json)
 
 function(spillway_command_test name label)
   spillway_test(${name} ${label}
     SOURCES tools/command_runner.cpp ${ARGN}
-    LIBS spillway_build fmt::fmt nlohmann_json::nlohmann_json)
+    LIBS spillway_runtime fmt::fmt nlohmann_json::nlohmann_json)
   target_compile_definitions(${name} PRIVATE SPILLWAY_COMMAND="$<TARGET_FILE:spillway>")
   add_dependencies(${name} spillway)
 endfunction()
