@@ -50,7 +50,10 @@ TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageT
 
 void TileTree::fill(const PointFeed& source) {
   run_batches([&](Batch& batch) { return source.fetch(batch.piece); },
-              [&](Batch& batch) { source.decode(batch.piece, batch.points); });
+              [&](Batch& batch) {
+                source.decode(batch.piece, batch.points);
+                if (!options_.index) batch.points.index.clear();
+              });
   for (const Tile& tile : tiles_) points_ += tile.points;
   if (!divided_ && points_ > options_.capacity) divide_first();
 }

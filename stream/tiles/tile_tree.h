@@ -27,7 +27,7 @@ struct TileTreeOptions {
   std::size_t buffered_points = 0;          ///< most points waiting in memory
   std::optional<std::uint64_t> expected{};  ///< how many points will come, where that is known
   std::optional<Box<3>> extent{};           ///< where they will lie, where that is known
-  bool index = false;                       ///< points carry their index
+  bool index = false;                       ///< points keep their index; that of others is dropped
 };
 
 /// A node of the finished tree over tiles: a tile that can be loaded, or two nodes.

@@ -456,8 +456,8 @@ TEST(RankOutput, PartsAreRefusedWhereAFormatHasNone) {
     }
     return "";
   };
-  EXPECT_THAT(error("a.obj", ""), HasSubstr("vtu, ply or spm, not as obj"));
-  EXPECT_THAT(error("a", "ply-ascii"), HasSubstr("vtu, ply or spm"));
+  EXPECT_THAT(error("a.obj", ""), HasSubstr("spm, ply or vtu, not as obj"));
+  EXPECT_THAT(error("a", "ply-ascii"), HasSubstr("spm, ply or vtu"));
   EXPECT_THAT(error("-", "ply"), HasSubstr("standard output takes no mesh in parts"));
   EXPECT_TRUE(mesh_target("a.PVTU", "", false).parts);
   EXPECT_FALSE(mesh_target("a.vtu", "", false).parts);

@@ -123,8 +123,8 @@ TEST_F(OutOfCoreFault, TooLittleMemoryIsRefusedWithTheLeastThatWillDo) {
     const std::string memory = options + " --memory ";
     expect_failure(command + memory + "1M", HasSubstr("MiB are the least"), 2);
     const std::string message = work_.run(command + memory + "1M").err;
-    const std::string least = message.substr(message.find(": ", message.find("--memory")) + 2);
-    work_.succeed(command + memory + least.substr(0, least.find(' ')) + "M");
+    const std::string least = message.substr(message.find("--memory ") + 9);
+    work_.succeed(command + memory + least.substr(0, least.find(' ')));
   }
 }
 
