@@ -35,7 +35,7 @@ struct ContextOptions {
   std::function<void(std::string_view)> warning{};
   std::function<void(std::string_view)> detail{};
   /// A request to stop ends the run with ErrorCode::kInterrupted, soon but not at once: parts of
-  /// some ten thousand points that have been begun are finished.
+  /// some ten thousand points that have been begun are finished, and so is the last phase, "write".
   std::stop_token stop{};
 };
 

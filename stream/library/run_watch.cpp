@@ -5,7 +5,6 @@
 namespace spillway::detail {
 
 void RunWatch::begin(const char* phase) {
-  check();
   {
     const std::lock_guard lock(mutex_);
     phase_ = phase;
@@ -15,15 +14,19 @@ void RunWatch::begin(const char* phase) {
 }
 
 void RunWatch::tell(std::uint64_t done, std::optional<double> fraction) {
+  report(done, fraction);
   check();
+}
+
+void RunWatch::end(std::uint64_t done) { report(done, 1.0); }
+
+void RunWatch::report(std::uint64_t done, std::optional<double> fraction) {
   if (!options_.progress) return;
   const std::lock_guard lock(mutex_);
   if (done < told_) return;  // another thread knows more
   told_ = done;
   options_.progress({phase_, done, fraction});
 }
-
-void RunWatch::end(std::uint64_t done) { tell(done, 1.0); }
 
 void RunWatch::check() const {
   if (options_.stop.stop_requested()) throw Interrupted();

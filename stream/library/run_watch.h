@@ -16,14 +16,16 @@ class RunWatch {
   /// `context` must outlive it.
   explicit RunWatch(const Context& context) : options_(context.options()) {}
 
+  /// Throws Interrupted if the run is to be stopped, as do tell() and check().
   void begin(const char* phase);
-  /// Throws Error(kInterrupted) if the run is to be stopped.
   void tell(std::uint64_t done, std::optional<double> fraction);
+  /// Stops nothing: what the phase was for is done.
   void end(std::uint64_t done);
-  /// As tell() does.
   void check() const;
 
  private:
+  void report(std::uint64_t done, std::optional<double> fraction);
+
   const ContextOptions& options_;
   std::mutex mutex_;
   std::string phase_;       // guarded by mutex_, as is what follows
