@@ -41,6 +41,8 @@ struct Sample {
   const char* sha256;
 };
 
+inline void PrintTo(const Sample& sample, std::ostream* out) { *out << sample.file; }
+
 /// The test's name for a sample.
 inline std::string name_of_sample(const ::testing::TestParamInfo<Sample>& tested) {
   std::string name = tested.param.file;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,13 @@ inline std::vector<FamilyCase> all_family_cases() {
   return cases;
 }
 
-/// "terrain2d".
+/// Tells of a case as "terrain2d".
+inline void PrintTo(const FamilyCase& tested, std::ostream* out) {
+  *out << family_names()[static_cast<std::size_t>(tested.family)] << tested.dimension << 'd';
+}
+
 inline std::string family_case_name(const testing::TestParamInfo<FamilyCase>& tested) {
-  return family_names()[static_cast<std::size_t>(tested.param.family)] +
-         std::to_string(tested.param.dimension) + "d";
+  return testing::PrintToString(tested.param);
 }
 
 }  // namespace spillway::detail

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,13 @@
 #include "src/error.h"
 #include "tests/faulty_file_system.h"
 #include "tests/formats/point_test_helpers.h"
+
+namespace spillway::detail {
+
+/// For the parameters of tests.
+inline void PrintTo(const MeshFormat* format, std::ostream* out) { *out << format->name; }
+
+}  // namespace spillway::detail
 
 namespace spillway::detail::testing {
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -15,6 +16,12 @@
 #include "src/error.h"
 
 namespace spillway::detail {
+
+/// For the names of tests.
+static void PrintTo(ThinChoice choice, std::ostream* out) {
+  constexpr std::array kNames = {"First", "Lowest", "Highest", "Center"};
+  *out << kNames.at(static_cast<std::size_t>(choice));
+}
 namespace {
 
 using testing::HasSubstr;
@@ -134,7 +141,8 @@ TEST_P(EveryChoice, KeepsTheBestPointOfEachCellWhateverTheOrder) {
 
 INSTANTIATE_TEST_SUITE_P(Choices, EveryChoice,
                          testing::Values(ThinChoice::kFirst, ThinChoice::kLowest,
-                                         ThinChoice::kHighest, ThinChoice::kCenter));
+                                         ThinChoice::kHighest, ThinChoice::kCenter),
+                         testing::PrintToStringParamName());
 
 TEST(Thinning, CellsAreThoseOfOutputCoordinates) {
   ThinningOptions options{.cell = 2, .choice = ThinChoice::kCenter, .dimension = 3};

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -20,6 +21,11 @@ constexpr std::size_t kBuffered = 40 * PointBuffer::kPiece;
 using Points = std::vector<Point<3>>;
 
 enum class Order { kRandom, kSorted, kFlightLines, kSkewed, kEqual };
+
+void PrintTo(Order order, std::ostream* out) {
+  constexpr std::array kNames = {"Random", "Sorted", "FlightLines", "Skewed", "Equal"};
+  *out << kNames.at(static_cast<std::size_t>(order));
+}
 
 Points make_points(Order order, std::size_t count) {
   std::mt19937_64 random(17);
@@ -137,7 +143,8 @@ TEST_P(TileTreeOfOrder, KeepsEveryPointInTilesOfTheCapacity) {
 
 INSTANTIATE_TEST_SUITE_P(Orders, TileTreeOfOrder,
                          testing::Values(Order::kRandom, Order::kSorted, Order::kFlightLines,
-                                         Order::kSkewed, Order::kEqual));
+                                         Order::kSkewed, Order::kEqual),
+                         testing::PrintToStringParamName());
 
 TEST(TileTree, WritesEveryPointOnceWhenTheHeaderTellsTheTruth) {
   for (const Order order : {Order::kRandom, Order::kSorted, Order::kFlightLines}) {

@@ -347,6 +347,8 @@ struct Refused {
   const char* message;
 };
 
+void PrintTo(const Refused& refused, std::ostream* out) { *out << refused.arguments; }
+
 class DemRefuses : public ::testing::TestWithParam<Refused> {};
 
 TEST_P(DemRefuses, AndLeavesNothing) {

@@ -290,6 +290,8 @@ struct Refused {
   const char* message;
 };
 
+void PrintTo(const Refused& refused, std::ostream* out) { *out << refused.arguments; }
+
 class RenderRefuses : public ::testing::TestWithParam<Refused> {};
 
 TEST_P(RenderRefuses, AndLeavesNothing) {

@@ -378,6 +378,8 @@ struct Small {
   LazFile::Table table = LazFile::Table::kSeekable;
 };
 
+void PrintTo(const Small& small, std::ostream* out) { *out << small.name; }
+
 std::vector<Small> small_files() {
   LazFormat unchunked = pointwise_format(1);
   unchunked.point_format = 5;
