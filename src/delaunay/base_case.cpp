@@ -6,8 +6,8 @@
 #include "src/delaunay/affine_basis.h"
 #include "src/delaunay/kernel_2d/kernel_2d.h"
 #include "src/delaunay/kernel_3d/kernel_3d.h"
-#include "src/delaunay/kernel_arena.h"
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/kernel_common/kernel_arena.h"
+#include "src/delaunay/common/working_memory.h"
 
 namespace spillway::detail {
 namespace {

@@ -1,7 +1,7 @@
 // The base case by CGAL's incremental Delaunay triangulations: the only file of the engine that
 // includes CGAL. What differs between 2D and 3D stands in CgalTraits.
 
-#include "src/delaunay/kernel_arena.h"
+#include "src/delaunay/kernel_common/kernel_arena.h"
 // CGAL's way to choose the allocator of its containers.
 #define CGAL_ALLOCATOR(T) spillway::detail::KernelAllocator<T>
 

@@ -11,7 +11,7 @@
 #include "src/delaunay/finality.h"
 #include "src/delaunay/merge.h"
 #include "src/delaunay/schedule.h"
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 

@@ -8,7 +8,7 @@
 
 #include "src/delaunay/base_case.h"
 #include "src/delaunay/divide.h"
-#include "src/delaunay/triangulation.h"
+#include "src/delaunay/common/triangulation.h"
 
 namespace spillway::detail {
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "src/delaunay/hash.h"
-#include "src/delaunay/hilbert_order.h"
+#include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/delaunay/schedule.h"
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "src/delaunay/divide.h"
-#include "src/delaunay/triangulation.h"
+#include "src/delaunay/common/triangulation.h"
 #include "src/geometry/circumsphere.h"
 
 namespace spillway::detail {

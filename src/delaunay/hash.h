@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "src/delaunay/triangulation.h"
+#include "src/delaunay/common/triangulation.h"
 
 namespace spillway::detail {
 

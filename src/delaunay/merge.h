@@ -7,7 +7,7 @@
 
 #include "src/delaunay/divide.h"
 #include "src/delaunay/finality.h"
-#include "src/delaunay/triangulation.h"
+#include "src/delaunay/common/triangulation.h"
 
 namespace spillway::detail {
 

@@ -2,7 +2,7 @@
 #include <set>
 #include <string>
 
-#include "src/delaunay/triangulation.h"
+#include "src/delaunay/common/triangulation.h"
 #include "src/geometry/predicates.h"
 
 namespace spillway::detail {

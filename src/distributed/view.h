@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "src/delaunay/triangulation.h"
+#include "src/delaunay/common/triangulation.h"
 
 namespace spillway::detail::distributed {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "src/delaunay/finality.h"
-#include "src/delaunay/triangulation.h"
+#include "src/delaunay/common/triangulation.h"
 #include "src/distributed/halving.h"
 #include "src/distributed/items.h"
 #include "src/distributed/view.h"

@@ -5,8 +5,8 @@
 #include <span>
 #include <utility>
 
-#include "src/delaunay/block_array.h"
-#include "src/delaunay/triangulation.h"
+#include "src/delaunay/common/block_array.h"
+#include "src/delaunay/common/triangulation.h"
 
 namespace spillway::detail {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "src/delaunay/block_array.h"
+#include "src/delaunay/common/block_array.h"
 #include "src/library/cell_arrays.h"
 #include "src/library/mesh_view.h"
 #include "src/library/start_tree.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "src/delaunay/hilbert_order.h"
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/kernel_common/hilbert_order.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/geometry/box.h"
 #include "src/parallel/parallel.h"
 

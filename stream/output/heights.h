@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "src/delaunay/triangulation.h"
+#include "src/delaunay/common/triangulation.h"
 
 namespace spillway::detail {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "formats/points/common/point_reader.h"
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/geometry/point.h"
 #include "stream/tiles/point_buffer.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "formats/meshes/common/mesh_stream.h"
-#include "src/delaunay/triangulation.h"
+#include "src/delaunay/common/triangulation.h"
 #include "src/geometry/canonical_hash.h"
 #include "stream/output/output_options.h"
 #include "stream/output/stream_place.h"

@@ -20,7 +20,7 @@
 #include "src/delaunay/base_case.h"
 #include "src/delaunay/delaunay.h"
 #include "src/delaunay/schedule.h"
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/generators/generators.h"
 #include "tests/benchmark/cgal_timing.h"
 

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "src/delaunay/base_case.h"
-#include "src/delaunay/hilbert_order.h"
+#include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/delaunay/kernel_3d/kernel_3d.h"
-#include "src/delaunay/vectors.h"
+#include "src/delaunay/kernel_common/vectors.h"
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "src/generators/random.h"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "src/delaunay/delaunay.h"
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "tests/delaunay/cgal_oracle.h"

@@ -1,4 +1,4 @@
-#include "src/delaunay/hilbert_order.h"
+#include "src/delaunay/kernel_common/hilbert_order.h"
 
 #include <gtest/gtest.h>
 

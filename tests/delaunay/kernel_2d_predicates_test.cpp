@@ -8,7 +8,7 @@
 #include "src/delaunay/kernel_2d/circles.h"
 #include "src/delaunay/kernel_2d/exact_predicates.h"
 #include "src/delaunay/kernel_2d/filters.h"
-#include "src/delaunay/vectors.h"
+#include "src/delaunay/kernel_common/vectors.h"
 #include "src/generators/random.h"
 #include "src/geometry/predicates.h"
 

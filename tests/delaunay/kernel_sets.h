@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "src/delaunay/vectors.h"
+#include "src/delaunay/kernel_common/vectors.h"
 #include "src/geometry/point.h"
 
 namespace spillway::detail {

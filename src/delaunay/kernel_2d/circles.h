@@ -7,7 +7,7 @@
 
 #include "src/delaunay/kernel_2d/filters.h"
 #include "src/delaunay/kernel_2d/triangles.h"
-#include "src/delaunay/lanes.h"
+#include "src/delaunay/kernel_common/lanes.h"
 
 namespace spillway::detail::kernel_2d {
 

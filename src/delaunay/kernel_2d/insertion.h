@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/delaunay/insertion_rounds.h"
+#include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/kernel_2d/filters.h"
 #include "src/delaunay/kernel_2d/triangles.h"
 #include "src/delaunay/kernel_2d/working_points.h"
-#include "src/delaunay/lanes.h"
+#include "src/delaunay/kernel_common/lanes.h"
 
 namespace spillway::detail::kernel_2d {
 

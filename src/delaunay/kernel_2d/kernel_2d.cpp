@@ -12,9 +12,9 @@
 
 #include "src/delaunay/kernel_2d/insertion.h"
 #include "src/delaunay/kernel_2d/working_points.h"
-#include "src/delaunay/simplex_listing.h"
-#include "src/delaunay/vectors.h"
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/kernel_common/simplex_listing.h"
+#include "src/delaunay/kernel_common/vectors.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
 
 namespace spillway::detail {

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/kernel_common/kernel.h"
 
 namespace spillway::detail {
 

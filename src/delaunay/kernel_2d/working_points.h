@@ -5,8 +5,8 @@
 #include <optional>
 #include <span>
 
-#include "src/delaunay/insertion_rounds.h"
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/kernel_common/insertion_rounds.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 

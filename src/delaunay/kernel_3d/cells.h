@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "src/delaunay/lanes.h"
+#include "src/delaunay/kernel_common/lanes.h"
 #include "src/geometry/point.h"
 
 namespace spillway::detail::kernel_3d {

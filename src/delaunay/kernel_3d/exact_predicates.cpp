@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "src/delaunay/kernel_3d/wide_integer.h"
-#include "src/delaunay/lanes.h"
+#include "src/delaunay/kernel_common/lanes.h"
 #include "src/geometry/predicate_rungs.h"
 
 namespace spillway::detail::kernel_3d {

@@ -7,14 +7,14 @@
 #include <optional>
 #include <vector>
 
-#include "src/delaunay/insertion_rounds.h"
+#include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/kernel_3d/insertion.h"
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_3d/working_points.h"
-#include "src/delaunay/lanes.h"
-#include "src/delaunay/simplex_listing.h"
-#include "src/delaunay/vectors.h"
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/kernel_common/lanes.h"
+#include "src/delaunay/kernel_common/simplex_listing.h"
+#include "src/delaunay/kernel_common/vectors.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
 
 namespace spillway::detail {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "src/delaunay/kernel_3d/cells.h"
-#include "src/delaunay/lanes.h"
+#include "src/delaunay/kernel_common/lanes.h"
 
 namespace spillway::detail::kernel_3d {
 

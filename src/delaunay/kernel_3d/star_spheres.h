@@ -9,7 +9,7 @@
 
 #include "src/delaunay/kernel_3d/cells.h"
 #include "src/delaunay/kernel_3d/spheres.h"
-#include "src/delaunay/lanes.h"
+#include "src/delaunay/kernel_common/lanes.h"
 #include "src/geometry/predicate_rungs.h"
 
 namespace spillway::detail::kernel_3d {

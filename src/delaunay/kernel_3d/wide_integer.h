@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "src/delaunay/lanes.h"
+#include "src/delaunay/kernel_common/lanes.h"
 #include "src/geometry/predicate_rungs.h"
 
 namespace spillway::detail::kernel_3d {

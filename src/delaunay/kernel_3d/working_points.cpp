@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "src/delaunay/coordinate_scaling.h"
+#include "src/delaunay/kernel_common/coordinate_scaling.h"
 
 namespace spillway::detail::kernel_3d {
 

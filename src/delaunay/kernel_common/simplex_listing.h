@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/kernel_common/kernel.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::detail::kernel {

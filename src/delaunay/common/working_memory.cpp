@@ -1,4 +1,4 @@
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/common/working_memory.h"
 
 #include <sys/mman.h>
 

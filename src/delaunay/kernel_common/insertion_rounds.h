@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/kernel_common/kernel.h"
 
 namespace spillway::detail::kernel {
 

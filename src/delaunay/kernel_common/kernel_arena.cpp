@@ -1,4 +1,4 @@
-#include "src/delaunay/kernel_arena.h"
+#include "src/delaunay/kernel_common/kernel_arena.h"
 
 #include <sys/mman.h>
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "src/delaunay/block_array.h"
+#include "src/delaunay/common/block_array.h"
 #include "src/geometry/point.h"
 
 namespace spillway::detail {

@@ -1,4 +1,4 @@
-#include "src/delaunay/coordinate_scaling.h"
+#include "src/delaunay/kernel_common/coordinate_scaling.h"
 
 #include <algorithm>
 #include <bit>

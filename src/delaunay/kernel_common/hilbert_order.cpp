@@ -1,4 +1,4 @@
-#include "src/delaunay/hilbert_order.h"
+#include "src/delaunay/kernel_common/hilbert_order.h"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "src/delaunay/lanes.h"
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/kernel_common/lanes.h"
+#include "src/delaunay/common/working_memory.h"
 
 namespace spillway::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "src/delaunay/vectors.h"
+#include "src/delaunay/kernel_common/vectors.h"
 
 #include <algorithm>
 #include <atomic>

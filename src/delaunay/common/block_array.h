@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "src/delaunay/working_memory.h"
+#include "src/delaunay/common/working_memory.h"
 
 namespace spillway::detail {
 
