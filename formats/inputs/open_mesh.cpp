@@ -1,7 +1,6 @@
 #include "formats/inputs/open_mesh.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>

@@ -1,7 +1,6 @@
 #include "formats/inputs/open_points.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <string_view>

@@ -1,7 +1,6 @@
 #include "formats/meshes/mesh_formats.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 

@@ -2,7 +2,6 @@
 // The words of a proof: how faults name simplices, facets and vertices, and how they are counted.
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <array>
 #include <cstddef>

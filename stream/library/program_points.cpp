@@ -1,7 +1,6 @@
 #include "stream/library/program_points.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 #include "stream/source/input_list.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <glob.h>
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include "stream/source/point_source.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

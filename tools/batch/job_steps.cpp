@@ -1,7 +1,6 @@
 #include "tools/batch/job_steps.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 #include "tools/commands/convert_points.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,6 @@
 #include "tools/commands/dem_options.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

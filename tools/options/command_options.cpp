@@ -1,7 +1,6 @@
 #include "tools/options/command_options.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include "tools/process/interrupts.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <signal.h>
 #include <string.h>
 #include <unistd.h>

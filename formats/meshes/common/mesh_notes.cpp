@@ -1,7 +1,6 @@
 #include "formats/meshes/common/mesh_notes.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

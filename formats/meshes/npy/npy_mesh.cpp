@@ -1,7 +1,6 @@
 #include "formats/meshes/npy/npy_mesh.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>

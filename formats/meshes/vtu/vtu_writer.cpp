@@ -1,7 +1,6 @@
 #include "formats/meshes/vtu/vtu_writer.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

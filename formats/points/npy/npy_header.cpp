@@ -1,7 +1,6 @@
 #include "formats/points/npy/npy_header.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <array>
 #include <charconv>

@@ -1,7 +1,6 @@
 #include "formats/points/npy/npy_reader.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
