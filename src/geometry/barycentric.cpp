@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicate_stages.h"
 
 namespace spillway::detail {
 
@@ -25,10 +25,10 @@ std::array<double, D + 1> barycentric_coordinates(const std::array<Point<D>, D +
   bool safe = true;
   for (int k = 0; k < D; ++k) {
     extents *= largest[k];
-    safe = safe && largest[k] >= rungs::kSmallestSafe && largest[k] <= rungs::kLargestSafe;
+    safe = safe && largest[k] >= stages::kSmallestSafe && largest[k] <= stages::kLargestSafe;
   }
   auto weights = barycentric_determinants<D>(v);
-  const double bound = rungs::Orientation<D>::error_bound(largest);
+  const double bound = stages::Orientation<D>::error_bound(largest);
   double sum = 0;
   for (double& weight : weights) {
     // Its sign is not sure: it may be on a facet, where the coordinate has to be 0.

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 
-#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicate_stages.h"
 
 namespace spillway::detail {
 namespace {
 
 template <typename P>
-int climb(const rungs::Points<P>& points) {
-  if (const auto answer = rungs::filtered<P>(points)) return *answer;
-  if (const auto answer = rungs::integer<P>(points)) return *answer;
-  return rungs::exact<P>(points);
+int first_answer(const stages::Points<P>& points) {
+  if (const auto answer = stages::filtered<P>(points)) return *answer;
+  if (const auto answer = stages::integer<P>(points)) return *answer;
+  return stages::exact<P>(points);
 }
 
 // Breaks the tie of D+2 cospherical points. The in-sphere determinant is linear in the lifted
@@ -30,7 +30,7 @@ int break_tie(const std::array<Point<D>, D + 1>& simplex, const Point<D>& p) {
     if (p > simplex[i]) break;
     std::array<Point<D>, D + 1> replaced = simplex;
     replaced[i] = p;
-    if (const int coefficient = climb<rungs::Orientation<D>>(replaced)) return coefficient;
+    if (const int coefficient = first_answer<stages::Orientation<D>>(replaced)) return coefficient;
   }
   return -1;
 }
@@ -39,15 +39,15 @@ int break_tie(const std::array<Point<D>, D + 1>& simplex, const Point<D>& p) {
 
 template <int D>
 int orientation(const std::array<Point<D>, D + 1>& simplex) {
-  return climb<rungs::Orientation<D>>(simplex);
+  return first_answer<stages::Orientation<D>>(simplex);
 }
 
 template <int D>
 int side_of_sphere(const std::array<Point<D>, D + 1>& simplex, const Point<D>& p) {
-  rungs::Points<rungs::InSphere<D>> points;
+  stages::Points<stages::InSphere<D>> points;
   std::copy(simplex.begin(), simplex.end(), points.begin());
   points[D + 1] = p;
-  return climb<rungs::InSphere<D>>(points);
+  return first_answer<stages::InSphere<D>>(points);
 }
 
 template <int D>

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "src/geometry/distance.h"
-#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicate_stages.h"
 #include "src/geometry/predicates.h"
 #include "src/library/distinct_queue.h"
 
@@ -17,7 +17,7 @@ int side_of_facet(const std::array<Point<D>, D + 1>& corners, int i, const Point
   std::array<Point<D>, D + 1> replaced = corners;
   replaced[i] = place;
   // The filter is inlined here; it nearly always decides.
-  if (const auto sign = rungs::filtered<rungs::Orientation<D>>(replaced)) return *sign;
+  if (const auto sign = stages::filtered<stages::Orientation<D>>(replaced)) return *sign;
   return orientation<D>(replaced);
 }
 

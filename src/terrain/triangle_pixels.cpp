@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicate_stages.h"
 #include "src/geometry/predicates.h"
 
 namespace spillway::detail {
@@ -28,14 +28,14 @@ int side(const Point<3>& a, const Point<3>& b, double x, double y) {
   const double dy = b[1] - a[1];
   const double px = x - a[0];
   const double py = y - a[1];
-  if (rungs::exact_difference(b[0], a[0], dx) && rungs::exact_difference(b[1], a[1], dy) &&
-      rungs::exact_difference(x, a[0], px) && rungs::exact_difference(y, a[1], py)) {
+  if (stages::exact_difference(b[0], a[0], dx) && stages::exact_difference(b[1], a[1], dy) &&
+      stages::exact_difference(x, a[0], px) && stages::exact_difference(y, a[1], py)) {
     const double left = dx * py;
     const double right = dy * px;
     if (left != right) return left > right ? 1 : -1;
     if ((dx == 0 || py == 0) && (dy == 0 || px == 0)) return 0;
     if (has_exact_remainder(left)) {
-      return rungs::sign(std::fma(dx, py, -left) - std::fma(dy, px, -right));
+      return stages::sign(std::fma(dx, py, -left) - std::fma(dy, px, -right));
     }
   }
   return orientation<2>({Point<2>{a[0], a[1]}, Point<2>{b[0], b[1]}, Point<2>{x, y}});
@@ -53,7 +53,7 @@ class Scan {
   Scan(const PixelCentres& centres, const Triangle& corners, int turn, std::vector<PixelRun>& runs)
       : centres_(centres), corners_(corners), turn_(turn), runs_(runs) {
     const double extent = corners[2][0] - corners[0][0];
-    margin_ = kMarginRoundoffs * rungs::kRoundoff *
+    margin_ = kMarginRoundoffs * stages::kRoundoff *
               (std::max(std::abs(corners[0][0]), std::abs(corners[2][0])) + extent);
     for (int e = 0; e < 3; ++e) {
       const Point<3>& from = corners[kEdges[e][0]];

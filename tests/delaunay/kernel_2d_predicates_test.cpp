@@ -1,4 +1,4 @@
-// Each rung of the 2D kernel's predicates against the exact one, on quadruples that are nearly
+// Each stage of the 2D kernel's predicates against the exact one, on quadruples that are nearly
 // degenerate.
 
 #include <gtest/gtest.h>
@@ -37,7 +37,9 @@ Four near_circle(Random& random, int bits) {
   }
 }
 
-int exact_side(const Four& p) { return rungs::exact<rungs::InSphere<2>>({p[0], p[1], p[2], p[3]}); }
+int exact_side(const Four& p) {
+  return stages::exact<stages::InSphere<2>>({p[0], p[1], p[2], p[3]});
+}
 
 /// The determinant as the inner loop computes it, triangle c, a, b beyond the edge a -> c.
 double determinant(const WorkingPoints& points) {
@@ -156,7 +158,7 @@ TEST(Kernel2dPredicates, LatticeDoublesAreExactUpToTheirLimit) {
     if (size > kExactInCircle) continue;
     near_limit += size > kExactInCircle / 4 ? 1 : 0;
     const double value = determinant(scene.points);
-    ASSERT_EQ(rungs::sign(value), exact_side(four));
+    ASSERT_EQ(stages::sign(value), exact_side(four));
     ties += value == 0 ? 1 : 0;
   }
   EXPECT_GT(ties, 100);
@@ -234,7 +236,7 @@ TEST(Kernel2dPredicates, SideOfLineIsExact) {
     const Four four{a, b, {3, 1}, q};
     const Scene scene(four);
     ASSERT_EQ(side_of_line(scene.points, 1, 2, 4),
-              (rungs::exact<rungs::Orientation<2>>({a, b, q})));
+              (stages::exact<stages::Orientation<2>>({a, b, q})));
   }
 }
 

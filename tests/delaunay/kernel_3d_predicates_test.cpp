@@ -1,4 +1,4 @@
-// Each rung of the 3D kernel's predicates against the exact one, on quintuples that are nearly
+// Each stage of the 3D kernel's predicates against the exact one, on quintuples that are nearly
 // degenerate.
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ FivePoints near_sphere(Random& random, int bits) {
 }
 
 int exact_side(const FivePoints& p) {
-  return rungs::exact<rungs::InSphere<3>>({p[0], p[1], p[2], p[3], p[4]});
+  return stages::exact<stages::InSphere<3>>({p[0], p[1], p[2], p[3], p[4]});
 }
 
 /// Points and, if asked, the cell of the first four with its cached sphere.
@@ -162,7 +162,7 @@ TEST(Kernel3dPredicates, VolumesOnTinyLatticesAreExact) {
   EXPECT_GT(flat, 100);
 }
 
-TEST(Kernel3dPredicates, InSphereRungsAreRightWhereTheyAnswer) {
+TEST(Kernel3dPredicates, InSphereStagesAreRightWhereTheyAnswer) {
   Random random(3);
   int filtered = 0;
   int corrected = 0;
@@ -238,7 +238,7 @@ TEST(Kernel3dPredicates, RootsAreBoundedFromAbove) {
   }
 }
 
-TEST(Kernel3dPredicates, OrientationRungsAreRightWhereTheyAnswer) {
+TEST(Kernel3dPredicates, OrientationStagesAreRightWhereTheyAnswer) {
   Random random(4);
   int ties = 0;
   for (int run = 0; run < kRuns; ++run) {
@@ -261,7 +261,7 @@ TEST(Kernel3dPredicates, OrientationRungsAreRightWhereTheyAnswer) {
     if (five[0] == five[1]) continue;
     const Scene scene(five);
     const std::array<VertexRef, 4> p{ref(1), ref(2), ref(3), ref(4)};
-    const int exact = rungs::exact<rungs::Orientation<3>>({five[0], five[1], five[2], five[3]});
+    const int exact = stages::exact<stages::Orientation<3>>({five[0], five[1], five[2], five[3]});
     if (const auto side = orientation_filtered(scene.points, p)) {
       ASSERT_EQ(*side, exact);
     }

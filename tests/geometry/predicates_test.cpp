@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "src/error.h"
-#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicate_stages.h"
 #include "tests/geometry/point_families.h"
 
 namespace spillway::detail {
@@ -43,21 +43,21 @@ bool distinct(Group<D> group) {
   return std::adjacent_find(group.begin(), group.end()) == group.end();
 }
 
-TYPED_TEST(PredicatesTest, EveryRungAgreesWithTheExactOne) {
+TYPED_TEST(PredicatesTest, EveryStageAgreesWithTheExactOne) {
   constexpr int D = TypeParam::value;
   for (const Hard family : kAllHard) {
     SCOPED_TRACE(name_of(family));
     for (const Group<D>& group : hard_groups<D>(family, kGroups, 1)) {
       const auto simplex = simplex_of<D>(group);
-      const int exact_orientation = rungs::exact<rungs::Orientation<D>>(simplex);
-      const int exact_side = rungs::exact<rungs::InSphere<D>>(group);
-      EXPECT_EQ(rungs::filtered<rungs::Orientation<D>>(simplex).value_or(exact_orientation),
+      const int exact_orientation = stages::exact<stages::Orientation<D>>(simplex);
+      const int exact_side = stages::exact<stages::InSphere<D>>(group);
+      EXPECT_EQ(stages::filtered<stages::Orientation<D>>(simplex).value_or(exact_orientation),
                 exact_orientation);
-      EXPECT_EQ(rungs::integer<rungs::Orientation<D>>(simplex).value_or(exact_orientation),
+      EXPECT_EQ(stages::integer<stages::Orientation<D>>(simplex).value_or(exact_orientation),
                 exact_orientation);
       EXPECT_EQ(orientation<D>(simplex), exact_orientation);
-      EXPECT_EQ(rungs::filtered<rungs::InSphere<D>>(group).value_or(exact_side), exact_side);
-      EXPECT_EQ(rungs::integer<rungs::InSphere<D>>(group).value_or(exact_side), exact_side);
+      EXPECT_EQ(stages::filtered<stages::InSphere<D>>(group).value_or(exact_side), exact_side);
+      EXPECT_EQ(stages::integer<stages::InSphere<D>>(group).value_or(exact_side), exact_side);
       EXPECT_EQ(side_of_sphere<D>(simplex, group[D + 1]), exact_side);
       if (exact_side != 0) {
         EXPECT_EQ(in_sphere<D>(simplex, group[D + 1]), exact_side);
@@ -70,32 +70,32 @@ TYPED_TEST(PredicatesTest, FilterDecidesOrdinaryPoints) {
   constexpr int D = TypeParam::value;
   std::size_t decided = 0;
   for (const Group<D>& group : hard_groups<D>(Hard::kUniform, kGroups, 2)) {
-    decided += rungs::filtered<rungs::InSphere<D>>(group).has_value() ? 1 : 0;
+    decided += stages::filtered<stages::InSphere<D>>(group).has_value() ? 1 : 0;
   }
   EXPECT_GT(decided, kGroups * 99 / 100);
 }
 
-TYPED_TEST(PredicatesTest, IntegerRungDecidesLidarLattices) {
+TYPED_TEST(PredicatesTest, IntegerStageDecidesLidarLattices) {
   constexpr int D = TypeParam::value;
   for (const Hard family : {Hard::kSmallLattice, Hard::kLidarLattice}) {
     for (const Group<D>& group : hard_groups<D>(family, kGroups, 3)) {
-      EXPECT_TRUE(rungs::integer<rungs::Orientation<D>>(simplex_of<D>(group)).has_value());
-      EXPECT_TRUE(rungs::integer<rungs::InSphere<D>>(group).has_value());
+      EXPECT_TRUE(stages::integer<stages::Orientation<D>>(simplex_of<D>(group)).has_value());
+      EXPECT_TRUE(stages::integer<stages::InSphere<D>>(group).has_value());
     }
   }
 }
 
-TYPED_TEST(PredicatesTest, IntegerRungRefusesDifferencesThatAreRounded) {
+TYPED_TEST(PredicatesTest, IntegerStageRefusesDifferencesThatAreRounded) {
   constexpr int D = TypeParam::value;
   // 2^40 - 2^-20 rounds to 2^40, an integer, but the difference is none.
   std::array<Point<D>, D + 1> simplex{};
   for (int k = 1; k < D; ++k) simplex[k + 1][k] = 1;
   for (auto& point : simplex) point[0] = 0x1p-20;
   simplex[1][0] = 0x1p40;
-  EXPECT_FALSE(rungs::integer<rungs::Orientation<D>>(simplex).has_value());
+  EXPECT_FALSE(stages::integer<stages::Orientation<D>>(simplex).has_value());
 }
 
-TYPED_TEST(PredicatesTest, IntegerRungDoesNotOverflowAtItsLimit) {
+TYPED_TEST(PredicatesTest, IntegerStageDoesNotOverflowAtItsLimit) {
   constexpr int D = TypeParam::value;
   testing::Random random(4);
   for (int trial = 0; trial < 500; ++trial) {
@@ -104,15 +104,16 @@ TYPED_TEST(PredicatesTest, IntegerRungDoesNotOverflowAtItsLimit) {
     for (int k = 0; k < D; ++k) {
       for (int i = 1; i <= D; ++i) {
         simplex[i][k] =
-            (random.integer(0, 1) == 0 ? -1 : 1) * rungs::Orientation<D>::kLargestInteger;
+            (random.integer(0, 1) == 0 ? -1 : 1) * stages::Orientation<D>::kLargestInteger;
       }
       for (int i = 0; i <= D; ++i) {
-        group[i][k] = (random.integer(0, 1) == 0 ? -1 : 1) * rungs::InSphere<D>::kLargestInteger;
+        group[i][k] = (random.integer(0, 1) == 0 ? -1 : 1) * stages::InSphere<D>::kLargestInteger;
       }
     }
-    EXPECT_EQ(rungs::integer<rungs::Orientation<D>>(simplex),
-              rungs::exact<rungs::Orientation<D>>(simplex));
-    EXPECT_EQ(rungs::integer<rungs::InSphere<D>>(group), rungs::exact<rungs::InSphere<D>>(group));
+    EXPECT_EQ(stages::integer<stages::Orientation<D>>(simplex),
+              stages::exact<stages::Orientation<D>>(simplex));
+    EXPECT_EQ(stages::integer<stages::InSphere<D>>(group),
+              stages::exact<stages::InSphere<D>>(group));
   }
 }
 
@@ -211,7 +212,7 @@ TEST(Predicates2DTest, ExactlyOneDiagonalOfACocircularQuadrilateralIsDelaunay) {
     const auto& [a, b, c, d] = group;
     const bool convex = distinct<2>(group) && orientation<2>({a, c, d}) > 0 &&
                         orientation<2>({b, c, d}) > 0 && orientation<2>({a, b, d}) > 0;
-    if (!convex || rungs::exact<rungs::InSphere<2>>(group) != 0) continue;
+    if (!convex || stages::exact<stages::InSphere<2>>(group) != 0) continue;
     ++ties;
     EXPECT_EQ(in_sphere<2>({a, b, c}, d), -in_sphere<2>({a, b, d}, c));
   }

@@ -17,7 +17,7 @@ inline constexpr double kFlattest = 0x1p-40;
 inline constexpr double kSmallestDeterminant = 0x1p-400;
 /// What a circle's tolerance is made of: parts of the squared radius, and of the largest
 /// coordinate's square.
-inline constexpr double kToleranceOfFlatness = 128 * rungs::kRoundoff;
+inline constexpr double kToleranceOfFlatness = 128 * stages::kRoundoff;
 inline constexpr double kToleranceOfSquare = 0x1p-20;
 inline constexpr double kToleranceOfPlace = 0x1p-84;
 

@@ -123,7 +123,7 @@ std::optional<int> in_circle_filtered(const WorkingPoints& points, const Quad& q
   const double sum = a.square * (std::abs(bc) + std::abs(cb)) +
                      b.square * (std::abs(ca) + std::abs(ac)) +
                      c.square * (std::abs(ab) + std::abs(ba));
-  const double bound = 12 * rungs::kRoundoff * sum + kUnderflow;
+  const double bound = 12 * stages::kRoundoff * sum + kUnderflow;
   if (determinant > bound) return 1;
   if (determinant < -bound) return -1;
   return std::nullopt;
@@ -138,7 +138,7 @@ std::optional<int> in_circle_double_double(const WorkingPoints& points, const Qu
   const auto c = exact_difference(points.scaled[quad.c], query);
   const double determinant =
       (square(a) * cross(b, c) + square(b) * cross(c, a) + square(c) * cross(a, b)).high;
-  const double bound = 192 * rungs::kRoundoff * rungs::kRoundoff * (largest * largest);
+  const double bound = 192 * stages::kRoundoff * stages::kRoundoff * (largest * largest);
   if (determinant > bound) return 1;
   if (determinant < -bound) return -1;
   return std::nullopt;
@@ -146,13 +146,13 @@ std::optional<int> in_circle_double_double(const WorkingPoints& points, const Qu
 
 std::optional<int> in_circle_integer(const WorkingPoints& points, const Quad& quad) {
   if (!(largest_square_of(points, quad) <= 0x1p61)) return std::nullopt;
-  using rungs::Int128;
+  using stages::Int128;
   const Point<2>& query = points.scaled[quad.query];
   const auto a = integer_difference(points.scaled[quad.a], query);
   const auto b = integer_difference(points.scaled[quad.b], query);
   const auto c = integer_difference(points.scaled[quad.c], query);
-  return rungs::sign(Int128{square(a)} * cross(b, c) + Int128{square(b)} * cross(c, a) +
-                     Int128{square(c)} * cross(a, b));
+  return stages::sign(Int128{square(a)} * cross(b, c) + Int128{square(b)} * cross(c, a) +
+                      Int128{square(c)} * cross(a, b));
 }
 
 bool is_rectangle(const WorkingPoints& points, const Quad& quad) {
@@ -172,8 +172,8 @@ int side_of_circle(const WorkingPoints& points, const Quad& quad) {
     if (is_rectangle(points, quad)) return 0;
     if (const auto side = in_circle_double_double(points, quad)) return *side;
   }
-  return rungs::exact<rungs::InSphere<2>>({points.original(quad.a), points.original(quad.b),
-                                           points.original(quad.c), points.original(quad.query)});
+  return stages::exact<stages::InSphere<2>>({points.original(quad.a), points.original(quad.b),
+                                             points.original(quad.c), points.original(quad.query)});
 }
 
 int side_of_line(const WorkingPoints& points, VertexId a, VertexId b, VertexId query) {
@@ -188,8 +188,8 @@ int side_of_line(const WorkingPoints& points, VertexId a, VertexId b, VertexId q
   const Point<2>& pb = points.original(b);
   const Point<2>& q = points.original(query);
   // A difference has the right sign even where it is rounded, so this decides many a tie.
-  const int plus = rungs::sign(pa[0] - q[0]) * rungs::sign(pb[1] - q[1]);
-  const int minus = rungs::sign(pa[1] - q[1]) * rungs::sign(pb[0] - q[0]);
+  const int plus = stages::sign(pa[0] - q[0]) * stages::sign(pb[1] - q[1]);
+  const int minus = stages::sign(pa[1] - q[1]) * stages::sign(pb[0] - q[0]);
   if (plus != minus) return plus > minus ? 1 : -1;
   if (plus == 0) return 0;
   return orientation<2>({pa, pb, q});

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "src/geometry/point.h"
-#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicate_stages.h"
 
 namespace spillway::detail::kernel_2d {
 
@@ -53,7 +53,7 @@ inline double in_circle_determinant(const Corner& from, const Corner& to, const 
 inline constexpr double kUnderflow = 0x1p-1000;
 
 /// Bound of the error of a computed cross().
-inline double cross_bound(double largest) { return 5 * rungs::kRoundoff * largest + kUnderflow; }
+inline double cross_bound(double largest) { return 5 * stages::kRoundoff * largest + kUnderflow; }
 
 /// Computed from integers, the determinant is exact up to this `largest`: 3 largest^2 <= 2^53.
 inline constexpr double kExactInCircle = 54'794'157;

@@ -120,7 +120,7 @@ template <bool kLattice>
   return first;
 }
 
-/// Whether the query is in conflict with the triangle beyond an edge, by the upper rungs.
+/// Whether the query is in conflict with the triangle beyond an edge, by the upper stages.
 template <bool kLattice>
 template <int kLanes>
 SPILLWAY_INLINE bool Insertion<kLattice>::conflicts_beyond(Handle edge, const Pair& query) const {

@@ -12,8 +12,8 @@ namespace spillway::detail::kernel_2d {
 using Handle = std::uint32_t;
 
 /// Three vertices, counter-clockwise, with the circumcircle: for a query q and s = |q - centre|^2,
-/// the triangle is in conflict if s < inner, and not in conflict if s > outer; else the upper rungs
-/// decide. NaN where s proves nothing, as in infinite triangles.
+/// the triangle is in conflict if s < inner, and not in conflict if s > outer; else the upper
+/// stages decide. NaN where s proves nothing, as in infinite triangles.
 struct alignas(64) Triangle {
   VertexId vertices[4];  ///< the last one is the first again
   Handle neighbours[4];  ///< the same edges in the neighbours; the last one is not used

@@ -22,7 +22,7 @@ using VertexRef = std::uint32_t;
 
 /// Four vertices, positively oriented, with the circumsphere: for a query q and s = |q - centre|^2
 /// - squared_radius, the cell is in conflict if s < -tolerance, and not in conflict if s >
-/// tolerance; else the upper rungs decide. An infinite cell has the nearest there is to its
+/// tolerance; else the upper stages decide. An infinite cell has the nearest there is to its
 /// half-space, a huge ball.
 struct alignas(64) Cell {
   VertexRef vertices[4];  ///< the last one with kMark while the cell is in conflict, or free

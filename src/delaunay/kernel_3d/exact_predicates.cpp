@@ -7,7 +7,7 @@
 
 #include "src/delaunay/kernel_3d/wide_integer.h"
 #include "src/delaunay/kernel_common/lanes.h"
-#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicate_stages.h"
 
 namespace spillway::detail::kernel_3d {
 namespace {
@@ -15,12 +15,12 @@ namespace {
 /// What underflow may add to the errors, in coordinates of extent 1 to 2.
 constexpr double kUnderflow = 0x1p-1000;
 /// The determinants' errors over the sums of their monomials' absolute values.
-constexpr double kInSphereError = 20 * rungs::kRoundoff;
-constexpr double kOrientationError = 10 * rungs::kRoundoff;
+constexpr double kInSphereError = 20 * stages::kRoundoff;
+constexpr double kOrientationError = 10 * stages::kRoundoff;
 /// The same of the corrected determinant, for what is left after its lifts' rounding.
-constexpr double kCorrectedError = 20 * rungs::kRoundoff;
+constexpr double kCorrectedError = 20 * stages::kRoundoff;
 /// The error of a residual, over the squares that it is the difference of.
-constexpr double kResidualError = 64 * rungs::kRoundoff * rungs::kRoundoff;
+constexpr double kResidualError = 64 * stages::kRoundoff * stages::kRoundoff;
 /// On a lattice nothing is rounded while those sums are below.
 constexpr double kExactSum = 0x1p53;
 
@@ -153,7 +153,7 @@ Vector<Rounded> rounded_difference(const double* a, const double* b) {
 /// The sign of a determinant, if it is certain.
 std::optional<int> certain_sign(const WorkingPoints& points, const Rounded& determinant,
                                 double error) {
-  if (points.lattice && determinant.sum < kExactSum) return rungs::sign(determinant.value);
+  if (points.lattice && determinant.sum < kExactSum) return stages::sign(determinant.value);
   const double bound = error * determinant.sum + kUnderflow;
   if (determinant.value > bound) return 1;
   if (determinant.value < -bound) return -1;
@@ -207,7 +207,7 @@ SPILLWAY_INLINE Vector<WideInteger<kLimbs>> operator-(const Vector<WideInteger<k
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/// The coordinates that exact rungs compute with.
+/// The coordinates that exact stages compute with.
 Point<3> exact_point(const WorkingPoints& points, VertexRef v) {
   if (!points.lattice) return points.original(v);
   const double* p = points.at(v);
@@ -259,7 +259,7 @@ class IntegerPoints {
       const auto high = static_cast<std::int64_t>(scaled * (1 / kHalf));
       const std::int64_t low = whole(scaled - static_cast<double>(high) * kHalf);
       const auto sum =
-          static_cast<Uint128>(rungs::Int128{high} * (std::int64_t{1} << kHalfBits) + low);
+          static_cast<Uint128>(stages::Int128{high} * (std::int64_t{1} << kHalfBits) + low);
       return {{static_cast<std::uint64_t>(sum), static_cast<std::uint64_t>(sum >> 64)}};
     }
   }
@@ -347,14 +347,14 @@ int side_of_sphere(const WorkingPoints& points, const Five& five, const double* 
   if (const auto side = corrected(points, five, minors, sphere)) return *side;
   if (const auto side = in_sphere_integer<1>(points, five)) return *side;
   if (const auto side = in_sphere_integer<2>(points, five)) return *side;
-  return rungs::exact<rungs::InSphere<3>>(exact_points(points, five));
+  return stages::exact<stages::InSphere<3>>(exact_points(points, five));
 }
 
 int orientation(const WorkingPoints& points, const std::array<VertexRef, 4>& p) {
   if (const auto side = orientation_filtered(points, p)) return *side;
   if (const auto side = orientation_integer<1>(points, p)) return *side;
   if (const auto side = orientation_integer<2>(points, p)) return *side;
-  return rungs::exact<rungs::Orientation<3>>(exact_points(points, p));
+  return stages::exact<stages::Orientation<3>>(exact_points(points, p));
 }
 
 bool tie_conflicts(const WorkingPoints& points, const Five& five) {

@@ -131,7 +131,7 @@ template <bool kRanked>
   }
 }
 
-/// Whether the query is in conflict with a cell of which no tie is noted, by the upper rungs.
+/// Whether the query is in conflict with a cell of which no tie is noted, by the upper stages.
 template <bool kRanked>
 bool Insertion<kRanked>::conflicts(Handle first, VertexRef query) const {
   const Cell* cell = &cells_.at_cell(first);

@@ -8,14 +8,14 @@
 
 #include "src/delaunay/kernel_3d/cells.h"
 #include "src/delaunay/kernel_common/lanes.h"
-#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicate_stages.h"
 
 namespace spillway::detail::kernel_3d {
 
 /// Below, products of edges may have lost too much by underflow.
 inline constexpr double kSmallestEdges = 0x1p-400;
 /// The tolerance, in units of the radius times the largest coordinate.
-inline constexpr double kToleranceOfPlace = 16 * rungs::kRoundoff;
+inline constexpr double kToleranceOfPlace = 16 * stages::kRoundoff;
 /// Radius of the ball that stands for a half-space, over the extent of all points.
 inline constexpr double kBallOfHalfSpace = 0x1p24;
 /// The tolerance of s there, over the squared extent.

@@ -10,7 +10,7 @@
 #include "src/delaunay/kernel_3d/cells.h"
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_common/lanes.h"
-#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicate_stages.h"
 
 namespace spillway::detail::kernel_3d {
 
@@ -19,7 +19,7 @@ namespace spillway::detail::kernel_3d {
 inline constexpr double kFlattest = 0x1p40;
 /// The tolerance, beside kToleranceOfPlace, in units of the squared radius: for each unit of
 /// flatness, ...
-inline constexpr double kToleranceOfFlatness = 896 * rungs::kRoundoff;
+inline constexpr double kToleranceOfFlatness = 896 * stages::kRoundoff;
 /// ... and for the bits that carry the tolerance.
 inline constexpr double kToleranceOfBits = 0x1p-37;
 /// On a lattice, where tolerance times determinant is below, s within the tolerance means a tie.

@@ -1,12 +1,12 @@
 #pragma once
-// Integers of a fixed number of 64-bit limbs, two's complement, for the exact rung of the 3D
+// Integers of a fixed number of 64-bit limbs, two's complement, for the exact stage of the 3D
 // kernel's predicates. Whoever uses them sees to it that results fit.
 
 #include <array>
 #include <cstdint>
 
 #include "src/delaunay/kernel_common/lanes.h"
-#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicate_stages.h"
 
 namespace spillway::detail::kernel_3d {
 
@@ -58,7 +58,7 @@ template <int kA, int kB>
 SPILLWAY_INLINE WideInteger<kA + kB> operator*(const WideInteger<kA>& a, const WideInteger<kB>& b) {
   WideInteger<kA + kB> product{};
   if constexpr (kA == 1 && kB == 1) {
-    const auto both = static_cast<Uint128>(rungs::Int128{static_cast<std::int64_t>(a.limbs[0])} *
+    const auto both = static_cast<Uint128>(stages::Int128{static_cast<std::int64_t>(a.limbs[0])} *
                                            static_cast<std::int64_t>(b.limbs[0]));
     return {{static_cast<std::uint64_t>(both), static_cast<std::uint64_t>(both >> 64)}};
   }

@@ -14,7 +14,7 @@
 
 #include "src/geometry/determinants.h"
 
-namespace spillway::detail::rungs {
+namespace spillway::detail::stages {
 
 /// Unit roundoff of double: half a unit in the last place of 1.
 inline constexpr double kRoundoff = 0x1p-53;
@@ -79,7 +79,7 @@ constexpr int source(int i) {
   return P::kOrigin == 0 ? i + 1 : i;
 }
 
-/// Rung 1: double arithmetic with an error bound. Never answers 0.
+/// Stage 1: double arithmetic with an error bound. Never answers 0.
 template <typename P>
 std::optional<int> filtered(const Points<P>& points) {
   constexpr int D = P::kDimension;
@@ -108,7 +108,7 @@ inline bool exact_difference(double a, double b, double difference) {
   return (a - a_rounded) + (b_rounded - b) == 0;
 }
 
-/// Rung 2: exact, for differences that are small enough integers, as those of LiDAR lattices are.
+/// Stage 2: exact, for differences that are small enough integers, as those of LiDAR lattices are.
 template <typename P>
 std::optional<int> integer(const Points<P>& points) {
   constexpr int D = P::kDimension;
@@ -128,9 +128,9 @@ std::optional<int> integer(const Points<P>& points) {
   return sign(P::determinant(v));
 }
 
-/// Rung 3: exact for all finite doubles, by big integers. Throws Error if a coordinate is not
+/// Stage 3: exact for all finite doubles, by big integers. Throws Error if a coordinate is not
 /// finite.
 template <typename P>
 int exact(const Points<P>& points);
 
-}  // namespace spillway::detail::rungs
+}  // namespace spillway::detail::stages

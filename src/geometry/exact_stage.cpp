@@ -1,9 +1,9 @@
-// The last rung of the predicates, apart from the others because big integers compile slowly.
+// The last stage of the predicates, apart from the others because big integers compile slowly.
 
 #include "src/geometry/big_integer.h"
-#include "src/geometry/predicate_rungs.h"
+#include "src/geometry/predicate_stages.h"
 
-namespace spillway::detail::rungs {
+namespace spillway::detail::stages {
 template <typename P>
 int exact(const Points<P>& points) {
   constexpr int D = P::kDimension;
@@ -23,4 +23,4 @@ template int exact<Orientation<3>>(const Points<Orientation<3>>&);
 template int exact<InSphere<2>>(const Points<InSphere<2>>&);
 template int exact<InSphere<3>>(const Points<InSphere<3>>&);
 
-}  // namespace spillway::detail::rungs
+}  // namespace spillway::detail::stages
