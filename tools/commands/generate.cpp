@@ -62,9 +62,10 @@ int run(const GenerateOptions& options) {
       what.dimension == 3 || what.family == Family::kTerrain || format.needs_heights ? 3 : 2;
   how.count = what.count;
   if (generator->lattice() != nullptr) how.lattice = *generator->lattice();
+  // How messages are written is settled before there is anything that an interruption would remove.
+  Progress progress = make_progress(options.report);
   const auto writer = open_point_writer(disk(), options.output.path, how);
 
-  Progress progress = make_progress(options.report);
   progress.begin("generate", "points");
   std::vector<Point<3>> block(std::min<std::uint64_t>(kBlockSize, what.count));
   std::uint64_t written = 0;
