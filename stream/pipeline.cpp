@@ -1,6 +1,9 @@
 #include "stream/pipeline.h"
 
+#include <fmt/format.h>
+
 #include "src/delaunay/base_case.h"
+#include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "stream/triangulate/tile_engine.h"
 
@@ -52,6 +55,13 @@ StreamFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFo
   with_threads(engine.threads(), [&] { run(engine, source, budget, options); });
   release_base_case_memory();
   return engine.figures();
+}
+
+void refuse_empty_mesh(const StreamFigures& figures, const std::optional<double>& max_edge) {
+  if (figures.totals.simplices > 0) return;
+  throw Error(fmt::format("every one of {} simplices has an edge longer than {}: nothing is left",
+                          figures.left_out, max_edge.value_or(0)),
+              ErrorCode::kDegenerateInput);
 }
 
 template StreamFigures triangulate_stream<2>(PointStream&, BlockSink&, ScratchFolder&,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "formats/disk/scratch_folder.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/runtime/memory_budget.h"
@@ -14,5 +16,8 @@ namespace spillway::detail {
 template <int D>
 StreamFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
                                  MemoryBudget& budget, const StreamOptions& options);
+
+/// Throws Error (kDegenerateInput) if `max_edge` has left no simplex of the mesh.
+void refuse_empty_mesh(const StreamFigures& figures, const std::optional<double>& max_edge);
 
 }  // namespace spillway::detail

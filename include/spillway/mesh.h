@@ -67,7 +67,8 @@ struct MeshOptions {
 
 /// A mesh file, of any format that the command writes; "-" is standard output, as spm. It gets its
 /// name when it is complete. Throws Error: kInvalidArgument for a format that is not known;
-/// begin() throws it for a format that cannot hold the mesh, and kInputOutput.
+/// begin() throws it for a format that cannot hold the mesh, and kInputOutput; write() and finish()
+/// throw it unless begin() has been called.
 SPILLWAY_API std::unique_ptr<MeshSink> open_mesh(const std::string& path,
                                                  const MeshOptions& options,
                                                  const Context& context);

@@ -12,6 +12,7 @@
 #include "src/delaunay/delaunay.h"
 #include "src/error.h"
 #include "src/library/query_order.h"
+#include "src/parallel/most_threads.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::detail {
@@ -20,7 +21,6 @@ namespace {
 using PublicError = spillway::Error;
 
 constexpr std::size_t kGrain = std::size_t{1} << 14;
-constexpr unsigned kMostThreads = 4'096;
 
 template <class Index>
 constexpr std::size_t kMostNumbers = static_cast<std::size_t>(std::numeric_limits<Index>::max());
@@ -143,22 +143,18 @@ MeshData<D, Index> make_mesh(const PointView<D>& points, const spillway::Delauna
   require_numbers(points.size(), std::min(kMostNumbers<Index>, kMaxVertices), "points");
   MeshData<D, Index> mesh;
   mesh.threads = options.threads == 0 ? available_threads() : options.threads;
-  try {
-    if (options.stop.stop_requested()) throw Interrupted();
-    with_threads(mesh.threads, [&] { mesh.points = copy_finite<D>(points); });
-    const Triangulation<D> triangulation =
-        triangulate<D>(span_of(mesh.points), options, mesh.threads);
-    require_span(triangulation.dimension, D, points.size());
-    require_numbers(triangulation.finite_count(), kMostNumbers<Index>, "cells");
-    if (options.stop.stop_requested()) throw Interrupted();
-    with_threads(mesh.threads, [&] {
-      mesh.cells = make_cell_arrays<D, Index>(triangulation);
-      mesh.duplicates = list_duplicates<D, Index>(triangulation);
-      mesh.starts = make_starts<D, Index>(triangulation, mesh.cells);
-    });
-  } catch (const Interrupted&) {
-    throw PublicError(ErrorCode::kInterrupted, "the triangulation was interrupted");
-  }
+  if (options.stop.stop_requested()) throw Interrupted();
+  with_threads(mesh.threads, [&] { mesh.points = copy_finite<D>(points); });
+  const Triangulation<D> triangulation =
+      triangulate<D>(span_of(mesh.points), options, mesh.threads);
+  require_span(triangulation.dimension, D, points.size());
+  require_numbers(triangulation.finite_count(), kMostNumbers<Index>, "cells");
+  if (options.stop.stop_requested()) throw Interrupted();
+  with_threads(mesh.threads, [&] {
+    mesh.cells = make_cell_arrays<D, Index>(triangulation);
+    mesh.duplicates = list_duplicates<D, Index>(triangulation);
+    mesh.starts = make_starts<D, Index>(triangulation, mesh.cells);
+  });
   return mesh;
 }
 

@@ -5,20 +5,15 @@
 
 #include <utility>
 
+#include "src/parallel/most_threads.h"
 #include "src/parallel/parallel.h"
 #include "src/runtime/memory_budget.h"
 
 namespace spillway {
-namespace {
-
-constexpr unsigned kMostThreads = 4096;
-
-}  // namespace
-
 Context::Context(ContextOptions options) : options_(std::move(options)) {
-  if (options_.threads > kMostThreads) {
+  if (options_.threads > detail::kMostThreads) {
     throw Error(ErrorCode::kInvalidArgument,
-                fmt::format("{} threads are more than {}", options_.threads, kMostThreads));
+                fmt::format("{} threads are more than {}", options_.threads, detail::kMostThreads));
   }
   threads_ = options_.threads > 0 ? options_.threads : detail::available_threads();
   memory_ = options_.memory.empty() ? detail::default_memory_limit()

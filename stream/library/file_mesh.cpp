@@ -5,6 +5,7 @@
 #include "formats/disk/file_system.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_stream_writer.h"
+#include "src/error.h"
 #include "stream/library/public_values.h"
 
 namespace spillway::detail {
@@ -19,12 +20,17 @@ MeshStreamWriter& FileMesh::open(const MeshStreamHeader& header) {
   return *writer_;
 }
 
+MeshStreamWriter& FileMesh::begun() {
+  if (!writer_) throw InvalidArgument(path_ + ": blocks of a mesh come between begin and finish");
+  return *writer_;
+}
+
 void FileMesh::begin(const spillway::MeshHeader& header) { open(stream_header(header)); }
 
-void FileMesh::write(const spillway::MeshBlock& block) { writer_->write(stream_block(block)); }
+void FileMesh::write(const spillway::MeshBlock& block) { begun().write(stream_block(block)); }
 
 void FileMesh::finish(const spillway::MeshTotals& totals) {
-  writer_->finish(stream_totals(totals));
+  begun().finish(stream_totals(totals));
   writer_.reset();
 }
 

@@ -25,6 +25,9 @@ class FileMesh final : public spillway::MeshSink {
   MeshStreamWriter& open(const MeshStreamHeader& header);
 
  private:
+  /// Throws Error(kInvalidArgument) if the file has not been begun, or is finished.
+  MeshStreamWriter& begun();
+
   std::string path_;
   const MeshFormat& format_;
   std::unique_ptr<ScratchFolder> scratch_;

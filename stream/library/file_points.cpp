@@ -12,10 +12,6 @@
 namespace spillway::detail {
 namespace {
 
-/// The part of the memory limit that thinning may take, as points that wait to be spilled and the
-/// last cells are in memory at the same time.
-constexpr std::uint64_t kThinningShare = 4;
-
 PointFilter filter_of(const PointOptions& options) {
   PointFilter filter;
   if (options.every == 0) throw InvalidArgument("of every 0 records none can be used; give 1");

@@ -161,12 +161,7 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   BlockSink& blocks = file != nullptr ? static_cast<BlockSink&>(file->open(input.header))
                                       : to_sink.emplace(sink, input.header);
   const StreamFigures figures = run(*input.points, blocks, context, options, watch);
-  if (figures.totals.simplices == 0) {
-    throw detail::Error(
-        fmt::format("every one of {} simplices has an edge longer than {}: nothing is left",
-                    figures.left_out, options.max_edge.value_or(0)),
-        ErrorCode::kDegenerateInput);
-  }
+  refuse_empty_mesh(figures, options.max_edge);
   watch.begin("write");
   blocks.finish(figures.totals);
   watch.end(figures.totals.points);

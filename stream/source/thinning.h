@@ -18,6 +18,10 @@
 
 namespace spillway::detail {
 
+/// The part of a memory limit that thinning may take, one in so much: points that wait to be
+/// spilled and the last cells are in memory at the same time.
+inline constexpr std::uint64_t kThinningShare = 4;
+
 /// Which point of a cell is kept; among equals the one of the lowest index.
 enum class ThinChoice { kFirst, kLowest, kHighest, kCenter };
 

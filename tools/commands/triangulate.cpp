@@ -121,12 +121,6 @@ void report(const TriangulateOptions& options, const RunStatistics& statistics,
   }
 }
 
-void check_not_empty(const RunStatistics& statistics) {
-  if (statistics.stream.totals.simplices > 0) return;
-  throw Error(fmt::format("every one of {} simplices has an edge longer than {}: nothing is left",
-                          statistics.stream.left_out, *statistics.max_edge));
-}
-
 /// For reuse_freed_memory(): the leaves of space are large, and so are their buffers.
 std::size_t kept_memory(int dimension, std::uint64_t limit) {
   constexpr std::uint64_t kLeast = 16 << 20;
@@ -174,7 +168,7 @@ int run(const TriangulateOptions& options, const MeshTarget& target, RunStatisti
         triangulate_over_ranks<D>(source, output->writer(), *scratch, budget, stream, *ranks);
     statistics.input = source.counts();
     share_statistics(statistics, mesh, *ranks);
-    do_together(*ranks, [&] { check_not_empty(statistics); });
+    do_together(*ranks, [&] { refuse_empty_mesh(statistics.stream, statistics.max_edge); });
     finish([&] { return output->finish(mesh); });
     if (ranks->rank() != 0) return kExitDone;
   } else {
@@ -186,7 +180,7 @@ int run(const TriangulateOptions& options, const MeshTarget& target, RunStatisti
                                   statistics.stream.threads, stream.threads));
     }
     statistics.input = source.counts();
-    check_not_empty(statistics);
+    refuse_empty_mesh(statistics.stream, statistics.max_edge);
     finish([&] {
       writer->finish(statistics.stream.totals);
       return writer->bytes_written();

@@ -13,13 +13,11 @@
 #include <vector>
 
 #include "formats/disk/scratch_folder.h"
+#include "src/parallel/most_threads.h"
 #include "tools/options/command_line.h"
 #include "tools/report/progress.h"
 
 namespace spillway::detail {
-
-/// Most that --threads takes.
-inline constexpr unsigned kMostThreads = 4096;
 
 /// --progress, -q, -v.
 struct ReportOptions {

@@ -17,10 +17,6 @@
 namespace spillway::detail {
 namespace {
 
-/// The part of --memory that thinning may take. Points that wait to be spilled and the last cells
-/// are in memory at the same time.
-constexpr std::uint64_t kThinningShare = 4;
-
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   for (std::size_t begin = 0; begin <= text.size();) {

@@ -237,6 +237,8 @@ TEST_F(Streams, WriteBlocksOfAProgramToFiles) {
   sink->finish(totals);
   EXPECT_TRUE(fs::exists(path));
   const auto other = open_mesh(folder_ + "/other.spm", {}, context);
+  EXPECT_EQ(code_of([&] { other->write({}); }), ErrorCode::kInvalidArgument) << "not begun";
+  EXPECT_EQ(code_of([&] { sink->finish({}); }), ErrorCode::kInvalidArgument) << "finished";
   other->begin({});
   EXPECT_EQ(code_of([&] { other->write({.corners = {0, 1, 2}}); }), ErrorCode::kInvalidArgument);
 }
