@@ -4,6 +4,7 @@
 
 #include <spillway/error.h>
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,11 +44,59 @@ class ErrorList : public Error {
   std::vector<Error> faults_;
 };
 
+constexpr FilePlace at_byte(std::uint64_t byte) { return {PlaceUnit::kByte, byte}; }
+constexpr FilePlace at_line(std::uint64_t line) { return {PlaceUnit::kLine, line}; }
+constexpr FilePlace at_record(std::uint64_t record) { return {PlaceUnit::kRecord, record}; }
+
+/// "line 7"; "" without a unit.
+std::string text_of(const FilePlace& place);
+
+/// A file and the place of a part of it, for whoever reads the part.
+struct FileSpot {
+  std::string file;
+  FilePlace place{};
+
+  /// "points.spp, byte 4096"
+  [[nodiscard]] std::string text() const;
+};
+
+/// A file is not what it should be.
+class BadInput : public Error {
+ public:
+  /// The message is "FILE: WHAT". The place is a fact; WHAT names it in its own words.
+  BadInput(const std::string& file, const std::string& what, FilePlace place = {},
+           Remedy remedy = Remedy::kNone);
+  /// "FILE, byte 4096: WHAT"
+  BadInput(const FileSpot& spot, const std::string& what);
+  /// "FILE: line 7: WHAT"
+  static BadInput at(const std::string& file, FilePlace place, const std::string& what);
+};
+
+/// What is given to be written to a file is not what its format holds, or not what was announced.
+class CannotWrite : public Error {
+ public:
+  /// The message is "cannot write FILE: WHAT". The place is that of the point, vertex or simplex.
+  CannotWrite(const std::string& file, const std::string& what,
+              ErrorCode code = ErrorCode::kInvalidArgument, FilePlace place = {},
+              Remedy remedy = Remedy::kNone);
+};
+
 /// The library was called with what no call can use.
 class InvalidArgument : public Error {
  public:
   explicit InvalidArgument(const std::string& message, ErrorFacts facts = {})
-      : Error(message, ErrorCode::kInvalidArgument, std::move(facts)) {}
+      : InvalidArgument(message, ErrorCode::kInvalidArgument, std::move(facts)) {}
+
+ protected:
+  InvalidArgument(const std::string& message, ErrorCode code, ErrorFacts facts)
+      : Error(message, code, std::move(facts)) {}
+};
+
+/// The memory limit is below what any call of this kind takes.
+class TooSmallLimit : public InvalidArgument {
+ public:
+  explicit TooSmallLimit(const std::string& message, ErrorFacts facts)
+      : InvalidArgument(message, ErrorCode::kOutOfBudget, std::move(facts)) {}
 };
 
 /// The system refuses to read, to write or to create `file`, for the reason that `system_error`

@@ -48,8 +48,8 @@ void run(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
 }  // namespace
 
 template <int D>
-StreamFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
-                                 MemoryBudget& budget, const StreamOptions& options) {
+RunFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
+                              MemoryBudget& budget, const StreamOptions& options) {
   TileEngine<D> engine({source.lattice(), source.expected(), source.extent()}, sink, scratch,
                        budget, options);
   with_threads(engine.threads(), [&] { run(engine, source, budget, options); });
@@ -57,16 +57,16 @@ StreamFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFo
   return engine.figures();
 }
 
-void refuse_empty_mesh(const StreamFigures& figures, const std::optional<double>& max_edge) {
-  if (figures.totals.simplices > 0) return;
+void refuse_empty_mesh(const RunFigures& figures, const std::optional<double>& max_edge) {
+  if (figures.mesh.simplices > 0) return;
   throw Error(fmt::format("every one of {} simplices has an edge longer than {}: nothing is left",
                           figures.left_out, max_edge.value_or(0)),
               ErrorCode::kDegenerateInput);
 }
 
-template StreamFigures triangulate_stream<2>(PointStream&, BlockSink&, ScratchFolder&,
-                                             MemoryBudget&, const StreamOptions&);
-template StreamFigures triangulate_stream<3>(PointStream&, BlockSink&, ScratchFolder&,
-                                             MemoryBudget&, const StreamOptions&);
+template RunFigures triangulate_stream<2>(PointStream&, BlockSink&, ScratchFolder&, MemoryBudget&,
+                                          const StreamOptions&);
+template RunFigures triangulate_stream<3>(PointStream&, BlockSink&, ScratchFolder&, MemoryBudget&,
+                                          const StreamOptions&);
 
 }  // namespace spillway::detail

@@ -14,10 +14,10 @@ namespace spillway::detail {
 /// gives what is final to `sink`, which is not finished yet. Throws Error if the points do not
 /// span D dimensions, or if the memory or the disk do not suffice.
 template <int D>
-StreamFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
-                                 MemoryBudget& budget, const StreamOptions& options);
+RunFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
+                              MemoryBudget& budget, const StreamOptions& options);
 
 /// Throws Error (kDegenerateInput) if `max_edge` has left no simplex of the mesh.
-void refuse_empty_mesh(const StreamFigures& figures, const std::optional<double>& max_edge);
+void refuse_empty_mesh(const RunFigures& figures, const std::optional<double>& max_edge);
 
 }  // namespace spillway::detail

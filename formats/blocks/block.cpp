@@ -37,8 +37,8 @@ std::uint64_t checksum_of(const BlockHead& head, const std::byte* stored) {
   return XXH3_64bits_withSeed(stored, head.stored_size, seed);
 }
 
-[[noreturn]] void fail(const std::string& where, const char* what) {
-  throw Error(fmt::format("{}: {}; the file is corrupt, make it again", where, what));
+[[noreturn]] void fail(const FileSpot& where, const char* what) {
+  throw BadInput(where, fmt::format("{}; the file is corrupt, make it again", what));
 }
 
 }  // namespace
@@ -47,7 +47,8 @@ void append_block(std::vector<std::byte>& out, std::uint32_t kind,
                   std::span<const std::byte> content) {
   if (content.size() > kLargestBlock) {
     throw Error(fmt::format("a block of {} bytes is too large to write; the limit is {}",
-                            content.size(), kLargestBlock));
+                            content.size(), kLargestBlock),
+                ErrorCode::kTooLarge);
   }
   BlockHead head;
   head.kind = kind;
@@ -70,7 +71,7 @@ void append_block(std::vector<std::byte>& out, std::uint32_t kind,
 }
 
 BlockHead decode_block_head(std::span<const std::byte, kBlockHeadSize> bytes,
-                            const std::string& where) {
+                            const FileSpot& where) {
   BlockHead head;
   head.kind = load<std::uint32_t>(bytes.data() + kKindAt);
   head.content_size = load<std::uint32_t>(bytes.data() + kContentSizeAt);
@@ -82,13 +83,13 @@ BlockHead decode_block_head(std::span<const std::byte, kBlockHeadSize> bytes,
                                                head.content_size <= kLargestRatio * head.stored_size
                                          : head.stored_size == head.content_size;
   if (compressed > 1 || !sizes_fit || head.content_size > kLargestBlock) {
-    fail(where, "what should be the head of a block makes no sense");
+    fail(where, "the head of a block is invalid");
   }
   return head;
 }
 
 void decode_block(const BlockHead& head, std::span<const std::byte> stored,
-                  std::vector<std::byte>& content, const std::string& where) {
+                  std::vector<std::byte>& content, const FileSpot& where) {
   if (stored.size() != head.stored_size) fail(where, "the block ends early");
   if (checksum_of(head, stored.data()) != head.checksum) {
     fail(where, "the checksum of the block does not fit its bytes");
@@ -99,7 +100,7 @@ void decode_block(const BlockHead& head, std::span<const std::byte> stored,
   }
   content.resize(head.content_size);
   if (!lz4_decompress(stored, content)) {
-    fail(where, "the block does not decompress to the size that its head tells");
+    fail(where, "the block does not decompress to the size in its head");
   }
 }
 

@@ -5,8 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
+
+#include "src/error.h"
 
 namespace spillway::detail {
 
@@ -29,13 +30,13 @@ inline constexpr std::size_t kLargestBlock = std::size_t{256} << 20;
 void append_block(std::vector<std::byte>& out, std::uint32_t kind,
                   std::span<const std::byte> content);
 
-/// Decodes a head. Throws Error, beginning with `where` ("file.spm, byte 4096"), if it is none.
+/// Decodes a head. Throws BadInput of `where` if it is none.
 BlockHead decode_block_head(std::span<const std::byte, kBlockHeadSize> bytes,
-                            const std::string& where);
+                            const FileSpot& where);
 
-/// Replaces `content` by a block's content. Throws Error, beginning with `where`, if the checksum
+/// Replaces `content` by a block's content. Throws BadInput of `where` if the checksum
 /// does not fit or the content does not decompress to the size that the head tells.
 void decode_block(const BlockHead& head, std::span<const std::byte> stored,
-                  std::vector<std::byte>& content, const std::string& where);
+                  std::vector<std::byte>& content, const FileSpot& where);
 
 }  // namespace spillway::detail

@@ -11,17 +11,18 @@
 
 namespace spillway::detail {
 
-BlockStream::BlockStream(std::unique_ptr<InputSource> source, const BlockStreamFormat& format,
+BlockStream::BlockStream(std::unique_ptr<InputBytes> source, const BlockStreamFormat& format,
                          std::function<std::string()> so_far)
     : source_(std::move(source)), format_(format), so_far_(std::move(so_far)) {
   source_->check_not_empty();
   std::vector<std::byte> magic(format.magic.size());
   source_->read(magic);
   if (as_text(magic) != format.magic) {
-    throw Error(fmt::format(
-        "{}: no {} file: it does not begin with the format's magic; check the name, or name its "
-        "format",
-        source_->name(), format.name));
+    throw BadInput(source_->name(),
+                   fmt::format("no {} file: it does not begin with the format's magic; check the "
+                               "name, or name its format",
+                               format.name),
+                   at_byte(0));
   }
 }
 
@@ -46,10 +47,11 @@ std::uint32_t BlockStream::next() {
 void BlockStream::take_version() {
   const auto version = take<std::uint32_t>();
   if (version == format_.version) return;
-  throw Error(
-      fmt::format("{}: version {} of {} is not known, only {} is; use the program that wrote it, "
-                  "or a newer one",
-                  source_->name(), version, format_.name, format_.version));
+  throw BadInput(source_->name(),
+                 fmt::format("version {} of {} is not known, only {} is; use the program that "
+                             "wrote it, or a newer one",
+                             version, format_.name, format_.version),
+                 at_byte(block_begin_));
 }
 
 Box<3> BlockStream::take_extent() {
@@ -59,7 +61,7 @@ Box<3> BlockStream::take_extent() {
   for (int axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(extent.lo[axis]) || !(extent.lo[axis] <= extent.hi[axis]) ||
         !std::isfinite(extent.hi[axis])) {
-      fail("the extent makes no sense");
+      fail("the extent is invalid");
     }
   }
   return extent;
@@ -72,19 +74,19 @@ void BlockStream::expect_end() {
   fail("something follows the end");
 }
 
-std::string BlockStream::where() const {
-  return fmt::format("{}, byte {}", source_->name(), block_begin_);
-}
+FileSpot BlockStream::where() const { return {source_->name(), at_byte(block_begin_)}; }
 
 void BlockStream::fail(std::string_view what) const {
-  throw Error(fmt::format("{}: {}; the file is corrupt, make it again", where(), what));
+  throw BadInput(where(), fmt::format("{}; the file is corrupt, make it again", what));
 }
 
 void BlockStream::read_bytes(std::span<std::byte> bytes) {
   if (source_->read(bytes) == bytes.size()) return;
-  throw Error(fmt::format(
-      "{}: the {} is cut short at byte {}, after {}; get a complete copy or make it again",
-      source_->name(), format_.contents, source_->position(), so_far_()));
+  throw BadInput(
+      source_->name(),
+      fmt::format("the {} is cut short at byte {}, after {}; get a complete copy or make it again",
+                  format_.contents, source_->position(), so_far_()),
+      at_byte(source_->position()));
 }
 
 }  // namespace spillway::detail

@@ -12,7 +12,8 @@
 
 #include "formats/blocks/block.h"
 #include "formats/bytes/bytes.h"
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
+#include "src/error.h"
 #include "src/geometry/box.h"
 
 namespace spillway::detail {
@@ -32,7 +33,7 @@ class BlockStream {
  public:
   /// Reads the magic. `so_far` says what has been given out, for a stream that is cut short:
   /// "7 points".
-  BlockStream(std::unique_ptr<InputSource> source, const BlockStreamFormat& format,
+  BlockStream(std::unique_ptr<InputBytes> source, const BlockStreamFormat& format,
               std::function<std::string()> so_far);
 
   /// Reads the next block and returns its kind. Memory grows as bytes come.
@@ -60,8 +61,8 @@ class BlockStream {
   /// Throws Error if anything follows the block, which is the last one.
   void expect_end();
 
-  /// The file and the byte where the block begins, for messages.
-  [[nodiscard]] std::string where() const;
+  /// The file and the byte where the block begins.
+  [[nodiscard]] FileSpot where() const;
   [[noreturn]] void fail(std::string_view what) const;
 
   [[nodiscard]] std::optional<double> fraction_read() const { return source_->fraction_read(); }
@@ -69,7 +70,7 @@ class BlockStream {
  private:
   void read_bytes(std::span<std::byte> bytes);
 
-  std::unique_ptr<InputSource> source_;
+  std::unique_ptr<InputBytes> source_;
   BlockStreamFormat format_;
   std::function<std::string()> so_far_;
   std::uint64_t block_begin_ = 0;

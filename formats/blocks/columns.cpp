@@ -231,8 +231,8 @@ std::uint64_t decode(const std::byte* column, unsigned width,
   return misfit;
 }
 
-[[noreturn]] void fail(const std::string& where, const char* what) {
-  throw Error(fmt::format("{}: {}; the file is corrupt, make it again", where, what));
+[[noreturn]] void fail(const FileSpot& where, const char* what) {
+  throw BadInput(where, fmt::format("{}; the file is corrupt, make it again", what));
 }
 
 /// A column whose bytes are all there.
@@ -243,11 +243,11 @@ struct Column {
 };
 
 /// Takes a column of at least one value off the front of `left`.
-Column take(std::span<const std::byte>& left, std::size_t count, const std::string& where) {
+Column take(std::span<const std::byte>& left, std::size_t count, const FileSpot& where) {
   if (left.size() < kColumnHead) fail(where, "a column of numbers ends early");
   Column column{left.data(), load<std::uint8_t>(left.data()), load<std::uint8_t>(left.data() + 1)};
   if (column.kind > kBits || column.width > 8) {
-    fail(where, "what should be a column of numbers makes no sense");
+    fail(where, "the head of a column of numbers is invalid");
   }
   left = left.subspan(kColumnHead);
   const std::size_t values = column.width == 0 ? 1 : count - 1;
@@ -258,13 +258,13 @@ Column take(std::span<const std::byte>& left, std::size_t count, const std::stri
 }
 
 template <typename T>
-void read_integers(std::span<const std::byte>& left, const std::string& where, std::size_t count,
+void read_integers(std::span<const std::byte>& left, const FileSpot& where, std::size_t count,
                    std::vector<T>& values) {
   if (count == 0) return values.clear();
   const Column column = take(left, count, where);
   values.resize(count);
   if (column.kind != kIntegers || decode<Integers<T>>(column.bytes, column.width, values) != 0) {
-    fail(where, "a column holds something else than the whole numbers expected");
+    fail(where, "a column does not hold the expected whole numbers");
   }
 }
 
@@ -286,7 +286,7 @@ void append_column(std::vector<std::byte>& out, std::span<const std::uint32_t> v
   encode<Integers<std::uint32_t>>(out, values, kIntegers);
 }
 
-ColumnReader::ColumnReader(std::span<const std::byte> bytes, std::string where)
+ColumnReader::ColumnReader(std::span<const std::byte> bytes, FileSpot where)
     : left_(bytes), where_(std::move(where)) {}
 
 void ColumnReader::read(std::size_t count, std::vector<double>& values) {
@@ -308,7 +308,7 @@ void ColumnReader::read(std::size_t count, std::vector<std::uint32_t>& values) {
 }
 
 void ColumnReader::expect_end() const {
-  if (!left_.empty()) fail(where_, "bytes are left over behind the last column");
+  if (!left_.empty()) fail(where_, "bytes are left over after the last column");
 }
 
 }  // namespace spillway::detail

@@ -7,8 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
+
+#include "src/error.h"
 
 namespace spillway::detail {
 
@@ -18,11 +19,11 @@ void append_column(std::vector<std::byte>& out, std::span<const std::uint64_t> v
 void append_column(std::vector<std::byte>& out, std::span<const std::uint32_t> values);
 
 /// Takes columns off the front of `bytes`. The number of values is the caller's to know, and to
-/// bound, since equal steps take no bytes. Throws Error, beginning with `where`, if bytes are
-/// missing or make no sense; otherwise allocates nothing that the bytes do not back.
+/// bound, since equal steps take no bytes. Throws BadInput of `where` if bytes are missing
+///  or make no sense; otherwise allocates nothing that the bytes do not back.
 class ColumnReader {
  public:
-  ColumnReader(std::span<const std::byte> bytes, std::string where);
+  ColumnReader(std::span<const std::byte> bytes, FileSpot where);
 
   void read(std::size_t count, std::vector<double>& values);
   void read(std::size_t count, std::vector<std::uint64_t>& values);
@@ -33,7 +34,7 @@ class ColumnReader {
 
  private:
   std::span<const std::byte> left_;
-  std::string where_;
+  FileSpot where_;
 };
 
 }  // namespace spillway::detail

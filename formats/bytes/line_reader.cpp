@@ -37,10 +37,11 @@ void LineReader::pass_over() {
   if (line_begin_ != gap_end_) gap_begin_ = line_begin_;
   gap_end_ = position();
   if (gap_end_ - gap_begin_ > kLongestGap) {
-    throw Error(
-        fmt::format("{}: before {} are more than {} bytes of lines with nothing to read; "
-                    "see what writes this",
-                    file_.name(), name_of_line(number_, line_begin_), kLongestGap));
+    throw BadInput(file_.name(),
+                   fmt::format("before {} are more than {} bytes of lines with nothing to read; "
+                               "see what writes this",
+                               line_name(), kLongestGap),
+                   place());
   }
 }
 
@@ -55,8 +56,9 @@ void LineReader::seek(std::uint64_t byte) {
   if (byte > 0) next(passed);
 }
 
-std::string LineReader::name_of_line(std::uint64_t number, std::uint64_t byte) const {
-  return numbered_ ? fmt::format("line {}", number) : fmt::format("the line at byte {}", byte);
+std::string LineReader::name_of(const FilePlace& line) {
+  return fmt::format("{} {}", line.unit == PlaceUnit::kLine ? "line" : "the line at byte",
+                     line.number);
 }
 
 bool LineReader::refill() {
@@ -66,8 +68,11 @@ bool LineReader::refill() {
   begin_ = 0;
   const std::span<char> space = std::span(buffer_).subspan(end_);
   if (space.empty()) {
-    throw Error(fmt::format("{}: {} is longer than {} bytes; this is no text", file_.name(),
-                            name_of_line(number_ + 1, position()), kLongestLine));
+    const FilePlace line = place_of_line(number_ + 1, position());
+    throw BadInput(
+        file_.name(),
+        fmt::format("{} is longer than {} bytes; this is not text", name_of(line), kLongestLine),
+        line);
   }
   const std::size_t got = file_.read(std::as_writable_bytes(space));
   end_ += got;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/disk/file_system.h"
+#include "src/error.h"
 
 namespace spillway::detail {
 
@@ -47,10 +48,16 @@ class LineReader {
   [[nodiscard]] std::uint64_t position() const { return buffer_begin_ + begin_; }
 
   /// That line as messages call it: "line 7", or without numbers "the line at byte 123".
-  [[nodiscard]] std::string line_name() const { return name_of_line(number_, line_begin_); }
+  [[nodiscard]] std::string line_name() const { return name_of(place()); }
+
+  /// That line, or without numbers the byte where it begins.
+  [[nodiscard]] FilePlace place() const { return place_of_line(number_, line_begin_); }
 
  private:
-  [[nodiscard]] std::string name_of_line(std::uint64_t number, std::uint64_t byte) const;
+  [[nodiscard]] FilePlace place_of_line(std::uint64_t number, std::uint64_t byte) const {
+    return numbered_ ? at_line(number) : at_byte(byte);
+  }
+  static std::string name_of(const FilePlace& line);
 
   /// Moves the unread bytes to the front and fills up after them; false if there was nothing more.
   bool refill();

@@ -10,11 +10,11 @@ constexpr std::uint64_t kStep = std::uint64_t{1} << 20;
 
 }  // namespace
 
-std::vector<std::byte> read_whole(InputSource& source) {
+std::vector<std::byte> read_whole(InputBytes& source) {
   return read_up_to(source, std::numeric_limits<std::uint64_t>::max());
 }
 
-std::vector<std::byte> read_up_to(InputSource& source, std::uint64_t count) {
+std::vector<std::byte> read_up_to(InputBytes& source, std::uint64_t count) {
   std::vector<std::byte> bytes;
   if (const auto size = source.size()) {
     bytes.reserve(std::min(count, *size - std::min(*size, source.position())));

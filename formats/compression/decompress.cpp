@@ -25,19 +25,21 @@ constexpr std::size_t kCompressedBuffer = std::size_t{128} << 10;
 // The largest window that zstd writes (--long=31), and that its library can read.
 constexpr int kZstdWindowLog = 31;
 
-[[noreturn]] void fail(const InputSource& source, std::string_view format) {
-  throw Error(
-      fmt::format("{}: the {} data is corrupt or ends early, before byte {}; get a fresh copy",
-                  source.name(), format, source.position()));
+[[noreturn]] void fail(const InputBytes& source, std::string_view format) {
+  throw BadInput(
+      source.name(),
+      fmt::format("the {} data is corrupt or ends early, before byte {}; get a fresh copy", format,
+                  source.position()),
+      at_byte(source.position()));
 }
 
-/// Gives an InputSource to Boost.Iostreams.
+/// Gives an InputBytes to Boost.Iostreams.
 class SourceDevice {
  public:
   using char_type = char;
   using category = boost::iostreams::source_tag;
 
-  explicit SourceDevice(InputSource& source) : source_(&source) {}
+  explicit SourceDevice(InputBytes& source) : source_(&source) {}
 
   std::streamsize read(char* buffer, std::streamsize count) {
     const std::span bytes(reinterpret_cast<std::byte*>(buffer), static_cast<std::size_t>(count));
@@ -46,13 +48,13 @@ class SourceDevice {
   }
 
  private:
-  InputSource* source_;
+  InputBytes* source_;
 };
 
 /// Gzip, bzip2 and LZ4, through Boost.Iostreams.
 class BoostInput : public InputFile {
  public:
-  BoostInput(InputSource& source, Compression compression)
+  BoostInput(InputBytes& source, Compression compression)
       : source_(source), format_(name_of(compression)) {
     if (compression == Compression::kGzip) {
       stream_.push(boost::iostreams::gzip_decompressor(), kCompressedBuffer);
@@ -78,7 +80,7 @@ class BoostInput : public InputFile {
   [[nodiscard]] const std::string& name() const override { return source_.name(); }
 
  private:
-  InputSource& source_;
+  InputBytes& source_;
   std::string_view format_;
   boost::iostreams::filtering_streambuf<boost::iostreams::input> stream_;
 };
@@ -86,7 +88,7 @@ class BoostInput : public InputFile {
 /// Zstandard, through its own library: Boost's filter takes truncated data for complete.
 class ZstdInput : public InputFile {
  public:
-  explicit ZstdInput(InputSource& source)
+  explicit ZstdInput(InputBytes& source)
       : source_(source), context_(ZSTD_createDCtx()), compressed_(kCompressedBuffer) {
     if (!context_) throw std::bad_alloc();
     ZSTD_DCtx_setParameter(context_.get(), ZSTD_d_windowLogMax, kZstdWindowLog);
@@ -114,11 +116,10 @@ class ZstdInput : public InputFile {
 
   [[noreturn]] void fail_for(ZSTD_ErrorCode code) const {
     if (code == ZSTD_error_memory_allocation || code == ZSTD_error_frameParameter_windowTooLarge) {
-      throw Error(
-          fmt::format("{}: there is not enough memory for the window of this zstd data, which may "
-                      "take up to 2 GiB (--long=31); decompress it first, or compress it again "
-                      "without --long",
-                      source_.name()));
+      throw BadInput(source_.name(),
+                     "there is not enough memory for the window of this zstd data, which may take "
+                     "up to 2 GiB (--long=31); decompress it first, or compress it again without "
+                     "--long");
     }
     fail(source_, "zstd");
   }
@@ -131,7 +132,7 @@ class ZstdInput : public InputFile {
     return got > 0;
   }
 
-  InputSource& source_;
+  InputBytes& source_;
   std::unique_ptr<ZSTD_DCtx, Free> context_;
   std::vector<std::byte> compressed_;
   ZSTD_inBuffer in_{nullptr, 0, 0};
@@ -174,7 +175,7 @@ Compression compression_of_content(std::span<const std::byte> first_bytes) {
   return Compression::kNone;
 }
 
-std::unique_ptr<InputFile> decompressed(InputSource& source, Compression compression) {
+std::unique_ptr<InputFile> decompressed(InputBytes& source, Compression compression) {
   if (compression == Compression::kZstd) return std::make_unique<ZstdInput>(source);
   return std::make_unique<BoostInput>(source, compression);
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 
 namespace spillway::detail {
 
@@ -25,6 +25,6 @@ Compression compression_of_content(std::span<const std::byte> first_bytes);
 /// as one. Its size is unknown. Throws Error on reading if the data is corrupt, ends early or is
 /// followed by something else. Memory is constant, but that for zstd with a large window (--long):
 /// as much as that window, 2 GiB at most. `source` must outlive the result.
-std::unique_ptr<InputFile> decompressed(InputSource& source, Compression compression);
+std::unique_ptr<InputFile> decompressed(InputBytes& source, Compression compression);
 
 }  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "formats/disk/naming_turn.h"
+#include "formats/disk/folder_lock.h"
 #include "formats/disk/unfinished_files.h"
 #include "src/error.h"
 
@@ -19,12 +19,15 @@ namespace fs = std::filesystem;
 
 OutputTarget target_of(const std::string& name) {
   if (name == "-") {
-    throw Error("standard output cannot take what is not written in one go; name a file");
+    throw Error("standard output cannot take what is not written in one go; name a file",
+                ErrorCode::kInvalidArgument, {.file = name});
   }
   OutputTarget target = output_target(name);
   if (!target.regular) {
-    throw Error(fmt::format(
-        "cannot create {}: it is there and is no regular file; choose another name", name));
+    throw Error(
+        fmt::format("cannot create {}: it exists and is not a regular file; choose another name",
+                    name),
+        ErrorCode::kInvalidArgument, {.file = name});
   }
   return target;
 }
@@ -45,8 +48,9 @@ PrivateOutput::~PrivateOutput() { remove_temporary_folder(folder_); }
 
 std::string PrivateOutput::path() const { return fs::path(folder_) / target_.filename(); }
 
-void PrivateOutput::fail(const std::string& reason) const {
-  throw Error(fmt::format("cannot write {}: {}", name_, reason));
+void PrivateOutput::fail(const std::error_code& error) const {
+  throw SystemRefusal(fmt::format("cannot write {}: {}", name_, error.message()), name_,
+                      error.value());
 }
 
 std::uint64_t PrivateOutput::finish(std::span<const std::string_view> stale_ends,
@@ -60,7 +64,7 @@ std::uint64_t PrivateOutput::finish(std::span<const std::string_view> stale_ends
     bytes += entry->file_size(error);
     if (error) break;
   }
-  if (error) fail(error.message());
+  if (error) fail(error);
   // The file that the others belong to comes last: until then the name tells of no file.
   std::sort(files.begin(), files.end(), [&](const fs::path& a, const fs::path& b) {
     return std::pair(a.filename() == target_.filename(), a) <
@@ -70,7 +74,7 @@ std::uint64_t PrivateOutput::finish(std::span<const std::string_view> stale_ends
   for (const fs::path& file : files) {
     if (mode_) fs::permissions(file, static_cast<fs::perms>(*mode_), ignored);
   }
-  const NamingTurn turn(target_.string());
+  const FolderLock lock(target_.string());
   const auto undisturbed = hold_off_end_of_run();
   for (const std::string_view end : stale_ends) fs::remove(fs::path(target_).concat(end), ignored);
   for (const std::string_view extension : stale_extensions) {
@@ -82,7 +86,7 @@ std::uint64_t PrivateOutput::finish(std::span<const std::string_view> stale_ends
     for (auto moved = files.begin(); moved != file; ++moved) {
       fs::remove(target_.parent_path() / moved->filename(), ignored);
     }
-    fail(error.message());
+    fail(error);
   }
   remove_temporary_folder(folder_);
   return bytes;

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "formats/disk/output_target.h"
 
@@ -31,7 +32,7 @@ class PrivateOutput {
 
   /// Moves all files of the folder beside the target and replaces what was there, the target last.
   /// They get the permissions of the target that they replace, if any. No other run that writes to
-  /// the same folder gives its files their names meanwhile (NamingTurn).
+  /// the same folder gives its files their names meanwhile (FolderLock).
   /// Before, removes what an older target has beside itself: files of its name with one of these
   /// ends, or extensions in place of its own. Returns the bytes of all files. Throws Error with the
   /// system's reason, and takes back what was moved.
@@ -39,7 +40,7 @@ class PrivateOutput {
                        std::span<const std::string_view> stale_extensions = {});
 
  private:
-  [[noreturn]] void fail(const std::string& reason) const;
+  [[noreturn]] void fail(const std::error_code& error) const;
 
   std::string name_;
   std::filesystem::path target_;

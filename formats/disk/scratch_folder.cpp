@@ -113,10 +113,10 @@ class DiskScratchFile : public ScratchFile {
       const ssize_t got =
           ::pread(file.get(), buffer.data(), buffer.size(), static_cast<off_t>(offset));
       if (got == 0) {
-        throw Error(
-            fmt::format("cannot read {}: it ends at byte {}, before what was written to "
-                        "it; leave the folder alone while the program runs",
-                        path_, offset));
+        throw Error(fmt::format("cannot read {}: it ends at byte {}, before what was written to "
+                                "it; leave the folder alone while the program runs",
+                                path_, offset),
+                    ErrorCode::kBadInput, {.file = path_, .place = at_byte(offset)});
       }
       if (got > 0) {
         buffer = buffer.subspan(static_cast<std::size_t>(got));
@@ -175,7 +175,8 @@ class DiskScratchFolder : public ScratchFolder {
                                                usage_);
     } catch (const Error& error) {
       // That a folder cannot be made has one remedy, whatever the system's reason.
-      throw SystemRefusal(error.what(), error.facts().file, 0, Remedy::kScratchFolder);
+      throw SystemRefusal(error.what(), error.facts().file, error.facts().system_error,
+                          Remedy::kScratchFolder);
     }
   }
 

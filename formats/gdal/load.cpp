@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -24,7 +26,10 @@ constexpr std::array<std::string_view, 2> kLibraryFolders = {"spillway", "../bin
 std::filesystem::path program_folder() {
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) throw Error("cannot find the program's own folder: " + error.message());
+  if (error) {
+    throw SystemRefusal("cannot find the program's own folder: " + error.message(),
+                        "/proc/self/exe", error.value());
+  }
   return program.parent_path();
 }
 
@@ -37,7 +42,13 @@ std::filesystem::path own_folder() {
   return std::filesystem::canonical(info.dli_fname, ignored).parent_path();
 }
 
+/// Throws Error if it is in none of the folders, the one that SPILLWAY_MODULES names first.
 std::filesystem::path find_module() {
+  if (const char* const named = std::getenv("SPILLWAY_MODULES")) {
+    std::error_code ignored;
+    const std::filesystem::path path = std::filesystem::path(named) / kModule;
+    if (std::filesystem::is_regular_file(path, ignored)) return path;
+  }
   const std::filesystem::path library = own_folder();
   for (const std::string_view candidate : kLibraryFolders) {
     std::error_code ignored;  // what cannot be looked at is not there
@@ -52,8 +63,9 @@ std::filesystem::path find_module() {
   }
   throw Error(
       fmt::format("coordinate systems, GeoTIFF, GeoPackage and Shapefile need the module {}, which "
-                  "is neither in {} nor in {}; install it",
-                  kModule, folder.string(), (folder / kFolders[1]).lexically_normal().string()));
+                  "is neither in {} nor in {}; install it, or name its folder in SPILLWAY_MODULES",
+                  kModule, folder.string(), (folder / kFolders[1]).lexically_normal().string()),
+      ErrorCode::kInputOutput, {.file = kModule, .system_error = ENOENT});
 }
 
 const Gdal& load() {
@@ -64,9 +76,10 @@ const Gdal& load() {
     const std::string reason = ::dlerror();
     const bool no_memory = reason.find("failed to map segment") != std::string::npos ||
                            reason.find("annot allocate memory") != std::string::npos;
-    throw Error(fmt::format(
-        "cannot load the module {}: {}; {}", path.string(), reason,
-        no_memory ? "raise the limit of memory (ulimit -v)" : "install GDAL (libgdal)"));
+    throw SystemRefusal(
+        fmt::format("cannot load the module {}: {}; {}", path.string(), reason,
+                    no_memory ? "raise the limit of memory (ulimit -v)" : "install GDAL (libgdal)"),
+        path.string(), no_memory ? ENOMEM : 0);
   }
   return *reinterpret_cast<GdalFactory>(factory)();
 }

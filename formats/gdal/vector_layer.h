@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "src/geometry/point.h"
+#include "src/geometry/framed_point.h"
 
 namespace spillway::detail {
 
@@ -32,9 +32,9 @@ class VectorLayer {
   VectorLayer& operator=(const VectorLayer&) = delete;
 
   /// Adds a triangle as a polygon with z.
-  virtual void add_triangle(std::span<const Point<3>, 3> corners) = 0;
+  virtual void add_triangle(std::span<const WorldPoint, 3> corners) = 0;
   /// Adds a line with z and the attribute "elevation"; closed if its ends are equal.
-  virtual void add_line(std::span<const Point<3>> points, double elevation) = 0;
+  virtual void add_line(std::span<const WorldPoint> points, double elevation) = 0;
   /// Completes and closes the file.
   virtual void finish() = 0;
 };
@@ -53,7 +53,7 @@ class TriangleLayer {
   /// What VectorLayerOptions::metadata said of this name; empty if nothing.
   [[nodiscard]] virtual std::string metadata(const std::string& name) const = 0;
   /// The next triangle, counter-clockwise in x, y, with z 0 where there is none; false at the end.
-  virtual bool next(std::array<Point<3>, 3>& corners) = 0;
+  virtual bool next(std::array<WorldPoint, 3>& corners) = 0;
 };
 
 }  // namespace spillway::detail

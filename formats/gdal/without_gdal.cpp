@@ -8,8 +8,8 @@ namespace spillway::detail {
 const Gdal& gdal() {
   throw Error(
       "coordinate systems, GeoTIFF, GeoPackage, Shapefile and GeoJSON need GDAL, which this build "
-      "of "
-      "Spillway has not: build it with SPILLWAY_GDAL");
+      "of Spillway does not have: build it with SPILLWAY_GDAL",
+      ErrorCode::kInvalidArgument);
 }
 
 }  // namespace spillway::detail

@@ -14,8 +14,8 @@ constexpr std::size_t kProbe = 4096;
 
 }  // namespace
 
-InputSource& ProbedInput::source() {
-  if (!source_) source_ = std::make_unique<InputSource>(files_.open(path_));
+InputBytes& ProbedInput::source() {
+  if (!source_) source_ = std::make_unique<InputBytes>(files_.open(path_));
   return *source_;
 }
 
@@ -38,7 +38,7 @@ InputKind kind_of_input(ProbedInput& input, MeshFormats formats) {
     // A mesh in several files may go by a name that no file has.
     return is_mesh(input.beneath(), input.path(), formats) ? InputKind::kMesh : InputKind::kPoints;
   }
-  InputSource& source = input.source();
+  InputBytes& source = input.source();
   const std::string_view text = as_text(source.peek(kProbe));
   const MeshFormat* const told = mesh_format_of_content(source, formats);
   if (told != nullptr && told->is_stream()) return InputKind::kMeshStream;

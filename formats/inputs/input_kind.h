@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/disk/file_system.h"
 #include "formats/meshes/mesh_formats.h"
 
@@ -20,7 +20,7 @@ class ProbedInput final : public FileSystem {
   [[nodiscard]] FileSystem& beneath() const { return files_; }
 
   /// Opens the input, unless that is done, to look at its first bytes.
-  InputSource& source();
+  InputBytes& source();
 
   /// Whether the input's bytes come only once: standard input, and what exists and is no regular
   /// file, as a named pipe or /dev/fd/N. To be asked before open(). Throws Error if the input is
@@ -41,7 +41,7 @@ class ProbedInput final : public FileSystem {
  private:
   FileSystem& files_;
   std::string path_;
-  std::unique_ptr<InputSource> source_;
+  std::unique_ptr<InputBytes> source_;
 };
 
 enum class InputKind {

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kProbe = 1024;
 
 /// Whether a file has simplices. What is wrong with its header is left to read_mesh() to say.
-bool has_simplices(const MeshFormat& format, InputSource& source) {
+bool has_simplices(const MeshFormat& format, InputBytes& source) {
   try {
     return format.has_simplices == nullptr || format.has_simplices(source);
   } catch (const Error&) {
@@ -41,62 +41,46 @@ const MeshFormat* format_of_files(const FileSystem& files, const std::string& pa
 
 /// Throws Error if the file is one of those of a mesh in several, or begins as points do, whatever
 /// its name says.
-void refuse_what_is_no_mesh(InputSource& source, const std::string& path, MeshFormats formats) {
+void refuse_what_is_no_mesh(InputBytes& source, const std::string& path, MeshFormats formats) {
   for (const MeshFormat* const format : formats) {
     if (format->file_set != nullptr) format->file_set->check_is_no_part(source, path);
   }
   const std::span<const std::byte> first_bytes = source.peek(kProbe);
   if (!begins_as_points(first_bytes)) return;
   const PointFormat* const points = point_format_of_bytes(as_text(first_bytes));
-  throw Error(fmt::format(
-      "{}: this begins as {}, not as a mesh; triangulate it first", source.name(),
-      points != nullptr ? fmt::format("points in {}", points->title) : "compressed data"));
+  throw BadInput(source.name(),
+                 fmt::format("this begins as {}, not as a mesh; triangulate it first",
+                             points != nullptr ? fmt::format("points in {}", points->title)
+                                               : "compressed data"),
+                 at_byte(0));
 }
 
 /// Throws Error for a table in a pipe, which nobody could open by its name again.
-void refuse_pipe_of_tables(const InputSource& source, const std::string& path,
+void refuse_pipe_of_tables(const InputBytes& source, const std::string& path,
                            const MeshFormat& format) {
   if (!format.is_table() || (path != "-" && source.size())) return;
-  throw Error(
-      fmt::format("{}: a {} is not read from a pipe; name the file", source.name(), format.title));
+  throw BadInput(source.name(),
+                 fmt::format("a {} is not read from a pipe; name the file", format.title));
 }
 
-[[noreturn]] void fail_for_unknown(const InputSource& source, MeshFormats formats) {
+[[noreturn]] void fail_for_unknown(const InputBytes& source, MeshFormats formats) {
   std::vector<std::string> titles;
   for (const MeshFormat* const format : formats) {
     if (format->recognises != nullptr) titles.emplace_back(format->title);
   }
-  throw Error(
-      fmt::format("{}: this is no mesh that is known: it begins neither as {}, and has not the "
-                  "name of a format; convert it or name its format",
-                  source.name(), fmt::join(titles, " nor as ")));
+  throw BadInput(
+      source.name(),
+      fmt::format("not a mesh format that Spillway knows: the file begins neither as {}, "
+                  "and its name is not that of a format; convert it or name its format",
+                  fmt::join(titles, " nor as ")),
+      at_byte(0));
 }
 
-/// The whole of a stream, in output coordinates.
-Mesh collect(MeshStreamReader& stream) {
-  Mesh mesh;
-  mesh.header.dimension = stream.header().dimension;
-  mesh.header.has_input_index = stream.header().has_input_index;
-  mesh.header.lattice = stream.header().lattice;
-  mesh.header.crs = stream.header().crs;
-  MeshBlock block;
-  while (stream.read(block)) {
-    append_stream_numbers(block, mesh.vertices.size(), mesh.corners);
-    move_to_world(stream.header(), block);
-    mesh.vertices.insert(mesh.vertices.end(), block.vertices.begin(), block.vertices.end());
-    mesh.input_index.insert(mesh.input_index.end(), block.input_index.begin(),
-                            block.input_index.end());
-  }
-  mesh.header.vertices = mesh.vertices.size();
-  mesh.header.simplices = mesh.corners.size() / mesh.corners_per_simplex();
-  return mesh;
-}
-
-Mesh read_as(const MeshFormat& format, std::unique_ptr<InputSource> source,
+Mesh read_as(const MeshFormat& format, std::unique_ptr<InputBytes> source,
              const std::string& path) {
   refuse_pipe_of_tables(*source, path, format);
   if (format.is_table()) return format.read_table(path);
-  if (format.is_stream()) return collect(*format.open_stream(std::move(source)));
+  if (format.is_stream()) return collect_mesh(*format.open_stream(std::move(source)));
   return format.read(*source);
 }
 
@@ -105,7 +89,7 @@ Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string
   const MeshFormat* format = format_name.empty() ? format_of_files(files, path, formats)
                                                  : &mesh_format(path, format_name, formats);
   if (format != nullptr && format->file_set != nullptr) return format->file_set->read(files, path);
-  auto source = std::make_unique<InputSource>(files.open(path));
+  auto source = std::make_unique<InputBytes>(files.open(path));
   if (format == nullptr) format = mesh_format_of_content(*source, formats);
   if (format == nullptr) refuse_what_is_no_mesh(*source, path, formats);
   if (format == nullptr) format = mesh_format_of_name(path, formats);
@@ -115,7 +99,7 @@ Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string
 
 /// Whether all vertices are on the header's lattice, z of the plane apart.
 bool is_on_lattice(const Mesh& mesh) {
-  return std::ranges::all_of(mesh.vertices, [&](const Point<3>& vertex) {
+  return std::ranges::all_of(mesh.vertices, [&](const WorldPoint& vertex) {
     for (int k = 0; k < mesh.header.dimension; ++k) {
       if (!mesh.header.lattice->to_integer(k, vertex[k])) return false;
     }
@@ -129,19 +113,38 @@ void check_lattice_of(const Mesh& mesh, const std::string& path) {
   const Lattice& lattice = *mesh.header.lattice;
   const Box<3> integers = integers_of(lattice, box_around(mesh.vertices));
   if (is_exact(lattice, integers, mesh.header.dimension) || !is_on_lattice(mesh)) return;
-  check_lattice(path, lattice, integers, mesh.header.dimension);
+  check_lattice({path}, lattice, integers, mesh.header.dimension);
 }
 
 }  // namespace
 
-const MeshFormat* mesh_format_of_content(InputSource& source, MeshFormats formats) {
+Mesh collect_mesh(MeshStreamReader& stream) {
+  Mesh mesh;
+  mesh.header.dimension = stream.header().dimension;
+  mesh.header.has_input_index = stream.header().has_input_index;
+  mesh.header.lattice = stream.header().lattice;
+  mesh.header.crs = stream.header().crs;
+  MeshBlock block;
+  while (stream.read(block)) {
+    append_stream_numbers(block, mesh.vertices.size(), mesh.corners);
+    const std::vector<WorldPoint> vertices = world_vertices(stream.header(), block);
+    mesh.vertices.insert(mesh.vertices.end(), vertices.begin(), vertices.end());
+    mesh.input_index.insert(mesh.input_index.end(), block.input_index.begin(),
+                            block.input_index.end());
+  }
+  mesh.header.vertices = mesh.vertices.size();
+  mesh.header.simplices = mesh.corners.size() / mesh.corners_per_simplex();
+  return mesh;
+}
+
+const MeshFormat* mesh_format_of_content(InputBytes& source, MeshFormats formats) {
   return mesh_format_of_bytes(as_text(source.peek(kProbe)), formats);
 }
 
 bool is_mesh(FileSystem& files, const std::string& path, MeshFormats formats) {
   if (path == "-") return false;
   if (format_of_files(files, path, formats) != nullptr) return true;
-  InputSource source(files.open(path));
+  InputBytes source(files.open(path));
   const MeshFormat* format = mesh_format_of_content(source, formats);
   if (format == nullptr && !begins_as_points(source.peek(kProbe))) {
     format = mesh_format_of_name(path, formats);

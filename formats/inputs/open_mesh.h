@@ -2,14 +2,14 @@
 
 #include <string>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/disk/file_system.h"
 #include "formats/meshes/mesh_formats.h"
 
 namespace spillway::detail {
 
 /// The format of meshes that the first bytes tell of; null if they are not those of a mesh.
-const MeshFormat* mesh_format_of_content(InputSource& source, MeshFormats formats = mesh_formats());
+const MeshFormat* mesh_format_of_content(InputBytes& source, MeshFormats formats = mesh_formats());
 
 /// True if the file holds a mesh rather than points, judged by its first bytes ("-" is never
 /// probed) and, for formats that begin with nothing of their own, by its name.
@@ -23,5 +23,8 @@ bool is_mesh(FileSystem& files, const std::string& path, MeshFormats formats = m
 /// count. Coordinates are finite. Throws Error that names the file and the byte or line.
 Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name = "",
                MeshFormats formats = mesh_formats());
+
+/// The whole of a stream of which nothing has been read, in output coordinates.
+Mesh collect_mesh(MeshStreamReader& stream);
 
 }  // namespace spillway::detail

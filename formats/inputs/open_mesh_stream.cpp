@@ -16,7 +16,7 @@ bool is_a_stream(const MeshFormat& format) { return format.is_stream(); }
 
 }  // namespace
 
-const MeshFormat& mesh_stream_format(InputSource& source, const std::string& path,
+const MeshFormat& mesh_stream_format(InputBytes& source, const std::string& path,
                                      MeshFormats formats) {
   if (path == "-") source.check_not_empty();
   const std::string_view text = as_text(source.peek(kProbe));
@@ -27,22 +27,24 @@ const MeshFormat& mesh_stream_format(InputSource& source, const std::string& pat
   if (const MeshFormat* const named = mesh_format_of_name(path, formats)) {
     if (named->is_stream()) return *named;
   }
-  throw Error(fmt::format(
-      "{}: this is no mesh stream: it begins neither as {}; name its format, or give a file of "
-      "another format by name",
-      source.name(), list_of_formats(is_a_stream, "nor as", formats)));
+  throw BadInput(source.name(),
+                 fmt::format("this is not a mesh stream: it begins neither as {}; name its format, "
+                             "or give a file of another format by name",
+                             list_of_formats(is_a_stream, "nor as", formats)),
+                 at_byte(0));
 }
 
 std::unique_ptr<MeshStreamReader> open_mesh_stream_reader(FileSystem& files,
                                                           const std::string& path,
                                                           const std::string& format_name,
                                                           MeshFormats formats) {
-  auto source = std::make_unique<InputSource>(files.open(path));
+  auto source = std::make_unique<InputBytes>(files.open(path));
   const MeshFormat& format = format_name.empty() ? mesh_stream_format(*source, path, formats)
                                                  : mesh_format(path, format_name, formats);
   if (!format.is_stream()) {
-    throw Error(fmt::format("{}: {} is no format of streams; {} are", source->name(), format_name,
-                            list_of_formats(is_a_stream, "and", formats)));
+    throw Error(fmt::format("{}: {} is not a format of streams; {} are", source->name(),
+                            format_name, list_of_formats(is_a_stream, "and", formats)),
+                ErrorCode::kInvalidArgument, {.file = source->name()});
   }
   return format.open_stream(std::move(source));
 }

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/disk/file_system.h"
 #include "formats/meshes/mesh_formats.h"
 
@@ -11,7 +11,7 @@ namespace spillway::detail {
 
 /// The format of streams that the source has by its first bytes, which stay unread, or by its path.
 /// Throws Error if neither tells one.
-const MeshFormat& mesh_stream_format(InputSource& source, const std::string& path,
+const MeshFormat& mesh_stream_format(InputBytes& source, const std::string& path,
                                      MeshFormats formats = mesh_formats());
 
 /// Opens a format of streams (by `format_name`, else by the first bytes, so that pipes work) for

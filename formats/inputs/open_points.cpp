@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "formats/bytes/bytes.h"
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/bytes/line_reader.h"
 #include "formats/compression/decompress.h"
 #include "formats/meshes/common/mesh_checks.h"
@@ -21,19 +21,21 @@ namespace {
 
 constexpr std::size_t kProbe = 512;
 
-[[noreturn]] void fail_for_mesh(const InputSource& source, std::string_view name) {
+[[noreturn]] void fail_for_mesh(const InputBytes& source, std::string_view name) {
   const auto is_stream = [](const MeshFormat& format) { return format.is_stream(); };
-  throw Error(
-      fmt::format("{}: this is a mesh ({}), not points; give the points it was made of, as {}{}",
-                  source.name(), name, list_of_points(is_written, "or"),
+  throw BadInput(
+      source.name(),
+      fmt::format("this is a mesh ({}), not points; give the points it was made of, as {}{}", name,
+                  list_of_points(is_written, "or"),
                   source.size() ? ""
                                 : fmt::format("; of meshes only {} are read from a pipe",
-                                              list_of_formats(is_stream, "and"))));
+                                              list_of_formats(is_stream, "and"))),
+      at_byte(0));
 }
 
 /// Throws Error if the source begins as a mesh of a format that is known by its first bytes. A
 /// table may have shapes of any kind.
-void refuse_meshes(InputSource& source) {
+void refuse_meshes(InputBytes& source) {
   const MeshFormat* const format = mesh_format_of_bytes(as_text(source.peek(kProbe)));
   if (format == nullptr || format->is_table()) return;
   if (format->has_simplices != nullptr && !format->has_simplices(source)) {
@@ -44,15 +46,17 @@ void refuse_meshes(InputSource& source) {
 
 /// Throws Error if the source begins as a mesh, or as something else that is text, but no text of
 /// points.
-void refuse_what_is_no_points(InputSource& source) {
+void refuse_what_is_no_points(InputBytes& source) {
   refuse_meshes(source);
   const std::string_view text = as_text(source.peek(kProbe));
   if (text.starts_with("<?xml")) {
-    throw Error(fmt::format("{}: this is XML, from which points are not read; save them as {}",
-                            source.name(), list_of_points(is_written, "or")));
+    throw BadInput(source.name(),
+                   fmt::format("this is XML, from which points are not read; save them as {}",
+                               list_of_points(is_written, "or")),
+                   at_byte(0));
   }
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
-    throw Error(fmt::format("{}: this is text in UTF-16; save it in UTF-8", source.name()));
+    throw BadInput(source.name(), "this is text in UTF-16; save it in UTF-8", at_byte(0));
   }
 }
 
@@ -73,7 +77,7 @@ const PointFormat* text_format(PointFormats formats) {
 }
 
 /// By the first bytes, then the name; what neither knows is text if it looks like it.
-const PointFormat& format_of(InputSource& source, const std::string& path, PointFormats formats) {
+const PointFormat& format_of(InputBytes& source, const std::string& path, PointFormats formats) {
   const std::span<const std::byte> first_bytes = source.peek(kProbe);
   const PointFormat* const text = text_format(formats);
   const PointFormat* const told = point_format_of_bytes(as_text(first_bytes), formats);
@@ -82,20 +86,22 @@ const PointFormat& format_of(InputSource& source, const std::string& path, Point
   refuse_what_is_no_points(source);
   if (const PointFormat* const format = point_format_of_path(path, formats)) return *format;
   if (text != nullptr && looks_like_text(as_text(first_bytes))) return *text;
-  throw Error(
-      fmt::format("{}: unknown format: the file begins neither {} nor as text; convert it or name "
-                  "its format",
-                  source.name(), beginnings(formats)));
+  throw BadInput(
+      source.name(),
+      fmt::format("unknown format: the file begins neither {} nor as text; convert it or "
+                  "name its format",
+                  beginnings(formats)),
+      at_byte(0));
 }
 
-[[noreturn]] void fail_for_compressed(const InputSource& source) {
-  throw Error(
-      fmt::format("{}: only text is read compressed; decompress the file first", source.name()));
+[[noreturn]] void fail_for_compressed(const InputBytes& source) {
+  throw BadInput(source.name(), "only text is read compressed; decompress the file first",
+                 at_byte(0));
 }
 
 /// How the text is compressed, by its first bytes. Throws Error if the name promises what the file
 /// is not.
-Compression compression_of(InputSource& source, const std::string& path, PointFormats formats) {
+Compression compression_of(InputBytes& source, const std::string& path, PointFormats formats) {
   const std::span<const std::byte> first_bytes = source.peek(kProbe);
   const Compression found = compression_of_content(first_bytes);
   if (compression_of_name(path) == Compression::kNone) return found;
@@ -104,32 +110,34 @@ Compression compression_of(InputSource& source, const std::string& path, PointFo
   if (inner != nullptr && !inner->is_text) fail_for_compressed(source);
   const bool is_text = !first_bytes.empty() && looks_like_text(as_text(first_bytes));
   if (found == Compression::kNone && !is_text) {
-    throw Error(
-        fmt::format("{}: the file does not begin as its extension says; it is corrupt or "
-                    "has the wrong name",
-                    source.name()));
+    throw BadInput(source.name(),
+                   "the file does not begin as its extension says; it is corrupt or has the wrong "
+                   "name",
+                   at_byte(0));
   }
   return found;
 }
 
 /// Throws Error unless the source begins as text, or is empty.
-void check_text(InputSource& source, PointFormats formats) {
+void check_text(InputBytes& source, PointFormats formats) {
   if (looks_like_text(as_text(source.peek(kProbe)))) return;
-  throw Error(
-      fmt::format("{}: this is no text, and begins neither {}; see what it is, or name its format",
-                  source.name(), beginnings(formats)));
+  throw BadInput(
+      source.name(),
+      fmt::format("this is not text, and begins neither {}; see what it is, or name its format",
+                  beginnings(formats)),
+      at_byte(0));
 }
 
 /// What is in the source if it is compressed, else null. Throws Error unless that is text of
 /// points.
-std::unique_ptr<InputFile> text_in(InputSource& source, const std::string& path,
+std::unique_ptr<InputFile> text_in(InputBytes& source, const std::string& path,
                                    PointFormats formats) {
   const Compression compression = compression_of(source, path, formats);
   if (compression == Compression::kNone) {
     check_text(source, formats);
     return nullptr;
   }
-  auto content = std::make_unique<InputSource>(decompressed(source, compression));
+  auto content = std::make_unique<InputBytes>(decompressed(source, compression));
   if (begins_as_points(content->peek(kProbe), formats)) fail_for_compressed(source);
   refuse_what_is_no_points(*content);
   check_text(*content, formats);
@@ -148,7 +156,7 @@ std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::str
                                                PointFormats formats) {
   const PointFormat* format =
       options.format.empty() ? nullptr : &point_format_by_name(options.format, formats);
-  PointInput input{std::make_unique<InputSource>(files.open(path)), path, nullptr};
+  PointInput input{std::make_unique<InputBytes>(files.open(path)), path, nullptr};
   if (path == "-") input.source->check_not_empty();
   if (format != nullptr && format->is_text) refuse_what_is_no_points(*input.source);
   if (format == nullptr) format = &format_of(*input.source, path, formats);

@@ -16,13 +16,15 @@ void check_holds(const MeshFormat& format, const std::string& path, int dimensio
   if (dimension != 2 && !format.holds_tetrahedra) {
     const auto hold = [](const MeshFormat& other) { return other.holds_tetrahedra; };
     throw InvalidArgument(fmt::format("cannot write {}: {} holds no tetrahedra; choose {}", path,
-                                      format.title, list_of_formats(hold, "or")));
+                                      format.title, list_of_formats(hold, "or")),
+                          {.file = path});
   }
   if (has_input_index && !format.holds_input_index) {
     const auto hold = [](const MeshFormat& other) { return other.holds_input_index; };
     throw InvalidArgument(
         fmt::format("cannot write {}: {} holds no input index; choose {}, or leave the index out",
-                    path, format.title, list_of_formats(hold, "or")));
+                    path, format.title, list_of_formats(hold, "or")),
+        {.file = path});
   }
 }
 
@@ -33,9 +35,9 @@ MeshFiles create_mesh_files(FileSystem& files, const std::string& path, const Me
   check_holds(format, path, dimension, has_input_index);
   if (path == "-" && format.needs_regular_file) {
     throw InvalidArgument(
-        fmt::format("standard output cannot take {}, whose begin is written last; name a "
-                    "file",
-                    format.title));
+        fmt::format("standard output cannot take {}, whose beginning is written last; name a file",
+                    format.title),
+        {.file = path});
   }
   MeshFiles created;
   if (format.file_set != nullptr) {
@@ -51,7 +53,8 @@ MeshFiles create_mesh_files(FileSystem& files, const std::string& path, const Me
 std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshHeader& header) {
   const MeshFormat& format = *files.format;
   if (format.open_writer == nullptr) {
-    throw Error("this mesh format is written block by block, not as a whole mesh");
+    throw Error("this mesh format is written block by block, not as a whole mesh",
+                ErrorCode::kInvalidArgument, {.file = files.path});
   }
   return format.open_writer(std::move(files), header);
 }

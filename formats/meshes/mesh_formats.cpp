@@ -78,9 +78,10 @@ const MeshFormat& mesh_format(const std::string& path, const std::string& format
   if (found != nullptr) return *found;
   const std::string what = !format_name.empty()
                                ? fmt::format("there is no mesh format \"{}\"", format_name)
-                               : fmt::format("the name {} tells no mesh format", path);
+                               : fmt::format("cannot tell the mesh format from the name {}", path);
   throw InvalidArgument(
-      fmt::format("{}; choose one of {}", what, fmt::join(mesh_format_names(formats), ", ")));
+      fmt::format("{}; choose one of {}", what, fmt::join(mesh_format_names(formats), ", ")),
+      {.file = path});
 }
 
 const MeshFormat* mesh_format_of_bytes(std::string_view first_bytes, MeshFormats formats) {

@@ -36,12 +36,14 @@ const PointFormat& chosen_format(const std::string& path, const std::string& for
     throw InvalidArgument(
         fmt::format("cannot write {}: compressed points are not written; write them "
                     "to {} and compress that",
-                    path, written_extensions(false, "or", formats)));
+                    path, written_extensions(false, "or", formats)),
+        {.file = path});
   }
   if (const PointFormat* const format = point_format_of_path(path, formats)) return *format;
   throw InvalidArgument(
       fmt::format("cannot tell the format of {} from its name; end it in {}, or name the format",
-                  name_of_output(path), written_extensions(true, "or", formats)));
+                  name_of_output(path), written_extensions(true, "or", formats)),
+      {.file = path});
 }
 
 }  // namespace
@@ -50,9 +52,11 @@ const PointFormat& point_format_to_write(const std::string& path, const std::str
                                          PointFormats formats) {
   const PointFormat& format = chosen_format(path, format_name, formats);
   if (is_written(format)) return format;
-  throw InvalidArgument(fmt::format(
-      "cannot write {}: {} is read, not written; write .las, or .spp, which is compressed too",
-      name_of_output(path), format.title));
+  throw InvalidArgument(
+      fmt::format(
+          "cannot write {}: {} is read, not written; write .las, or .spp, which is compressed too",
+          name_of_output(path), format.title),
+      {.file = path});
 }
 
 std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::string& path,
@@ -69,9 +73,10 @@ std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::str
         return is_written(other) && other.header_comes_last == nullptr;
       };
       throw InvalidArgument(
-          fmt::format("cannot write {}: its header tells the number of points, which is not known "
+          fmt::format("cannot write {}: its header holds the number of points, which is not known "
                       "beforehand; write {}",
-                      file->name(), list_of_points(counts_nothing, "or", formats)));
+                      file->name(), list_of_points(counts_nothing, "or", formats)),
+          {.file = path});
     }
   }
   return format.open_writer(std::move(file), path, options);

@@ -17,7 +17,7 @@ std::unique_ptr<PointReader> open_las(PointInput input, const PointReaderOptions
     if (variant == nullptr || !variant->is_told(las)) continue;
     return variant->open(std::move(input.source), las, input.path, options);
   }
-  throw Error(fmt::format("{}: no format is known that has such a header", input.path));
+  throw BadInput(input.path, "no format is known that has such a header", at_byte(0));
 }
 
 }  // namespace spillway::detail

@@ -22,8 +22,8 @@ std::uint64_t write_png(FileSystem& files, const std::string& path, std::uint32_
                         bool with_opacity) {
   if (std::uint64_t{columns} * rows * kChannels > kMostBytes ||
       pixels.size() != std::size_t{columns} * rows * kChannels) {
-    throw Error(fmt::format("cannot write {}: {} x {} pixels are too many for a picture", path,
-                            columns, rows));
+    throw CannotWrite(path, fmt::format("{} x {} pixels are too many for a picture", columns, rows),
+                      ErrorCode::kTooLarge);
   }
   std::vector<std::uint8_t> colours;
   if (!with_opacity) {
@@ -42,7 +42,7 @@ std::uint64_t write_png(FileSystem& files, const std::string& path, std::uint32_
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::vector<std::byte> bytes(size);
   if (png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, nullptr) == 0) {
-    throw Error(fmt::format("cannot write {}: {}", path, image.message));
+    throw CannotWrite(path, image.message);
   }
   const auto file = files.create(path);
   file->write(std::span(bytes).first(size));

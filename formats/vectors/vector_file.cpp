@@ -35,10 +35,9 @@ VectorFile::VectorFile(const VectorFormat& format, VectorLayerOptions options)
   options.layer = layer_name(output_.target().stem().string());
   options.path = output_.path();
   if (!format.takes_backslash && options.path.find('\\') != std::string::npos) {
-    throw Error(fmt::format(
-        "cannot write {}: its path has a backslash, which shapefiles cannot be written to; choose "
-        "another name or folder",
-        options.name));
+    throw CannotWrite(options.name,
+                      "its path has a backslash, which shapefiles cannot be written to; choose "
+                      "another name or folder");
   }
   layer_ = gdal().create_layer(options);
 }

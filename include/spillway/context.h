@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -12,18 +13,33 @@
 
 namespace spillway {
 
-/// How far a run is.
+namespace detail {
+class ContextState;
+}
+
+/// How far a run is: it is a sequence of phases.
 struct Progress {
-  std::string_view phase;          ///< "read", "divide", "triangulate" or "write"
-  std::uint64_t done = 0;          ///< points that have been through the phase
+  enum class Event {
+    kBegun,    ///< the phase
+    kUpdated,  ///< `done` and `fraction`
+    kEnded,    ///< the phase, which is complete
+  };
+  Event event = Event::kUpdated;
+  std::string_view phase;          ///< "read", "divide", "triangulate", "write", ...
+  std::string_view unit;           ///< what is counted: "points", "triangles", "pixels", ...
+  std::uint64_t done = 0;          ///< how many have been through the phase
   std::optional<double> fraction;  ///< of the phase, from 0 to 1, where that is known
+  bool nested = false;             ///< a phase within the one that goes on, which is not over
 };
 
+/// Processes that share runs, as those of mpirun; the command makes one.
+class Executor;
+
 struct ContextOptions {
-  /// Memory to keep to: "512M", "2G"; K, M, G, T are powers of 1024. Empty: a quarter of what this
-  /// process may use, 2G at most.
+  /// Memory to keep to: "512M", "2G"; K, M, G, T are powers of 1024; 32M at least, for tetrahedra
+  /// 96M. Empty: a quarter of what this process may use, 2G at most.
   std::string memory{};
-  /// At most so many threads, the caller's among them; 0: as many as this process may use.
+  /// The most threads, the caller's among them; 0: as many as this process may use.
   unsigned threads = 0;
   /// Where scratch files go that do not fit into memory. Empty: $TMPDIR, else /tmp.
   std::string scratch_folder{};
@@ -37,6 +53,8 @@ struct ContextOptions {
   /// A request to stop ends the run with ErrorCode::kInterrupted, soon but not at once: parts of
   /// some ten thousand points that have been begun are finished, and so is the last phase, "write".
   std::stop_token stop{};
+  /// Who does the work; empty: this process.
+  std::shared_ptr<Executor> executor{};
 };
 
 /// What the calls of a program have in common. Nothing of it is kept by the process: two contexts
@@ -53,11 +71,15 @@ class SPILLWAY_API Context {
   /// Bytes of scratch files, where there is a limit.
   [[nodiscard]] const std::optional<std::uint64_t>& scratch_limit() const { return scratch_limit_; }
 
+  /// For the library itself: what calls have in common besides. Copies of a context share it.
+  [[nodiscard]] detail::ContextState& state() const { return *state_; }
+
  private:
   ContextOptions options_;
   std::uint64_t memory_ = 0;
   unsigned threads_ = 1;
   std::optional<std::uint64_t> scratch_limit_;
+  std::shared_ptr<detail::ContextState> state_;
 };
 
 }  // namespace spillway

@@ -18,7 +18,7 @@ namespace spillway {
 
 /// How the work is done. Nothing of it changes the result.
 struct DelaunayOptions {
-  /// At most so many threads, the caller's among them, for the triangulation and later for queries
+  /// The most threads, the caller's among them, for the triangulation and later for queries
   /// of many places at once. 0: as many as the process may use.
   unsigned threads = 0;
   /// If set, is told from time to time how many points of how many are done. Calls come from

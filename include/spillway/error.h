@@ -36,11 +36,33 @@ enum class Remedy {
   kForeignCrs,     ///< taking coordinates as they are, whatever their coordinate systems
   kOneFile,        ///< a mesh in one file instead of in parts
   kLas14,          ///< writing version 1.4 of LAS
+  kRanks,          ///< several processes that share the work
+  kRasterExtent,   ///< saying what a raster covers, larger pixels, or agreeing to many
+  kPointLattice,   ///< rounding points to another lattice
+};
+
+/// What a place in a file is counted in.
+enum class PlaceUnit {
+  kNone,    ///< the place is not known, or the fault is of the file as a whole
+  kByte,    ///< bytes from the beginning, the first is 0; of what is decompressed, of decompressed
+            ///< text
+  kLine,    ///< lines, the first is 1
+  kRecord,  ///< points, vertices, simplices or others that the message names, counted as there
+};
+
+/// The unit's name in words, as "byte"; "" for none.
+SPILLWAY_API const char* to_string(PlaceUnit unit) noexcept;
+
+/// Where in a file a fault is: at this byte, line or record, or just before it.
+struct FilePlace {
+  PlaceUnit unit = PlaceUnit::kNone;
+  std::uint64_t number = 0;
 };
 
 /// What is known of a fault besides its text. Members that do not apply are empty or 0.
 struct ErrorFacts {
   std::string file{};         ///< name of the file or folder, as the caller gave it
+  FilePlace place{};          ///< of a fault in the file
   int system_error = 0;       ///< the system's errno
   std::uint64_t perhaps = 0;  ///< bytes of a limit that may be enough
   std::uint64_t enough = 0;   ///< bytes of a limit that are enough
@@ -48,7 +70,8 @@ struct ErrorFacts {
 };
 
 /// The one type of exception that the library throws by itself. what() is one line that says what
-/// is wrong and where. When memory runs out std::bad_alloc passes through.
+/// is wrong and where; of several inputs at fault a heading, and a line for each. When memory runs
+/// out std::bad_alloc passes through.
 class SPILLWAY_API Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message, ErrorFacts facts = {});

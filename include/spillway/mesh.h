@@ -4,6 +4,7 @@
 #include <spillway/context.h>
 #include <spillway/export.h>
 #include <spillway/extent.h>
+#include <spillway/figures.h>
 #include <spillway/point_view.h>
 
 #include <cstdint>
@@ -15,7 +16,7 @@
 
 namespace spillway {
 
-/// What is known of a mesh before its first block.
+/// What is known of a mesh before its first block. What is said must be right.
 struct MeshHeader {
   int dimension = 2;                      ///< 2: triangles with z carried along, 3: tetrahedra
   bool has_input_index = false;           ///< vertices carry their index in the input
@@ -35,18 +36,16 @@ struct MeshBlock {
   std::vector<std::uint64_t> finalized{};    ///< vertices that are used no more
 };
 
-/// What is known of a mesh after its last block.
-struct MeshTotals {
-  std::uint64_t vertices = 0;
-  std::uint64_t simplices = 0;
-  std::uint64_t hull_facets = 0;  ///< facets of one simplex only
-  std::uint64_t points = 0;       ///< of the input
-  std::uint64_t duplicates = 0;   ///< points that equal another one (in the plane: in x and y)
-  /// A number that depends on nothing but the set of simplices, each the set of its vertices'
-  /// coordinates; the command prints it as 16 hexadecimal digits.
-  std::uint64_t canonical_hash = 0;
+/// A stream of a mesh, read once, from one thread at a time.
+class SPILLWAY_API MeshSource {
+ public:
+  virtual ~MeshSource();
 
-  bool operator==(const MeshTotals&) const = default;
+  [[nodiscard]] virtual MeshHeader header() = 0;
+  /// Replaces `block` by the next one; false at the end.
+  virtual bool read(MeshBlock& block) = 0;
+  /// Once read() has returned false. What is not known is 0.
+  [[nodiscard]] virtual MeshTotals totals() = 0;
 };
 
 /// What takes a mesh. All calls come one at a time, though from any thread: begin() once, write()
@@ -61,17 +60,30 @@ class SPILLWAY_API MeshSink {
   virtual void finish(const MeshTotals& totals);
 };
 
+/// How a mesh file is read.
 struct MeshOptions {
-  std::string format{};  ///< "spm", "ply", "vtu", ...; empty: by the extension
+  std::string format{};  ///< "spm", "ply", "vtu", ...; empty: by first bytes and name
 };
 
-/// A mesh file, of any format that the command writes; "-" is standard output, as spm. It gets its
-/// name when it is complete. Throws Error: kInvalidArgument for a format that is not known;
-/// begin() throws it for a format that cannot hold the mesh, and kInputOutput; write() and finish()
-/// throw it unless begin() has been called.
-SPILLWAY_API std::unique_ptr<MeshSink> open_mesh(const std::string& path,
-                                                 const MeshOptions& options,
-                                                 const Context& context);
+/// A mesh file of any format that is read; "-" is standard input, for formats of streams. Throws
+/// Error: kInputOutput, kBadInput with the file's name; what it does not throw yet, reading does.
+SPILLWAY_API std::unique_ptr<MeshSource> open_mesh(const std::string& path,
+                                                   const MeshOptions& options,
+                                                   const Context& context);
+
+/// How a mesh file is written.
+struct MeshFileOptions {
+  std::string format{};  ///< "spm", "ply", "vtu", ...; empty: by the extension
+  bool parts = false;    ///< over ranks: a file for each of them (ContextOptions::executor)
+};
+
+/// A mesh file, of any format that is written; "-" is standard output, as spm. It gets its name
+/// when it is complete. Throws Error: kInvalidArgument for a format that is not known; begin()
+/// throws it for a format that cannot hold the mesh, and kInputOutput; write() and finish() throw
+/// it unless begin() has been called.
+SPILLWAY_API std::unique_ptr<MeshSink> create_mesh(const std::string& path,
+                                                   const MeshFileOptions& options,
+                                                   const Context& context);
 
 /// Calls `take` with each block.
 SPILLWAY_API std::unique_ptr<MeshSink> mesh_to(std::function<void(const MeshBlock&)> take);

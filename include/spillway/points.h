@@ -1,14 +1,17 @@
 #pragma once
 // Points that stream in: from files, from memory, from whatever a program derives.
 
+#include <spillway/choices.h>
 #include <spillway/context.h>
 #include <spillway/export.h>
 #include <spillway/extent.h>
+#include <spillway/figures.h>
 #include <spillway/point_view.h>
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,32 +39,36 @@ class SPILLWAY_API PointSource {
   virtual bool read(std::vector<Point<3>>& points) = 0;
 };
 
-/// Which point stands for all of a cell of a grid.
-enum class ThinChoice {
-  kFirst,    ///< the first one of the input
-  kLowest,   ///< that of the lowest z
-  kHighest,  ///< that of the highest z
-  kCenter,   ///< the nearest one to the cell's centre
-};
-
 /// One point a cell: grid cells [i * cell, (i + 1) * cell) of x, y and, in space, z.
 struct Thin {
   double cell = 1;
   ThinChoice choice = ThinChoice::kFirst;
 };
 
+/// Which returns of a pulse are wanted: any that is named here. A return of unknown number or count
+/// passes for first and last.
+struct Returns {
+  bool first = false;
+  bool last = false;
+  bool single = false;         ///< the only return of its pulse
+  std::vector<int> numbers{};  ///< 1 to 15
+};
+
 /// Which points of files are used, and how these are read. Filters apply in the order of members.
 struct PointOptions {
-  int dimension = 2;               ///< in which they will be triangulated: 2 or 3
-  std::string format{};            ///< "las", "text", ... ; empty: by first bytes and name
-  bool keep_withheld = false;      ///< use points that LAS flags as withheld
-  std::uint64_t every = 1;         ///< use records 0, n, 2n, ... of each file
-  std::vector<int> classes{};      ///< use points of these classes, 0 to 255; empty: all
-  std::optional<Extent> bounds{};  ///< use points in this closed box; sides may be infinite
+  int dimension = 2;                 ///< in which they will be triangulated: 2 or 3
+  std::string format{};              ///< "las", "text", ... ; empty: by first bytes and name
+  bool keep_withheld = false;        ///< use points that LAS flags as withheld
+  std::uint64_t every = 1;           ///< use records 0, n, 2n, ... of each file
+  std::vector<int> classes{};        ///< use points of these classes, 0 to 255; empty: all
+  std::vector<int> other_classes{};  ///< of these the points of these classes are not used
+  std::optional<Returns> returns{};  ///< use these returns of a pulse
+  std::optional<Extent> bounds{};    ///< use points in this closed box; sides may be infinite
   std::optional<Thin> thin{};
   /// Of COPC files, read the levels that are needed for points so far apart; 0: all.
   double resolution = 0;
   bool foreign_crs = false;  ///< take coordinates as they are, whatever their coordinate systems
+  bool attributes = false;   ///< read classes, returns and flags, too, for convert()
 };
 
 /// All points of files, one file after the other. A path may be a file, a folder (its point files),
@@ -76,5 +83,35 @@ SPILLWAY_API std::unique_ptr<PointSource> open_points(const std::vector<std::str
 SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<3> points);
 /// The same without z.
 SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<2> points);
+
+/// What takes points. All calls come one at a time: begin() once, write() for each block, and
+/// finish() once, if nothing fails; a sink that is destroyed without it leaves nothing behind.
+class SPILLWAY_API PointSink {
+ public:
+  virtual ~PointSink();
+
+  virtual void begin(const PointsHeader& header);
+  /// The next points, in the order of the input.
+  virtual void write(std::span<const Point<3>> points) = 0;
+  virtual void finish();
+};
+
+/// How a point file is written.
+struct PointFileOptions {
+  std::string format{};       ///< "las", "text", "npy", "spp"; empty: by the extension
+  std::string las_version{};  ///< "1.2" or "1.4"; empty: what the points need
+  /// Round coordinates to multiples of this, counted from `offset`: no number, one for all axes, or
+  /// three. LAS, which holds integers, is rounded to a lattice of its own choice without.
+  std::vector<double> scale{};
+  std::vector<double> offset{};  ///< likewise
+  bool exact = false;            ///< refuse to round by a choice of its own
+};
+
+/// A point file; "-" is standard output, as spp. It gets its name when it is complete. Throws
+/// Error: kInvalidArgument for a format that is not known, or for options that it does not have;
+/// begin() throws kInputOutput, or the first write(), where that chooses what to round to.
+SPILLWAY_API std::unique_ptr<PointSink> create_points(const std::string& path,
+                                                      const PointFileOptions& options,
+                                                      const Context& context);
 
 }  // namespace spillway

@@ -47,7 +47,7 @@ class Acceptance {
   template <typename Tag = std::monostate>
   class Questions {
    public:
-    /// A batch is full with so many.
+    /// The number that fills a batch.
     static constexpr std::size_t kBatch = SimplexIndex<D + 1>::kBatch;
 
     explicit Questions(const Acceptance& acceptance) : acceptance_(acceptance) {}

@@ -4,10 +4,10 @@
 #include <numeric>
 
 #include "src/delaunay/affine_basis.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_2d/kernel_2d.h"
 #include "src/delaunay/kernel_3d/kernel_3d.h"
 #include "src/delaunay/kernel_common/kernel_arena.h"
-#include "src/delaunay/common/working_memory.h"
 
 namespace spillway::detail {
 namespace {
@@ -35,7 +35,7 @@ std::vector<Duplicate> find_duplicates(const BaseCaseInput<D>& input) {
 
 template <int D>
 BaseCase<D> triangulate_spanning(const BaseCaseInput<D>& input, std::span<const VertexId> basis) {
-  if (input.kernel == BaseCaseKernel::kCgal) return cgal_base_case<D>(input, basis);
+  if (input.kernel == Kernel::kCgal) return cgal_base_case<D>(input, basis);
   if constexpr (D == 2) {
     return kernel_2d_base_case(input, basis);
   } else {
@@ -57,7 +57,7 @@ BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input) {
 
 void release_base_case_memory() {
   KernelArena::release_kept_memory();
-  release_kept_blocks();
+  release_kept_slabs();
 }
 
 template BaseCase<2> triangulate_base_case<2>(const BaseCaseInput<2>&);

@@ -33,7 +33,7 @@ struct VertexInfo {
   VertexId id = kNoVertex;
 };
 
-/// A CGAL cell's number in the block.
+/// A CGAL cell's number in the list.
 using CellIndex = std::uint32_t;
 
 template <int D>
@@ -160,9 +160,10 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
   }
   if (count >= Simplex<D>::kLink) {
     throw Error("a base case of " + std::to_string(input.points.size()) + " points has " +
-                std::to_string(count) + " simplices, more than fit; choose smaller base cases");
+                    std::to_string(count) + " simplices, more than fit; choose smaller base cases",
+                ErrorCode::kTooLarge);
   }
-  BorrowedBlock memory(BlockUse::kSimplices, count * sizeof(Simplex<D>));
+  BorrowedSlab memory(SlabUse::kSimplices, count * sizeof(Simplex<D>));
   result.simplices = make_list<D>(input, *memory, count);
   Simplex<D>* next = result.simplices.data();
   for (const auto cell : Traits::all_cells(delaunay)) {

@@ -8,10 +8,10 @@
 #include <numeric>
 
 #include "src/delaunay/base_case.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/finality.h"
 #include "src/delaunay/merge.h"
 #include "src/delaunay/schedule.h"
-#include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
@@ -60,8 +60,8 @@ constexpr std::size_t kCopyGrain = std::size_t{1} << 16;
 
 /// Made by all threads.
 template <typename T>
-BlockArray<T> copy_of(std::span<const T> items) {
-  BlockArray<T> copy(items.size());
+SlabArray<T> copy_of(std::span<const T> items) {
+  SlabArray<T> copy(items.size());
   parallel_for(items.size(), kCopyGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
     std::copy(items.begin() + begin, items.begin() + end, copy.begin() + begin);
   });
@@ -73,10 +73,10 @@ template <int D>
 class Run {
  public:
   /// `in_place` says where base cases leave their simplices: see BaseCaseInput.
-  Run(BlockArray<Point<D>> points, const DelaunayOptions& options, bool in_place)
+  Run(SlabArray<Point<D>> points, const DelaunayOptions& options, bool in_place)
       : options_(options), in_place_(in_place) {
     result_.points = std::move(points);
-    result_.input_index = BlockArray<VertexId>(result_.points.size());
+    result_.input_index = SlabArray<VertexId>(result_.points.size());
     VertexId* const index = result_.input_index.begin();
     parallel_for(result_.points.size(), kCopyGrain,
                  [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -89,11 +89,11 @@ class Run {
     const Part<D> root = divide<D>(
         result_.points, result_.input_index,
         {base_case_size, options_.division, options_.children, options_.stop}, task.before.data());
-    result_.blocks.resize(root.block + 1);
-    marks_.resize(root.block + 1);
-    duplicates_.resize(root.block + 1);
+    result_.lists.resize(root.list + 1);
+    marks_.resize(root.list + 1);
+    duplicates_.resize(root.list + 1);
     base_case_size_ = base_case_size;
-    root_block_ = root.block;
+    root_list_ = root.list;
     PartSurface surface = triangulate_part(root, whole_space<D>(), task);
     result_.dimension = surface.dimension;
     result_.hull = std::move(surface.hull);
@@ -104,60 +104,62 @@ class Run {
   }
 
  private:
-  /// `cell` is a box around the part that has nothing in common with the boxes of others beside it.
-  PartSurface triangulate_part(const Part<D>& part, const Box<D>& cell, Task& task) {
+  /// `clear_box` is a box around the part that has nothing in common with the boxes of others
+  /// beside it.
+  PartSurface triangulate_part(const Part<D>& part, const Box<D>& clear_box, Task& task) {
     if (options_.stop.stop_requested()) throw Interrupted();
     task.points = part.size();
-    return part.leaf() ? triangulate_leaf(part, cell, task) : triangulate_node(part, cell, task);
+    return part.leaf() ? triangulate_leaf(part, clear_box, task)
+                       : triangulate_node(part, clear_box, task);
   }
 
-  PartSurface triangulate_leaf(const Part<D>& part, const Box<D>& cell, Task& task) {
+  PartSurface triangulate_leaf(const Part<D>& part, const Box<D>& clear_box, Task& task) {
     task.kind = TaskKind::kBaseCase;
     const Stopwatch watch(task.seconds);
     BaseCase<D> leaf = triangulate_base_case<D>(
         {.points = std::span(result_.points).subspan(part.begin, part.size()),
          .input_index = std::span(result_.input_index).subspan(part.begin, part.size()),
          .first_vertex = part.begin,
-         .region = cell,
+         .clear_box = clear_box,
          .in_place = in_place_,
          .kernel = options_.kernel});
     PartSurface surface;
     surface.dimension = leaf.dimension;
     surface.open = leaf.dimension < D;
-    for (const std::uint32_t i : leaf.hull) surface.hull.push_back({part.block, i});
-    marks_[part.block] =
-        BlockMarks(leaf.simplices.size(), leaf.not_inside ? Mark::kFinal : Mark::kInterior);
+    for (const std::uint32_t i : leaf.hull) surface.hull.push_back({part.list, i});
+    marks_[part.list] =
+        ListMarks(leaf.simplices.size(), leaf.not_inside ? Mark::kFinal : Mark::kInterior);
     if (leaf.not_inside) {
-      for (const std::uint32_t i : *leaf.not_inside) marks_[part.block][i] = Mark::kInterior;
+      for (const std::uint32_t i : *leaf.not_inside) marks_[part.list][i] = Mark::kInterior;
       surface.changeable = std::move(leaf.not_inside);
     }
     if (in_place_) leaf.simplices.shrink();
-    result_.blocks[part.block].simplices = std::move(leaf.simplices);
-    duplicates_[part.block] = std::move(leaf.duplicates);
+    result_.lists[part.list].simplices = std::move(leaf.simplices);
+    duplicates_[part.list] = std::move(leaf.duplicates);
     if (surface.open) surface.vertices = distinct_vertices(part);
     if (options_.progress) options_.progress(points_done_ += part.size());
     return surface;
   }
 
-  PartSurface triangulate_node(const Part<D>& part, const Box<D>& cell, Task& task) {
+  PartSurface triangulate_node(const Part<D>& part, const Box<D>& clear_box, Task& task) {
     task.kind = TaskKind::kNode;
     task.children.resize(part.children.size());
     std::vector<PartSurface> surfaces(part.children.size());
     TaskGroup group;
     for (std::size_t c = 0; c < part.children.size(); ++c) {
-      Box<D> child_cell = cell;
+      Box<D> child_clear_box = clear_box;
       for (const Part<D>& other : part.children) {
-        if (&other != &part.children[c]) cut_back(child_cell, part.children[c].box, other.box);
+        if (&other != &part.children[c]) cut_back(child_clear_box, part.children[c].box, other.box);
       }
-      group.run([&, c, child_cell] {
-        surfaces[c] = triangulate_part(part.children[c], child_cell, task.children[c]);
+      group.run([&, c, child_clear_box] {
+        surfaces[c] = triangulate_part(part.children[c], child_clear_box, task.children[c]);
       });
     }
     group.wait();
     if (options_.stop.stop_requested()) throw Interrupted();
     PartSurface surface = merge<D>(
-        result_, marks_, part, surfaces, part.block != root_block_,
-        [this](BlockArray<Point<D>> points, std::size_t part_size, Task& border_task) {
+        result_, marks_, part, surfaces, part.list != root_list_,
+        [this](SlabArray<Point<D>> points, std::size_t part_size, Task& border_task) {
           return triangulate_border(std::move(points), part_size, border_task);
         },
         task);
@@ -179,7 +181,7 @@ class Run {
       return vertices;
     }
     std::vector<VertexId> dropped;
-    for (const Duplicate& duplicate : duplicates_[part.block]) dropped.push_back(duplicate.dropped);
+    for (const Duplicate& duplicate : duplicates_[part.list]) dropped.push_back(duplicate.dropped);
     std::vector<VertexId> all(part.size());
     std::iota(all.begin(), all.end(), part.begin);
     std::vector<VertexId> vertices;
@@ -191,11 +193,11 @@ class Run {
   /// Gives up the simplices of a part that stays open.
   void drop_simplices(const Part<D>& part) {
     for (const Part<D>& child : part.children) drop_simplices(child);
-    result_.blocks[part.block] = {};
-    marks_[part.block] = {};
+    result_.lists[part.list] = {};
+    marks_[part.list] = {};
   }
 
-  Triangulation<D> triangulate_border(BlockArray<Point<D>> points, std::size_t part_size,
+  Triangulation<D> triangulate_border(SlabArray<Point<D>> points, std::size_t part_size,
                                       Task& task) const {
     const auto count = static_cast<double>(points.size());
     std::size_t base_case_size = points.size();
@@ -210,11 +212,11 @@ class Run {
   const DelaunayOptions& options_;
   const bool in_place_;
   std::size_t base_case_size_ = 0;
-  std::uint32_t root_block_ = 0;
+  std::uint32_t root_list_ = 0;
   std::atomic<std::size_t> points_done_ = 0;
   Triangulation<D> result_;
-  std::vector<BlockMarks> marks_;                   ///< by block
-  std::vector<std::vector<Duplicate>> duplicates_;  ///< by block
+  std::vector<ListMarks> marks_;                    ///< by list
+  std::vector<std::vector<Duplicate>> duplicates_;  ///< by list
 };
 
 }  // namespace
@@ -226,7 +228,8 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
   } const release_at_the_end;
   if (points.size() > kMaxVertices) {
     throw Error("more than " + std::to_string(kMaxVertices) +
-                " points: too many for one triangulation in memory");
+                    " points: too many for one triangulation in memory",
+                ErrorCode::kTooLarge);
   }
   const std::size_t base_case_size = options.base_case_size == 0
                                          ? default_base_case_size<D>(points.size())
@@ -244,7 +247,7 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
 }
 
 template <int D>
-Triangulation<D> border_delaunay(BlockArray<Point<D>> points, BaseCaseKernel kernel, Task& task) {
+Triangulation<D> border_delaunay(SlabArray<Point<D>> points, Kernel kernel, Task& task) {
   const std::size_t base_case_size =
       std::max<std::size_t>(points.size() / 4, kGoodBorderBaseCase<D>);
   const DelaunayOptions options{.kernel = kernel};
@@ -253,11 +256,11 @@ Triangulation<D> border_delaunay(BlockArray<Point<D>> points, BaseCaseKernel ker
 
 template <int D>
 void recycle(Triangulation<D> used) {
-  for (SimplexBlock<D>& block : used.blocks) recycle<D>(std::move(block.simplices));
+  for (SimplexList<D>& list : used.lists) recycle<D>(std::move(list.simplices));
 }
 
-template Triangulation<2> border_delaunay<2>(BlockArray<Point<2>>, BaseCaseKernel, Task&);
-template Triangulation<3> border_delaunay<3>(BlockArray<Point<3>>, BaseCaseKernel, Task&);
+template Triangulation<2> border_delaunay<2>(SlabArray<Point<2>>, Kernel, Task&);
+template Triangulation<3> border_delaunay<3>(SlabArray<Point<3>>, Kernel, Task&);
 template Triangulation<2> delaunay<2>(std::span<const Point<2>>, const DelaunayOptions&);
 template Triangulation<3> delaunay<3>(std::span<const Point<3>>, const DelaunayOptions&);
 template void recycle<2>(Triangulation<2>);

@@ -7,21 +7,23 @@
 #include <vector>
 
 #include "src/delaunay/base_case.h"
-#include "src/delaunay/divide.h"
 #include "src/delaunay/common/triangulation.h"
+#include "src/delaunay/divide.h"
+
+namespace spillway {
+struct Task;
+}
 
 namespace spillway::detail {
-
-struct Task;
 
 /// How `delaunay` does its work. None of it changes the set of simplices.
 struct DelaunayOptions {
   unsigned threads = 0;  ///< 0: as many as the machine has
   std::size_t base_case_size =
       0;  ///< largest number of points in one base case; 0: chosen by D and n
-  DivisionScheme division = DivisionScheme::kLongestExtent;
+  Division division = Division::kLongestExtent;
   unsigned children = 2;  ///< parts that are merged at a time
-  BaseCaseKernel kernel = BaseCaseKernel::kOwn;
+  Kernel kernel = Kernel::kSpillway;
   /// If set, is told after each base case how many points have been through one. Called by many
   /// threads at once.
   std::function<void(std::size_t points)> progress = nullptr;
@@ -43,7 +45,7 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
 /// runs on its threads, divides only what is large (a border's parts are nearly all border, so that
 /// merging them costs as much again), and keeps memory for the base cases to come.
 template <int D>
-Triangulation<D> border_delaunay(BlockArray<Point<D>> points, BaseCaseKernel kernel, Task& task);
+Triangulation<D> border_delaunay(SlabArray<Point<D>> points, Kernel kernel, Task& task);
 
 /// Keeps the memory of the simplices of a triangulation that is no longer needed for the next call
 /// of delaunay(), which at its end gives the system what it did not use. Without

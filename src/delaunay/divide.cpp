@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <utility>
 
+#include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/hash.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/delaunay/schedule.h"
-#include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
@@ -73,23 +73,23 @@ class Divider {
   }
 
  private:
-  /// Appends to `pieces` up to `count` parts that `part` falls into, by repeated cuts in two.
+  /// Appends to `parts` up to `count` parts that `part` falls into, by repeated cuts in two.
   void split(const Part<D>& part, unsigned count, std::size_t depth,
-             std::vector<Part<D>>& pieces) const {
+             std::vector<Part<D>>& parts) const {
     if (count == 1 || part.box.lo == part.box.hi) {
-      pieces.push_back(part);
+      parts.push_back(part);
       return;
     }
     const unsigned low_count = count / 2;
     const VertexId middle = cut(part, cut_axis(part.box, depth), low_count, count);
-    split(make_part(part.begin, middle), low_count, depth, pieces);
-    split(make_part(middle, part.end), count - low_count, depth, pieces);
+    split(make_part(part.begin, middle), low_count, depth, parts);
+    split(make_part(middle, part.end), count - low_count, depth, parts);
   }
 
   [[nodiscard]] int cut_axis(const Box<D>& box, std::size_t depth) const {
     int axis = box.longest_axis();
-    if (options_.scheme == DivisionScheme::kCyclingAxis) axis = static_cast<int>(depth % D);
-    if (options_.scheme == DivisionScheme::kConstantAxis) axis = 0;
+    if (options_.scheme == Division::kCyclingAxis) axis = static_cast<int>(depth % D);
+    if (options_.scheme == Division::kConstantAxis) axis = 0;
     return box.lo[axis] < box.hi[axis] ? axis : box.longest_axis();
   }
 
@@ -196,7 +196,7 @@ class Divider {
     constexpr std::size_t kBytesOfPoint =
         D == 3 ? 4 * sizeof(double) : sizeof(Point<D>) + sizeof(VertexId);
     const std::size_t bytes = (part.size() + 1) * kBytesOfPoint;
-    BorrowedBlock memory(BlockUse::kPoints, bytes);
+    BorrowedSlab memory(SlabUse::kPoints, bytes);
     auto* const old_points = static_cast<Point<D>*>(memory->reserve(bytes));
     auto* const old_index = reinterpret_cast<VertexId*>(old_points + part.size());
     std::copy(points.begin(), points.end(), old_points);
@@ -213,9 +213,9 @@ class Divider {
 };
 
 template <int D>
-void number_blocks(Part<D>& part, std::uint32_t& next) {
-  for (Part<D>& child : part.children) number_blocks(child, next);
-  part.block = next++;
+void number_lists(Part<D>& part, std::uint32_t& next) {
+  for (Part<D>& child : part.children) number_lists(child, next);
+  part.list = next++;
 }
 
 }  // namespace
@@ -228,7 +228,7 @@ Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
   Task unused;
   divider.divide(root, 0, task == nullptr ? unused : *task);
   std::uint32_t next = 0;
-  number_blocks(root, next);
+  number_lists(root, next);
   return root;
 }
 

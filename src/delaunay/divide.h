@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spillway/choices.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,20 +11,16 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
-
+namespace spillway {
 struct Task;
+}
 
-/// Which axis a division cuts (Funke, Sanders 2017, section 3: "constant", "cyclic" and "dynamic").
-enum class DivisionScheme {
-  kLongestExtent,  ///< the longest side of the points' tight box
-  kCyclingAxis,    ///< x, y, (z,) x, ... by depth
-  kConstantAxis,   ///< always x
-};
+namespace spillway::detail {
 
 struct DivideOptions {
   std::size_t leaf_size = 0;  ///< parts of at most this many points are not divided further
-  DivisionScheme scheme = DivisionScheme::kLongestExtent;
+  /// Funke, Sanders 2017, section 3: "dynamic", "cyclic" and "constant".
+  Division scheme = Division::kLongestExtent;
   unsigned children = 2;   ///< parts made of one part at a time, at least 2
   std::stop_token stop{};  ///< looked at before each part is divided
 };
@@ -33,7 +31,7 @@ struct Part {
   VertexId begin = 0;  ///< its points are [begin, end) of the array
   VertexId end = 0;
   Box<D> box;                  ///< tight around them
-  std::uint32_t block = 0;     ///< its number in post-order: children before parents
+  std::uint32_t list = 0;      ///< of its simplices; children come before parents
   std::vector<Part> children;  ///< none for a leaf
 
   [[nodiscard]] std::size_t size() const { return end - begin; }

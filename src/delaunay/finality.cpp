@@ -32,10 +32,10 @@ void for_each_changeable(std::span<const SimplexId> simplices,
 }
 
 /// Marks those kVague ones of a leaf's `candidates` kBorder that have a neighbour there, and what
-/// is connected to them by kVague ones. All neighbours are in the leaf's block.
+/// is connected to them by kVague ones. All neighbours are in the leaf's list.
 template <int D>
-void connect(std::span<const std::uint32_t> candidates, const SimplexBlock<D>& block,
-             BlockMarks& marks) {
+void connect(std::span<const std::uint32_t> candidates, const SimplexList<D>& list,
+             ListMarks& marks) {
   std::vector<std::uint32_t> reached;
   const auto reach = [&](std::uint32_t s) {
     if (marks[s] != Mark::kVague) return;
@@ -44,13 +44,13 @@ void connect(std::span<const std::uint32_t> candidates, const SimplexBlock<D>& b
   };
   for (const std::uint32_t s : candidates) {
     if (marks[s] != Mark::kVague) continue;
-    for (const std::uint32_t n : block.simplices[s].neighbours) {
+    for (const std::uint32_t n : list.simplices[s].neighbours) {
       if (marks[n] == Mark::kBorder) reach(s);
     }
     while (!reached.empty()) {
       const std::uint32_t from = reached.back();
       reached.pop_back();
-      for (const std::uint32_t n : block.simplices[from].neighbours) reach(n);
+      for (const std::uint32_t n : list.simplices[from].neighbours) reach(n);
     }
   }
 }
@@ -87,8 +87,8 @@ template <int D>
 std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
                                    std::span<const SimplexId> hull,
                                    std::span<const Part<D>* const> others,
-                                   std::span<BlockMarks> marks) {
-  const auto mark = [&](SimplexId id) { return std::atomic_ref<Mark>(marks[id.block][id.index]); };
+                                   std::span<ListMarks> marks) {
+  const auto mark = [&](SimplexId id) { return std::atomic_ref<Mark>(marks[id.list][id.index]); };
   std::mutex mutex;
   std::vector<SimplexId> border;  // guarded by `mutex`
   parallel_work_queue(
@@ -115,26 +115,26 @@ std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
 }
 
 template <int D>
-std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::uint32_t block,
+std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::uint32_t list,
                                     std::span<const std::uint32_t> candidates,
                                     std::span<const Part<D>* const> others,
-                                    std::span<BlockMarks> marks) {
-  BlockMarks& mark = marks[block];
+                                    std::span<ListMarks> marks) {
+  ListMarks& mark = marks[list];
   parallel_for(
       candidates.size(), kCandidateGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
         std::vector<SimplexId> some;
         for (const std::uint32_t s : candidates.subspan(begin, end - begin)) {
-          some.push_back({block, s});
+          some.push_back({list, s});
         }
         for_each_changeable<D>(some, triangulation, others,
                                [&](SimplexId id, const ConflictRegion<D>& region) {
                                  mark[id.index] = region.tight() ? Mark::kBorder : Mark::kVague;
                                });
       });
-  connect<D>(candidates, triangulation.blocks[block], mark);
+  connect<D>(candidates, triangulation.lists[list], mark);
   std::vector<SimplexId> border;
   for (const std::uint32_t s : candidates) {
-    if (mark[s] == Mark::kBorder) border.push_back({block, s});
+    if (mark[s] == Mark::kBorder) border.push_back({list, s});
     if (mark[s] == Mark::kVague) mark[s] = Mark::kInterior;
   }
   return border;
@@ -144,17 +144,17 @@ template class ConflictRegion<2>;
 template class ConflictRegion<3>;
 template std::vector<SimplexId> find_border<2>(const Triangulation<2>&, std::span<const SimplexId>,
                                                std::span<const Part<2>* const>,
-                                               std::span<BlockMarks>);
+                                               std::span<ListMarks>);
 template std::vector<SimplexId> find_border<3>(const Triangulation<3>&, std::span<const SimplexId>,
                                                std::span<const Part<3>* const>,
-                                               std::span<BlockMarks>);
+                                               std::span<ListMarks>);
 template std::vector<SimplexId> border_among<2>(const Triangulation<2>&, std::uint32_t,
                                                 std::span<const std::uint32_t>,
                                                 std::span<const Part<2>* const>,
-                                                std::span<BlockMarks>);
+                                                std::span<ListMarks>);
 template std::vector<SimplexId> border_among<3>(const Triangulation<3>&, std::uint32_t,
                                                 std::span<const std::uint32_t>,
                                                 std::span<const Part<3>* const>,
-                                                std::span<BlockMarks>);
+                                                std::span<ListMarks>);
 
 }  // namespace spillway::detail

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "src/delaunay/divide.h"
 #include "src/delaunay/common/triangulation.h"
+#include "src/delaunay/divide.h"
 #include "src/geometry/circumsphere.h"
 
 namespace spillway::detail {
@@ -80,7 +80,7 @@ void for_each_region(std::size_t count, const Corners& corners, std::span<const 
   }
 }
 
-/// What merging needs to remember of each simplex, in parallel with the blocks of a triangulation.
+/// What merging needs to remember of each simplex, in parallel with the lists of a triangulation.
 enum class Mark : std::uint8_t {
   kInterior,  ///< not in the border, or not yet looked at
   kVague,     ///< a sibling may change it, by a region that is not tight; in the border if
@@ -89,7 +89,7 @@ enum class Mark : std::uint8_t {
   kSurvivor,  ///< in the border, and found again in the triangulation of the border
   kFinal,     ///< no point of another part can change it: it is in no border
 };
-using BlockMarks = BlockArray<Mark>;
+using ListMarks = SlabArray<Mark>;
 
 /// The border of one part against its siblings: every simplex that a point of `others` may change,
 /// found from the infinite simplices `hull` by a search over neighbours (such simplices are
@@ -99,15 +99,15 @@ template <int D>
 std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
                                    std::span<const SimplexId> hull,
                                    std::span<const Part<D>* const> others,
-                                   std::span<BlockMarks> marks);
+                                   std::span<ListMarks> marks);
 
 /// The same border, but for rounding, of a leaf whose border has no other simplices than
-/// `candidates`, numbers in its block; in their order. What is tested lies in the order of memory,
+/// `candidates`, numbers in its list; in their order. What is tested lies in the order of memory,
 /// and not where a search leads.
 template <int D>
-std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::uint32_t block,
+std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::uint32_t list,
                                     std::span<const std::uint32_t> candidates,
                                     std::span<const Part<D>* const> others,
-                                    std::span<BlockMarks> marks);
+                                    std::span<ListMarks> marks);
 
 }  // namespace spillway::detail

@@ -27,23 +27,23 @@ std::array<VertexId, N - 1> facet_vertices(const std::array<VertexId, N>& vertic
   return facet;
 }
 
-/// The place in `a` of the vertex that its neighbour `b` does not have. Without branches.
+/// The corner of `a` that its neighbour `b` does not have. Without branches.
 template <std::size_t N>
-int opposite_place(const std::array<VertexId, N>& a, const std::array<VertexId, N>& b) {
-  int place = 0;
+int opposite_corner(const std::array<VertexId, N>& a, const std::array<VertexId, N>& b) {
+  int corner = 0;
   for (std::size_t i = 1; i < N; ++i) {
     bool shared = false;
     for (const VertexId v : b) shared |= a[i] == v;
-    place = shared ? place : static_cast<int>(i);
+    corner = shared ? corner : static_cast<int>(i);
   }
-  return place;
+  return corner;
 }
 
 /// One merge. The steps are called in the order in which they stand here.
 template <int D>
 class Merge {
  public:
-  Merge(Triangulation<D>& triangulation, std::span<BlockMarks> marks, const Part<D>& part,
+  Merge(Triangulation<D>& triangulation, std::span<ListMarks> marks, const Part<D>& part,
         std::span<PartSurface> children)
       : triangulation_(triangulation), marks_(marks), part_(part), children_(children) {}
 
@@ -58,7 +58,7 @@ class Merge {
   /// Step 2: border_mesh_.
   void triangulate_border(const BorderTriangulator<D>& triangulate, Task& task);
 
-  /// Step 3: targets_, the new block's vertices, survived_, new_hull_. Renumbers border_mesh_.
+  /// Step 3: targets_, the new list's vertices, survived_, new_hull_. Renumbers border_mesh_.
   void accept(Task& task);
 
   /// Step 4: neighbours of the new simplices and back; removes what did not survive.
@@ -72,22 +72,20 @@ class Merge {
 
   /// A facet between a simplex of the border that is removed and one outside of the border.
   struct OpenFacet {
-    std::uint32_t removed;  ///< place in border_
-    int place;              ///< of the removed simplex's vertex opposite the facet
+    std::uint32_t removed;  ///< number in border_
+    int corner;             ///< of the removed simplex's vertex opposite the facet
     SimplexId outside;
   };
   /// Two simplices that become neighbours: a new one, and one of a child.
   struct Link {
     SimplexId created;
-    int created_place;
+    int created_corner;
     SimplexId old;
   };
 
-  SimplexBlock<D>& new_block() { return triangulation_.blocks[part_.block]; }
-  [[nodiscard]] bool created(SimplexId target) const { return target.block == part_.block; }
-  [[nodiscard]] std::size_t flat(SimplexId id) const {
-    return first_of_block_[id.block] + id.index;
-  }
+  SimplexList<D>& new_list() { return triangulation_.lists[part_.list]; }
+  [[nodiscard]] bool created(SimplexId target) const { return target.list == part_.list; }
+  [[nodiscard]] std::size_t flat(SimplexId id) const { return first_of_list_[id.list] + id.index; }
 
   void join(const std::vector<std::vector<SimplexId>>& borders);
   [[nodiscard]] static std::vector<VertexId> vertices_of(std::span<const Vertices> simplices,
@@ -98,25 +96,25 @@ class Merge {
   [[nodiscard]] std::vector<OpenFacet> open_facets();
   void link_simplex(SimplexId in_border_mesh, SimplexId created, const ConcurrentIndex& facet_index,
                     const std::vector<OpenFacet>& facets, std::vector<Link>& links);
-  void link_new_block(const std::vector<std::vector<Link>>& links);
+  void link_new_list(const std::vector<std::vector<Link>>& links);
   void link_children(const std::vector<std::vector<Link>>& links, Task& task);
 
   Triangulation<D>& triangulation_;
-  std::span<BlockMarks> marks_;
+  std::span<ListMarks> marks_;
   const Part<D>& part_;
   std::span<PartSurface> children_;
 
   std::vector<SimplexId> border_;          ///< of all children
-  BlockArray<Vertices> border_corners_;    ///< its simplices' vertices
+  SlabArray<Vertices> border_corners_;     ///< its simplices' vertices
   std::vector<std::uint8_t> survived_;     ///< whether border_mesh_ has them, too
   std::vector<VertexId> border_vertices_;  ///< sorted
   Triangulation<D> border_mesh_;
-  std::vector<VertexId> renumbered_;         ///< of border_mesh_, to vertices of triangulation_
-  std::vector<std::size_t> first_of_block_;  ///< flat number of each block's first simplex
+  std::vector<VertexId> renumbered_;        ///< of border_mesh_, to vertices of triangulation_
+  std::vector<std::size_t> first_of_list_;  ///< flat number of each list's first simplex
   /// By flat number in border_mesh_: the simplex of triangulation_ that it is or becomes, or
   /// kNoSimplex if it is dropped.
   std::vector<SimplexId> targets_;
-  std::vector<SimplexId> new_hull_;  ///< infinite simplices of the new block
+  std::vector<SimplexId> new_hull_;  ///< infinite simplices of the new list
 };
 
 template <int D>
@@ -134,7 +132,7 @@ void Merge<D>::find_borders(Task& task) {
         if (o != c) others.push_back(&part_.children[o]);
       }
       borders[c] = children_[c].changeable
-                       ? border_among<D>(triangulation_, part_.children[c].block,
+                       ? border_among<D>(triangulation_, part_.children[c].list,
                                          *children_[c].changeable, others, marks_)
                        : find_border<D>(triangulation_, children_[c].hull, others, marks_);
     });
@@ -142,7 +140,7 @@ void Merge<D>::find_borders(Task& task) {
   group.wait();
   join(borders);
   task.points = border_vertices_.size();
-  task.pieces = std::max<std::size_t>(1, grain_count(border_.size(), kGrain));
+  task.grains = std::max<std::size_t>(1, grain_count(border_.size(), kGrain));
 }
 
 /// Sets border_, border_corners_ and border_vertices_ from the children's borders.
@@ -151,7 +149,7 @@ void Merge<D>::join(const std::vector<std::vector<SimplexId>>& borders) {
   std::size_t total = 0;
   for (const auto& some : borders) total += some.size();
   border_.resize(total);
-  border_corners_ = BlockArray<Vertices>(total);
+  border_corners_ = SlabArray<Vertices>(total);
   std::vector<std::vector<VertexId>> vertices(borders.size());
   std::size_t begin = 0;
   TaskGroup group;
@@ -193,7 +191,7 @@ std::vector<VertexId> Merge<D>::vertices_of(std::span<const Vertices> simplices,
 
 template <int D>
 void Merge<D>::triangulate_border(const BorderTriangulator<D>& triangulate, Task& task) {
-  BlockArray<Point<D>> points(border_vertices_.size());
+  SlabArray<Point<D>> points(border_vertices_.size());
   std::transform(border_vertices_.begin(), border_vertices_.end(), points.begin(),
                  [&](VertexId v) { return triangulation_.points[v]; });
   border_mesh_ = triangulate(std::move(points), part_.size(), task);
@@ -203,14 +201,14 @@ void Merge<D>::triangulate_border(const BorderTriangulator<D>& triangulate, Task
 template <int D>
 template <typename Body>
 void Merge<D>::for_mesh_simplices(std::size_t begin, std::size_t end, const Body& body) const {
-  const auto after = std::upper_bound(first_of_block_.begin(), first_of_block_.end(), begin);
-  auto block = static_cast<std::uint32_t>(after - first_of_block_.begin() - 1);
-  for (std::size_t number = begin; number < end; ++block) {
-    const auto& simplices = border_mesh_.blocks[block].simplices;
-    const std::size_t first = first_of_block_[block];
+  const auto after = std::upper_bound(first_of_list_.begin(), first_of_list_.end(), begin);
+  auto list = static_cast<std::uint32_t>(after - first_of_list_.begin() - 1);
+  for (std::size_t number = begin; number < end; ++list) {
+    const auto& simplices = border_mesh_.lists[list].simplices;
+    const std::size_t first = first_of_list_[list];
     for (; number < std::min(end, first + simplices.size()); ++number) {
       const auto index = static_cast<std::uint32_t>(number - first);
-      if (!simplices[index].removed()) body(number, SimplexId{block, index});
+      if (!simplices[index].removed()) body(number, SimplexId{list, index});
     }
   }
 }
@@ -218,18 +216,18 @@ void Merge<D>::for_mesh_simplices(std::size_t begin, std::size_t end, const Body
 /// Sets the targets of mesh simplices. New ones are numbered from 0 on; returns their number.
 template <int D>
 std::uint32_t Merge<D>::accept_grain(std::size_t begin, std::size_t end, Questions questions) {
-  const auto found = [this](const Vertices&, SimplexId* target, std::uint32_t place) {
-    *target = border_[place];
-    survived_[place] = 1;
+  const auto found = [this](const Vertices&, SimplexId* target, std::uint32_t number) {
+    *target = border_[number];
+    survived_[number] = 1;
   };
   std::uint32_t created = 0;
   for_mesh_simplices(begin, end, [&](std::size_t number, SimplexId id) {
-    Vertices& simplex = border_mesh_.blocks[id.block].simplices[id.index].vertices;
+    Vertices& simplex = border_mesh_.lists[id.list].simplices[id.index].vertices;
     for (VertexId& v : simplex) {
       if (v != kInfiniteVertex) v = renumbered_[v];
     }
     SimplexId& target = targets_[number];
-    if (questions.is_new(simplex, &target, found)) target = {part_.block, created++};
+    if (questions.is_new(simplex, &target, found)) target = {part_.list, created++};
   });
   questions.answer(found);
   return created;
@@ -245,11 +243,11 @@ void Merge<D>::accept(Task& task) {
   std::transform(border_mesh_.input_index.begin(), border_mesh_.input_index.end(),
                  renumbered_.begin(), [&](VertexId v) { return border_vertices_[v]; });
   std::size_t total = 0;
-  for (const SimplexBlock<D>& block : border_mesh_.blocks) {
-    first_of_block_.push_back(total);
-    total += block.simplices.size();
+  for (const SimplexList<D>& list : border_mesh_.lists) {
+    first_of_list_.push_back(total);
+    total += list.simplices.size();
   }
-  task.pieces = std::max<std::size_t>(1, grain_count(total, kGrain));
+  task.grains = std::max<std::size_t>(1, grain_count(total, kGrain));
   targets_.assign(total, kNoSimplex);
   survived_.assign(border_.size(), 0);
 
@@ -266,18 +264,19 @@ void Merge<D>::accept(Task& task) {
   const std::size_t created_count = first_created.back();
   if (created_count >= Simplex<D>::kLink || border_.size() >= Simplex<D>::kLink) {
     throw Error("the border of " + std::to_string(border_vertices_.size()) +
-                " points has more simplices than fit into one block");
+                    " points has more simplices than fit into one block",
+                ErrorCode::kTooLarge);
   }
 
-  new_block().simplices = BlockArray<Simplex<D>>(created_count);
-  marks_[part_.block] = BlockMarks(created_count, Mark::kInterior);
+  new_list().simplices = SlabArray<Simplex<D>>(created_count);
+  marks_[part_.list] = ListMarks(created_count, Mark::kInterior);
   std::vector<std::vector<SimplexId>> hulls(grain_count(total, kGrain));
   parallel_for(total, kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
     for_mesh_simplices(begin, end, [&](std::size_t number, SimplexId id) {
       SimplexId& target = targets_[number];
       if (!created(target)) return;
       target.index += static_cast<std::uint32_t>(first_created[g]);
-      Simplex<D>& simplex = new_block().simplices[target.index];
+      Simplex<D>& simplex = new_list().simplices[target.index];
       simplex.vertices = border_mesh_.simplex(id).vertices;
       if (simplex.infinite()) hulls[g].push_back(target);
     });
@@ -293,7 +292,7 @@ auto Merge<D>::open_facets() -> std::vector<OpenFacet> {
       if (survived_[b] != 0) continue;
       for (int i = 0; i <= D; ++i) {
         const SimplexId other = triangulation_.neighbour(border_[b], i);
-        if (marks_[other.block][other.index] != Mark::kBorder) {
+        if (marks_[other.list][other.index] != Mark::kBorder) {
           found[g].push_back({static_cast<std::uint32_t>(b), i, other});
         }
       }
@@ -309,10 +308,10 @@ template <int D>
 void Merge<D>::link_simplex(SimplexId in_border_mesh, SimplexId created,
                             const ConcurrentIndex& facet_index,
                             const std::vector<OpenFacet>& facets, std::vector<Link>& links) {
-  Simplex<D>& simplex = new_block().simplices[created.index];
+  Simplex<D>& simplex = new_list().simplices[created.index];
   for (int i = 0; i <= D; ++i) {
     SimplexId other = targets_[flat(border_mesh_.neighbour(in_border_mesh, i))];
-    if (other.block == part_.block) {
+    if (other.list == part_.list) {
       simplex.neighbours[i] = other.index;
       continue;
     }
@@ -321,7 +320,7 @@ void Merge<D>::link_simplex(SimplexId in_border_mesh, SimplexId created,
       const std::uint32_t f =
           facet_index.find(facet_hash(simplex.vertices, i), [&](std::uint32_t item) {
             const OpenFacet& open = facets[item];
-            const auto found = facet_vertices(border_corners_[open.removed], open.place);
+            const auto found = facet_vertices(border_corners_[open.removed], open.corner);
             return facet.vertices == SortedVertices<D>(found).vertices;
           });
       if (f == ConcurrentIndex::kNotFound) {
@@ -337,7 +336,7 @@ template <int D>
 void Merge<D>::link(Task& task) {
   task.kind = TaskKind::kNeighbours;
   task.points = border_vertices_.size();
-  task.pieces = std::max<std::size_t>(1, grain_count(targets_.size(), kGrain));
+  task.grains = std::max<std::size_t>(1, grain_count(targets_.size(), kGrain));
   std::vector<std::vector<Link>> links(grain_count(targets_.size(), kGrain));
   {
     const Stopwatch watch(task.seconds);
@@ -345,7 +344,7 @@ void Merge<D>::link(Task& task) {
     ConcurrentIndex facet_index(facets.size());
     parallel_for(facets.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
-        facet_index.insert(facet_hash(border_corners_[facets[f].removed], facets[f].place),
+        facet_index.insert(facet_hash(border_corners_[facets[f].removed], facets[f].corner),
                            static_cast<std::uint32_t>(f));
       }
     });
@@ -355,14 +354,14 @@ void Merge<D>::link(Task& task) {
         if (created(target)) link_simplex(id, target, facet_index, facets, links[g]);
       });
     });
-    link_new_block(links);
+    link_new_list(links);
     parallel_for(border_.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         const SimplexId id = border_[b];
         if (survived_[b] == 0) {
-          triangulation_.blocks[id.block].simplices[id.index].vertices[0] = kNoVertex;
+          triangulation_.lists[id.list].simplices[id.index].vertices[0] = kNoVertex;
         }
-        marks_[id.block][id.index] = Mark::kInterior;
+        marks_[id.list][id.index] = Mark::kInterior;
       }
     });
   }
@@ -371,45 +370,45 @@ void Merge<D>::link(Task& task) {
 
 /// Sets the neighbours of new simplices that are old ones.
 template <int D>
-void Merge<D>::link_new_block(const std::vector<std::vector<Link>>& links) {
+void Merge<D>::link_new_list(const std::vector<std::vector<Link>>& links) {
   std::vector<std::size_t> first_link(links.size() + 1);
   for (std::size_t g = 0; g < links.size(); ++g)
     first_link[g + 1] = first_link[g] + links[g].size();
-  SimplexBlock<D>& block = new_block();
-  block.links.resize(first_link.back());
+  SimplexList<D>& list = new_list();
+  list.links.resize(first_link.back());
   parallel_for(links.size(), 1, [&](std::size_t g, std::size_t, std::size_t) {
     std::size_t number = first_link[g];
     for (const Link& link : links[g]) {
-      block.links[number] = link.old;
-      block.simplices[link.created.index].neighbours[link.created_place] =
+      list.links[number] = link.old;
+      list.simplices[link.created.index].neighbours[link.created_corner] =
           Simplex<D>::kLink + static_cast<std::uint32_t>(number++);
     }
   });
 }
 
-/// Sets the neighbours of old simplices that are new ones. A block's links are one array, so each
-/// child's blocks are a task of their own.
+/// Sets the neighbours of old simplices that are new ones. A list's links are one array, so each
+/// child's lists are a task of their own.
 template <int D>
 void Merge<D>::link_children(const std::vector<std::vector<Link>>& links, Task& task) {
   task.kind = TaskKind::kNeighbours;
   task.points = border_vertices_.size();
-  task.pieces = part_.children.size();
+  task.grains = part_.children.size();
   const Stopwatch watch(task.seconds);
   TaskGroup group;
-  std::uint32_t first_block = 0;
+  std::uint32_t first_list = 0;
   for (const Part<D>& child : part_.children) {
-    group.run([&, first_block, last_block = child.block] {
+    group.run([&, first_list, last_list = child.list] {
       for (const auto& some : links) {
         for (const Link& link : some) {
-          if (link.old.block < first_block || link.old.block > last_block) continue;
-          SimplexBlock<D>& block = triangulation_.blocks[link.old.block];
-          const int place = opposite_place(block.simplices[link.old.index].vertices,
-                                           new_block().simplices[link.created.index].vertices);
-          block.set_neighbour(link.old, place, link.created);
+          if (link.old.list < first_list || link.old.list > last_list) continue;
+          SimplexList<D>& list = triangulation_.lists[link.old.list];
+          const int corner = opposite_corner(list.simplices[link.old.index].vertices,
+                                             new_list().simplices[link.created.index].vertices);
+          list.set_neighbour(link.old, corner, link.created);
         }
       }
     });
-    first_block = child.block + 1;
+    first_list = child.list + 1;
   }
   group.wait();
 }
@@ -434,7 +433,7 @@ PartSurface Merge<D>::surface() {
 }  // namespace
 
 template <int D>
-PartSurface merge(Triangulation<D>& triangulation, std::span<BlockMarks> marks, const Part<D>& part,
+PartSurface merge(Triangulation<D>& triangulation, std::span<ListMarks> marks, const Part<D>& part,
                   std::span<PartSurface> children, bool may_stay_open,
                   const BorderTriangulator<D>& triangulate_border, Task& task) {
   task.after.reserve(4);
@@ -452,9 +451,9 @@ PartSurface merge(Triangulation<D>& triangulation, std::span<BlockMarks> marks, 
   return merge.surface();
 }
 
-template PartSurface merge<2>(Triangulation<2>&, std::span<BlockMarks>, const Part<2>&,
+template PartSurface merge<2>(Triangulation<2>&, std::span<ListMarks>, const Part<2>&,
                               std::span<PartSurface>, bool, const BorderTriangulator<2>&, Task&);
-template PartSurface merge<3>(Triangulation<3>&, std::span<BlockMarks>, const Part<3>&,
+template PartSurface merge<3>(Triangulation<3>&, std::span<ListMarks>, const Part<3>&,
                               std::span<PartSurface>, bool, const BorderTriangulator<3>&, Task&);
 
 }  // namespace spillway::detail

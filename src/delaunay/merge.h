@@ -5,15 +5,17 @@
 #include <span>
 #include <vector>
 
+#include "src/delaunay/common/triangulation.h"
 #include "src/delaunay/divide.h"
 #include "src/delaunay/finality.h"
-#include "src/delaunay/common/triangulation.h"
+
+namespace spillway {
+struct Task;
+}
 
 namespace spillway::detail {
 
-struct Task;
-
-/// What merging needs to know of a part that is done; its simplices are in the blocks of its
+/// What merging needs to know of a part that is done; its simplices are in the lists of its
 /// subtree.
 struct PartSurface {
   int dimension = -1;  ///< of the affine hull of its points
@@ -35,7 +37,7 @@ inline constexpr double kLargestBorder = 0.5;
 /// input_index[v] of those given.
 template <int D>
 using BorderTriangulator =
-    std::function<Triangulation<D>(BlockArray<Point<D>> points, std::size_t part_size, Task& task)>;
+    std::function<Triangulation<D>(SlabArray<Point<D>> points, std::size_t part_size, Task& task)>;
 
 /// Makes one triangulation of the parts that are `part`'s children (Algorithm 1 of Funke, Sanders
 /// 2017, for any number of children at once):
@@ -47,10 +49,10 @@ using BorderTriangulator =
 ///   border
 ///      has it too, facing the same way; border simplices that it does not have are removed.
 ///   4. Neighbours across the seams are linked, found by the hash of the facet they share.
-/// New simplices go to block part.block, which must be empty; children's blocks stay where they
+/// New simplices go to list part.list, which must be empty; children's lists stay where they
 /// are. Returns the part's own surface. `task` gets the steps with their durations.
 template <int D>
-PartSurface merge(Triangulation<D>& triangulation, std::span<BlockMarks> marks, const Part<D>& part,
+PartSurface merge(Triangulation<D>& triangulation, std::span<ListMarks> marks, const Part<D>& part,
                   std::span<PartSurface> children, bool may_stay_open,
                   const BorderTriangulator<D>& triangulate_border, Task& task);
 

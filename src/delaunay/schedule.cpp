@@ -22,7 +22,7 @@ class Simulation {
         ready_.pop();
         --idle_cores_;
         const Task& task = *states_[state].task;
-        running_.emplace(now_ + task.seconds / static_cast<double>(task.pieces), state);
+        running_.emplace(now_ + task.seconds / static_cast<double>(task.grains), state);
       }
       if (running_.empty()) return now_;
       const auto [time, state] = running_.top();
@@ -34,15 +34,15 @@ class Simulation {
   }
 
  private:
-  enum class Stage { kBefore, kOwn, kChildren, kAfter };
+  enum class Phase { kBefore, kOwn, kChildren, kAfter };
 
   struct State {
     const Task* task;
     std::size_t parent = 0;
     std::size_t depth = 0;
-    Stage stage = Stage::kBefore;
+    Phase phase = Phase::kBefore;
     std::size_t next_step = 0;  ///< of `before` or `after`
-    std::size_t pending = 0;    ///< pieces or tasks that must finish before the next step
+    std::size_t pending = 0;    ///< grains or tasks that must finish before the next step
   };
 
   void start(const Task& task, std::size_t parent) {
@@ -58,16 +58,16 @@ class Simulation {
   /// Starts whatever comes next in a task that waits for nothing.
   void advance(std::size_t s) {
     const Task& task = *states_[s].task;
-    if (states_[s].stage == Stage::kBefore) {
+    if (states_[s].phase == Phase::kBefore) {
       if (start_step(s, task.before)) return;
-      states_[s].stage = Stage::kOwn;
-      states_[s].pending = task.pieces;
-      for (std::size_t p = 0; p < task.pieces; ++p)
+      states_[s].phase = Phase::kOwn;
+      states_[s].pending = task.grains;
+      for (std::size_t p = 0; p < task.grains; ++p)
         ready_.push({states_[s].depth, ready_count_++, s});
       return;
     }
-    if (states_[s].stage == Stage::kOwn) {
-      states_[s].stage = Stage::kChildren;
+    if (states_[s].phase == Phase::kOwn) {
+      states_[s].phase = Phase::kChildren;
       states_[s].next_step = 0;
       if (!task.children.empty()) {
         states_[s].pending = task.children.size();
@@ -75,7 +75,7 @@ class Simulation {
         return;
       }
     }
-    states_[s].stage = Stage::kAfter;
+    states_[s].phase = Phase::kAfter;
     if (start_step(s, task.after)) return;
     if (s != 0) finish_one(states_[s].parent);
   }
@@ -87,27 +87,30 @@ class Simulation {
     return true;
   }
 
-  struct ReadyPiece {
+  struct ReadyGrain {
     std::size_t depth;
     std::size_t order;  ///< in which it became ready
     std::size_t state;
 
     /// Whether the other comes first.
-    bool operator<(const ReadyPiece& other) const {
+    bool operator<(const ReadyGrain& other) const {
       return depth != other.depth ? depth < other.depth : order > other.order;
     }
   };
-  using Event = std::pair<double, std::size_t>;  ///< end of a running piece, its task
+  using Event = std::pair<double, std::size_t>;  ///< end of a running grain, its task
 
   unsigned idle_cores_;
   double now_ = 0;
   std::deque<State> states_;  ///< grows while references into it are held
-  std::priority_queue<ReadyPiece> ready_;
+  std::priority_queue<ReadyGrain> ready_;
   std::size_t ready_count_ = 0;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> running_;
 };
 
 }  // namespace
+}  // namespace spillway::detail
+
+namespace spillway {
 
 double Task::total_seconds() const {
   double sum = seconds;
@@ -117,6 +120,8 @@ double Task::total_seconds() const {
   return sum;
 }
 
-double greedy_makespan(const Task& root, unsigned cores) { return Simulation(cores).run(root); }
+double greedy_makespan(const Task& root, unsigned cores) {
+  return detail::Simulation(cores).run(root);
+}
 
-}  // namespace spillway::detail
+}  // namespace spillway

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMostFaults = 10;
 
 std::string describe(SimplexId id) {
-  return "simplex " + std::to_string(id.block) + ":" + std::to_string(id.index);
+  return "simplex " + std::to_string(id.list) + ":" + std::to_string(id.index);
 }
 
 template <int D>
@@ -56,7 +56,7 @@ class Verifier {
 
   bool check_neighbour(SimplexId id, const Simplex<D>& simplex, int i) {
     const SimplexId other = t_.neighbour(id, i);
-    if (other.block >= t_.blocks.size() || other.index >= t_.blocks[other.block].simplices.size() ||
+    if (other.list >= t_.lists.size() || other.index >= t_.lists[other.list].simplices.size() ||
         t_.simplex(other).removed()) {
       fault(describe(id) + " has a neighbour that doesn't exist");
       return false;
@@ -76,15 +76,15 @@ class Verifier {
     const SimplexId other = t_.neighbour(id, i);
     const VertexId apex = far_vertex(t_.simplex(other), simplex);
     if (apex == kInfiniteVertex) return;
-    const int infinite_place = simplex.infinite_place();
-    if (infinite_place < 0) {
+    const int infinite_corner = simplex.infinite_corner();
+    if (infinite_corner < 0) {
       if (in_sphere<D>(corners(simplex), t_.points[apex]) >= 0) {
         fault(describe(id) + " has vertex " + std::to_string(apex) + " in its circumsphere");
       }
-    } else if (infinite_place != i) {
+    } else if (infinite_corner != i) {
       std::array<Point<D>, D + 1> with_apex;
       for (int k = 0; k <= D; ++k) {
-        with_apex[k] = t_.points[k == infinite_place ? apex : simplex.vertices[k]];
+        with_apex[k] = t_.points[k == infinite_corner ? apex : simplex.vertices[k]];
       }
       if (orientation<D>(with_apex) > 0) {
         fault(describe(id) + " on the hull has vertex " + std::to_string(apex) + " beyond it");

@@ -110,7 +110,7 @@ class Run {
   std::vector<VertexId> complete_border(const Group& group, const BoxTree<D>& others, bool open) {
     std::vector<VertexId> border;
     ItemsByRank<VertexId> elsewhere;
-    for (const Place name : builder_->find_border(others)) {
+    for (const RankIndex name : builder_->find_border(others)) {
       const auto owner = static_cast<int>(name.rank);
       (owner == ranks_.rank() ? border : elsewhere[owner]).push_back(name.index);
     }
@@ -204,7 +204,7 @@ class Run {
       questions[static_cast<int>(view.names[v].rank)].push_back(view.names[v].index);
       asked_for[static_cast<int>(view.names[v].rank)].push_back(v);
     }
-    ItemsByRank<Place> answers;
+    ItemsByRank<RankIndex> answers;
     for (const auto& [rank, indices] : exchange_items(ranks_, questions)) {
       for (const std::uint32_t index : indices) answers[rank].push_back(view.origins[index]);
     }
@@ -228,7 +228,8 @@ View<D> delaunay(const std::vector<Point<D>>& local_points, const Ranks& ranks,
                  const DistributedOptions& options) {
   if (local_points.size() > kMaxVertices) {
     throw Error("rank " + std::to_string(ranks.rank()) + " has more than " +
-                std::to_string(kMaxVertices) + " points: use more ranks");
+                    std::to_string(kMaxVertices) + " points: use more ranks",
+                ErrorCode::kTooLarge);
   }
   std::vector<NamedPoint<D>> points(local_points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {

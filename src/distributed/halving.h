@@ -10,7 +10,7 @@ namespace spillway::detail::distributed {
 template <int D>
 struct NamedPoint {
   Point<D> position;
-  Place name;
+  RankIndex name;
 };
 
 /// Cuts the longest side of the box around all points of the group where a sample says, and moves

@@ -16,6 +16,17 @@
 
 namespace spillway::detail::distributed {
 
+namespace {
+
+[[noreturn]] void fail(const char* activity, const std::string& where, const std::string& file,
+                       int error) {
+  throw SystemRefusal(
+      fmt::format("cannot {} {}: {}", activity, where, std::generic_category().message(error)),
+      file, error);
+}
+
+}  // namespace
+
 struct Ranks::Group {};
 
 Ranks::Ranks(std::unique_ptr<Group> group) : group_(std::move(group)) {}
@@ -28,7 +39,8 @@ Ranks Ranks::all() {
     throw Error(
         fmt::format("this build of Spillway has no MPI, so {} processes cannot work together: "
                     "start it without mpirun, or build it with SPILLWAY_MPI",
-                    ranks));
+                    ranks),
+        ErrorCode::kInvalidArgument);
   }
   return Ranks(std::make_unique<Group>());
 }
@@ -79,7 +91,7 @@ SharedFile::SharedFile(const Ranks& /*ranks*/, const std::string& path, std::str
     : name_(name.empty() ? path : std::move(name)), file_(std::make_unique<File>()) {
   file_->descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file_->descriptor < 0) {
-    throw Error(fmt::format("cannot create {}: {}", name_, std::generic_category().message(errno)));
+    fail("create", name_, name_, errno);
   }
 }
 
@@ -91,8 +103,7 @@ void SharedFile::write(std::uint64_t offset, std::span<const std::byte> bytes) {
         ::pwrite(file_->descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) {
-      throw Error(fmt::format("cannot write {}, byte {}: {}", name_, offset,
-                              std::generic_category().message(written < 0 ? errno : ENOSPC)));
+      fail("write", fmt::format("{}, byte {}", name_, offset), name_, written < 0 ? errno : ENOSPC);
     }
     offset += static_cast<std::uint64_t>(written);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
@@ -101,7 +112,7 @@ void SharedFile::write(std::uint64_t offset, std::span<const std::byte> bytes) {
 
 void SharedFile::close() {
   if (::close(std::exchange(file_->descriptor, -1)) != 0) {
-    throw Error(fmt::format("cannot close {}: {}", name_, std::generic_category().message(errno)));
+    fail("close", name_, name_, errno);
   }
 }
 

@@ -64,7 +64,7 @@ std::string fault(int code, const char* activity) {
 
 void check(int code, const char* activity) {
   if (code != MPI_SUCCESS) {
-    throw Error(fault(code, activity));
+    throw Error(fault(code, activity), ErrorCode::kInputOutput);
   }
 }
 
@@ -168,7 +168,8 @@ void initialise() {
   check(MPI_Comm_rank(MPI_COMM_WORLD, &rank_in_job), "starting");
   if (provided < MPI_THREAD_SERIALIZED) {
     throw Error(
-        "this MPI cannot be called from several threads in turn: it must be built with threads");
+        "this MPI cannot be called from several threads in turn: it must be built with threads",
+        ErrorCode::kInputOutput);
   }
 }
 
@@ -374,8 +375,9 @@ struct SharedFile::File {
     int codes[] = {code, code == MPI_SUCCESS ? 0 : errno};
     check(MPI_Allreduce(MPI_IN_PLACE, codes, 2, MPI_INT, MPI_MAX, comm), "reducing");
     if (codes[0] != MPI_SUCCESS) {
-      throw Error(
-          fmt::format("cannot {} {}: {}", activity, name, reason_of_file(codes[0], codes[1])));
+      throw SystemRefusal(
+          fmt::format("cannot {} {}: {}", activity, name, reason_of_file(codes[0], codes[1])), name,
+          codes[1]);
     }
   }
 
@@ -409,16 +411,19 @@ void SharedFile::write(std::uint64_t offset, std::span<const std::byte> bytes) {
         MPI_File_write_at(file_->file, place, bytes.data() + first, length, MPI_BYTE, &status);
     const int system_code = errno;
     if (code != MPI_SUCCESS) {
-      throw Error(fmt::format("cannot write {}, byte {}: {}", name_, place,
-                              reason_of_file(code, system_code)));
+      throw SystemRefusal(fmt::format("cannot write {}, byte {}: {}", name_, place,
+                                      reason_of_file(code, system_code)),
+                          name_, system_code);
     }
     int written = 0;
     check(MPI_Get_count(&status, MPI_BYTE, &written), "writing");
     if (written != length) {
-      throw Error(fmt::format(
-          "cannot write {}, byte {}: only {} of {} bytes went to the disk, which may be "
-          "full; free some space",
-          name_, place, written, length));
+      throw SystemRefusal(
+          fmt::format(
+              "cannot write {}, byte {}: only {} of {} bytes went to the disk, which may be "
+              "full; free some space",
+              name_, place, written, length),
+          name_, ENOSPC);
     }
   });
 }

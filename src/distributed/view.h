@@ -11,11 +11,11 @@
 namespace spillway::detail::distributed {
 
 /// One of the things that are numbered at each rank for itself.
-struct Place {
+struct RankIndex {
   std::uint32_t rank = 0;
   std::uint32_t index = 0;
   // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
-  auto operator<=>(const Place&) const = default;
+  auto operator<=>(const RankIndex&) const = default;
 };
 
 /// What one rank holds of a Delaunay triangulation over several: each vertex is owned by one rank,
@@ -31,18 +31,18 @@ struct View {
   std::size_t own = 0;           ///< vertices below are this rank's, the others belong elsewhere
   std::vector<Point<D>> points;  ///< by vertex
   /// By vertex: its name, the same at all ranks: its owner and its number there.
-  std::vector<Place> names;
+  std::vector<RankIndex> names;
   /// By vertex: which point it is: the rank that gave it, and as which of its points. Of equal
   /// points it is the least of these.
-  std::vector<Place> origins;
+  std::vector<RankIndex> origins;
   /// Corners are numbers of vertices, or kInfiniteVertex; for neighbours see local() and beyond().
   std::vector<Simplex<D>> simplices;
   int dimension = -1;  ///< of the affine hull of all ranks' points; no simplices if less than D
 
   /// A point that equals another one; both are origins.
   struct Duplicate {
-    Place dropped;
-    Place kept;
+    RankIndex dropped;
+    RankIndex kept;
   };
   std::vector<Duplicate> duplicates;  ///< those whose vertex this rank owns, sorted by `dropped`
 
@@ -64,7 +64,7 @@ struct View {
   static constexpr std::size_t kLimit = Simplex<D>::kLink - 2;
 
  private:
-  static constexpr std::uint32_t kInfiniteElsewhere = SimplexBlock<D>::kUnlinked - 1;
+  static constexpr std::uint32_t kInfiniteElsewhere = SimplexList<D>::kUnlinked - 1;
 };
 
 }  // namespace spillway::detail::distributed

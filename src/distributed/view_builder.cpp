@@ -10,12 +10,13 @@
 namespace spillway::detail::distributed {
 namespace {
 
-std::uint64_t key(Place name) { return (std::uint64_t{name.rank} << 32U) | name.index; }
+std::uint64_t key(RankIndex name) { return (std::uint64_t{name.rank} << 32U) | name.index; }
 
 void check_limit(std::size_t count, std::size_t limit, const char* what) {
   if (count >= limit) {
     throw Error("one rank's view of the triangulation has " + std::to_string(count) + ' ' + what +
-                ", more than it can number: use more ranks");
+                    ", more than it can number: use more ranks",
+                ErrorCode::kTooLarge);
   }
 }
 
@@ -54,16 +55,16 @@ ViewBuilder<D>::ViewBuilder(int rank, const Triangulation<D>& triangulation,
   std::sort(view.duplicates.begin(), view.duplicates.end(),
             [](const auto& a, const auto& b) { return a.dropped < b.dropped; });
 
-  std::vector<std::size_t> first_of_block;
+  std::vector<std::size_t> first_of_list;
   std::size_t total = 0;
-  for (const SimplexBlock<D>& block : triangulation.blocks) {
-    first_of_block.push_back(total);
-    total += block.simplices.size();
+  for (const SimplexList<D>& list : triangulation.lists) {
+    first_of_list.push_back(total);
+    total += list.simplices.size();
   }
   check_limit(total, View<D>::kLimit, "simplices");
   check_limit(view.own, View<D>::kLimit, "vertices");
   const auto flat = [&](SimplexId id) {
-    return static_cast<std::uint32_t>(first_of_block[id.block] + id.index);
+    return static_cast<std::uint32_t>(first_of_list[id.list] + id.index);
   };
   Simplex<D> removed{};
   removed.vertices[0] = kNoVertex;
@@ -80,7 +81,7 @@ ViewBuilder<D>::ViewBuilder(int rank, const Triangulation<D>& triangulation,
 }
 
 template <int D>
-VertexId ViewBuilder<D>::vertex_named(Place name) const {
+VertexId ViewBuilder<D>::vertex_named(RankIndex name) const {
   if (name == kInfiniteName) return kInfiniteVertex;
   if (name.rank == static_cast<std::uint32_t>(rank_)) return name.index;
   const auto found = foreign_.find(key(name));
@@ -94,22 +95,22 @@ template <int D>
 VertexId ViewBuilder<D>::add_vertex(const NamedPoint<D>& point) {
   if (point.name == kInfiniteName) return kInfiniteVertex;
   if (point.name.rank == static_cast<std::uint32_t>(rank_)) return point.name.index;
-  const auto [place, added] =
+  const auto [entry, added] =
       foreign_.emplace(key(point.name), static_cast<VertexId>(view.points.size()));
   if (added) {
     view.points.push_back(point.position);
     view.names.push_back(point.name);
     check_limit(view.points.size(), View<D>::kLimit, "vertices");
   }
-  return place->second;
+  return entry->second;
 }
 
 template <int D>
-std::vector<Place> ViewBuilder<D>::find_border(const BoxTree<D>& others) {
+std::vector<RankIndex> ViewBuilder<D>::find_border(const BoxTree<D>& others) {
   marks_.assign(view.simplices.size(), Mark::kInterior);
   border_.clear();
   std::vector<std::uint32_t> candidates = surface_;
-  std::vector<Place> names;
+  std::vector<RankIndex> names;
   while (!candidates.empty()) {
     const std::uint32_t s = candidates.back();
     candidates.pop_back();
@@ -143,7 +144,7 @@ void ViewBuilder<D>::accept(const ItemsByRank<NamedSimplex<D>>& simplices,
   for (const auto& [sender, some] : simplices) {
     for (const NamedSimplex<D>& named : some) {
       Simplex<D> simplex;
-      simplex.neighbours.fill(SimplexBlock<D>::kUnlinked);
+      simplex.neighbours.fill(SimplexList<D>::kUnlinked);
       bool spans = false;
       for (int i = 0; i <= D; ++i) {
         simplex.vertices[i] = vertex_named(named[i]);
@@ -165,11 +166,11 @@ void ViewBuilder<D>::accept(const ItemsByRank<NamedSimplex<D>>& simplices,
 }
 
 template <int D>
-auto ViewBuilder<D>::facet_of(std::uint32_t simplex, int place) const -> OpenFacet {
+auto ViewBuilder<D>::facet_of(std::uint32_t simplex, int corner) const -> OpenFacet {
   const Corners& corners = view.simplices[simplex].vertices;
-  OpenFacet facet{{}, simplex, place};
-  std::copy(corners.begin(), corners.begin() + place, facet.vertices.begin());
-  std::copy(corners.begin() + place + 1, corners.end(), facet.vertices.begin() + place);
+  OpenFacet facet{{}, simplex, corner};
+  std::copy(corners.begin(), corners.begin() + corner, facet.vertices.begin());
+  std::copy(corners.begin() + corner + 1, corners.end(), facet.vertices.begin() + corner);
   std::sort(facet.vertices.begin(), facet.vertices.end());
   return facet;
 }
@@ -192,8 +193,8 @@ void ViewBuilder<D>::collect_open_facets() {
       const std::uint32_t other = simplex.neighbours[i];
       if (marks_[other] == Mark::kBorder) continue;
       const auto& back = view.simplices[other].neighbours;
-      const auto place = std::find(back.begin(), back.end(), s) - back.begin();
-      const OpenFacet facet = facet_of(other, static_cast<int>(place));
+      const auto corner = std::find(back.begin(), back.end(), s) - back.begin();
+      const OpenFacet facet = facet_of(other, static_cast<int>(corner));
       if (has_own_vertex(facet.vertices)) open_facets_.push_back(facet);
     }
   }
@@ -218,8 +219,8 @@ ItemsByRank<NeighbourUpdate<D>> ViewBuilder<D>::link() {
     const OpenFacet& a = open_facets_[f];
     const OpenFacet& b = open_facets_[f + 1];
     if (a.vertices != b.vertices) continue;
-    view.simplices[a.simplex].neighbours[a.place] = b.simplex;
-    view.simplices[b.simplex].neighbours[b.place] = a.simplex;
+    view.simplices[a.simplex].neighbours[a.corner] = b.simplex;
+    view.simplices[b.simplex].neighbours[b.corner] = a.simplex;
     if (is_new(a.simplex) || is_new(b.simplex)) {
       tell(a, b, updates);
       tell(b, a, updates);
@@ -238,9 +239,9 @@ ItemsByRank<NeighbourUpdate<D>> ViewBuilder<D>::link() {
 template <int D>
 void ViewBuilder<D>::tell(const OpenFacet& facet, const OpenFacet& other,
                           ItemsByRank<NeighbourUpdate<D>>& updates) const {
-  const Place here = name_of(view.simplices[facet.simplex].vertices[facet.place]);
+  const RankIndex here = name_of(view.simplices[facet.simplex].vertices[facet.corner]);
   if (here == kInfiniteName) return;
-  const VertexId beyond = view.simplices[other.simplex].vertices[other.place];
+  const VertexId beyond = view.simplices[other.simplex].vertices[other.corner];
   NeighbourUpdate<D> update{{}, here, {{}, name_of(beyond)}};
   if (update.beyond.name.rank == here.rank) return;
   if (beyond != kInfiniteVertex) update.beyond.position = view.points[beyond];
@@ -248,7 +249,7 @@ void ViewBuilder<D>::tell(const OpenFacet& facet, const OpenFacet& other,
     update.facet[i] = name_of(facet.vertices[i]);
     if (update.facet[i].rank == here.rank) return;
   }
-  const Place teller = *std::min_element(update.facet.begin(), update.facet.end());
+  const RankIndex teller = *std::min_element(update.facet.begin(), update.facet.end());
   if (teller.rank != static_cast<std::uint32_t>(rank_)) return;
   updates[static_cast<int>(here.rank)].push_back(update);
 }
@@ -262,10 +263,10 @@ void ViewBuilder<D>::apply(const ItemsByRank<NeighbourUpdate<D>>& updates) {
       std::sort(facet.vertices.begin(), facet.vertices.end());
       const auto found = std::lower_bound(open_facets_.begin(), open_facets_.end(), facet);
       if (found == open_facets_.end() || found->vertices != facet.vertices ||
-          view.simplices[found->simplex].vertices[found->place] != vertex_named(update.here)) {
+          view.simplices[found->simplex].vertices[found->corner] != vertex_named(update.here)) {
         throw std::logic_error("merge of views: news of the neighbour of an unknown simplex");
       }
-      view.simplices[found->simplex].neighbours[found->place] =
+      view.simplices[found->simplex].neighbours[found->corner] =
           View<D>::elsewhere(add_vertex(update.beyond));
     }
   }
@@ -276,9 +277,9 @@ template <int D>
 void ViewBuilder<D>::check_linked() const {
   for (const OpenFacet& facet : open_facets_) {
     const Simplex<D>& simplex = view.simplices[facet.simplex];
-    const std::uint32_t n = simplex.neighbours[facet.place];
-    if (n == SimplexBlock<D>::kUnlinked ||
-        (View<D>::local(simplex, facet.place) && is_removed(n))) {
+    const std::uint32_t n = simplex.neighbours[facet.corner];
+    if (n == SimplexList<D>::kUnlinked ||
+        (View<D>::local(simplex, facet.corner) && is_removed(n))) {
       throw std::logic_error("merge of views: a simplex has no neighbour across one of its facets");
     }
   }

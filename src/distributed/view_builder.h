@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "src/delaunay/finality.h"
 #include "src/delaunay/common/triangulation.h"
+#include "src/delaunay/finality.h"
 #include "src/distributed/halving.h"
 #include "src/distributed/items.h"
 #include "src/distributed/view.h"
@@ -16,7 +16,7 @@
 namespace spillway::detail::distributed {
 
 /// The name of the infinite vertex.
-inline constexpr Place kInfiniteName{~0U, ~0U};
+inline constexpr RankIndex kInfiniteName{~0U, ~0U};
 
 /// The boxes of some ranks, as a tree for ConflictRegion::may_meet_leaf.
 template <int D>
@@ -29,14 +29,14 @@ BoxTree<D> tree_of_boxes(std::span<const Box<D>> boxes);
 
 /// A simplex across ranks: the names of its vertices, positively oriented.
 template <int D>
-using NamedSimplex = std::array<Place, D + 1>;
+using NamedSimplex = std::array<RankIndex, D + 1>;
 
 /// Tells the owner of vertex `here` that its simplex of that vertex and the facet has a new
 /// neighbour across the facet.
 template <int D>
 struct NeighbourUpdate {
-  std::array<Place, D> facet;
-  Place here;
+  std::array<RankIndex, D> facet;
+  RankIndex here;
   NamedPoint<D> beyond;  ///< the neighbour's other vertex; its position means nothing if infinite
 };
 
@@ -50,7 +50,7 @@ class ViewBuilder {
   /// among them. The search starts at simplices that are infinite or have vertices elsewhere:
   /// what a point destroys is connected to the hull through facets, and no such path leaves or
   /// enters a view but by a simplex with vertices elsewhere.
-  std::vector<Place> find_border(const BoxTree<D>& others);
+  std::vector<RankIndex> find_border(const BoxTree<D>& others);
 
   /// Takes over, of the simplices of the border's triangulation that have an own vertex, those that
   /// span the groups, and those of the own group that the view has, facing the same way; or all of
@@ -84,17 +84,17 @@ class ViewBuilder {
   struct OpenFacet {
     Facet vertices;  ///< sorted
     std::uint32_t simplex;
-    int place;  ///< of the simplex's vertex opposite
+    int corner;  ///< of the simplex's vertex opposite
     bool operator<(const OpenFacet& other) const { return vertices < other.vertices; }
   };
 
-  [[nodiscard]] VertexId vertex_named(Place name) const;
+  [[nodiscard]] VertexId vertex_named(RankIndex name) const;
   VertexId add_vertex(const NamedPoint<D>& point);
-  [[nodiscard]] Place name_of(VertexId v) const {
+  [[nodiscard]] RankIndex name_of(VertexId v) const {
     return v == kInfiniteVertex ? kInfiniteName : view.names[v];
   }
   [[nodiscard]] bool is_own(VertexId v) const { return v < view.own; }
-  [[nodiscard]] OpenFacet facet_of(std::uint32_t simplex, int place) const;
+  [[nodiscard]] OpenFacet facet_of(std::uint32_t simplex, int corner) const;
   [[nodiscard]] bool has_own_vertex(const Facet& facet) const;
   [[nodiscard]] bool is_new(std::uint32_t simplex) const { return simplex >= first_new_; }
   [[nodiscard]] bool is_removed(std::uint32_t simplex) const {

@@ -24,7 +24,7 @@ constexpr std::int64_t kRiverPeriod = 1536;  // metres of x from river to river
 constexpr float kRiverHalfWidth = 8;
 constexpr float kRiverBank = 30;
 
-constexpr std::int64_t kBlock = 32;  // one building at most in a square of this side
+constexpr std::int64_t kPlot = 32;  // one building at most in a square of this side
 constexpr std::uint32_t kChances = 256;
 
 float smooth_step(float low, float high, float x) {
@@ -110,7 +110,7 @@ void Relief::survey(std::int64_t x, std::int64_t y, std::span<float> ground,
 
 void Relief::rasterise(std::int64_t y, std::size_t slot) {
   // The single points that these two survey use the buffers too.
-  if (y / kBlock != building_row_) build(y / kBlock);
+  if (y / kPlot != building_row_) build(y / kPlot);
   for (Plantation& p : plantations_) {
     if (y / p.spacing != p.row) plant(p, y / p.spacing);
   }
@@ -129,11 +129,11 @@ void Relief::rasterise(std::int64_t y, std::size_t slot) {
 void Relief::build(std::int64_t row) {
   building_row_ = row;
   buildings_.clear();
-  const std::int64_t last = (first_ + static_cast<std::int64_t>(columns_) - 1) / kBlock;
-  for (std::int64_t column = first_ / kBlock; column <= last; ++column) {
+  const std::int64_t last = (first_ + static_cast<std::int64_t>(columns_) - 1) / kPlot;
+  for (std::int64_t column = first_ / kPlot; column <= last; ++column) {
     const std::uint64_t hash = hash_of_square(seed_ + 10, column, row);
-    const std::int64_t centre_x = column * kBlock + kBlock / 2;
-    const std::int64_t centre_y = row * kBlock + kBlock / 2;
+    const std::int64_t centre_x = column * kPlot + kPlot / 2;
+    const std::int64_t centre_y = row * kPlot + kPlot / 2;
     const bool village = value(villages_, centre_x, centre_y) > 0.12F;
     if (hash % kChances >= (village ? 210U : 10U)) continue;
     float ground = 0;
@@ -144,8 +144,8 @@ void Relief::build(std::int64_t row) {
     Building b{};
     b.width = 8 + static_cast<std::int64_t>(14 * fraction(shape, 0));
     b.depth = 8 + static_cast<std::int64_t>(14 * fraction(shape, 1));
-    b.x = column * kBlock + 2 + static_cast<std::int64_t>(fraction(hash, 1) * 7);
-    b.y = row * kBlock + 2 + static_cast<std::int64_t>(fraction(hash, 2) * 7);
+    b.x = column * kPlot + 2 + static_cast<std::int64_t>(fraction(hash, 1) * 7);
+    b.y = row * kPlot + 2 + static_cast<std::int64_t>(fraction(hash, 2) * 7);
     b.eaves = ground + 4 + 9 * fraction(shape, 2);
     b.pitch = fraction(shape, 3) < 0.3F ? 0 : 0.3F + 0.5F * fraction(hash, 3);
     buildings_.push_back(b);

@@ -44,10 +44,12 @@ struct FlightPlan {
         std::max(least_pulses, static_cast<double>(count) / kPointsPerPulse) / kSwathPerDistance;
     side = std::max(kLeastSide, std::sqrt(pulses_per_area / kDensity));
     if (side > kLargestSide) {
-      throw Error(fmt::format(
-          "cannot make a terrain of {} points: its coordinates in centimetres would leave the "
-          "32-bit integers of LAS; ask for at most 10^15",
-          count));
+      throw Error(
+          fmt::format(
+              "cannot make a terrain of {} points: its coordinates in centimetres would leave the "
+              "32-bit integers of LAS; ask for at most 10^15",
+              count),
+          ErrorCode::kTooLarge);
     }
     const double density = pulses_per_area / (side * side);
     line_distance = side / std::max(3.0, std::floor(side / kLineDistance + 0.5));

@@ -49,8 +49,8 @@ class CommonScale {
 
   static Split split(double value) {
     if (!std::isfinite(value)) {
-      throw Error(
-          "a coordinate is not a finite number: predicates are defined on finite ones only");
+      throw Error("a coordinate is not a finite number: predicates are defined on finite ones only",
+                  ErrorCode::kInvalidArgument);
     }
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);

@@ -67,6 +67,18 @@ Box<D> whole_space() {
   return box;
 }
 
+/// What two boxes have in common; the empty box if that is nothing.
+template <int D>
+Box<D> common_part(const Box<D>& a, const Box<D>& b) {
+  Box<D> part;
+  for (int k = 0; k < D; ++k) {
+    part.lo[k] = std::max(a.lo[k], b.lo[k]);
+    part.hi[k] = std::min(a.hi[k], b.hi[k]);
+    if (part.lo[k] > part.hi[k]) return {};
+  }
+  return part;
+}
+
 /// Cuts `cell` back so that it has nothing in common with `other`, which lies apart from `box` on
 /// some axis, as the boxes of a division do.
 template <int D>

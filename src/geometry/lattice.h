@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "src/geometry/point.h"
+#include "src/geometry/framed_point.h"
 
 namespace spillway::detail {
 
@@ -19,7 +19,7 @@ struct Lattice {
   [[nodiscard]] double to_world(int axis, double integer) const {
     return integer * scale[axis] + offset[axis];
   }
-  [[nodiscard]] Point<3> to_world(const Point<3>& integers) const {
+  [[nodiscard]] WorldPoint to_world(const LatticePoint& integers) const {
     return {to_world(0, integers[0]), to_world(1, integers[1]), to_world(2, integers[2])};
   }
 
@@ -38,5 +38,10 @@ struct Lattice {
   /// integers is that of the scaled points.
   [[nodiscard]] bool isotropic(int dimensions) const;
 };
+
+/// A point of what has this lattice, or none, in output coordinates.
+inline WorldPoint in_world(const std::optional<Lattice>& lattice, const LatticePoint& point) {
+  return lattice ? lattice->to_world(point) : WorldPoint(point.numbers());
+}
 
 }  // namespace spillway::detail

@@ -8,8 +8,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "src/error.h"
-
 namespace spillway::detail {
 namespace {
 
@@ -19,20 +17,24 @@ bool is_exact_on(int axis, const Lattice& lattice, const Box<3>& integers, int d
   return axis < dimension ? lattice.keeps_apart(axis, lo, hi) : lattice.is_finite(axis, lo, hi);
 }
 
-[[noreturn]] void fail(const std::string& name, const Lattice& lattice, const Box<3>& integers,
-                       int axis, std::string_view remedy) {
-  const std::string map = fmt::format("{}: {} is an integer times {} plus {}", name, "xyz"[axis],
+/// What is wrong with the lattice, or "" if it is_exact().
+std::string fault_of(const Lattice& lattice, const Box<3>& integers, int dimension) {
+  if (integers.empty()) return "";
+  int axis = 0;
+  while (axis < 3 && is_exact_on(axis, lattice, integers, dimension)) ++axis;
+  if (axis == 3) return "";
+  const std::string map = fmt::format("{} is an integer times {} plus {}", "xyz"[axis],
                                       lattice.scale[axis], lattice.offset[axis]);
   const double at_lo = lattice.to_world(axis, integers.lo[axis]);
   const double at_hi = lattice.to_world(axis, integers.hi[axis]);
   if (!std::isfinite(at_hi - at_lo)) {
-    throw Error(fmt::format("{}, which is more than a number holds; {}", map, remedy));
+    return fmt::format("{}, which is more than a number holds", map);
   }
   const double far = std::max(std::abs(at_lo), std::abs(at_hi));
-  throw Error(fmt::format(
-      "{}, but numbers as large as {:.6g} are {:.3g} apart, so that neighbours would "
-      "become one point; {}",
-      map, far, std::nextafter(far, std::numeric_limits<double>::infinity()) - far, remedy));
+  return fmt::format(
+      "{}, but numbers as large as {:.6g} are {:.3g} apart, so that neighbours would become one "
+      "point",
+      map, far, std::nextafter(far, std::numeric_limits<double>::infinity()) - far);
 }
 
 }  // namespace
@@ -45,13 +47,19 @@ bool is_exact(const Lattice& lattice, const Box<3>& integers, int dimension) {
   return true;
 }
 
-void check_lattice(const std::string& name, const Lattice& lattice, const Box<3>& integers,
-                   int dimension, std::string_view remedy) {
-  if (integers.empty()) return;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!is_exact_on(axis, lattice, integers, dimension))
-      fail(name, lattice, integers, axis, remedy);
-  }
+void check_lattice(const FileSpot& where, const Lattice& lattice, const Box<3>& integers,
+                   int dimension) {
+  const std::string fault = fault_of(lattice, integers, dimension);
+  if (fault.empty()) return;
+  throw BadInput(where, fault +
+                            "; the header is corrupt, or the points need a larger scale or a "
+                            "smaller offset");
+}
+
+void check_lattice_to_write(const std::string& file, const Lattice& lattice, const Box<3>& integers,
+                            int dimension, Remedy remedy) {
+  const std::string fault = fault_of(lattice, integers, dimension);
+  if (!fault.empty()) throw CannotWrite(file, fault, ErrorCode::kInvalidArgument, {}, remedy);
 }
 
 double exact_up_to(const Lattice& lattice, int dimension) {
@@ -63,22 +71,16 @@ double exact_up_to(const Lattice& lattice, int dimension) {
 
 /// Without a comparison, so that several are looked at in one step: the bits of numbers are in the
 /// order of their sizes, and the sum reaches the highest bit if one is larger.
-bool any_beyond(std::span<const Point<3>> points, double most) {
+bool any_beyond(std::span<const LatticePoint> points, double most) {
   constexpr std::uint64_t kLargestBits = std::numeric_limits<std::int64_t>::max();
   const std::uint64_t up_to_highest = kLargestBits - std::bit_cast<std::uint64_t>(most);
   std::uint64_t sums = 0;
-  for (const Point<3>& point : points) {
+  for (const LatticePoint& point : points) {
     for (const double coordinate : point) {
       sums |= std::bit_cast<std::uint64_t>(std::abs(coordinate)) + up_to_highest;
     }
   }
   return sums > kLargestBits;
-}
-
-Box<3> box_around(std::span<const Point<3>> points) {
-  Box<3> box;
-  for (const Point<3>& point : points) box.expand(point);
-  return box;
 }
 
 Box<3> integers_of(const Lattice& lattice, const Box<3>& world) {

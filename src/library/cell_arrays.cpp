@@ -24,12 +24,12 @@ void lower_to(Index& number, Index value) {
 }
 
 template <typename T>
-BlockArray<T> joined(const std::vector<std::vector<T>>& pieces) {
+SlabArray<T> joined(const std::vector<std::vector<T>>& slices) {
   std::size_t size = 0;
-  for (const auto& piece : pieces) size += piece.size();
-  BlockArray<T> all(size);
+  for (const auto& slice : slices) size += slice.size();
+  SlabArray<T> all(size);
   T* next = all.begin();
-  for (const auto& piece : pieces) next = std::copy(piece.begin(), piece.end(), next);
+  for (const auto& slice : slices) next = std::copy(slice.begin(), slice.end(), next);
   return all;
 }
 
@@ -38,23 +38,23 @@ class Flattener {
  public:
   explicit Flattener(const Triangulation<D>& triangulation) : triangulation_(triangulation) {
     std::size_t slots = 0;
-    for (std::uint32_t b = 0; b < triangulation.blocks.size(); ++b) {
-      const std::size_t size = triangulation.blocks[b].simplices.size();
+    for (std::uint32_t b = 0; b < triangulation.lists.size(); ++b) {
+      const std::size_t size = triangulation.lists[b].simplices.size();
       first_slots_.push_back(slots);
       for (std::size_t begin = 0; begin < size; begin += kGrain) {
         ranges_.push_back({b, begin, std::min(size, begin + kGrain), 0});
       }
       slots += size;
     }
-    numbers_ = BlockArray<Index>(slots);
+    numbers_ = SlabArray<Index>(slots);
   }
 
   CellArrays<Index> flatten() && {
     number_cells();
-    arrays_.vertices = BlockArray<Index>(count_ * (D + 1));
-    arrays_.neighbours = BlockArray<Index>(count_ * (D + 1));
+    arrays_.vertices = SlabArray<Index>(count_ * (D + 1));
+    arrays_.neighbours = SlabArray<Index>(count_ * (D + 1));
     arrays_.vertex_cells =
-        BlockArray<Index>(triangulation_.points.size(), std::numeric_limits<Index>::max());
+        SlabArray<Index>(triangulation_.points.size(), std::numeric_limits<Index>::max());
     hull_facets_.resize(ranges_.size());
     hull_cells_.resize(ranges_.size());
     for_each_range([this](std::size_t r) { list_cells(r); });
@@ -67,9 +67,9 @@ class Flattener {
   }
 
  private:
-  /// Some simplices of a block; `first` is the number of the first finite one.
+  /// Some simplices of a list; `first` is the number of the first finite one.
   struct Range {
-    std::uint32_t block;
+    std::uint32_t list;
     std::size_t begin, end;
     std::size_t first;
   };
@@ -80,15 +80,15 @@ class Flattener {
   }
 
   [[nodiscard]] const Simplex<D>& simplex_at(const Range& range, std::size_t i) const {
-    return triangulation_.blocks[range.block].simplices[i];
+    return triangulation_.lists[range.list].simplices[i];
   }
 
   static bool is_cell(const Simplex<D>& simplex) {
     return !simplex.removed() && !simplex.infinite();
   }
 
-  [[nodiscard]] Index& number_of(std::uint32_t block, std::size_t i) {
-    return numbers_[first_slots_[block] + i];
+  [[nodiscard]] Index& number_of(std::uint32_t list, std::size_t i) {
+    return numbers_[first_slots_[list] + i];
   }
 
   void number_cells() {
@@ -103,7 +103,7 @@ class Flattener {
       const Range& range = ranges_[r];
       auto next = static_cast<Index>(range.first);
       for (std::size_t i = range.begin; i < range.end; ++i) {
-        number_of(range.block, i) = is_cell(simplex_at(range, i)) ? next++ : Index{-1};
+        number_of(range.list, i) = is_cell(simplex_at(range, i)) ? next++ : Index{-1};
       }
     });
   }
@@ -111,7 +111,7 @@ class Flattener {
   void list_cells(std::size_t r) {
     const Range& range = ranges_[r];
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      const Index cell = number_of(range.block, i);
+      const Index cell = number_of(range.list, i);
       if (cell < 0) continue;
       const Simplex<D>& simplex = simplex_at(range, i);
       const std::size_t first = static_cast<std::size_t>(cell) * (D + 1);
@@ -120,10 +120,10 @@ class Flattener {
         arrays_.vertices[first + k] = vertex;
         lower_to(arrays_.vertex_cells[vertex], cell);
       }
-      const SimplexId id{range.block, static_cast<std::uint32_t>(i)};
+      const SimplexId id{range.list, static_cast<std::uint32_t>(i)};
       for (int k = 0; k <= D; ++k) {
         const SimplexId neighbour = triangulation_.neighbour(id, k);
-        const Index number = number_of(neighbour.block, neighbour.index);
+        const Index number = number_of(neighbour.list, neighbour.index);
         arrays_.neighbours[first + k] = number;
         if (number >= 0) continue;
         hull_cells_[r].push_back(cell);
@@ -135,9 +135,9 @@ class Flattener {
   }
 
   const Triangulation<D>& triangulation_;
-  std::vector<std::size_t> first_slots_;  ///< by block
+  std::vector<std::size_t> first_slots_;  ///< by list
   std::vector<Range> ranges_;
-  BlockArray<Index> numbers_;  ///< of cells, by slot; -1 for infinite and removed simplices
+  SlabArray<Index> numbers_;  ///< of cells, by slot; -1 for infinite and removed simplices
   std::size_t count_ = 0;
   CellArrays<Index> arrays_;
   std::vector<std::vector<Index>> hull_facets_, hull_cells_;  ///< by range

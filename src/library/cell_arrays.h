@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "src/delaunay/common/block_array.h"
+#include "src/delaunay/common/slab_array.h"
 #include "src/delaunay/common/triangulation.h"
 
 namespace spillway::detail {
@@ -14,19 +14,19 @@ namespace spillway::detail {
 /// alone. The members are what the functions of the same names of spillway::Delaunay return.
 template <class Index>
 struct CellArrays {
-  BlockArray<Index> vertices;
-  BlockArray<Index> neighbours;
-  BlockArray<Index> hull_facets;
-  BlockArray<Index> hull_cells;
-  BlockArray<Index> vertex_cells;
+  SlabArray<Index> vertices;
+  SlabArray<Index> neighbours;
+  SlabArray<Index> hull_facets;
+  SlabArray<Index> hull_cells;
+  SlabArray<Index> vertex_cells;
 };
 
 template <typename T>
-std::span<const T> span_of(const BlockArray<T>& array) {
+std::span<const T> span_of(const SlabArray<T>& array) {
   return {array.data(), array.size()};
 }
 
-/// Cells are numbered in the order of the triangulation's blocks, which does not depend on threads.
+/// Cells are numbered in the order of the triangulation's lists, which does not depend on threads.
 /// An Index must be able to number them. Made by the threads of with_threads().
 template <int D, class Index>
 CellArrays<Index> make_cell_arrays(const Triangulation<D>& triangulation);

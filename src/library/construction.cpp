@@ -27,8 +27,8 @@ constexpr std::size_t kMostNumbers = static_cast<std::size_t>(std::numeric_limit
 
 /// A copy of the points; throws unless all are finite. Made by all threads.
 template <int D>
-BlockArray<Point<D>> copy_finite(const PointView<D>& points) {
-  BlockArray<Point<D>> copy(points.size());
+SlabArray<Point<D>> copy_finite(const PointView<D>& points) {
+  SlabArray<Point<D>> copy(points.size());
   std::atomic<std::size_t> bad = points.size();  // the first that is not finite
   parallel_for(points.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -107,7 +107,7 @@ std::vector<spillway::Duplicate<Index>> list_duplicates(const Triangulation<D>& 
   return duplicates;
 }
 
-/// Vertices are numbered along a curve, so that every so many of them are spread evenly.
+/// Vertices are numbered along a curve, so that every n-th of them together are spread evenly.
 template <int D, class Index>
 StartTree<D, Index> make_starts(const Triangulation<D>& triangulation,
                                 const CellArrays<Index>& cells) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "src/delaunay/common/block_array.h"
+#include "src/delaunay/common/slab_array.h"
 #include "src/library/cell_arrays.h"
 #include "src/library/mesh_view.h"
 #include "src/library/start_tree.h"
@@ -20,7 +20,7 @@ namespace spillway::detail {
 template <int D, class Index>
 struct MeshData {
   unsigned threads = 1;
-  BlockArray<Point<D>> points;
+  SlabArray<Point<D>> points;
   CellArrays<Index> cells;
   std::vector<spillway::Duplicate<Index>> duplicates;
   StartTree<D, Index> starts;

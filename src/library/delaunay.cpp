@@ -109,7 +109,7 @@ template <int D, class Index>
 Point<D> Delaunay<D, Index>::circumcentre(Index cell) const {
   if (cell < 0 || static_cast<std::size_t>(cell) >= cell_count()) {
     throw Error(ErrorCode::kInvalidArgument,
-                fmt::format("there is no cell {}: they number {}", cell, cell_count()));
+                fmt::format("there is no cell {}: the mesh has {}", cell, cell_count()));
   }
   const detail::FloatEnvironment environment;
   return detail::circumcentre<D>(mesh_->view().corners(cell));

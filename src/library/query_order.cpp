@@ -4,15 +4,15 @@
 #include <cmath>
 #include <vector>
 
-#include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/delaunay/common/working_memory.h"
+#include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/geometry/box.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::detail {
 namespace {
 
-/// So many places are sorted at a time.
+/// Places that are sorted at a time.
 constexpr std::size_t kBatch = std::size_t{1} << 21;
 /// A stretch begins with a search from afar, so it should not be too short.
 constexpr std::size_t kStretch = std::size_t{1} << 11;
@@ -79,7 +79,7 @@ void for_each_near(
   } else {
     with_threads(threads, work);
   }
-  release_kept_blocks();
+  release_kept_slabs();
 }
 
 template bool is_finite<2>(const Point<2>&);

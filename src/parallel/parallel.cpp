@@ -85,12 +85,14 @@ class HandedOver {
   void* group_;
 };
 
+/// Threads that start_threads() has made the library start, the caller's among them.
+std::atomic<unsigned> started = 1;
+
 /// Makes the library start this many threads now, one of which is the caller's. It would do so when
 /// it first has work for them; and if that failed in the midst of other work, it might wait for
 /// that forever.
 void start_threads(unsigned threads) {
   constexpr std::chrono::seconds kLongestWait{1};  // the library may have its reasons to give fewer
-  static std::atomic<unsigned> started = 1;
   if (threads <= started) return;
   struct {
     std::mutex mutex;
@@ -138,6 +140,10 @@ void with_threads(unsigned threads, const std::function<void()>& work) {
     start_threads(threads);
     work();
   });
+}
+
+void release_threads() {
+  if (started > 1 && ThreadDemand::release()) started = 1;
 }
 
 struct TaskGroup::Tasks {
@@ -199,9 +205,9 @@ void parallel_for(
 }
 
 void run_pipeline(std::size_t slots, const std::function<bool(std::size_t slot)>& source,
-                  std::span<const PipelineStage> stages) {
+                  std::span<const PipelineStep> steps) {
   std::size_t next = 0;
-  // The last stage frees slots in the order in which they are taken.
+  // The last step frees slots in the order in which they are taken.
   auto chain = tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
                                                    [&](tbb::flow_control& control) -> std::size_t {
                                                      tell_acquire(&handed_over);
@@ -210,14 +216,14 @@ void run_pipeline(std::size_t slots, const std::function<bool(std::size_t slot)>
                                                      if (!source(slot)) control.stop();
                                                      return slot;
                                                    });
-  for (const PipelineStage& stage : stages) {
+  for (const PipelineStep& step : steps) {
     chain =
         chain & tbb::make_filter<std::size_t, std::size_t>(
-                    stage.in_order ? tbb::filter_mode::serial_in_order : tbb::filter_mode::parallel,
+                    step.in_order ? tbb::filter_mode::serial_in_order : tbb::filter_mode::parallel,
                     [&](std::size_t slot) {
                       tell_acquire(&handed_over);
                       const ReleaseAtEnd release(&handed_over);
-                      stage.work(slot);
+                      step.work(slot);
                       return slot;
                     });
   }

@@ -20,6 +20,10 @@ unsigned available_threads();
 /// number.
 void with_threads(unsigned threads, const std::function<void()>& work);
 
+/// Ends the threads that with_threads() has started, unless some of them are at work, for whomever.
+/// For whoever has come to an end with all its calls.
+void release_threads();
+
 /// Tasks that run at the same time. Inside with_threads(1, ...), run() does the work at once.
 class TaskGroup {
  public:
@@ -57,16 +61,16 @@ void parallel_for(
     const std::function<void(std::size_t grain_number, std::size_t begin, std::size_t end)>& body);
 
 /// One step of a pipeline: does its work on the item in the slot of that number.
-struct PipelineStage {
+struct PipelineStep {
   bool in_order = false;  ///< one item at a time, in the order of the source; else many at once
   std::function<void(std::size_t slot)> work;
 };
 
-/// Sends items through stages that work at the same time on different items. `source` fills the
-/// slot it is given and returns whether it could; it is called in order, as is the last stage,
+/// Sends items through steps that work at the same time on different items. `source` fills the
+/// slot it is given and returns whether it could; it is called in order, as is the last step,
 /// which must be in_order. At most `slots` items are under way, so slot numbers are below that.
 void run_pipeline(std::size_t slots, const std::function<bool(std::size_t slot)>& source,
-                  std::span<const PipelineStage> stages);
+                  std::span<const PipelineStep> steps);
 
 /// Works off a set of items that grows as it is worked on: calls body(items, found) for batches of
 /// items, each thread pushing what it finds to its own `found`, until nothing is left. Batches keep

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <set>
 #include <utility>
 
@@ -23,6 +24,13 @@ class Demands {
     const std::lock_guard lock(mutex_);
     threads_.insert(threads);
     set_limit(lock);
+  }
+
+  bool release() {
+    const std::lock_guard lock(mutex_);  // nobody begins meanwhile
+    if (!threads_.empty()) return false;
+    tbb::task_scheduler_handle scheduler{tbb::attach{}};
+    return tbb::finalize(scheduler, std::nothrow);
   }
 
   void remove(unsigned threads) {
@@ -60,6 +68,8 @@ Demands& demands() {
 ThreadDemand::ThreadDemand(unsigned threads) : threads_(threads) { demands().add(threads); }
 
 ThreadDemand::~ThreadDemand() { demands().remove(threads_); }
+
+bool ThreadDemand::release() { return demands().release(); }
 
 unsigned ThreadDemand::limit() {
   return static_cast<unsigned>(tbb::global_control::active_value(kParallelism));

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "src/picture/picture.h"
-#include "src/terrain/surface.h"
+#include "src/terrain/pixel_values.h"
 
 namespace spillway::detail {
 

@@ -5,7 +5,7 @@
 namespace spillway::detail {
 namespace {
 
-Point<2> crossing(const Point<3>* a, const Point<3>* b, const AxisPlane& plane) {
+Point<2> crossing(const Point<3>* a, const Point<3>* b, const Slice& plane) {
   if (*b < *a) std::swap(a, b);
   const int axis = plane.axis;
   if ((*b)[axis] == plane.value) std::swap(a, b);
@@ -19,7 +19,7 @@ Point<2> crossing(const Point<3>* a, const Point<3>* b, const AxisPlane& plane) 
 
 }  // namespace
 
-PlaneCut cut(const std::array<Point<3>, 4>& tetrahedron, const AxisPlane& plane) {
+PlaneCut cut(const std::array<Point<3>, 4>& tetrahedron, const Slice& plane) {
   std::array<const Point<3>*, 4> below{};
   std::array<const Point<3>*, 4> above{};
   int count_below = 0;

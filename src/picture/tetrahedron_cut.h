@@ -1,16 +1,12 @@
 #pragma once
 
+#include <spillway/choices.h>
+
 #include <array>
 
 #include "src/geometry/point.h"
 
 namespace spillway::detail {
-
-/// A plane on which one coordinate is the same everywhere.
-struct AxisPlane {
-  int axis = 2;
-  double value = 0;
-};
 
 /// Where a plane cuts a tetrahedron: a convex polygon, corners in turn, by the two other
 /// coordinates in their order.
@@ -21,6 +17,6 @@ struct PlaneCut {
 
 /// A corner on the plane counts as above it, so that a face on the plane is cut from one of its two
 /// tetrahedra. A cut's corner depends on nothing but the edge it lies on.
-PlaneCut cut(const std::array<Point<3>, 4>& tetrahedron, const AxisPlane& plane);
+PlaneCut cut(const std::array<Point<3>, 4>& tetrahedron, const Slice& plane);
 
 }  // namespace spillway::detail

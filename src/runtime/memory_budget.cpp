@@ -50,7 +50,7 @@ std::uint64_t parse_memory_size(const std::string& text) {
       (power > 0 && (name.size() == 1 || name.substr(1) == "B" || name.substr(1) == "IB"));
   const double bytes = name == "B" ? number : std::ldexp(number, static_cast<int>(10 * power));
   if (fault != std::errc() || !known || !(bytes >= 1) || bytes > 0x1p62) {
-    throw InvalidArgument(fmt::format("\"{}\" is no size; write it as 512M or 2G", text));
+    throw InvalidArgument(fmt::format("\"{}\" is not a size; write it as 512M or 2G", text));
   }
   return static_cast<std::uint64_t>(bytes);
 }

@@ -49,8 +49,8 @@ class MemoryBudget {
 class MemoryLease {
  public:
   MemoryLease() = default;
-  /// Throws Error (kOutOfBudget) if the budget has not so much left, with the purpose, a limit that
-  /// may be enough and, where it is known, one that is.
+  /// Throws Error (kOutOfBudget) if the budget has not that much left, with the purpose, a limit
+  /// that may be enough and, where it is known, one that is.
   MemoryLease(MemoryBudget& budget, std::uint64_t bytes, const char* purpose)
       : budget_(&budget), bytes_(bytes) {
     budget.take(bytes, purpose);

@@ -47,7 +47,7 @@ Levels Levels::every(double interval, double base) {
 Levels Levels::of_list(std::vector<double> heights) {
   const auto finite = [](double height) { return std::isfinite(height); };
   if (heights.empty() || !std::all_of(heights.begin(), heights.end(), finite)) {
-    throw InvalidArgument("a list of levels has one finite number at least");
+    throw InvalidArgument("a list of levels needs at least one finite number");
   }
   Levels levels;
   levels.list_ = std::move(heights);
@@ -68,10 +68,10 @@ std::int64_t Levels::first_above(double low) const {
   }
   const double estimate = std::floor((low - base_) / interval_);
   if (!(std::abs(estimate) < kLargestNumber)) {
-    throw Error(
-        fmt::format("the height {} is too far from level {} for an interval of {}: choose "
-                    "a larger one",
-                    low, base_, interval_));
+    throw Error(fmt::format("the height {} is too far from level {} for an interval of {}: choose "
+                            "a larger one",
+                            low, base_, interval_),
+                ErrorCode::kInvalidArgument);
   }
   // The quotient is rounded, so the number is found by the levels themselves.
   auto number = static_cast<std::int64_t>(estimate) - 1;
@@ -80,7 +80,8 @@ std::int64_t Levels::first_above(double low) const {
       throw Error(
           fmt::format("{} is too small an interval: at height {} its levels cannot be told apart; "
                       "choose a larger one",
-                      interval_, low));
+                      interval_, low),
+          ErrorCode::kInvalidArgument);
     }
   }
   return number;
@@ -97,10 +98,10 @@ void append_segments(const std::array<Corner, 3>& corners, const Levels& levels,
       std::minmax({corners[0].point[2], corners[1].point[2], corners[2].point[2]});
   const Levels::Range range = levels.between(low, high);
   if (range.end - range.first > kMostInTriangle) {
-    throw Error(
-        fmt::format("a single triangle, from height {} to {}, crosses {} levels: choose a "
-                    "larger interval",
-                    low, high, range.end - range.first));
+    throw Error(fmt::format("a single triangle, from height {} to {}, crosses {} levels: choose a "
+                            "larger interval",
+                            low, high, range.end - range.first),
+                ErrorCode::kInvalidArgument);
   }
   for (std::int64_t level = range.first; level < range.end; ++level) {
     const double height = levels.height(level);

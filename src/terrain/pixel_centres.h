@@ -45,10 +45,10 @@ class PixelCentres {
   }
 
  private:
-  static std::uint32_t estimate(double place, std::size_t count) {
-    if (!(place > 0)) return 0;
-    return place < static_cast<double>(count) ? static_cast<std::uint32_t>(place)
-                                              : static_cast<std::uint32_t>(count);
+  static std::uint32_t estimate(double position, std::size_t count) {
+    if (!(position > 0)) return 0;
+    return position < static_cast<double>(count) ? static_cast<std::uint32_t>(position)
+                                                 : static_cast<std::uint32_t>(count);
   }
 
   std::vector<double> x_;

@@ -43,10 +43,11 @@ int side(const Point<3>& a, const Point<3>& b, double x, double y) {
 
 constexpr std::array<std::array<int, 2>, 3> kEdges = {{{0, 1}, {0, 2}, {1, 2}}};
 
-/// Which of kEdges a centre lies on, as bits, and what place that is; 0 edges: inside.
-constexpr std::array<PixelPlace, 7> kPlaceOfEdges = {
-    PixelPlace::kInside, PixelPlace::kEdge01,  PixelPlace::kEdge02, PixelPlace::kCorner0,
-    PixelPlace::kEdge12, PixelPlace::kCorner1, PixelPlace::kCorner2};
+/// Which of kEdges a centre lies on, as bits, and what relation that is; 0 edges: inside.
+constexpr std::array<PixelRelation, 7> kRelationOfEdges = {
+    PixelRelation::kInside,  PixelRelation::kEdge01, PixelRelation::kEdge02,
+    PixelRelation::kCorner0, PixelRelation::kEdge12, PixelRelation::kCorner1,
+    PixelRelation::kCorner2};
 
 class Scan {
  public:
@@ -124,7 +125,7 @@ class Scan {
       const int moved = to[1] > from[1] ? -1 : 1;
       owned = owned && moved == inside;
     }
-    runs_.push_back({row, column, column + 1, kPlaceOfEdges[on_edges], owned});
+    runs_.push_back({row, column, column + 1, kRelationOfEdges[on_edges], owned});
   }
 
   const PixelCentres& centres_;
@@ -148,18 +149,18 @@ Triangle in_canonical_order(const Triangle& triangle) {
   return sorted;
 }
 
-VertexPlace place_of(const PixelCentres& centres, const Point<3>& vertex) {
-  VertexPlace place;
-  place.column_begin = place.column_end = centres.first_column(vertex[0]);
-  place.row_begin = place.row_end = centres.first_row(vertex[1]);
+CentreWindow centres_around(const PixelCentres& centres, const Point<3>& vertex) {
+  CentreWindow window;
+  window.column_begin = window.column_end = centres.first_column(vertex[0]);
+  window.row_begin = window.row_end = centres.first_row(vertex[1]);
   // Centres are distinct: at most one is at the vertex.
-  if (place.column_end < centres.x().size() && centres.x()[place.column_end] == vertex[0]) {
-    ++place.column_end;
+  if (window.column_end < centres.x().size() && centres.x()[window.column_end] == vertex[0]) {
+    ++window.column_end;
   }
-  if (place.row_end < centres.y().size() && centres.y()[place.row_end] == vertex[1]) {
-    ++place.row_end;
+  if (window.row_end < centres.y().size() && centres.y()[window.row_end] == vertex[1]) {
+    ++window.row_end;
   }
-  return place;
+  return window;
 }
 
 void find_pixels(const PixelCentres& centres, const Triangle& canonical, const PixelWindow& window,

@@ -19,7 +19,7 @@ using Triangle = std::array<Point<3>, 3>;
 Triangle in_canonical_order(const Triangle& triangle);
 
 /// Where in a triangle a centre lies, its corners being in canonical order.
-enum class PixelPlace : std::uint8_t {
+enum class PixelRelation : std::uint8_t {
   kInside,
   kEdge01,
   kEdge02,
@@ -34,7 +34,7 @@ struct PixelRun {
   std::uint32_t row = 0;
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
-  PixelPlace place = PixelPlace::kInside;
+  PixelRelation relation = PixelRelation::kInside;
   /// Whether the triangle owns these pixels. A centre inside a triangulation, on a common edge or
   /// vertex too, has exactly one owner: the triangle that it lies in when moved east by nearly
   /// nothing, and north by nearly nothing of that. One on the hull may have none.
@@ -53,18 +53,18 @@ struct PixelWindow {
 
 /// Where a point lies among the centres: the first column not west of it and the first east of it,
 /// the first row not north of it and the first south of it.
-struct VertexPlace {
+struct CentreWindow {
   std::uint32_t column_begin = 0;
   std::uint32_t column_end = 0;
   std::uint32_t row_begin = 0;
   std::uint32_t row_end = 0;
 };
 
-VertexPlace place_of(const PixelCentres& centres, const Point<3>& vertex);
+CentreWindow centres_around(const PixelCentres& centres, const Point<3>& vertex);
 
 /// The window of all centres in the closed box around three vertices. Most triangles of a fine mesh
 /// have none, so this is what has to be quick.
-inline PixelWindow window_of(const VertexPlace& a, const VertexPlace& b, const VertexPlace& c) {
+inline PixelWindow window_of(const CentreWindow& a, const CentreWindow& b, const CentreWindow& c) {
   return {std::min({a.row_begin, b.row_begin, c.row_begin}),
           std::max({a.row_end, b.row_end, c.row_end}),
           std::min({a.column_begin, b.column_begin, c.column_begin}),

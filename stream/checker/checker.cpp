@@ -14,7 +14,8 @@ namespace {
 void require_dimension(int dimension) {
   if (dimension != 2 && dimension != 3) {
     throw Error(
-        fmt::format("a mesh of dimension {} cannot be checked: only 2 and 3 can", dimension));
+        fmt::format("a mesh of dimension {} cannot be checked: only 2 and 3 can", dimension),
+        ErrorCode::kInvalidArgument);
   }
 }
 
@@ -34,7 +35,8 @@ std::uint64_t hash_of(const Mesh& mesh) {
       const std::uint64_t vertex = mesh.corners[s + i];
       if (vertex >= mesh.vertices.size()) {
         throw Error(fmt::format("{} {} names vertex {}, but the mesh has {} vertices",
-                                Words<D>::kSimplex, s / (D + 1), vertex, mesh.vertices.size()));
+                                Words<D>::kSimplex, s / (D + 1), vertex, mesh.vertices.size()),
+                    ErrorCode::kBadInput, {.place = at_record(s / (D + 1))});
       }
       simplex[i] = output_point<D>(mesh.vertices[vertex]);
     }

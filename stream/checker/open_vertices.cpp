@@ -19,9 +19,10 @@ void OpenVertices<D>::enter(const MeshBlock& block, std::vector<Point<D>>& point
     const std::uint32_t* const slot = importable_.find(number);
     if (slot == nullptr) {
       throw Error(
-          fmt::format("the mesh stream uses vertex {}, which has not come yet or comes no "
-                      "more; write the file again",
-                      number));
+          fmt::format("the mesh stream uses vertex {}, which has not come yet or is finalized; "
+                      "write the file again",
+                      number),
+          ErrorCode::kBadInput, {.place = at_record(number)});
     }
     slots.push_back(*slot);
     points.push_back(vertices_[*slot].point);
@@ -34,7 +35,8 @@ std::uint32_t OpenVertices<D>::add(const Point<D>& point, std::uint64_t number) 
   if (free_.empty()) {
     if (vertices_.size() > std::numeric_limits<std::uint32_t>::max()) {
       throw Error(fmt::format("the mesh stream has {} vertices open at a time, too many to check",
-                              vertices_.size()));
+                              vertices_.size()),
+                  ErrorCode::kTooLarge);
     }
     free_.push_back(static_cast<std::uint32_t>(vertices_.size()));
     vertices_.emplace_back();
@@ -50,7 +52,8 @@ void OpenVertices<D>::finalize(std::uint32_t slot) {
   Vertex& vertex = vertices_[slot];
   if (vertex.finalized) {
     throw Error(fmt::format("the mesh stream finalizes vertex {} twice; write the file again",
-                            vertex.number));
+                            vertex.number),
+                ErrorCode::kBadInput, {.place = at_record(vertex.number)});
   }
   vertex.finalized = true;
   if (vertex.holders == 0) free_.push_back(slot);

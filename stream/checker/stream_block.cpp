@@ -11,10 +11,12 @@ template <int D>
 void StreamBlock<D>::examine(const StreamCoordinates<D>& coordinates, const CheckOptions& options,
                              StreamTask task) {
   if (block.corners.size() >= kMatched || block.corners.size() % (D + 1) != 0) {
-    throw Error(fmt::format("a block of the mesh stream lists {} corners, which is {}",
-                            block.corners.size(),
-                            block.corners.size() >= kMatched ? "more than can be checked"
-                                                             : "no whole number of simplices"));
+    const bool too_many = block.corners.size() >= kMatched;
+    throw Error(
+        fmt::format(
+            "a block of the mesh stream lists {} corners, which {}", block.corners.size(),
+            too_many ? "are more than can be checked" : "make no whole number of simplices"),
+        too_many ? ErrorCode::kTooLarge : ErrorCode::kBadInput);
   }
   found = {};
   examine_simplices(coordinates, options, task);

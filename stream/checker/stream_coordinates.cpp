@@ -13,7 +13,7 @@ StreamCoordinates<D>::StreamCoordinates(const MeshStreamHeader& header,
       on_lattice_(lattice_ && lattice_->isotropic(D)) {}
 
 template <int D>
-int StreamCoordinates<D>::axis_off_lattice(const Point<3>& in_block) const {
+int StreamCoordinates<D>::axis_off_lattice(const LatticePoint& in_block) const {
   if (!lattice_) return -1;
   for (int k = 0; k < D; ++k) {
     const bool is_on = blocks_hold_integers_ ? in_block[k] == std::trunc(in_block[k])
@@ -24,7 +24,7 @@ int StreamCoordinates<D>::axis_off_lattice(const Point<3>& in_block) const {
 }
 
 template <int D>
-Point<D> StreamCoordinates<D>::for_predicates(const Point<3>& in_block) const {
+Point<D> StreamCoordinates<D>::for_predicates(const LatticePoint& in_block) const {
   Point<D> point;
   std::copy_n(in_block.begin(), D, point.begin());
   if (blocks_hold_integers_ == on_lattice_) return point;

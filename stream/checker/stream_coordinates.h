@@ -24,17 +24,17 @@ class StreamCoordinates {
   [[nodiscard]] bool on_lattice() const { return on_lattice_; }
 
   /// The first axis in which a vertex as it stands in a block is off the lattice, or -1.
-  [[nodiscard]] int axis_off_lattice(const Point<3>& in_block) const;
+  [[nodiscard]] int axis_off_lattice(const LatticePoint& in_block) const;
 
   /// What predicates run on, of a vertex as it stands in a block; rounded if it is off the lattice.
-  [[nodiscard]] Point<D> for_predicates(const Point<3>& in_block) const;
+  [[nodiscard]] Point<D> for_predicates(const LatticePoint& in_block) const;
 
   /// Output coordinates of what for_predicates() gave.
   [[nodiscard]] Point<D> to_output(const Point<D>& point) const;
 
   /// All output coordinates of a vertex as it stands in a block.
-  [[nodiscard]] Point<3> block_to_output(const Point<3>& in_block) const {
-    return blocks_hold_integers_ ? lattice_->to_world(in_block) : in_block;
+  [[nodiscard]] WorldPoint block_to_output(const LatticePoint& in_block) const {
+    return blocks_hold_integers_ ? lattice_->to_world(in_block) : WorldPoint(in_block.numbers());
   }
 
  private:

@@ -107,7 +107,7 @@ class StreamProof {
     block.first_simplex = simplices_entered_;
     simplices_entered_ += block.simplices();
     block.points.clear();
-    for (const Point<3>& vertex : mesh.vertices) {
+    for (const LatticePoint& vertex : mesh.vertices) {
       const Point<D> point = coordinates_.for_predicates(vertex);
       const int axis = coordinates_.axis_off_lattice(vertex);
       if (axis >= 0) report_off_lattice(block.first_vertex + block.points.size(), vertex, axis);
@@ -117,7 +117,7 @@ class StreamProof {
     vertices_.enter(mesh, block.points, block.slots);
   }
 
-  void report_off_lattice(std::uint64_t number, const Point<3>& vertex, int axis) {
+  void report_off_lattice(std::uint64_t number, const LatticePoint& vertex, int axis) {
     if (task_ == StreamTask::kCount) return;
     ++report_.off_lattice;
     const Lattice& lattice = *coordinates_.lattice();

@@ -54,16 +54,6 @@ void take_mean(std::span<const Duplicate> duplicates, std::span<VertexId> input_
 
 }  // namespace
 
-const std::vector<std::string>& height_choice_names() {
-  static const std::vector<std::string> names = {"first", "lowest", "highest", "mean"};
-  return names;
-}
-
-HeightChoice height_choice_by_name(const std::string& name) {
-  const auto& names = height_choice_names();
-  return static_cast<HeightChoice>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
 void keep_first(std::span<const Duplicate> duplicates, std::span<VertexId> input_index,
                 std::span<const std::uint64_t> order) {
   if (order.empty()) return;
@@ -74,20 +64,20 @@ void keep_first(std::span<const Duplicate> duplicates, std::span<VertexId> input
   }
 }
 
-void choose_heights(std::span<const Duplicate> duplicates, HeightChoice choice,
+void choose_heights(std::span<const Duplicate> duplicates, Heights choice,
                     std::span<VertexId> input_index, std::span<double> heights,
                     std::span<const std::uint64_t> order) {
   switch (choice) {
-    case HeightChoice::kFirst:
+    case Heights::kFirst:
       keep_first(duplicates, input_index, order);
       break;
-    case HeightChoice::kLowest:
+    case Heights::kLowest:
       take_extreme(duplicates, 1, input_index, heights, order);
       break;
-    case HeightChoice::kHighest:
+    case Heights::kHighest:
       take_extreme(duplicates, -1, input_index, heights, order);
       break;
-    case HeightChoice::kMean:
+    case Heights::kMean:
       take_mean(duplicates, input_index, heights, order);
       break;
   }

@@ -1,22 +1,13 @@
 #pragma once
 
+#include <spillway/choices.h>
+
 #include <cstdint>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "src/delaunay/common/triangulation.h"
 
 namespace spillway::detail {
-
-/// Which z the vertex gets where several points have the same x and y.
-enum class HeightChoice { kFirst, kLowest, kHighest, kMean };
-
-/// The names --duplicates takes, in the order of the enumeration.
-const std::vector<std::string>& height_choice_names();
-
-/// The choice of that name, which must be one of height_choice_names().
-HeightChoice height_choice_by_name(const std::string& name);
 
 /// Makes the choice for the points of one base case, whose duplicates are given. `input_index` has
 /// each vertex's place in `heights`, which is z. For the lowest and the highest, the vertex takes
@@ -25,7 +16,7 @@ HeightChoice height_choice_by_name(const std::string& name);
 /// summed in ascending order, so that it does not depend on the order of the points.
 /// `order` has, by place in `heights`, numbers that ascend in the order of the input; none if the
 /// places do.
-void choose_heights(std::span<const Duplicate> duplicates, HeightChoice choice,
+void choose_heights(std::span<const Duplicate> duplicates, Heights choice,
                     std::span<VertexId> input_index, std::span<double> heights,
                     std::span<const std::uint64_t> order = {});
 

@@ -57,7 +57,7 @@ std::size_t share(std::uint64_t limit, double part, std::size_t bytes_each) {
 MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads) {
   const Costs& costs = costs_of(dimension);
   if (limit < costs.least_limit) {
-    throw InvalidArgument(
+    throw TooSmallLimit(
         fmt::format("the memory limit is too small: {} MiB are the least that will do{}",
                     costs.least_limit / kMiB, dimension == 3 ? " in three dimensions" : ""),
         {.perhaps = costs.least_limit, .remedy = Remedy::kMemory});

@@ -24,9 +24,9 @@
 #include "formats/meshes/spm/spm_reader.h"
 #include "formats/meshes/spooled_mesh_writer.h"
 #include "src/error.h"
+#include "stream/ranks/collective_step.h"
 #include "stream/ranks/part_files.h"
-#include "stream/ranks/stream_parts.h"
-#include "stream/ranks/together.h"
+#include "stream/ranks/stream_sections.h"
 
 namespace spillway::detail {
 namespace {
@@ -36,13 +36,13 @@ using distributed::Reduction;
 using distributed::SharedFile;
 
 /// Collects small pieces for a place in a shared file.
-class PlacedOutput {
+class OffsetOutput {
  public:
-  PlacedOutput(SharedFile& file, std::uint64_t offset) : file_(file), offset_(offset) {
-    buffer_.resize(kOutputPiece);
+  OffsetOutput(SharedFile& file, std::uint64_t offset) : file_(file), offset_(offset) {
+    buffer_.resize(kOutputChunk);
   }
 
-  /// Room for a piece, to be filled and then counted by advance_to().
+  /// Room for a chunk, to be filled and then counted by advance_to().
   std::byte* reserve(std::size_t size) {
     if (buffer_.size() - used_ < size) flush();
     return buffer_.data() + used_;
@@ -73,14 +73,14 @@ class SharedMeshOutput : public MeshOutput {
         ranks_(ranks),
         created_(std::move(created)) {
     if (!created_) unfinished_.emplace(temporary_path);
-    do_together(ranks, [&] { file_.emplace(ranks, temporary_path, target_.path); });
+    run_collective_step(ranks, [&] { file_.emplace(ranks, temporary_path, target_.path); });
   }
 
   std::uint64_t finish(RankMesh& mesh) override {
-    do_together(ranks_, [&] { finish_spool(mesh); });
+    run_collective_step(ranks_, [&] { finish_spool(mesh); });
     const std::uint64_t bytes = target_.format == &kSpmMesh ? write_spm(mesh) : write_ply(mesh);
-    do_together(ranks_, [&] { file_->close(); });
-    do_together(ranks_, [&] {
+    run_collective_step(ranks_, [&] { file_->close(); });
+    run_collective_step(ranks_, [&] {
       if (created_) created_->commit();
     });
     return bytes;
@@ -88,19 +88,20 @@ class SharedMeshOutput : public MeshOutput {
 
  private:
   std::uint64_t write_spm(RankMesh& mesh) {
-    std::optional<StreamParts> parts;
-    do_together(ranks_, [&] { parts.emplace(spool_, mesh); });
-    const std::vector<std::uint64_t> sizes = parts->sizes(ranks_);
+    std::optional<StreamSections> sections;
+    run_collective_step(ranks_, [&] { sections.emplace(spool_, mesh); });
+    const std::vector<std::uint64_t> sizes = sections->sizes(ranks_);
     std::vector<std::byte> head = spm_head(spool_.header());
     ranks_.broadcast(head, 0);
     std::vector<std::uint64_t> begins = {head.size()};
     for (const std::uint64_t size : sizes) begins.push_back(begins.back() + size);
     const std::vector<std::byte> trailer = spm_trailer(mesh.totals);
-    do_together(ranks_, [&] {
-      std::vector<std::byte> piece;
-      for (const std::uint32_t part : parts->own()) {
-        for (std::uint64_t at = begins[part]; parts->next(part, piece); at += piece.size()) {
-          file_->write(at, piece);
+    run_collective_step(ranks_, [&] {
+      std::vector<std::byte> chunk;
+      for (const std::uint32_t section : sections->own()) {
+        for (std::uint64_t at = begins[section]; sections->next(section, chunk);
+             at += chunk.size()) {
+          file_->write(at, chunk);
         }
       }
       if (ranks_.rank() != 0) return;
@@ -112,7 +113,7 @@ class SharedMeshOutput : public MeshOutput {
 
   std::uint64_t write_ply(RankMesh& mesh) {
     std::vector<std::byte> head;
-    do_together(ranks_, [&] {
+    run_collective_step(ranks_, [&] {
       const std::string text =
           ply_header_text(header_of_mesh(spool_.header(), mesh.totals), false, target_.path);
       const std::span<const std::byte> bytes = as_bytes_of(text);
@@ -120,29 +121,30 @@ class SharedMeshOutput : public MeshOutput {
     });
     ranks_.broadcast(head, 0);
     const std::uint64_t simplices_at = head.size() + mesh.totals.vertices * vertex_size();
-    do_together(ranks_, [&] {
+    run_collective_step(ranks_, [&] {
       if (ranks_.rank() == 0) file_->write(0, head);
       std::vector<std::uint64_t> first_simplex = {0};
-      for (const StreamPart& part : mesh.parts) {
-        first_simplex.push_back(first_simplex.back() + part.simplices);
+      for (const StreamSection& section : mesh.sections) {
+        first_simplex.push_back(first_simplex.back() + section.simplices);
       }
-      const auto write_part = [&](std::uint32_t part, const auto& put_blocks) {
-        PlacedOutput vertices(*file_, head.size() + mesh.parts[part].first_vertex * vertex_size());
-        PlacedOutput simplices(*file_, simplices_at + first_simplex[part] * simplex_size());
+      const auto write_section = [&](std::uint32_t section, const auto& put_blocks) {
+        OffsetOutput vertices(*file_,
+                              head.size() + mesh.sections[section].first_vertex * vertex_size());
+        OffsetOutput simplices(*file_, simplices_at + first_simplex[section] * simplex_size());
         put_blocks(vertices, simplices);
         vertices.flush();
         simplices.flush();
       };
-      if (mesh.own_part) {
-        write_part(*mesh.own_part, [&](PlacedOutput& vertices, PlacedOutput& simplices) {
-          put_own_blocks(mesh.parts[*mesh.own_part].first_vertex, vertices, simplices);
+      if (mesh.own_section) {
+        write_section(*mesh.own_section, [&](OffsetOutput& vertices, OffsetOutput& simplices) {
+          put_own_blocks(mesh.sections[*mesh.own_section].first_vertex, vertices, simplices);
         });
       }
-      for (MergedPart& merged : mesh.merged) {
-        write_part(merged.part, [&](PlacedOutput& vertices, PlacedOutput& simplices) {
+      for (MergedSection& merged : mesh.merged) {
+        write_section(merged.section, [&](OffsetOutput& vertices, OffsetOutput& simplices) {
           as_spm_gives_it(merged.mesh);
           std::vector<std::uint64_t> corners;
-          append_stream_numbers(merged.mesh, mesh.parts[merged.part].first_vertex, corners);
+          append_stream_numbers(merged.mesh, mesh.sections[merged.section].first_vertex, corners);
           put_block(merged.mesh, corners, vertices, simplices);
         });
       }
@@ -151,8 +153,8 @@ class SharedMeshOutput : public MeshOutput {
     return simplices_at + mesh.totals.simplices * simplex_size();
   }
 
-  void put_own_blocks(std::uint64_t first_vertex, PlacedOutput& vertices,
-                      PlacedOutput& simplices) const {
+  void put_own_blocks(std::uint64_t first_vertex, OffsetOutput& vertices,
+                      OffsetOutput& simplices) const {
     const std::unique_ptr<MeshStreamReader> reader = spool_.open();
     MeshBlock block;
     std::vector<std::uint64_t> corners;
@@ -170,19 +172,18 @@ class SharedMeshOutput : public MeshOutput {
   void as_spm_gives_it(MeshBlock& block) const {
     std::vector<std::byte> content;
     append_spm_content(content, spool_.header(), block);
-    read_spm_content(content, spool_.header(), target_.path, block);
+    read_spm_content(content, spool_.header(), {.file = target_.path}, block);
   }
 
   /// Moves the block's vertices to output coordinates.
-  void put_block(MeshBlock& block, std::span<const std::uint64_t> corners, PlacedOutput& vertices,
-                 PlacedOutput& simplices) const {
-    move_to_world(spool_.header(), block);
+  void put_block(MeshBlock& block, std::span<const std::uint64_t> corners, OffsetOutput& vertices,
+                 OffsetOutput& simplices) const {
     for (std::size_t i = 0; i < block.vertices.size(); ++i) {
       std::byte* const at = vertices.reserve(vertex_size());
       double index = 0;
       if (!block.input_index.empty()) index = ply_index(block.input_index[i], target_.path);
-      vertices.advance_to(
-          put_ply_vertex(at, block.vertices[i], std::span(&index, indices_per_vertex())));
+      vertices.advance_to(put_ply_vertex(at, in_world(spool_.header().lattice, block.vertices[i]),
+                                         std::span(&index, indices_per_vertex())));
     }
     const std::size_t count = spool_.header().dimension + 1;
     for (; !corners.empty(); corners = corners.subspan(count)) {
@@ -206,19 +207,19 @@ class SharedMeshOutput : public MeshOutput {
   std::optional<SharedFile> file_;
 };
 
-/// The bytes of the whole stream at rank 0, where parts of other ranks come as messages.
+/// The bytes of the whole stream at rank 0, where sections of other ranks come as messages.
 class CollectedStream : public InputFile {
  public:
-  CollectedStream(const MeshStreamHeader& header, const RankMesh& mesh, StreamParts& parts,
+  CollectedStream(const MeshStreamHeader& header, const RankMesh& mesh, StreamSections& sections,
                   std::span<const std::uint64_t> sizes, const Ranks& ranks)
-      : mesh_(mesh), parts_(parts), sizes_(sizes), ranks_(ranks), piece_(spm_head(header)) {}
+      : mesh_(mesh), sections_(sections), sizes_(sizes), ranks_(ranks), chunk_(spm_head(header)) {}
 
   std::size_t read(std::span<std::byte> buffer) override {
     std::size_t done = 0;
     while (done < buffer.size()) {
-      if (used_ == piece_.size() && !next_piece()) break;
-      const std::size_t some = std::min(buffer.size() - done, piece_.size() - used_);
-      std::copy_n(piece_.begin() + static_cast<std::ptrdiff_t>(used_), some,
+      if (used_ == chunk_.size() && !next_chunk()) break;
+      const std::size_t some = std::min(buffer.size() - done, chunk_.size() - used_);
+      std::copy_n(chunk_.begin() + static_cast<std::ptrdiff_t>(used_), some,
                   buffer.begin() + static_cast<std::ptrdiff_t>(done));
       used_ += some;
       done += some;
@@ -229,32 +230,32 @@ class CollectedStream : public InputFile {
   [[nodiscard]] const std::string& name() const override { return name_; }
 
  private:
-  bool next_piece() {
+  bool next_chunk() {
     if (ended_) return false;
     used_ = 0;
-    for (; part_ < mesh_.parts.size(); ++part_, received_ = 0) {
-      const int rank = mesh_.parts[part_].rank;
+    for (; section_ < mesh_.sections.size(); ++section_, received_ = 0) {
+      const int rank = mesh_.sections[section_].rank;
       if (rank == ranks_.rank()) {
-        if (parts_.next(part_, piece_)) return true;
-      } else if (received_ < sizes_[part_]) {
-        piece_ = ranks_.receive(rank);
-        received_ += piece_.size();
+        if (sections_.next(section_, chunk_)) return true;
+      } else if (received_ < sizes_[section_]) {
+        chunk_ = ranks_.receive(rank);
+        received_ += chunk_.size();
         return true;
       }
     }
-    piece_ = spm_trailer(mesh_.totals);
+    chunk_ = spm_trailer(mesh_.totals);
     ended_ = true;
     return true;
   }
 
   const RankMesh& mesh_;
-  StreamParts& parts_;
+  StreamSections& sections_;
   std::span<const std::uint64_t> sizes_;
   const Ranks& ranks_;
-  std::vector<std::byte> piece_;
-  std::size_t used_ = 0;        ///< of piece_
-  std::uint32_t part_ = 0;      ///< that piece_ is of, or the next one
-  std::uint64_t received_ = 0;  ///< of that part, from another rank
+  std::vector<std::byte> chunk_;
+  std::size_t used_ = 0;        ///< of chunk_
+  std::uint32_t section_ = 0;   ///< that chunk_ is of, or the next one
+  std::uint64_t received_ = 0;  ///< of that section, from another rank
   bool ended_ = false;
   std::string name_ = "the mesh of all ranks";
 };
@@ -272,21 +273,21 @@ class CollectedMeshOutput : public MeshOutput {
         stream_(std::move(stream)) {}
 
   std::uint64_t finish(RankMesh& mesh) override {
-    std::optional<StreamParts> parts;
-    do_together(ranks_, [&] {
+    std::optional<StreamSections> sections;
+    run_collective_step(ranks_, [&] {
       finish_spool(mesh);
-      parts.emplace(spool_, mesh);
+      sections.emplace(spool_, mesh);
     });
-    const std::vector<std::uint64_t> sizes = parts->sizes(ranks_);
+    const std::vector<std::uint64_t> sizes = sections->sizes(ranks_);
     std::uint64_t bytes = 0;
     if (ranks_.rank() == 0) {
       auto collected =
-          std::make_unique<CollectedStream>(spool_.header(), mesh, *parts, sizes, ranks_);
+          std::make_unique<CollectedStream>(spool_.header(), mesh, *sections, sizes, ranks_);
       bytes = stream_ ? copy(*collected) : write(std::move(collected), mesh.totals);
     } else {
-      std::vector<std::byte> piece;
-      for (const std::uint32_t part : parts->own()) {
-        while (parts->next(part, piece)) ranks_.send(0, piece);
+      std::vector<std::byte> chunk;
+      for (const std::uint32_t section : sections->own()) {
+        while (sections->next(section, chunk)) ranks_.send(0, chunk);
       }
     }
     ranks_.reduce(std::span(&bytes, 1), Reduction::kMost);
@@ -296,7 +297,7 @@ class CollectedMeshOutput : public MeshOutput {
  private:
   std::uint64_t copy(CollectedStream& collected) {
     std::uint64_t bytes = 0;
-    std::vector<std::byte> buffer(kOutputPiece);
+    std::vector<std::byte> buffer(kOutputChunk);
     while (const std::size_t got = collected.read(buffer)) {
       stream_->write(std::span(buffer).first(got));
       bytes += got;
@@ -306,7 +307,7 @@ class CollectedMeshOutput : public MeshOutput {
   }
 
   std::uint64_t write(std::unique_ptr<CollectedStream> collected, const MeshTotals& totals) {
-    const auto reader = open_spm_reader(std::make_unique<InputSource>(std::move(collected)));
+    const auto reader = open_spm_reader(std::make_unique<InputBytes>(std::move(collected)));
     MeshBlock block;
     while (reader->read(block)) writer_->write(std::move(block));
     writer_->finish(totals);
@@ -349,36 +350,15 @@ std::unique_ptr<MeshOutput> open_one_file(FileSystem& files, const MeshTarget& t
 
 }  // namespace
 
-MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts) {
-  for (const MeshFormat* const format : mesh_formats()) {
-    const bool is_index =
-        format->part_index != nullptr && extension_of(path) == format->part_index->extension;
-    if (is_index && (format_name.empty() || format_name == format->name)) {
-      return {path, format, true};
-    }
-  }
-  const MeshFormat& format = mesh_format(path, format_name);
-  if (parts && path == "-") {
-    throw InvalidArgument("standard output takes no mesh in parts: name a file");
-  }
-  if (parts && !format.stands_in_parts) {
-    const auto stand = [](const MeshFormat& other) { return other.stands_in_parts; };
-    throw InvalidArgument(
-        fmt::format("a mesh in parts is written as {}, not as {}: choose one of these",
-                    list_of_formats(stand, "or"), format.name));
-  }
-  return {path, &format, parts};
-}
-
 MeshOutput::MeshOutput(const MeshStreamHeader& header, const std::string& name,
                        ScratchFolder& scratch)
     : spool_(header, name, scratch) {}
 
 void MeshOutput::finish_spool(const RankMesh& mesh) {
   MeshTotals totals;
-  if (mesh.own_part) {
-    totals.vertices = mesh.parts[*mesh.own_part].vertices;
-    totals.simplices = mesh.parts[*mesh.own_part].simplices;
+  if (mesh.own_section) {
+    totals.vertices = mesh.sections[*mesh.own_section].vertices;
+    totals.simplices = mesh.sections[*mesh.own_section].simplices;
   }
   spool_.finish(totals);
 }

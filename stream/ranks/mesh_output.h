@@ -9,24 +9,13 @@
 #include "formats/meshes/common/mesh_format.h"
 #include "formats/meshes/spool/mesh_spool.h"
 #include "src/distributed/ranks.h"
+#include "stream/library/meshes/mesh_file.h"
 #include "stream/ranks/rank_pipeline.h"
 
 namespace spillway::detail {
 
-/// Where the mesh of all ranks goes.
-struct MeshTarget {
-  std::string path;
-  const MeshFormat* format = nullptr;
-  bool parts = false;  ///< a file for each rank
-};
-
-/// What the command line says, as mesh_format() takes it; the name of an index (`NAME.pvtu`) means
-/// its format in parts. Throws InvalidArgument for no format, and for parts on standard output or
-/// in a format that does not stand in parts. Looks at no file.
-MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts);
-
 /// The output of triangulate_over_ranks(). One of:
-/// - spm and binary PLY in a file: all ranks write to it, each at the places of its parts;
+/// - spm and binary PLY in a file: all ranks write to it, each at the offsets of its sections;
 /// - one file otherwise: rank 0 writes what the others send, some MiB at a time;
 /// - parts: each rank has a file of its own, a mesh that stands for itself, in which vertices of
 ///   other ranks are repeated; for VTU also an index NAME.pvtu (docs/formats-meshes.md, "Parts").

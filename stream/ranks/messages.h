@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "src/distributed/packing.h"
-#include "stream/source/point_source.h"
+#include "stream/source/source_facts.h"
 #include "stream/tiles/tile_tree.h"
 #include "stream/triangulate/border.h"
 

@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "formats/bytes/bytes.h"
-#include "formats/disk/naming_turn.h"
+#include "formats/disk/folder_lock.h"
 #include "formats/meshes/common/mesh_block.h"
 #include "formats/meshes/create_mesh.h"
 #include "formats/meshes/mesh_formats.h"
-#include "formats/meshes/mesh_parts.h"
+#include "formats/meshes/part_file_names.h"
 #include "formats/meshes/spm/spm_encoding.h"
-#include "formats/meshes/spool/spm_part.h"
+#include "formats/meshes/spool/spm_section.h"
 #include "stream/output/open_facets.h"
-#include "stream/ranks/part_numbers.h"
-#include "stream/ranks/together.h"
+#include "stream/ranks/collective_step.h"
+#include "stream/ranks/part_file_numbers.h"
 
 namespace spillway::detail {
 namespace {
@@ -75,21 +75,21 @@ class PartFiles : public MeshOutput {
       : MeshOutput(header_of_part(header), name_of(target, ranks), scratch),
         target_(target),
         ranks_(ranks) {
-    do_together(ranks, [&] { file_ = files.create(name_of(target, ranks)); });
-    do_together(ranks, [&] {
+    run_collective_step(ranks, [&] { file_ = files.create(name_of(target, ranks)); });
+    run_collective_step(ranks, [&] {
       const bool with_index = ranks.rank() == 0 && target.format->part_index != nullptr;
       if (with_index) index_ = files.create(part_index_name(target.path, *target.format));
     });
   }
 
   std::uint64_t finish(RankMesh& mesh) override {
-    do_together(ranks_, [&] { write(mesh); });
-    std::optional<NamingTurn> turn;  // of all ranks together
-    do_together(ranks_, [&] {
-      if (ranks_.rank() == 0) turn.emplace(file_->name());
+    run_collective_step(ranks_, [&] { write(mesh); });
+    std::optional<FolderLock> lock;  // of all ranks together
+    run_collective_step(ranks_, [&] {
+      if (ranks_.rank() == 0) lock.emplace(file_->name());
     });
-    do_together(ranks_, [&] { file_->commit(); });
-    do_together(ranks_, [&] {
+    run_collective_step(ranks_, [&] { file_->commit(); });
+    run_collective_step(ranks_, [&] {
       if (!index_) return;
       const std::string text = part_index_text(target_.path, *target_.format, ranks_.size(),
                                                spool_.header().has_input_index);
@@ -103,18 +103,18 @@ class PartFiles : public MeshOutput {
 
  private:
   static std::string name_of(const MeshTarget& target, const Ranks& ranks) {
-    return mesh_part_name(target.path, *target.format, ranks.rank(), ranks.size());
+    return part_file_name(target.path, *target.format, ranks.rank(), ranks.size());
   }
 
   [[nodiscard]] bool plane() const { return spool_.header().dimension == 2; }
 
   void write(RankMesh& mesh) {
-    PartNumbers numbers(mesh);
+    PartFileNumbers numbers(mesh);
     MeshTotals totals;
-    totals.canonical_hash = mesh.figures.totals.canonical_hash;
-    if (mesh.own_part) totals.simplices = mesh.parts[*mesh.own_part].simplices;
-    for (MergedPart& merged : mesh.merged) {
-      totals.simplices += mesh.parts[merged.part].simplices;
+    totals.canonical_hash = mesh.figures.mesh.canonical_hash;
+    if (mesh.own_section) totals.simplices = mesh.sections[*mesh.own_section].simplices;
+    for (MergedSection& merged : mesh.merged) {
+      totals.simplices += mesh.sections[merged.section].simplices;
       totals.canonical_hash += merged.canonical_hash;
       spool_.write(numbers.take(std::move(merged)));
     }
@@ -133,7 +133,7 @@ class PartFiles : public MeshOutput {
     totals.hull_facets = plane() ? count_open_facets<2>(spool_) : count_open_facets<3>(spool_);
     HeldOutput file(*file_, bytes_);
     file.write(spm_head(spool_.header()));
-    SpmPart blocks(spool_, 0);
+    SpmSection blocks(spool_, 0);
     std::vector<std::byte> piece;
     while (blocks.next(piece)) {
       file.write(piece);

@@ -1,7 +1,5 @@
 #include "stream/ranks/piece_table.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -112,8 +110,7 @@ void PieceTable::decode(SourcePiece& batch, PointBlock& block) const {
   if (batch.reader) {
     source_.decode(batch, block);
   } else {
-    decode_all_points(batch.raw.bytes, fmt::format("{}, byte {}", file_->name(), batch.raw.offset),
-                      block);
+    decode_all_points(batch.raw.bytes, {file_->name(), at_byte(batch.raw.offset)}, block);
   }
 }
 

@@ -8,7 +8,7 @@
 
 #include "src/distributed/packing.h"
 #include "src/parallel/parallel.h"
-#include "stream/tiles/deal.h"
+#include "stream/tiles/dealt_points.h"
 #include "stream/tiles/tile_block.h"
 
 namespace spillway::detail {
@@ -76,7 +76,7 @@ void PointExchange::decode(SourcePiece& batch, PointBlock& block) const {
     std::swap(batch.raw.decoded, block);
   } else {
     const StageTimer timer(times_, Stage::kExchange);
-    decode_all_points(batch.raw.bytes, "points from another rank", block);
+    decode_all_points(batch.raw.bytes, {"points from another rank"}, block);
   }
 }
 
@@ -127,8 +127,8 @@ void PointExchange::deal(OwnPiece& piece) const {
     }
     dealt.deal(division_.cuts, block);
     for (const PointRun& run : dealt.runs) {
-      const auto points =
-          std::span<const Point<3>>(dealt.points.points).subspan(run.begin, run.end - run.begin);
+      const auto points = std::span<const LatticePoint>(dealt.points.points)
+                              .subspan(run.begin, run.end - run.begin);
       const auto index = indexed_ ? std::span<const std::uint64_t>(dealt.points.index)
                                         .subspan(run.begin, run.end - run.begin)
                                   : std::span<const std::uint64_t>();

@@ -18,14 +18,14 @@ constexpr std::uint64_t kSamplePerRank = 256;
 constexpr std::uint64_t kPointsOfPiece = 65'536;
 
 /// Every n-th point of some pieces: those of this rank.
-std::vector<Point<3>> own_sample(PieceTable& pieces, const distributed::Ranks& ranks) {
+std::vector<LatticePoint> own_sample(PieceTable& pieces, const distributed::Ranks& ranks) {
   const auto size = static_cast<std::uint64_t>(ranks.size());
   const std::uint64_t wanted = std::max(kSampledPieces, kSampledPiecesPerRank * size);
   const std::uint64_t piece_step = std::max<std::uint64_t>(1, pieces.size() / wanted);
   const std::uint64_t points = pieces.size() / piece_step * kPointsOfPiece;
   const std::uint64_t step =
       std::max<std::uint64_t>(1, points / std::max(kSample, kSamplePerRank * size));
-  std::vector<Point<3>> sample;
+  std::vector<LatticePoint> sample;
   PointBlock block;
   for (std::uint64_t p = 0; p < pieces.size(); p += piece_step) {
     const std::optional<int> owner = pieces.owner(p);
@@ -41,28 +41,28 @@ std::vector<Point<3>> own_sample(PieceTable& pieces, const distributed::Ranks& r
   std::uint64_t total = sample.size();
   ranks.reduce(std::span(&total, 1), distributed::Reduction::kSum);
   const std::uint64_t more = 1 + total / (2 * std::max(kSample, kSamplePerRank * size));
-  std::vector<Point<3>> thinned;
+  std::vector<LatticePoint> thinned;
   for (std::size_t i = 0; i < sample.size(); i += more) thinned.push_back(sample[i]);
   return thinned;
 }
 
-void number_ranks(const CutTree& cuts, CutTree::Place place, int& next, std::vector<int>& ranks) {
-  if (CutTree::is_tile(place)) {
-    ranks[CutTree::tile_at(place)] = next++;
+void number_ranks(const CutTree& cuts, CutTree::NodeRef ref, int& next, std::vector<int>& ranks) {
+  if (CutTree::is_tile(ref)) {
+    ranks[CutTree::tile_at(ref)] = next++;
     return;
   }
-  for (const CutTree::Place side : cuts.sides(place)) number_ranks(cuts, side, next, ranks);
+  for (const CutTree::NodeRef side : cuts.sides(ref)) number_ranks(cuts, side, next, ranks);
 }
 
 }  // namespace
 
 RankDivision divide_among_ranks(PieceTable& pieces, int dimension,
                                 const distributed::Ranks& ranks) {
-  const std::vector<Point<3>> own = own_sample(pieces, ranks);
-  std::vector<Point<3>> sample;
+  const std::vector<LatticePoint> own = own_sample(pieces, ranks);
+  std::vector<LatticePoint> sample;
   for (const auto& bytes : ranks.gather(std::as_bytes(std::span(own)))) {
     const std::size_t before = sample.size();
-    sample.resize(before + bytes.size() / sizeof(Point<3>));
+    sample.resize(before + bytes.size() / sizeof(LatticePoint));
     std::copy(bytes.begin(), bytes.end(),
               std::as_writable_bytes(std::span(sample).subspan(before)).begin());
   }

@@ -11,12 +11,12 @@
 #include "formats/bytes/bytes.h"
 #include "src/delaunay/base_case.h"
 #include "src/parallel/parallel.h"
+#include "stream/ranks/collective_step.h"
 #include "stream/ranks/messages.h"
 #include "stream/ranks/piece_table.h"
 #include "stream/ranks/point_exchange.h"
 #include "stream/ranks/rank_division.h"
 #include "stream/ranks/rank_tree.h"
-#include "stream/ranks/together.h"
 #include "stream/triangulate/tile_engine.h"
 
 namespace spillway::detail {
@@ -37,13 +37,13 @@ constexpr std::uint64_t kUsualPieces = 4;
 /// Enough for what merges between ranks make final of a point, if all points are in borders.
 constexpr std::uint64_t kMergedBytes = 300;
 
-/// From a rank's border to the stream of all ranks, where a vertex is named by a part of the stream
-/// (as the slot) and its 64-bit number there.
-StreamPlace shared_place(std::uint32_t part, std::uint64_t number) {
-  return {{part, static_cast<std::uint32_t>(number >> 32)}, static_cast<std::uint32_t>(number)};
+/// From a rank's border to the stream of all ranks, where a vertex is named by a section of the
+/// stream (as the slot) and its 64-bit number there.
+StreamPlace shared_place(std::uint32_t section, std::uint64_t number) {
+  return {{section, static_cast<std::uint32_t>(number >> 32)}, static_cast<std::uint32_t>(number)};
 }
 
-std::uint64_t number_in_part(const StreamPlace& place) {
+std::uint64_t number_in_section(const StreamPlace& place) {
   return (std::uint64_t{place.block.block} << 32) | place.vertex;
 }
 
@@ -70,7 +70,7 @@ class RankRun {
       if (tree.nodes().empty()) refuse_empty();
       const TileNode<D>& all = *tree.nodes().back().tiles;
       refuse_flat(all.points);
-      do_together(ranks_, [&] { options_.extent_known(plane_of(all.box), all.points); });
+      run_collective_step(ranks_, [&] { options_.extent_known(plane_of(all.box), all.points); });
       budget_.set_enough(enough_memory<D>(all.points) + all.points * kMergedBytes);
       if (tree.own_node()) triangulate(tree);
       collect(tree);
@@ -148,20 +148,20 @@ class RankRun {
 
   void refuse_empty() const {
     const PointCounts counts = shared_counts(source_.counts(), ranks_);
-    do_together(ranks_, [&] { refuse_empty_input(counts); });
+    run_collective_step(ranks_, [&] { refuse_empty_input(counts); });
   }
 
-  /// What the points of all ranks span is what their parts span together.
+  /// What the points of all ranks span is what the points of each span, together.
   void refuse_flat(std::uint64_t points) const {
     distributed::Packer own;
     own.put_list(engine_.span().facts().points);
     own.put(engine_.span().facts().others);
-    const auto parts = ranks_.gather(own.bytes(), 0);
-    do_together(ranks_, [&] {
+    const auto facts_of_ranks = ranks_.gather(own.bytes(), 0);
+    run_collective_step(ranks_, [&] {
       if (ranks_.rank() != 0) return;
       PointSpan<D> all;
-      for (const std::vector<std::byte>& part : parts) {
-        distributed::Unpacker unpacker(part);
+      for (const std::vector<std::byte>& bytes : facts_of_ranks) {
+        distributed::Unpacker unpacker(bytes);
         typename PointSpan<D>::Facts facts;
         facts.points = unpacker.take_list<std::vector<Point<D>>>();
         facts.others = unpacker.take<bool>();
@@ -204,7 +204,7 @@ class RankRun {
 
   Border<D> merge(const RankTree<D>& tree, std::uint32_t number, Border<D> own, int sender) {
     const auto& node = tree.nodes()[number];
-    MergeFigures& figures = result_.merges.emplace_back();
+    RankMerge& figures = result_.merges.emplace_back();
     figures.level = node.level;
     std::vector<Border<D>> borders;
     borders.push_back(std::move(own));
@@ -224,64 +224,66 @@ class RankRun {
     for (const Task& step : steps.after) {
       if (step.kind == TaskKind::kBorder) figures.retriangulated = step.points;
     }
-    MergedPart part;
-    part.part = number;
-    part.canonical_hash = settled.hash.value();
-    part.mesh = std::move(settled.mesh);
-    part.imported_vertices = std::move(settled.imported_vertices);
-    part.imported_index = std::move(settled.imported_index);
+    MergedSection section;
+    section.section = number;
+    section.canonical_hash = settled.hash.value();
+    section.mesh = std::move(settled.mesh);
+    section.imported_vertices = std::move(settled.imported_vertices);
+    section.imported_index = std::move(settled.imported_index);
     imported_.push_back(std::move(settled.imported));
-    merged_bytes_ += part.mesh.bytes() + part.imported_vertices.size() * sizeof(Point<3>) +
-                     part.imported_index.size() * sizeof(std::uint64_t) +
+    merged_bytes_ += section.mesh.bytes() +
+                     section.imported_vertices.size() * sizeof(LatticePoint) +
+                     section.imported_index.size() * sizeof(std::uint64_t) +
                      imported_.back().size() * (sizeof(StreamPlace) + sizeof(std::uint64_t));
     merged_lease_ = {};
     merged_lease_ = MemoryLease(budget_, merged_bytes_, "what merges between ranks made final");
-    result_.merged.push_back(std::move(part));
+    result_.merged.push_back(std::move(section));
     return std::move(settled.border);
   }
 
-  /// Puts together what all ranks have: the parts of the stream, and the totals.
+  /// Puts together what all ranks have: the sections of the stream, and the totals.
   void collect(const RankTree<D>& tree) {
     result_.figures = engine_.figures();
-    number_parts(tree);
+    number_sections(tree);
     for (std::size_t m = 0; m < result_.merged.size(); ++m) {
-      MergedPart& merged = result_.merged[m];
+      MergedSection& merged = result_.merged[m];
       for (const StreamPlace& place : imported_[m]) {
-        merged.mesh.imported.push_back(result_.parts[place.block.slot].first_vertex +
-                                       number_in_part(place));
+        merged.mesh.imported.push_back(result_.sections[place.block.slot].first_vertex +
+                                       number_in_section(place));
       }
     }
     MeshTotals& totals = result_.totals;
-    totals = result_.figures.totals;
-    for (const MergedPart& merged : result_.merged) totals.canonical_hash += merged.canonical_hash;
+    totals = result_.figures.mesh;
+    for (const MergedSection& merged : result_.merged)
+      totals.canonical_hash += merged.canonical_hash;
     std::vector<std::uint64_t> sums = {totals.points, totals.duplicates, totals.canonical_hash,
                                        totals.hull_facets, result_.figures.left_out};
     ranks_.reduce(sums, Reduction::kSum);
     totals = {.points = sums[0], .duplicates = sums[1], .canonical_hash = sums[2]};
     totals.hull_facets = options_.max_edge ? open_facets() : sums[3];
     result_.left_out = sums[4];
-    for (const StreamPart& part : result_.parts) {
-      totals.vertices += part.vertices;
-      totals.simplices += part.simplices;
+    for (const StreamSection& section : result_.sections) {
+      totals.vertices += section.vertices;
+      totals.simplices += section.simplices;
     }
   }
 
-  void number_parts(const RankTree<D>& tree) {
+  void number_sections(const RankTree<D>& tree) {
     std::vector<std::uint64_t> sizes(2 * tree.nodes().size());
-    result_.own_part = tree.own_node();
+    result_.own_section = tree.own_node();
     if (const auto own = tree.own_node()) {
-      sizes[2 * *own] = result_.figures.totals.vertices;
-      sizes[2 * *own + 1] = result_.figures.totals.simplices;
+      sizes[2 * *own] = result_.figures.mesh.vertices;
+      sizes[2 * *own + 1] = result_.figures.mesh.simplices;
     }
-    for (const MergedPart& merged : result_.merged) {
-      sizes[2 * merged.part] = merged.mesh.vertices.size();
-      sizes[2 * merged.part + 1] = merged.mesh.corners.size() / (D + 1);
+    for (const MergedSection& merged : result_.merged) {
+      sizes[2 * merged.section] = merged.mesh.vertices.size();
+      sizes[2 * merged.section + 1] = merged.mesh.corners.size() / (D + 1);
     }
     ranks_.reduce(sizes, Reduction::kSum);
     std::uint64_t first = 0;
     for (std::size_t n = 0; n < tree.nodes().size(); ++n) {
       const auto& node = tree.nodes()[n];
-      result_.parts.push_back({node.leader, node.level, first, sizes[2 * n], sizes[2 * n + 1]});
+      result_.sections.push_back({node.leader, node.level, first, sizes[2 * n], sizes[2 * n + 1]});
       first += sizes[2 * n];
     }
   }
@@ -290,15 +292,15 @@ class RankRun {
   /// another. Needs memory for all such facets at rank 0.
   [[nodiscard]] std::uint64_t open_facets() const {
     OpenFacets<D> own;
-    if (result_.own_part) {
-      const std::uint64_t first = result_.parts[*result_.own_part].first_vertex;
+    if (result_.own_section) {
+      const std::uint64_t first = result_.sections[*result_.own_section].first_vertex;
       for (auto facet : engine_.open_facets()) {
         for (std::uint64_t& v : facet) v += first;
         own.toggle(facet);
       }
     }
-    for (const MergedPart& merged : result_.merged) {
-      const std::uint64_t first = result_.parts[merged.part].first_vertex;
+    for (const MergedSection& merged : result_.merged) {
+      const std::uint64_t first = result_.sections[merged.section].first_vertex;
       own.add_block(merged.mesh.corners, {first, merged.mesh});
     }
     const std::vector<std::array<std::uint64_t, D>> facets(own.begin(), own.end());
@@ -362,7 +364,7 @@ std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<s
 }
 
 PointCounts shared_counts(const PointCounts& own, const Ranks& ranks) {
-  std::vector<std::uint64_t> sums = {own.read,    own.withheld, own.every,  own.classes,
+  std::vector<std::uint64_t> sums = {own.read,    own.withheld, own.skipped, own.classes,
                                      own.returns, own.bounds,   own.thinned};
   ranks.reduce(sums, Reduction::kSum);
   return {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6]};

@@ -15,9 +15,9 @@
 
 namespace spillway::detail {
 
-/// A part of the stream that all ranks make together: what the tiles of one rank gave, or a merge
-/// between ranks. Parts follow each other as tiles and merges do in a stream.
-struct StreamPart {
+/// A section of the stream that all ranks make together: what the tiles of one rank gave, or a
+/// merge between ranks. Sections follow each other as tiles and merges do in a stream.
+struct StreamSection {
   int rank = 0;                    ///< that has it
   std::uint32_t level = 0;         ///< 0: a rank's tiles; merges of ranks are above
   std::uint64_t first_vertex = 0;  ///< vertices before it
@@ -25,37 +25,26 @@ struct StreamPart {
   std::uint64_t simplices = 0;
 };
 
-/// What a merge between ranks made final, as one block of its part of the stream.
-struct MergedPart {
-  std::uint32_t part = 0;                     ///< of RankMesh::parts
-  MeshBlock mesh;                             ///< `imported` are numbers in the whole stream
-  std::vector<Point<3>> imported_vertices;    ///< the same vertices, like the mesh's own
-  std::vector<std::uint64_t> imported_index;  ///< likewise, if vertices carry it
-  std::uint64_t canonical_hash = 0;           ///< of its simplices
-};
-
-/// A merge that this rank has done, for the record.
-struct MergeFigures {
-  std::uint32_t level = 0;
-  std::uint64_t received_bytes = 0;
-  std::uint64_t received_simplices = 0;  ///< of the border that came from the other rank
-  std::uint64_t border_simplices = 0;    ///< of both borders
-  std::uint64_t retriangulated = 0;      ///< points
-  double wait_seconds = 0;               ///< for that border
-  double seconds = 0;                    ///< of the merge
+/// What a merge between ranks made final, as one block of its section of the stream.
+struct MergedSection {
+  std::uint32_t section = 0;                    ///< of RankMesh::sections
+  MeshBlock mesh;                               ///< `imported` are numbers in the whole stream
+  std::vector<LatticePoint> imported_vertices;  ///< the same vertices, like the mesh's own
+  std::vector<std::uint64_t> imported_index;    ///< likewise, if vertices carry it
+  std::uint64_t canonical_hash = 0;             ///< of its simplices
 };
 
 /// What one rank knows when all of them are done.
 struct RankMesh {
-  MeshTotals totals;                      ///< of the whole mesh; the same at all ranks
-  std::uint64_t left_out = 0;             ///< likewise
-  std::vector<StreamPart> parts;          ///< likewise, in the order of the stream
-  std::optional<std::uint32_t> own_part;  ///< what the local sink was given, from number 0 on
-  std::vector<MergedPart> merged;         ///< by this rank, in the order of the stream
-  StreamFigures figures;                  ///< of this rank alone
-  std::vector<MergeFigures> merges;       ///< of this rank
-  std::uint64_t exchanged_points = 0;     ///< that it sent to other ranks
-  std::uint64_t exchanged_bytes = 0;      ///< and as how many bytes
+  MeshTotals totals;                         ///< of the whole mesh; the same at all ranks
+  std::uint64_t left_out = 0;                ///< likewise
+  std::vector<StreamSection> sections;       ///< likewise, in the order of the stream
+  std::optional<std::uint32_t> own_section;  ///< what the local sink was given, from number 0 on
+  std::vector<MergedSection> merged;         ///< by this rank, in the order of the stream
+  RunFigures figures;                        ///< of this rank alone
+  std::vector<RankMerge> merges;             ///< of this rank
+  std::uint64_t exchanged_points = 0;        ///< that it sent to other ranks
+  std::uint64_t exchanged_bytes = 0;         ///< and as how many bytes
   std::uint64_t border_bytes_sent = 0;
   std::uint64_t border_simplices_sent = 0;
 };

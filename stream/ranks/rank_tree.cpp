@@ -18,32 +18,32 @@ RankTree<D>::RankTree(const RankDivision& division, const std::optional<TileNode
     trees.push_back(bytes.empty() ? std::nullopt : std::optional(unpack_tile_node<D>(unpacker)));
   }
   trees[static_cast<std::size_t>(ranks.rank())] = own;
-  std::optional<Part> all = part_at(division, division.cuts.root(), trees);
+  std::optional<Subtree> all = subtree_at(division, division.cuts.root(), trees);
   if (!all) return;
   root_ = std::move(all->tiles);
   add_node(root_, all->shape, {}, ranks.rank());
 }
 
-/// What is below a place of the division; sides without points are left out.
+/// What is below a node of the division; sides without points are left out.
 template <int D>
-std::optional<typename RankTree<D>::Part> RankTree<D>::part_at(
-    const RankDivision& division, CutTree::Place place,
+std::optional<typename RankTree<D>::Subtree> RankTree<D>::subtree_at(
+    const RankDivision& division, CutTree::NodeRef ref,
     std::vector<std::optional<TileNode<D>>>& trees) const {
-  if (CutTree::is_tile(place)) {
-    const int rank = division.rank_of_tile[CutTree::tile_at(place)];
+  if (CutTree::is_tile(ref)) {
+    const int rank = division.rank_of_tile[CutTree::tile_at(ref)];
     std::optional<TileNode<D>>& tree = trees[static_cast<std::size_t>(rank)];
     if (!tree) return std::nullopt;
-    return Part{std::move(*tree), {rank, {}}};
+    return Subtree{std::move(*tree), {rank, {}}};
   }
-  const auto sides = division.cuts.sides(place);
-  std::optional<Part> low = part_at(division, sides[0], trees);
-  std::optional<Part> high = part_at(division, sides[1], trees);
+  const auto sides = division.cuts.sides(ref);
+  std::optional<Subtree> low = subtree_at(division, sides[0], trees);
+  std::optional<Subtree> high = subtree_at(division, sides[1], trees);
   if (!low || !high) return low ? std::move(low) : std::move(high);
-  Part both;
+  Subtree both;
   both.tiles.box = low->tiles.box;
   both.tiles.box.expand(high->tiles.box);
   both.tiles.points = low->tiles.points + high->tiles.points;
-  for (Part* side : {&*low, &*high}) {
+  for (Subtree* side : {&*low, &*high}) {
     both.tiles.children.push_back(std::move(side->tiles));
     both.shape.sides.push_back(std::move(side->shape));
   }

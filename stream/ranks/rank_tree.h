@@ -46,13 +46,13 @@ class RankTree {
     int rank = -1;
     std::vector<Shape> sides;
   };
-  struct Part {
+  struct Subtree {
     TileNode<D> tiles;
     Shape shape;
   };
 
-  std::optional<Part> part_at(const RankDivision& division, CutTree::Place place,
-                              std::vector<std::optional<TileNode<D>>>& trees) const;
+  std::optional<Subtree> subtree_at(const RankDivision& division, CutTree::NodeRef ref,
+                                    std::vector<std::optional<TileNode<D>>>& trees) const;
   std::uint32_t add_node(const TileNode<D>& tiles, const Shape& shape, const Outside<D>& outside,
                          int own_rank);
 

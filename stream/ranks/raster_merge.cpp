@@ -23,11 +23,17 @@ class Inbox {
  public:
   Inbox(const Ranks& ranks, int from) : ranks_(ranks), from_(from) {}
 
-  /// Appends the part of this tile, if the rank has any.
-  void take(std::uint64_t tile, std::vector<std::vector<std::byte>>& parts) {
+  /// Appends what the rank has of this tile, if anything.
+  void take(std::uint64_t tile, std::vector<std::vector<std::byte>>& others) {
     while (!ended_ && next_ == tiles_.size()) receive();
     if (ended_ || tiles_[next_].first != tile) return;
-    parts.push_back(std::move(tiles_[next_++].second));
+    others.push_back(std::move(tiles_[next_++].second));
+  }
+
+  /// Receives the message that ends the tiles, which nobody has to ask for: what the rank sends
+  /// afterwards is for others.
+  void end() {
+    while (!ended_) receive();
   }
 
  private:
@@ -51,12 +57,12 @@ class Inbox {
 
 }  // namespace
 
-void paint_merged(Dem& dem, const MergedPart& part) {
-  std::vector<PlacedPoint> vertices = dem.placed(part.mesh.vertices);
+void paint_merged(Dem& dem, const MergedSection& section) {
+  std::vector<PlacedPoint> vertices = dem.placed(section.mesh.vertices);
   dem.count(vertices);
-  const std::vector<PlacedPoint> imported = dem.placed(part.imported_vertices);
+  const std::vector<PlacedPoint> imported = dem.placed(section.imported_vertices);
   vertices.insert(vertices.end(), imported.begin(), imported.end());
-  dem.paint(vertices, part.mesh.corners);
+  dem.paint(vertices, section.mesh.corners);
 }
 
 void write_raster_of_ranks(Dem& dem, Raster& raster,
@@ -65,17 +71,18 @@ void write_raster_of_ranks(Dem& dem, Raster& raster,
   std::vector<Inbox> inboxes;
   for (int rank = 1; rank < ranks.size(); ++rank) inboxes.emplace_back(ranks, rank);
   dem.write(raster, progress, [&](std::uint64_t tile) {
-    std::vector<std::vector<std::byte>> parts;
-    for (Inbox& inbox : inboxes) inbox.take(tile, parts);
-    return parts;
+    std::vector<std::vector<std::byte>> others;
+    for (Inbox& inbox : inboxes) inbox.take(tile, others);
+    return others;
   });
+  for (Inbox& inbox : inboxes) inbox.end();
 }
 
 void send_raster(Dem& dem, const Ranks& ranks) {
   Packer message;
   for (const std::uint64_t tile : dem.tiles()) {
     message.put(tile);
-    message.put_list(dem.take_part(tile));
+    message.put_list(dem.take_tile(tile));
     if (message.bytes().size() >= message_bytes(ranks)) ranks.send(0, message.take());
   }
   if (!message.bytes().empty()) ranks.send(0, message.take());

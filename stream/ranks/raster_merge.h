@@ -11,7 +11,7 @@
 namespace spillway::detail {
 
 /// Paints what a merge between ranks made final.
-void paint_merged(Dem& dem, const MergedPart& part);
+void paint_merged(Dem& dem, const MergedSection& section);
 
 /// Rank 0: writes the raster of what all ranks have painted, tile by tile, with what the others
 /// send, some MiB at a time.

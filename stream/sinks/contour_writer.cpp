@@ -21,7 +21,7 @@ ContourWriter::ContourWriter(ContourOptions options, Sink sink, ScratchFolder& s
 std::vector<WorldPoint> ContourWriter::points_of(const MeshBlock& block) const {
   std::vector<WorldPoint> points;
   points.reserve(block.vertices.size() + block.imported.size());
-  for (const Point<3>& vertex : block.vertices) {
+  for (const LatticePoint& vertex : block.vertices) {
     points.push_back(in_world(options_.lattice, vertex));
   }
   live_.append_imported(block, points);

@@ -1,5 +1,7 @@
 #include "stream/sinks/dem.h"
 
+#include <spillway/dem.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -94,12 +96,6 @@ struct Dem::Work {
   std::vector<float> values;  ///< of the triangle, by product; those that vary in it unused
 };
 
-const std::vector<std::string>& dem_product_names() {
-  static const std::vector<std::string> names = {"height", "slope", "aspect", "hillshade",
-                                                 "density"};
-  return names;
-}
-
 Dem::Dem(DemOptions options, const std::optional<Lattice>& lattice, ScratchFolder& scratch)
     : options_(std::move(options)),
       lattice_(lattice),
@@ -108,8 +104,8 @@ Dem::Dem(DemOptions options, const std::optional<Lattice>& lattice, ScratchFolde
       scratch_(scratch) {
   const std::uint64_t least = RasterStore::least_memory(options_.products.size(), options_.threads);
   if (options_.memory < least) {
-    throw InvalidArgument(
-        fmt::format("the memory limit is too small: of it {} are for pixels, and {} threads "
+    throw TooSmallLimit(
+        fmt::format("the memory limit is too small: {} of it are for pixels, and {} threads "
                     "with {} products need {}",
                     memory_size_text(options_.memory), options_.threads, options_.products.size(),
                     memory_size_text(least)),
@@ -137,9 +133,9 @@ void Dem::begin(const PixelGrid& grid) {
                                                                tiles_down_ * kIndexBytes *
                                                                options_.products.size();
   if (index > options_.memory / 2) {
-    throw InvalidArgument(fmt::format("a raster of {} x {} pixels needs {} for its index alone",
-                                      grid_.columns, grid_.rows, memory_size_text(index)),
-                          {.remedy = Remedy::kRasterMemory});
+    throw TooSmallLimit(fmt::format("a raster of {} x {} pixels needs {} for its index alone",
+                                    grid_.columns, grid_.rows, memory_size_text(index)),
+                        {.remedy = Remedy::kRasterMemory});
   }
   centres_.emplace(grid_, on_lattice_ ? lattice_ : std::nullopt);
   std::vector<PixelRule> rules;
@@ -147,15 +143,15 @@ void Dem::begin(const PixelGrid& grid) {
   store_.emplace(std::move(rules), options_.memory - index, scratch_);
 }
 
-PlacedPoint Dem::placed(const Point<3>& vertex) const {
-  if (!on_lattice_) return {in_world(lattice_, vertex)};
+PlacedPoint Dem::placed(const LatticePoint& vertex) const {
+  if (!on_lattice_) return PlacedPoint(in_world(lattice_, vertex).numbers());
   return {vertex[0], vertex[1], lattice_->to_world(2, vertex[2])};
 }
 
-std::vector<PlacedPoint> Dem::placed(std::span<const Point<3>> vertices) const {
+std::vector<PlacedPoint> Dem::placed(std::span<const LatticePoint> vertices) const {
   std::vector<PlacedPoint> result;
   result.reserve(vertices.size());
-  for (const Point<3>& vertex : vertices) result.push_back(placed(vertex));
+  for (const LatticePoint& vertex : vertices) result.push_back(placed(vertex));
   return result;
 }
 
@@ -168,18 +164,18 @@ void Dem::paint(std::span<const PlacedPoint> vertices, std::span<const std::uint
     Triangle canonical;
     PixelWindow window;
   };
-  std::vector<VertexPlace> places(vertices.size());
+  std::vector<CentreWindow> windows(vertices.size());
   std::mutex mutex;
   std::vector<Large> large;  // guarded by mutex
-  const auto place_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) places[v] = place_of(*centres_, vertices[v]);
+  const auto find_windows = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) windows[v] = centres_around(*centres_, vertices[v]);
   };
   const auto paint_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
     Work work(*store_, options_.products.size());
     for (std::size_t t = begin; t < end; ++t) {
       const std::uint32_t* const v = &corners[3 * t];
       if (v[0] >= vertices.size() || v[1] >= vertices.size() || v[2] >= vertices.size()) continue;
-      const PixelWindow window = window_of(places[v[0]], places[v[1]], places[v[2]]);
+      const PixelWindow window = window_of(windows[v[0]], windows[v[1]], windows[v[2]]);
       if (window.empty() && !options_.max_edge) continue;
       const Triangle canonical =
           in_canonical_order({vertices[v[0]], vertices[v[1]], vertices[v[2]]});
@@ -198,7 +194,7 @@ void Dem::paint(std::span<const PlacedPoint> vertices, std::span<const std::uint
   };
   // Isolated: the caller may hold what another of its tasks would wait for.
   isolated([&] {
-    parallel_for(vertices.size(), kVerticesAtATime, place_some);
+    parallel_for(vertices.size(), kVerticesAtATime, find_windows);
     parallel_for(corners.size() / 3, kTrianglesAtATime, paint_some);
     for (const auto& [canonical, window] : large) paint_large(canonical, window);
   });
@@ -254,13 +250,13 @@ void Dem::paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work)
                     run.row % kRasterTile * kRasterTile + begin % kRasterTile;
     for (std::size_t b = 0; b < options_.products.size(); ++b) {
       const DemProduct product = options_.products[b];
-      if (product == DemProduct::kHeight && run.place == PixelPlace::kInside) {
+      if (product == DemProduct::kHeight && run.relation == PixelRelation::kInside) {
         for (std::uint32_t c = begin; c < end; ++c) {
           set_pixel(pixels[c - begin], static_cast<float>(plane.inside(x[c], y)));
         }
       } else if (product == DemProduct::kHeight) {
         for (std::uint32_t c = begin; c < end; ++c) {
-          set_pixel(pixels[c - begin], static_cast<float>(plane.at(run.place, x[c], y)));
+          set_pixel(pixels[c - begin], static_cast<float>(plane.at(run.relation, x[c], y)));
         }
       } else if (product != DemProduct::kDensity) {
         for (std::uint32_t c = begin; c < end; ++c) {
@@ -343,7 +339,7 @@ void Dem::finish_tile(std::uint64_t number, std::span<const std::vector<std::byt
 }
 
 void Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
-                const OtherParts& others) {
+                const OtherTiles& others) {
   const std::uint64_t tiles = std::uint64_t{tiles_across_} * tiles_down_;
   const std::size_t slots = options_.threads + 2;
   struct Slot {
@@ -376,9 +372,9 @@ void Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>&
     done += std::uint64_t{rows} * columns;
     progress(done);
   };
-  const std::vector<PipelineStage> stages = {{.in_order = false, .work = take},
-                                             {.in_order = true, .work = write_tile}};
-  run_pipeline(slots, source, stages);
+  const std::vector<PipelineStep> steps = {{.in_order = false, .work = take},
+                                           {.in_order = true, .work = write_tile}};
+  run_pipeline(slots, source, steps);
 }
 
 }  // namespace spillway::detail

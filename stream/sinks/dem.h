@@ -1,6 +1,8 @@
 #pragma once
 // Rasters of a triangulated terrain, made while its triangles pass by.
 
+#include <spillway/choices.h>
+
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -16,22 +18,10 @@
 #include "src/geometry/lattice.h"
 #include "src/terrain/grid_choice.h"
 #include "src/terrain/pixel_centres.h"
-#include "src/terrain/surface.h"
+#include "src/terrain/pixel_values.h"
 #include "stream/sinks/raster_store.h"
 
 namespace spillway::detail {
-
-/// What a pixel can tell of the terrain at its centre.
-enum class DemProduct : std::uint8_t {
-  kHeight,     ///< of the triangle there
-  kSlope,      ///< its steepness in degrees
-  kAspect,     ///< where it falls to, in degrees from north; nothing where it is level
-  kHillshade,  ///< its brightness, 0 to 255
-  kDensity,    ///< vertices of the mesh in the pixel
-};
-
-/// "height", "slope", ...: in the order of DemProduct.
-const std::vector<std::string>& dem_product_names();
 
 struct DemOptions {
   std::vector<DemProduct> products{DemProduct::kHeight};  ///< the bands
@@ -64,7 +54,7 @@ class Dem {
   [[nodiscard]] Box<2> in_output(const Box<2>& extent) const;
 
   /// Vertices as they come, in the coordinates in which triangles are painted.
-  [[nodiscard]] std::vector<PlacedPoint> placed(std::span<const Point<3>> vertices) const;
+  [[nodiscard]] std::vector<PlacedPoint> placed(std::span<const LatticePoint> vertices) const;
 
   /// Paints triangles, three numbers of vertices each; those with numbers beyond these are left
   /// out. By any number of threads at once, and shared out among more.
@@ -77,18 +67,18 @@ class Dem {
   [[nodiscard]] RasterOptions raster_options() const;
 
   /// What another Dem of the same grid has of a tile; called tile by tile, in order.
-  using OtherParts = std::function<std::vector<std::vector<std::byte>>(std::uint64_t tile)>;
+  using OtherTiles = std::function<std::vector<std::vector<std::byte>>(std::uint64_t tile)>;
 
   /// Writes all tiles, row by row, and forgets them. `progress` is told how many of the raster's
   /// pixels are written: a pixel with all its bands counts once. Of other Dems of the same grid,
   /// which have painted other triangles, `others` gives what they have.
   void write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
-             const OtherParts& others = nullptr);
+             const OtherTiles& others = nullptr);
 
   /// For another Dem of the same grid: the tiles that are not empty, in ascending order, and one of
   /// them, which is forgotten.
   [[nodiscard]] std::vector<std::uint64_t> tiles() const { return store_->tiles(); }
-  std::vector<std::byte> take_part(std::uint64_t tile) { return store_->take_part(tile); }
+  std::vector<std::byte> take_tile(std::uint64_t tile) { return store_->take_tile(tile); }
 
   /// Pixels of the first band that have a value; after write().
   [[nodiscard]] std::uint64_t pixels_with_data() const { return pixels_with_data_; }
@@ -103,7 +93,7 @@ class Dem {
     std::uint32_t columns;
   };
 
-  [[nodiscard]] PlacedPoint placed(const Point<3>& vertex) const;
+  [[nodiscard]] PlacedPoint placed(const LatticePoint& vertex) const;
   [[nodiscard]] Triangle in_output(const Triangle& placed) const;
   void paint_pixels(const Triangle& canonical, const PixelWindow& window, Work& work);
   void paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work);

@@ -26,7 +26,7 @@ void keep_rest(MeshBlock& block) {
       corners.push_back(v);
     }
   }
-  std::vector<Point<3>> vertices;
+  std::vector<LatticePoint> vertices;
   std::vector<std::uint32_t> number{announced};  // what `prepared` will hold
   std::vector<std::uint32_t> number_left(announced);
   for (std::uint32_t v = 0; v < announced; ++v) {

@@ -123,7 +123,7 @@ void LineJoiner::enter(OpenEnds& ends, const Crossing& crossing, Number number) 
                   crossing.edge[0], crossing.edge[1]));
 }
 
-/// Turns the points at the front into a piece like others.
+/// Turns the points at the front into a stretch like others.
 void LineJoiner::gather_front(Line& line) {
   if (line.front.empty()) return;
   std::reverse(line.front.begin(), line.front.end());
@@ -165,32 +165,32 @@ void LineJoiner::finish() {
   release([](const Crossing&) { return true; });
 }
 
-void LineJoiner::store(Piece& piece) {
-  if (piece.points.size() < kLeastStored) return;
+void LineJoiner::store(Stretch& stretch) {
+  if (stretch.points.size() < kLeastStored) return;
   if (!file_) file_ = scratch_.create("lines");
-  piece.offset = file_->size();
-  piece.stored = piece.points.size();
-  file_->append(std::as_bytes(std::span(piece.points)));
-  points_in_memory_ -= piece.stored;
-  piece.points = {};
+  stretch.offset = file_->size();
+  stretch.stored = stretch.points.size();
+  file_->append(std::as_bytes(std::span(stretch.points)));
+  points_in_memory_ -= stretch.stored;
+  stretch.points = {};
 }
 
 void LineJoiner::spill() {
   for (Line& line : open_) {
     gather_front(line);
     if (!line.back.empty()) line.middle.push_back({std::exchange(line.back, {}), 0, 0});
-    // Small neighbours become one piece, so that joined lines do not stay in crumbs.
-    std::deque<Piece> pieces;
-    for (Piece& piece : line.middle) {
-      if (!pieces.empty() && pieces.back().stored == 0 && piece.stored == 0) {
-        std::vector<Point<2>>& points = pieces.back().points;
-        points.insert(points.end(), piece.points.begin(), piece.points.end());
+    // Small neighbours become one stretch, so that joined lines do not stay in crumbs.
+    std::deque<Stretch> stretches;
+    for (Stretch& stretch : line.middle) {
+      if (!stretches.empty() && stretches.back().stored == 0 && stretch.stored == 0) {
+        std::vector<Point<2>>& points = stretches.back().points;
+        points.insert(points.end(), stretch.points.begin(), stretch.points.end());
       } else {
-        pieces.push_back(std::move(piece));
+        stretches.push_back(std::move(stretch));
       }
     }
-    for (Piece& piece : pieces) store(piece);
-    line.middle = std::move(pieces);
+    for (Stretch& stretch : stretches) store(stretch);
+    line.middle = std::move(stretches);
   }
   // What cannot go stays; the next time is when as much has come again.
   most_points_ = std::max(most_points_, 2 * points_in_memory_);
@@ -201,20 +201,20 @@ std::vector<Point<2>> LineJoiner::points_of(Line&& line) {
   gather_front(line);
   line.middle.push_back({std::move(line.back), 0, 0});
   std::vector<Point<2>> points;
-  for (Piece& piece : line.middle) {
-    if (piece.stored > 0) {
+  for (Stretch& stretch : line.middle) {
+    if (stretch.stored > 0) {
       const std::size_t begin = points.size();
-      points.resize(begin + piece.stored);
-      file_->read(piece.offset, std::as_writable_bytes(std::span(points).subspan(begin)));
+      points.resize(begin + stretch.stored);
+      file_->read(stretch.offset, std::as_writable_bytes(std::span(points).subspan(begin)));
     } else {
-      points.insert(points.end(), piece.points.begin(), piece.points.end());
+      points.insert(points.end(), stretch.points.begin(), stretch.points.end());
     }
   }
   return points;
 }
 
 void LineJoiner::give_out(Line&& line) {
-  for (const Piece& piece : line.middle) points_in_memory_ -= piece.points.size();
+  for (const Stretch& stretch : line.middle) points_in_memory_ -= stretch.points.size();
   const std::int64_t level = line.begin.level;
   std::vector<Point<2>> points = points_of(std::move(line));
   points.erase(std::unique(points.begin(), points.end()), points.end());

@@ -47,7 +47,7 @@ class LineJoiner {
 
  private:
   /// Consecutive points of a line, in memory or on the disk.
-  struct Piece {
+  struct Stretch {
     std::vector<Point<2>> points;
     std::uint64_t offset = 0;  ///< in the file
     std::uint64_t stored = 0;  ///< points there, if not in memory
@@ -56,7 +56,7 @@ class LineJoiner {
     Crossing begin;
     Crossing end;
     std::vector<Point<2>> front;  ///< the first points, from the last to the first
-    std::deque<Piece> middle;
+    std::deque<Stretch> middle;
     std::vector<Point<2>> back;  ///< the last points
   };
   using Number = std::uint32_t;
@@ -72,7 +72,7 @@ class LineJoiner {
   void give_out(Line&& line);
   void forget(Number number);
   void spill();
-  void store(Piece& piece);
+  void store(Stretch& stretch);
   [[nodiscard]] std::vector<Point<2>> points_of(Line&& line);
 
   Sink sink_;

@@ -1,7 +1,5 @@
 #include "stream/sinks/raster_store.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -16,9 +14,9 @@
 namespace spillway::detail {
 namespace {
 
-// A part on the disk is a block (docs/formats-blocks.md) of this kind: the number of runs; of each,
+// Spilled pixels are a block (docs/formats-blocks.md) of this kind: the number of runs; of each,
 // its first pixel and its length; then the pixels of all runs.
-constexpr std::uint32_t kRasterPart = 0x52545344;
+constexpr std::uint32_t kRasterTile = 0x52545344;
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
@@ -56,7 +54,7 @@ std::vector<std::byte> encode(std::span<const float> pixels, std::span<const Run
   add(std::as_bytes(runs));
   for (const Run& run : runs) add(std::as_bytes(pixels.subspan(run.begin, run.length)));
   std::vector<std::byte> block;
-  append_block(block, kRasterPart, content);
+  append_block(block, kRasterTile, content);
   return block;
 }
 
@@ -170,20 +168,20 @@ void RasterStore::append(std::uint64_t number, std::span<const float> pixels) {
   const std::vector<Run> runs = runs_of(pixels);
   if (runs.empty()) return;
   const std::vector<std::byte> block = encode(pixels, runs);
-  Part part{0, static_cast<std::uint32_t>(block.size())};
+  SpilledPixels stored{0, static_cast<std::uint32_t>(block.size())};
   {
     const std::lock_guard lock(file_mutex_);
     if (!file_) file_ = scratch_.create("raster");
-    part.offset = file_->size();
+    stored.offset = file_->size();
     file_->append(block);
   }
   const std::lock_guard lock(mutex_);
-  tiles_[number].parts.push_back(part);
+  tiles_[number].spilled.push_back(stored);
 }
 
 /// What is provisional stays so.
 void RasterStore::take_as_it_is(std::uint64_t number, std::vector<float>& pixels) {
-  std::vector<Part> parts;
+  std::vector<SpilledPixels> spilled;
   {
     const std::lock_guard lock(mutex_);
     const auto found = tiles_.find(number);
@@ -196,23 +194,23 @@ void RasterStore::take_as_it_is(std::uint64_t number, std::vector<float>& pixels
         --in_memory_;
       }
       pixels = std::move(tile.pixels);
-      parts = std::move(tile.parts);
+      spilled = std::move(tile.spilled);
       tiles_.erase(found);
     }
   }
   if (pixels.empty()) pixels.assign(tile_floats(), kNothing);
-  for (const Part& part : parts) {
-    std::vector<std::byte> bytes(part.bytes);
-    file_->read(part.offset, bytes);
-    add_part(bytes, fmt::format("{}, byte {}", file_->name(), part.offset), pixels);
+  for (const SpilledPixels& stored : spilled) {
+    std::vector<std::byte> bytes(stored.bytes);
+    file_->read(stored.offset, bytes);
+    add_pixels(bytes, {file_->name(), at_byte(stored.offset)}, pixels);
   }
 }
 
 void RasterStore::take(std::uint64_t number, std::vector<float>& pixels,
                        std::span<const std::vector<std::byte>> others) {
   take_as_it_is(number, pixels);
-  for (const std::vector<std::byte>& part : others) {
-    add_part(part, "pixels from another rank", pixels);
+  for (const std::vector<std::byte>& stored : others) {
+    add_pixels(stored, {"pixels from another rank"}, pixels);
   }
   for (std::size_t b = 0; b < bands_.size(); ++b) {
     if (bands_[b] != PixelRule::kPreferred) continue;
@@ -222,7 +220,7 @@ void RasterStore::take(std::uint64_t number, std::vector<float>& pixels,
   }
 }
 
-std::vector<std::byte> RasterStore::take_part(std::uint64_t number) {
+std::vector<std::byte> RasterStore::take_tile(std::uint64_t number) {
   std::vector<float> pixels;
   take_as_it_is(number, pixels);
   return encode(pixels, runs_of(pixels));
@@ -238,12 +236,12 @@ std::vector<std::uint64_t> RasterStore::tiles() const {
   return numbers;
 }
 
-/// Adds what one part has to a tile.
-void RasterStore::add_part(std::span<const std::byte> part, const std::string& where,
-                           std::vector<float>& pixels) const {
-  const BlockHead head = decode_block_head(part.first<kBlockHeadSize>(), where);
+/// Adds encoded pixels to a tile.
+void RasterStore::add_pixels(std::span<const std::byte> stored, const FileSpot& where,
+                             std::vector<float>& pixels) const {
+  const BlockHead head = decode_block_head(stored.first<kBlockHeadSize>(), where);
   std::vector<std::byte> content;
-  decode_block(head, part.subspan(kBlockHeadSize), content, where);
+  decode_block(head, stored.subspan(kBlockHeadSize), content, where);
   const auto count = load<std::uint32_t>(content.data());
   const std::byte* run = content.data() + sizeof(count);
   const std::byte* value = run + count * sizeof(Run);

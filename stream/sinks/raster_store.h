@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "formats/disk/scratch_folder.h"
+#include "src/error.h"
 
 namespace spillway::detail {
 
@@ -35,8 +36,8 @@ inline void set_pixel(float& pixel, float value) {
 
 /// A raster in tiles of kSide x kSide pixels, each with all bands. When they take too much memory,
 /// those that have not been used for the longest time go to the disk, with the pixels that they
-/// have so far; used again, they begin empty, and all parts are put together at the end. So nothing
-/// is read back before, and a pixel is written once as a rule.
+/// have so far; used again, they begin empty, and all pixels are put together at the end. So
+/// nothing is read back before, and a pixel is written once as a rule.
 class RasterStore {
  public:
   static constexpr std::uint32_t kSide = 256;
@@ -81,14 +82,14 @@ class RasterStore {
     std::size_t next_ = 0;  ///< to be let go of
   };
 
-  /// Takes a tile out of the store, all parts put together, also `others`, which take_part() of
+  /// Takes a tile out of the store, all pixels put together, also `others`, which take_tile() of
   /// stores like this one has given; nothing but not-a-number if it has none. When no hand holds
   /// it. May be called by many threads.
   void take(std::uint64_t number, std::vector<float>& pixels,
             std::span<const std::vector<std::byte>> others = {});
 
   /// Takes a tile out of the store, for another one.
-  std::vector<std::byte> take_part(std::uint64_t number);
+  std::vector<std::byte> take_tile(std::uint64_t number);
 
   /// The tiles that have been written to, in ascending order.
   [[nodiscard]] std::vector<std::uint64_t> tiles() const;
@@ -96,7 +97,7 @@ class RasterStore {
   [[nodiscard]] std::uint64_t spilled_bytes() const;
 
  private:
-  struct Part {
+  struct SpilledPixels {
     std::uint64_t offset = 0;
     std::uint32_t bytes = 0;
   };
@@ -104,7 +105,7 @@ class RasterStore {
     std::vector<float> pixels;  ///< empty while not in memory
     unsigned hands = 0;
     std::list<std::uint64_t>::iterator place;  ///< in idle_, while in memory and in no hand
-    std::vector<Part> parts;                   ///< on the disk
+    std::vector<SpilledPixels> spilled;        ///< on the disk
   };
 
   float* hold(std::uint64_t number);
@@ -113,8 +114,8 @@ class RasterStore {
   [[nodiscard]] std::size_t tile_floats() const { return bands_.size() * kTilePixels; }
   void append(std::uint64_t number, std::span<const float> pixels);
   void take_as_it_is(std::uint64_t number, std::vector<float>& pixels);
-  void add_part(std::span<const std::byte> part, const std::string& where,
-                std::vector<float>& pixels) const;
+  void add_pixels(std::span<const std::byte> stored, const FileSpot& where,
+                  std::vector<float>& pixels) const;
 
   const std::vector<PixelRule> bands_;
   const std::size_t most_tiles_;

@@ -28,7 +28,7 @@ double volume(const std::array<Point<3>, 4>& corners) {
 void TetrahedronWriter::write(MeshBlock&& block) {
   const StreamNumbers numbers(live_.announced(), block);
   std::vector<WorldPoint> vertices;
-  for (const Point<3>& vertex : block.vertices) {
+  for (const LatticePoint& vertex : block.vertices) {
     vertices.push_back(in_world(lattice_, vertex));
     extent_.expand(vertices.back());
   }

@@ -76,7 +76,7 @@ struct CellCut {
 class SliceWriter : public TetrahedronWriter {
  public:
   SliceWriter(const std::optional<Lattice>& lattice, std::optional<double> max_edge,
-              const AxisPlane& plane)
+              const Slice& plane)
       : TetrahedronWriter(lattice, max_edge), plane_(plane) {}
 
   [[nodiscard]] const std::vector<CellCut>& cuts() const { return cuts_; }
@@ -86,7 +86,7 @@ class SliceWriter : public TetrahedronWriter {
            const std::array<Point<3>, 4>& corners) override;
   void retire(std::uint64_t /*number*/, const WorldPoint& /*vertex*/) override {}
 
-  const AxisPlane plane_;
+  const Slice plane_;
   std::vector<CellCut> cuts_;
 };
 

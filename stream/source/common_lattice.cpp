@@ -17,19 +17,20 @@ namespace {
 /// either.
 constexpr double kLargest32Bit = 0x1p31;
 constexpr double kLargest = 0x1p52;
-/// Scales are multiples of this part of the smallest one, at most.
-constexpr std::int64_t kMostParts = 1000;
+/// The smallest scale is divided by this number, at most.
+constexpr std::int64_t kLargestDivisor = 1000;
 constexpr double kScaleTolerance = 0x1p-51;
 /// How far an error of the scale may carry the largest integer, in steps of that scale.
 constexpr double kLargestError = kLargest32Bit * kScaleTolerance;
 constexpr double kStepTolerance = 1e-6;
 constexpr double kMostStepTolerance = 1e-3;
 
-/// How many parts `unit` has to be cut into, so that `scale` is a number of parts; 0 if too many.
-std::int64_t parts_of(double unit, double scale) {
-  for (std::int64_t parts = 1; parts <= kMostParts; ++parts) {
-    const double multiple = scale / unit * static_cast<double>(parts);
-    if (std::abs(multiple - std::round(multiple)) <= 4 * kScaleTolerance * multiple) return parts;
+/// The least number by which `unit` is to be divided for `scale` to be a multiple of it; 0 if too
+/// large.
+std::int64_t divisor_of(double unit, double scale) {
+  for (std::int64_t divisor = 1; divisor <= kLargestDivisor; ++divisor) {
+    const double multiple = scale / unit * static_cast<double>(divisor);
+    if (std::abs(multiple - std::round(multiple)) <= 4 * kScaleTolerance * multiple) return divisor;
   }
   return 0;
 }
@@ -37,14 +38,14 @@ std::int64_t parts_of(double unit, double scale) {
 /// The largest number of which all scales are multiples.
 std::optional<double> common_step(const std::set<double>& scales) {
   const double unit = *scales.begin();
-  std::int64_t parts = 1;
+  std::int64_t divisor = 1;
   for (const double scale : scales) {
-    const std::int64_t these = parts_of(unit, scale);
+    const std::int64_t these = divisor_of(unit, scale);
     if (these == 0) return std::nullopt;
-    parts = std::lcm(parts, these);
-    if (parts > kMostParts) return std::nullopt;
+    divisor = std::lcm(divisor, these);
+    if (divisor > kLargestDivisor) return std::nullopt;
   }
-  return unit / static_cast<double>(parts);
+  return unit / static_cast<double>(divisor);
 }
 
 /// Brings some axes of all lattices to one scale; false if that cannot be.

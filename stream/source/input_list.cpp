@@ -4,6 +4,7 @@
 #include <glob.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <memory>
 #include <new>
@@ -47,12 +48,16 @@ void append_folder(const std::string& folder, Found& found) {
       names.push_back(name);
     }
   }
-  if (fault) throw Error(fmt::format("cannot read the folder {}: {}", folder, fault.message()));
+  if (fault) {
+    throw SystemRefusal(fmt::format("cannot read the folder {}: {}", folder, fault.message()),
+                        folder, fault.value());
+  }
   if (names.empty()) {
     const std::string others = fmt::format(" but those of {} meshes", formats_in_files());
-    throw Error(fmt::format("{}: the folder has no point files ({}){}; name files or a pattern",
-                            folder, fmt::join(point_extensions(), ", "),
-                            found.of_meshes > 0 ? others : ""));
+    throw BadInput(
+        folder,
+        fmt::format("the folder has no point files ({}){}; name files or a pattern",
+                    fmt::join(point_extensions(), ", "), found.of_meshes > 0 ? others : ""));
   }
   std::sort(names.begin(), names.end());
   found.files.insert(found.files.end(), names.begin(), names.end());
@@ -72,7 +77,9 @@ void append_matches(const std::string& pattern, Found& found) {
   const std::unique_ptr<glob_t, void (*)(glob_t*)> owner(&matches, globfree);
   const int result = glob(pattern.c_str(), GLOB_NOSORT, nullptr, &matches);
   if (result == GLOB_NOSPACE) throw std::bad_alloc();
-  if (result != 0) throw Error(fmt::format("{}: no file has such a name", pattern));
+  if (result != 0) {
+    throw SystemRefusal(fmt::format("{}: no file matches this pattern", pattern), pattern, ENOENT);
+  }
   std::vector<std::string> names(matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
   std::sort(names.begin(), names.end());
   for (const std::string& name : names) append_name(name, found);
@@ -103,8 +110,11 @@ std::string_view trimmed(std::string_view line) {
 void append_list(const std::string& list, Found& found) {
   std::error_code unknown;
   if (list != "-" && !fs::exists(list, unknown)) {
-    throw Error(fmt::format(
-        "@{0} names a list of inputs, {0}, which is not there; a file called so is ./@{0}", list));
+    throw SystemRefusal(
+        fmt::format(
+            "@{0} names a list of inputs, but there is no file {0}; a file of that name is ./@{0}",
+            list),
+        list, ENOENT);
   }
   const auto file = disk().open(list);
   LineReader lines(*file);
@@ -114,14 +124,13 @@ void append_list(const std::string& list, Found& found) {
     const std::string_view name = trimmed(line);
     if (name.empty() || name.front() == '#') continue;
     if (name == "-" || name.front() == '@') {
-      throw Error(
-          fmt::format("{}, line {}: a list has names of files, folders and patterns, but "
-                      "this is {}",
-                      file->name(), lines.number(), quoted(name)));
+      throw BadInput({.file = file->name(), .place = at_line(lines.number())},
+                     fmt::format("a list has names of files, folders and patterns, but this is {}",
+                                 quoted(name)));
     }
     append((folder / name).string(), found);
   }
-  if (found.files.size() == before) throw Error(fmt::format("{}: the list is empty", file->name()));
+  if (found.files.size() == before) throw BadInput(file->name(), "the list is empty");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "src/error.h"
@@ -17,30 +18,15 @@ bool ReturnFilter::keeps(const PointAttributes& point) const {
          (point.return_number < numbers.size() && numbers[point.return_number]);
 }
 
-PointCounts& PointCounts::operator+=(const PointCounts& other) {
-  read += other.read;
-  withheld += other.withheld;
-  every += other.every;
-  classes += other.classes;
-  returns += other.returns;
-  bounds += other.bounds;
-  thinned += other.thinned;
-  return *this;
-}
-
-std::string describe(const PointCounts& counts) {
-  std::string text = fmt::format("{} points read", counts.read);
-  const std::array<std::pair<std::uint64_t, const char*>, 6> dropped = {
-      {{counts.withheld, "withheld"},
-       {counts.every, "skipped"},
-       {counts.classes, "of other classes"},
-       {counts.returns, "of other returns"},
-       {counts.bounds, "outside the bounds"},
-       {counts.thinned, "thinned"}}};
-  for (const auto& [count, why] : dropped) {
-    if (count > 0) text += fmt::format(", {} {}", count, why);
+std::optional<Box<3>> PointFilter::loose_bounds() const {
+  constexpr double kMargin = 1e-12;
+  std::optional<Box<3>> loose = bounds;
+  if (!loose) return loose;
+  for (int k = 0; k < 3; ++k) {
+    loose->lo[k] -= std::abs(loose->lo[k]) * kMargin;
+    loose->hi[k] += std::abs(loose->hi[k]) * kMargin;
   }
-  return text + fmt::format(", {} kept", counts.kept());
+  return loose;
 }
 
 void refuse_empty_input(const PointCounts& counts) {
@@ -54,14 +40,12 @@ void apply_filter(const PointFilter& filter, const std::optional<Lattice>& latti
   const bool attributes = !block.attributes.empty();
   for (std::size_t i = 0; i < block.size(); ++i) {
     if (filter.every > 1 && block.index[i] % filter.every != 0) {
-      ++counts.every;
+      ++counts.skipped;
     } else if (filter.classes && !filter.classes->test(block.attributes[i].classification)) {
       ++counts.classes;
     } else if (filter.returns && !filter.returns->keeps(block.attributes[i])) {
       ++counts.returns;
-    } else if (filter.bounds &&
-               !filter.bounds->contains(lattice ? lattice->to_world(block.points[i])
-                                                : block.points[i])) {
+    } else if (filter.bounds && !filter.bounds->contains(in_world(lattice, block.points[i]))) {
       ++counts.bounds;
     } else {
       block.points[kept] = block.points[i];
@@ -76,3 +60,22 @@ void apply_filter(const PointFilter& filter, const std::optional<Lattice>& latti
 }
 
 }  // namespace spillway::detail
+
+namespace spillway {
+
+std::string describe(const PointCounts& counts) {
+  std::string text = fmt::format("{} points read", counts.read);
+  const std::array<std::pair<std::uint64_t, const char*>, 6> dropped = {
+      {{counts.withheld, "withheld"},
+       {counts.skipped, "skipped"},
+       {counts.classes, "of other classes"},
+       {counts.returns, "of other returns"},
+       {counts.bounds, "outside the bounds"},
+       {counts.thinned, "thinned"}}};
+  for (const auto& [count, why] : dropped) {
+    if (count > 0) text += fmt::format(", {} {}", count, why);
+  }
+  return text + fmt::format(", {} kept", counts.kept());
+}
+
+}  // namespace spillway

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spillway/figures.h>
+
 #include <bitset>
 #include <cstdint>
 #include <optional>
@@ -34,29 +36,10 @@ struct PointFilter {
 
   [[nodiscard]] bool active() const { return every > 1 || needs_attributes() || bounds; }
   [[nodiscard]] bool needs_attributes() const { return classes || returns; }
+  /// Slightly larger bounds, for whoever computes coordinates with another lattice than the common
+  /// one: they leave out nothing that may be inside `bounds`.
+  [[nodiscard]] std::optional<Box<3>> loose_bounds() const;
 };
-
-/// What became of the records of the inputs.
-struct PointCounts {
-  std::uint64_t read = 0;      ///< all of them
-  std::uint64_t withheld = 0;  ///< dropped since flagged so, ...
-  std::uint64_t every = 0;
-  std::uint64_t classes = 0;
-  std::uint64_t returns = 0;
-  std::uint64_t bounds = 0;
-  std::uint64_t thinned = 0;  ///< ... or since another one stands for their cell
-
-  PointCounts& operator+=(const PointCounts& other);
-  bool operator==(const PointCounts&) const = default;
-
-  [[nodiscard]] std::uint64_t dropped() const {
-    return withheld + every + classes + returns + bounds + thinned;
-  }
-  [[nodiscard]] std::uint64_t kept() const { return read - dropped(); }
-};
-
-/// One line: "500 points read, 12 withheld, 300 outside the bounds, 188 kept".
-std::string describe(const PointCounts& counts);
 
 /// Throws Error: there are no points, or none are left of those that were read.
 [[noreturn]] void refuse_empty_input(const PointCounts& counts);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "formats/disk/scratch_folder.h"
-#include "src/geometry/point.h"
+#include "src/geometry/framed_point.h"
 
 namespace spillway::detail {
 
@@ -19,7 +19,7 @@ namespace spillway::detail {
 struct RunPoint {
   std::uint64_t order;
   std::uint64_t key;
-  Point<3> point;
+  LatticePoint point;
 };
 
 /// Sorts points on the disk: takes sorted runs and gives their points merged. If there are so many

@@ -14,9 +14,9 @@ namespace spillway::detail {
 namespace {
 
 /// Most files that the points of a pass are put aside to.
-constexpr std::size_t kParts = 16;
+constexpr std::size_t kBuckets = 16;
 constexpr std::size_t kBuffers =
-    kParts * PointBuffer::kPiece * (sizeof(Point<3>) + sizeof(std::uint64_t));
+    kBuckets * PointBuffer::kChunk * (sizeof(LatticePoint) + sizeof(std::uint64_t));
 /// A candidate, and its share of a table that is a quarter to half full.
 constexpr std::size_t kBytesPerCell = 64;
 constexpr std::size_t kFewestCells = 1024;
@@ -30,7 +30,8 @@ constexpr int kAttributeBits = 20;
 
 std::uint64_t key_of(std::uint64_t index, const PointAttributes& attributes) {
   if (index >> (64 - kAttributeBits) != 0) {
-    throw Error(fmt::format("thinning: {} records are too many; thin parts of them", index));
+    throw Error(fmt::format("thinning: {} records are too many; thin parts of them", index),
+                ErrorCode::kTooLarge);
   }
   return index << kAttributeBits | static_cast<std::uint64_t>(attributes.classification) << 12 |
          (attributes.return_number & 15U) << 8 | (attributes.return_count & 15U) << 4 |
@@ -63,26 +64,26 @@ Thinning::Thinning(const ThinningOptions& options, ScratchFolder& scratch)
           (options.memory - std::min<std::uint64_t>(options.memory, kBuffers)) / kBytesPerCell,
           kFewestCells, kMostCells)),
       slots_(kFewestSlots),
-      parts_(kParts) {
+      buckets_(kBuckets) {
   const bool columns =
       options.choice == ThinChoice::kLowest || options.choice == ThinChoice::kHighest;
   if (columns) options_.dimension = 2;
   candidates_.reserve(capacity_);
 }
 
-Point<3> Thinning::world(const Point<3>& point) const {
-  return options_.lattice ? options_.lattice->to_world(point) : point;
+WorldPoint Thinning::world(const LatticePoint& point) const {
+  return in_world(options_.lattice, point);
 }
 
-Thinning::Cell Thinning::cell_of(const Point<3>& world) const {
+Thinning::Cell Thinning::cell_of(const WorldPoint& world) const {
   Cell cell{};
   for (int k = 0; k < options_.dimension; ++k) {
     cell[k] = std::floor(world[k] / options_.cell);
     if (!(std::abs(cell[k]) <= kLargestCell)) {
-      throw Error(
-          fmt::format("thinning: cells of {} are too small to count up to a coordinate of "
-                      "{}; choose larger ones",
-                      options_.cell, world[k]));
+      throw Error(fmt::format("thinning: cells of {} are too small to count up to a coordinate of "
+                              "{}; choose larger ones",
+                              options_.cell, world[k]),
+                  ErrorCode::kInvalidArgument);
     }
   }
   return cell;
@@ -91,7 +92,7 @@ Thinning::Cell Thinning::cell_of(const Point<3>& world) const {
 /// Whether `a` is to be kept rather than `b`, both of one cell.
 bool Thinning::better(const Candidate& a, const Candidate& b) const {
   const auto rank = [this](const Candidate& candidate) {
-    const Point<3> place = world(candidate.point);
+    const WorldPoint place = world(candidate.point);
     if (options_.choice == ThinChoice::kLowest) return place[2];
     if (options_.choice == ThinChoice::kHighest) return -place[2];
     double squared_distance = 0;
@@ -158,48 +159,48 @@ void Thinning::put_aside(const Candidate& candidate, std::uint64_t hash) {
   } else {
     --done_;
   }
-  Part& part = parts_[mix64(hash + level_) % parts_.size()];
-  part.buffer.append(std::span(&candidate.point, 1), std::span(&candidate.key, 1));
-  if (part.buffer.size() == PointBuffer::kPiece) write(part);
+  Bucket& bucket = buckets_[mix64(hash + level_) % buckets_.size()];
+  bucket.buffer.append(std::span(&candidate.point, 1), std::span(&candidate.key, 1));
+  if (bucket.buffer.size() == PointBuffer::kChunk) write(bucket);
 }
 
-void Thinning::write(Part& part) {
-  if (!part.file) part.file = scratch_.create("thinning");
+void Thinning::write(Bucket& bucket) {
+  if (!bucket.file) bucket.file = scratch_.create("thinning");
   std::vector<std::byte> bytes;
-  for (TileBlock block : encode_points(part.buffer, bytes)) {
-    block.offset += part.file->size();
-    part.blocks.push_back(block);
+  for (TileBlock block : encode_points(bucket.buffer, bytes)) {
+    block.offset += bucket.file->size();
+    bucket.blocks.push_back(block);
   }
-  part.file->append(bytes);
+  bucket.file->append(bytes);
 }
 
 /// From now on all candidates are final.
 void Thinning::end_pass() {
   passing_ = false;
   std::vector<Slot>().swap(slots_);
-  for (Part& part : parts_) {
-    if (part.buffer.size() > 0) write(part);
-    part.level = level_ + 1;
-    if (part.file) waiting_.push_back(std::move(part));
+  for (Bucket& bucket : buckets_) {
+    if (bucket.buffer.size() > 0) write(bucket);
+    bucket.level = level_ + 1;
+    if (bucket.file) waiting_.push_back(std::move(bucket));
   }
-  parts_.clear();
+  buckets_.clear();
 }
 
-void Thinning::run_pass(Part part) {
+void Thinning::run_pass(Bucket bucket) {
   candidates_.clear();
   met_.clear();
   slots_.assign(kFewestSlots, {});
   std::size_t count = 0;
-  for (const TileBlock& block : part.blocks) count += block.points;
-  parts_.resize(std::min(kParts, count / capacity_ + 1));  // such that theirs find room
-  level_ = part.level;
+  for (const TileBlock& block : bucket.blocks) count += block.points;
+  buckets_.resize(std::min(kBuckets, count / capacity_ + 1));  // such that theirs find room
+  level_ = bucket.level;
   passing_ = true;
   PointBlock points;
   std::vector<std::byte> bytes;
-  for (const TileBlock& block : part.blocks) {
+  for (const TileBlock& block : bucket.blocks) {
     bytes.resize(block.size);
-    part.file->read(block.offset, bytes);
-    decode_points(bytes, fmt::format("{}, byte {}", part.file->name(), block.offset), points);
+    bucket.file->read(block.offset, bytes);
+    decode_points(bytes, {bucket.file->name(), at_byte(block.offset)}, points);
     done_ += points.size();  // but for those that are put aside again
     for (std::size_t i = 0; i < points.size(); ++i) offer({points.points[i], points.index[i]});
     options_.progress.update(done_, put_aside_);
@@ -211,14 +212,14 @@ void Thinning::work_off_files() {
   capacity_ -= capacity_ / (kBytesPerCell / sizeof(std::uint64_t));  // for met_
   kept_.emplace(options_.memory, scratch_);
   while (!waiting_.empty()) {
-    Part part = std::move(waiting_.back());
+    Bucket bucket = std::move(waiting_.back());
     waiting_.pop_back();
-    run_pass(std::move(part));
+    run_pass(std::move(bucket));
     end_pass();
     kept_->begin_run();
-    for (std::size_t begin = 0; begin < candidates_.size(); begin += PointBuffer::kPiece) {
+    for (std::size_t begin = 0; begin < candidates_.size(); begin += PointBuffer::kChunk) {
       sorted_.clear();
-      for (std::size_t i = begin; i < std::min(candidates_.size(), begin + PointBuffer::kPiece);
+      for (std::size_t i = begin; i < std::min(candidates_.size(), begin + PointBuffer::kChunk);
            ++i) {
         sorted_.push_back({met_[i], candidates_[i].key, candidates_[i].point});
       }
@@ -239,7 +240,7 @@ bool Thinning::has_more() {
     options_.progress.begin();
     work_off_files();
   }
-  const bool more = kept_ && kept_->next(sorted_, PointBuffer::kPiece);
+  const bool more = kept_ && kept_->next(sorted_, PointBuffer::kChunk);
   if (has_files) options_.progress.end(put_aside_);
   if (more) {
     for (const RunPoint& p : sorted_) candidates_.push_back({p.point, p.key});

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <spillway/choices.h>
 #include <array>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -10,20 +12,17 @@
 
 #include "formats/disk/scratch_folder.h"
 #include "formats/points/common/point_reader.h"
+#include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
-#include "src/geometry/point.h"
 #include "stream/source/point_runs.h"
 #include "stream/tiles/point_buffer.h"
 #include "stream/tiles/tile_block.h"
 
 namespace spillway::detail {
 
-/// The part of a memory limit that thinning may take, one in so much: points that wait to be
+/// The part of a memory limit that thinning may take, as its divisor: points that wait to be
 /// spilled and the last cells are in memory at the same time.
 inline constexpr std::uint64_t kThinningShare = 4;
-
-/// Which point of a cell is kept; among equals the one of the lowest index.
-enum class ThinChoice { kFirst, kLowest, kHighest, kCenter };
 
 /// Is told how far the points have come that found no room in memory.
 struct ThinningProgress {
@@ -70,7 +69,7 @@ class Thinning {
   using Cell = std::array<double, 3>;  // whole numbers
 
   struct Candidate {
-    Point<3> point;
+    LatticePoint point;
     std::uint64_t key;  ///< index and attributes, the index in the upper bits
   };
   /// Where a candidate is found by its cell.
@@ -79,22 +78,22 @@ class Thinning {
     std::uint32_t number = 0;  ///< of the candidate + 1; 0: free
   };
   /// Points of cells for which there was no room.
-  struct Part {
+  struct Bucket {
     PointBuffer buffer;
     std::unique_ptr<ScratchFile> file;
     std::vector<TileBlock> blocks;
     unsigned level = 0;  ///< passes that its points have been through
   };
 
-  [[nodiscard]] Point<3> world(const Point<3>& point) const;
-  [[nodiscard]] Cell cell_of(const Point<3>& world) const;
+  [[nodiscard]] WorldPoint world(const LatticePoint& point) const;
+  [[nodiscard]] Cell cell_of(const WorldPoint& world) const;
   [[nodiscard]] bool better(const Candidate& a, const Candidate& b) const;
   void offer(const Candidate& candidate);
   void grow();
   void put_aside(const Candidate& candidate, std::uint64_t hash);
-  void write(Part& part);
+  void write(Bucket& bucket);
   void end_pass();
-  void run_pass(Part part);
+  void run_pass(Bucket bucket);
   void work_off_files();
   bool has_more();
 
@@ -104,8 +103,8 @@ class Thinning {
   std::vector<Candidate> candidates_;  ///< in the order in which their cells were met
   std::vector<std::uint64_t> met_;     ///< of points from files: the first key of each cell
   std::vector<Slot> slots_;            ///< as many as a power of 2, half full at most
-  std::vector<Part> parts_;            ///< of the pass that is going on
-  std::vector<Part> waiting_;
+  std::vector<Bucket> buckets_;        ///< of the pass that is going on
+  std::vector<Bucket> waiting_;
   std::optional<PointRuns> kept_;  ///< of the points from files
   std::vector<RunPoint> sorted_;   ///< that go into it or come out of it
   unsigned level_ = 0;

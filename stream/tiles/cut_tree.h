@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "src/geometry/point.h"
+#include "src/geometry/framed_point.h"
 
 namespace spillway::detail {
 
@@ -19,45 +19,45 @@ class CutTree {
 
   /// The tile of each point. In as many steps for each as for the deepest one: nobody can tell
   /// where a walk ends.
-  void find_tiles(std::span<const Point<3>> points, std::span<std::uint32_t> tiles) const;
+  void find_tiles(std::span<const LatticePoint> points, std::span<std::uint32_t> tiles) const;
 
   [[nodiscard]] std::uint32_t tiles() const { return tiles_; }
 
   /// Divides a tile into about `parts` that would get equal shares of `sample` (points of that
   /// tile, which are put into another order). The tile keeps its number for one of them, the others
   /// get new ones. Fewer parts come out where the sample's points are equal.
-  void split(std::uint32_t tile, std::vector<Point<3>>& sample, std::size_t parts);
+  void split(std::uint32_t tile, std::vector<LatticePoint>& sample, std::size_t parts);
 
   /// Cuts a tile in two: below `value` on `axis` and not below.
   void cut(std::uint32_t tile, int axis, double value);
 
   /// A node of the tree, for walking it: a tile, or a cut with two sides.
-  using Place = std::int32_t;
-  [[nodiscard]] Place root() const { return root_; }
-  [[nodiscard]] static bool is_tile(Place place) { return place < 0; }
-  [[nodiscard]] static std::uint32_t tile_at(Place place) {
-    return static_cast<std::uint32_t>(-place - 1);
+  using NodeRef = std::int32_t;
+  [[nodiscard]] NodeRef root() const { return root_; }
+  [[nodiscard]] static bool is_tile(NodeRef ref) { return ref < 0; }
+  [[nodiscard]] static std::uint32_t tile_at(NodeRef ref) {
+    return static_cast<std::uint32_t>(-ref - 1);
   }
-  [[nodiscard]] std::array<Place, 2> sides(Place place) const { return cuts_[place].sides; }
+  [[nodiscard]] std::array<NodeRef, 2> sides(NodeRef ref) const { return cuts_[ref].sides; }
 
  private:
   struct Cut {
     double value;
     int axis;
-    std::array<Place, 2> sides;  ///< below, not below
+    std::array<NodeRef, 2> sides;  ///< below, not below
   };
 
-  static Place place_of(std::uint32_t tile) { return -static_cast<Place>(tile) - 1; }
-  Place make_cut(std::uint32_t tile, int axis, double value);
-  void split_sample(std::uint32_t tile, Point<3>* begin, Point<3>* end, std::size_t parts);
+  static NodeRef ref_of(std::uint32_t tile) { return -static_cast<NodeRef>(tile) - 1; }
+  NodeRef make_cut(std::uint32_t tile, int axis, double value);
+  void split_sample(std::uint32_t tile, LatticePoint* begin, LatticePoint* end, std::size_t parts);
 
   int dimension_;
   int most_cuts_ = 0;               ///< above a tile
   std::vector<int> cuts_above_{0};  ///< by tile
-  Place root_ = place_of(0);
+  NodeRef root_ = ref_of(0);
   std::uint32_t tiles_ = 1;
   std::vector<Cut> cuts_;
-  std::vector<Place> parents_{-1};  ///< by tile: the cut above it, or -1
+  std::vector<NodeRef> parents_{-1};  ///< by tile: the cut above it, or -1
 };
 
 }  // namespace spillway::detail

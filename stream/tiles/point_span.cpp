@@ -11,7 +11,7 @@ namespace spillway::detail {
 namespace {
 
 template <int D>
-Point<D> first_coordinates(const Point<3>& point) {
+Point<D> first_coordinates(const LatticePoint& point) {
   Point<D> first;
   std::copy_n(point.begin(), D, first.begin());
   return first;
@@ -22,14 +22,14 @@ Point<D> first_coordinates(const Point<3>& point) {
 /// Points are compared with what is known when the block comes; what another thread finds meanwhile
 /// is a part of what all points span all the same.
 template <int D>
-void PointSpan<D>::add(std::span<const Point<3>> points) {
+void PointSpan<D>::add(std::span<const LatticePoint> points) {
   if (full_) return;
   Facts seen;
   {
     const std::lock_guard lock(mutex_);
     seen = facts_;
   }
-  for (const Point<3>& point : points) {
+  for (const LatticePoint& point : points) {
     const Point<D> p = first_coordinates<D>(point);
     if (std::ranges::find(seen.points, p) != seen.points.end()) continue;
     if (is_independent<D>(seen.points, p)) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "src/geometry/framed_point.h"
 #include "src/geometry/point.h"
 
 namespace spillway::detail {
@@ -16,7 +17,7 @@ template <int D>
 class PointSpan {
  public:
   /// By any number of threads at a time.
-  void add(std::span<const Point<3>> points);
+  void add(std::span<const LatticePoint> points);
 
   /// Whether they span D dimensions.
   [[nodiscard]] bool full() const { return full_; }

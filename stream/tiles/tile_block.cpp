@@ -17,7 +17,7 @@ constexpr std::uint32_t kIndexedPointsKind = 2;
 
 }  // namespace
 
-void append_points(std::vector<std::byte>& bytes, std::span<const Point<3>> points,
+void append_points(std::vector<std::byte>& bytes, std::span<const LatticePoint> points,
                    std::span<const std::uint64_t> index) {
   std::vector<std::byte> content(sizeof(std::uint32_t));
   store(content.data(), static_cast<std::uint32_t>(points.size()));
@@ -30,35 +30,35 @@ void append_points(std::vector<std::byte>& bytes, std::span<const Point<3>> poin
   append_block(bytes, index.empty() ? kPointsKind : kIndexedPointsKind, content);
 }
 
-void append_all_points(std::vector<std::byte>& bytes, std::span<const Point<3>> points,
+void append_all_points(std::vector<std::byte>& bytes, std::span<const LatticePoint> points,
                        std::span<const std::uint64_t> index) {
-  for (std::size_t i = 0; i < points.size(); i += PointBuffer::kPiece) {
-    const std::size_t count = std::min(PointBuffer::kPiece, points.size() - i);
+  for (std::size_t i = 0; i < points.size(); i += PointBuffer::kChunk) {
+    const std::size_t count = std::min(PointBuffer::kChunk, points.size() - i);
     append_points(bytes, points.subspan(i, count), index.empty() ? index : index.subspan(i, count));
   }
 }
 
 std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes) {
   std::vector<TileBlock> blocks;
-  points.drain([&](std::span<const Point<3>> piece, std::span<const std::uint64_t> index) {
+  points.drain([&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
     const std::size_t begin = bytes.size();
-    append_points(bytes, piece, index);
-    blocks.push_back({begin, bytes.size() - begin, piece.size()});
+    append_points(bytes, chunk, index);
+    blocks.push_back({begin, bytes.size() - begin, chunk.size()});
   });
   return blocks;
 }
 
-void decode_points(std::span<const std::byte> block, const std::string& where, PointBlock& points) {
-  if (block.size() < kBlockHeadSize) throw Error(where + ": the block is cut short");
+void decode_points(std::span<const std::byte> block, const FileSpot& where, PointBlock& points) {
+  if (block.size() < kBlockHeadSize) throw BadInput(where, "the block is cut short");
   const BlockHead head = decode_block_head(block.first<kBlockHeadSize>(), where);
   if (head.stored_size != block.size() - kBlockHeadSize) {
-    throw Error(where + ": the block has another size than its head says");
+    throw BadInput(where, "the block has another size than its head says");
   }
   std::vector<std::byte> content;
   decode_block(head, block.subspan(kBlockHeadSize), content, where);
-  if (content.size() < sizeof(std::uint32_t)) throw Error(where + ": the block has no count");
+  if (content.size() < sizeof(std::uint32_t)) throw BadInput(where, "the block has no count");
   const std::size_t count = load<std::uint32_t>(content.data());
-  if (count > PointBuffer::kPiece) throw Error(where + ": the block has too many points");
+  if (count > PointBuffer::kChunk) throw BadInput(where, "the block has too many points");
   ColumnReader columns(std::span<const std::byte>(content).subspan(sizeof(std::uint32_t)), where);
   points.points.resize(count);
   std::vector<double> column;
@@ -71,12 +71,12 @@ void decode_points(std::span<const std::byte> block, const std::string& where, P
   columns.expect_end();
 }
 
-void decode_all_points(std::span<const std::byte> blocks, const std::string& where,
+void decode_all_points(std::span<const std::byte> blocks, const FileSpot& where,
                        PointBlock& points) {
   points.clear();
   PointBlock some;
   while (!blocks.empty()) {
-    if (blocks.size() < kBlockHeadSize) throw Error(where + ": a block is cut short");
+    if (blocks.size() < kBlockHeadSize) throw BadInput(where, "a block is cut short");
     const BlockHead head = decode_block_head(blocks.first<kBlockHeadSize>(), where);
     const std::size_t size =
         std::min<std::size_t>(blocks.size(), kBlockHeadSize + head.stored_size);

@@ -10,6 +10,7 @@
 
 #include "formats/points/common/point_reader.h"
 #include "src/delaunay/common/working_memory.h"
+#include "src/error.h"
 #include "src/geometry/point.h"
 #include "stream/tiles/point_buffer.h"
 
@@ -28,7 +29,7 @@ struct TilePoints {
     if (with_index) resize(index, count);
   }
   /// Puts a point into a place.
-  void set(std::size_t place, const Point<3>& point) {
+  void set(std::size_t place, const LatticePoint& point) {
     if constexpr (D == 2) {
       points[place] = {point[0], point[1]};
       heights[place] = point[2];
@@ -48,7 +49,7 @@ struct TilePoints {
 
 /// What a point takes in it, with an index, and with its number while it is triangulated.
 constexpr std::uint64_t kLoadedPointBytes =
-    sizeof(Point<3>) + sizeof(std::uint64_t) + sizeof(std::uint32_t);
+    sizeof(LatticePoint) + sizeof(std::uint64_t) + sizeof(std::uint32_t);
 
 /// Where a block lies in a tile's file, and how many points it holds.
 struct TileBlock {
@@ -57,25 +58,25 @@ struct TileBlock {
   std::size_t points = 0;
 };
 
-/// Appends a buffer's points to `bytes` as blocks, one a piece, and lets go of them. The blocks'
+/// Appends a buffer's points to `bytes` as blocks, one a chunk, and lets go of them. The blocks'
 /// offsets are counted from the beginning of `bytes`.
 std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes);
 
-/// Appends one block of points, at most PointBuffer::kPiece. `index` has one entry a point, or
+/// Appends one block of points, at most PointBuffer::kChunk. `index` has one entry a point, or
 /// none.
-void append_points(std::vector<std::byte>& bytes, std::span<const Point<3>> points,
+void append_points(std::vector<std::byte>& bytes, std::span<const LatticePoint> points,
                    std::span<const std::uint64_t> index);
 
 /// Appends any number of points, as blocks one after the other.
-void append_all_points(std::vector<std::byte>& bytes, std::span<const Point<3>> points,
+void append_all_points(std::vector<std::byte>& bytes, std::span<const LatticePoint> points,
                        std::span<const std::uint64_t> index);
 
-/// Replaces `points` by those of one block, given by its bytes. Throws Error, beginning with
-/// `where`, if the block is corrupt.
-void decode_points(std::span<const std::byte> block, const std::string& where, PointBlock& points);
+/// Replaces `points` by those of one block, given by its bytes. Throws BadInput of
+/// `where` if the block is corrupt.
+void decode_points(std::span<const std::byte> block, const FileSpot& where, PointBlock& points);
 
 /// Likewise, by what append_all_points() wrote.
-void decode_all_points(std::span<const std::byte> blocks, const std::string& where,
+void decode_all_points(std::span<const std::byte> blocks, const FileSpot& where,
                        PointBlock& points);
 
 }  // namespace spillway::detail

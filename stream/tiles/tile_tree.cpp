@@ -1,7 +1,5 @@
 #include "stream/tiles/tile_tree.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,7 +18,7 @@ constexpr std::size_t kSlots = 6;
 /// will lie, and where the density may turn out to be another.
 constexpr double kRepresentativeFill = 0.6;
 constexpr double kExpectedFill = 0.4;
-/// How full the parts of a tile are whose number of points is known.
+/// How full the tiles are that a tile of known size is divided into.
 constexpr double kKnownFill = 0.7;
 /// Tiles of the first division where the number of points is not known.
 constexpr std::size_t kUnknownTiles = 64;
@@ -31,10 +29,10 @@ constexpr std::size_t kLaterSamples = 64;
 constexpr double kRepresentativeSpan = 0.9;
 /// Most points that stand for those expected.
 constexpr std::size_t kMostExpectedSamples = 1'000'000;
-/// Full buffers are emptied by this part of them.
+/// Full buffers are emptied by this share of them.
 constexpr std::size_t kSpillShare = 8;
 
-std::size_t parts_for(double points, double capacity, double fill) {
+std::size_t tiles_for(double points, double capacity, double fill) {
   return static_cast<std::size_t>(std::ceil(points / (fill * capacity)));
 }
 
@@ -71,7 +69,7 @@ void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
     const StageTimer timer(times_, Stage::kSpill);
     for (Spill& spill : batch.spills) spill.blocks = encode_points(spill.points, spill.bytes);
   };
-  const std::vector<PipelineStage> stages = {
+  const std::vector<PipelineStep> steps = {
       {.in_order = false,
        .work =
            [&](std::size_t slot) {
@@ -82,7 +80,7 @@ void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
       {.in_order = false, .work = [&](std::size_t slot) { encode(batches[slot]); }},
       {.in_order = true, .work = [&](std::size_t slot) { write(batches[slot]); }}};
   run_pipeline(
-      kSlots, [&](std::size_t slot) { return fetch(batches[slot]); }, stages);
+      kSlots, [&](std::size_t slot) { return fetch(batches[slot]); }, steps);
 }
 
 /// Groups a batch's points by tile.
@@ -166,7 +164,7 @@ bool TileTree::sample_is_representative() const {
 }
 
 /// The points that are still to come lie, for all one knows, evenly where none have come so far.
-void TileTree::add_expected_points(std::vector<Point<3>>& sample) const {
+void TileTree::add_expected_points(std::vector<LatticePoint>& sample) const {
   const auto seen = static_cast<double>(tiles_[0].points);
   const double more = static_cast<double>(*options_.expected) / seen - 1;
   const auto wanted = static_cast<std::size_t>(
@@ -180,7 +178,7 @@ void TileTree::add_expected_points(std::vector<Point<3>>& sample) const {
   const Box<3>& seen_box = tiles_[0].box;
   std::size_t added = 0;
   for (std::size_t i = 1; added < wanted && i <= 4 * wanted; ++i) {
-    Point<3> point{};
+    LatticePoint point{};
     bool inside = true;
     for (int k = 0; k < options_.dimension; ++k) {
       const double turns = step[k] * static_cast<double>(i);
@@ -197,21 +195,21 @@ void TileTree::add_expected_points(std::vector<Point<3>>& sample) const {
 void TileTree::divide_first() {
   const auto capacity = static_cast<double>(options_.capacity);
   const std::uint64_t seen = tiles_[0].points;
-  std::vector<Point<3>> sample = std::move(tiles_[0].sample);
+  std::vector<LatticePoint> sample = std::move(tiles_[0].sample);
   const bool complete = buffered_ <= options_.buffered_points;
-  std::size_t parts = kUnknownTiles;
+  std::size_t tile_count = kUnknownTiles;
   if (complete) {
-    parts = parts_for(static_cast<double>(seen), capacity, kKnownFill);
+    tile_count = tiles_for(static_cast<double>(seen), capacity, kKnownFill);
   } else if (options_.expected && *options_.expected > seen) {
     const bool representative = sample_is_representative();
-    parts = parts_for(static_cast<double>(*options_.expected), capacity,
-                      representative ? kRepresentativeFill : kExpectedFill);
+    tile_count = tiles_for(static_cast<double>(*options_.expected), capacity,
+                           representative ? kRepresentativeFill : kExpectedFill);
     if (!representative && options_.extent) add_expected_points(sample);
   }
   divided_ = true;
   sample_stride_ = std::max<std::size_t>(1, options_.capacity / kLaterSamples);
   auto cuts = std::make_shared<CutTree>(*cuts_);
-  split(*cuts, 0, std::move(sample), std::max<std::size_t>(2, parts));
+  split(*cuts, 0, std::move(sample), std::max<std::size_t>(2, tile_count));
   PointBuffer points = std::exchange(tiles_[0].buffer, {});
   tiles_[0] = {};
   tiles_.resize(cuts->tiles());
@@ -232,10 +230,10 @@ bool TileTree::too_large(const Tile& tile) const {
 }
 
 /// Splits a tile by its sample; where that tells too little, by its box.
-void TileTree::split(CutTree& cuts, std::uint32_t number, std::vector<Point<3>> sample,
-                     std::size_t parts) const {
+void TileTree::split(CutTree& cuts, std::uint32_t number, std::vector<LatticePoint> sample,
+                     std::size_t tile_count) const {
   const std::uint32_t before = cuts.tiles();
-  cuts.split(number, sample, parts);
+  cuts.split(number, sample, tile_count);
   if (cuts.tiles() > before) return;
   const Box<3>& box = tiles_[number].box;
   int axis = 0;
@@ -270,8 +268,8 @@ std::uint64_t TileTree::divide_large(const DivisionProgress& progress) {
       });
       done += points;
       if (too_large(tiles_[t])) all += tiles_[t].points;
-      for (std::size_t part = before; part < tiles_.size(); ++part) {
-        if (too_large(tiles_[part])) all += tiles_[part].points;
+      for (std::size_t n = before; n < tiles_.size(); ++n) {
+        if (too_large(tiles_[n])) all += tiles_[n].points;
       }
     }
   }
@@ -286,7 +284,7 @@ void TileTree::divide(std::uint32_t number,
   tiles_[number].box = whole.box;  // split() looks at it
   auto cuts = std::make_shared<CutTree>(*cuts_);
   split(*cuts, number, std::move(whole.sample),
-        std::max<std::size_t>(2, parts_for(static_cast<double>(whole.points),
+        std::max<std::size_t>(2, tiles_for(static_cast<double>(whole.points),
                                            static_cast<double>(options_.capacity), kKnownFill)));
   tiles_[number].box = {};
   tiles_.resize(cuts->tiles());
@@ -300,7 +298,7 @@ void TileTree::divide(std::uint32_t number,
     taken += block->points;
     batch.stored.resize(block->size);
     whole.file->read(block->offset, batch.stored);
-    batch.where = fmt::format("{}, byte {}", whole.file->name(), block->offset);
+    batch.where = {whole.file->name(), at_byte(block->offset)};
     ++block;
     return true;
   };
@@ -313,8 +311,8 @@ void TileTree::divide(std::uint32_t number,
 
 void TileTree::deal_from_memory(PointBuffer points) {
   Batch batch;
-  points.drain([&](std::span<const Point<3>> piece, std::span<const std::uint64_t> index) {
-    batch.points.points.assign(piece.begin(), piece.end());
+  points.drain([&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
+    batch.points.points.assign(chunk.begin(), chunk.end());
     batch.points.index.assign(index.begin(), index.end());
     deal(batch);
     append_runs(batch);
@@ -327,18 +325,18 @@ std::optional<TileNode<D>> TileTree::nodes() const {
 }
 
 template <int D>
-std::optional<TileNode<D>> TileTree::node_at(CutTree::Place place) const {
+std::optional<TileNode<D>> TileTree::node_at(CutTree::NodeRef ref) const {
   TileNode<D> node;
-  if (CutTree::is_tile(place)) {
-    const Tile& tile = tiles_[CutTree::tile_at(place)];
+  if (CutTree::is_tile(ref)) {
+    const Tile& tile = tiles_[CutTree::tile_at(ref)];
     if (tile.points == 0) return std::nullopt;
     std::copy_n(tile.box.lo.begin(), D, node.box.lo.begin());
     std::copy_n(tile.box.hi.begin(), D, node.box.hi.begin());
     node.points = tile.points;
-    node.stored = {CutTree::tile_at(place)};
+    node.stored = {CutTree::tile_at(ref)};
     return node;
   }
-  const auto sides = cuts_->sides(place);
+  const auto sides = cuts_->sides(ref);
   auto below = node_at<D>(sides[0]);
   auto above = node_at<D>(sides[1]);
   if (!below || !above) return below ? std::move(below) : std::move(above);
@@ -362,13 +360,13 @@ StoredTile TileTree::read(const TileNode<D>& node) {
   stored.points = node.points;
   for (const std::uint32_t number : node.stored) {
     Tile tile = std::exchange(tiles_[number], {});
-    StoredTile::Part& part = stored.parts.emplace_back();
-    part.blocks = std::move(tile.blocks);
-    part.buffer = std::move(tile.buffer);
+    StoredTile::Segment& segment = stored.segments.emplace_back();
+    segment.blocks = std::move(tile.blocks);
+    segment.buffer = std::move(tile.buffer);
     if (!tile.file) continue;
-    part.file = tile.file->name();
-    part.bytes.resize(tile.file->size());
-    tile.file->read(0, part.bytes);
+    segment.file = tile.file->name();
+    segment.bytes.resize(tile.file->size());
+    tile.file->read(0, segment.bytes);
   }
   return stored;
 }
@@ -377,33 +375,34 @@ template <int D>
 TilePoints<D> TileTree::decode(StoredTile stored) const {
   TilePoints<D> result;
   result.resize(stored.points, options_.index);
-  std::size_t place = 0;
-  const auto put = [&](std::size_t first, std::span<const Point<3>> points,
+  std::size_t position = 0;
+  const auto put = [&](std::size_t first, std::span<const LatticePoint> points,
                        std::span<const std::uint64_t> index) {
     for (std::size_t i = 0; i < points.size(); ++i) result.set(first + i, points[i]);
     std::copy(index.begin(), index.end(),
               result.index.begin() + static_cast<std::ptrdiff_t>(index.empty() ? 0 : first));
   };
-  for (StoredTile::Part& part : stored.parts) {
-    std::vector<std::size_t> first(part.blocks.size());
+  for (StoredTile::Segment& segment : stored.segments) {
+    std::vector<std::size_t> first(segment.blocks.size());
     for (std::size_t b = 0; b < first.size(); ++b) {
-      first[b] = place;
-      place += part.blocks[b].points;
+      first[b] = position;
+      position += segment.blocks[b].points;
     }
-    parallel_for(part.blocks.size(), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for(segment.blocks.size(), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
       const StageTimer timer(times_, Stage::kLoad);
       PointBlock points;
       for (std::size_t b = begin; b < end; ++b) {
-        const TileBlock& block = part.blocks[b];
-        decode_points(std::span<const std::byte>(part.bytes).subspan(block.offset, block.size),
-                      fmt::format("{}, byte {}", part.file, block.offset), points);
+        const TileBlock& block = segment.blocks[b];
+        decode_points(std::span<const std::byte>(segment.bytes).subspan(block.offset, block.size),
+                      {segment.file, at_byte(block.offset)}, points);
         put(first[b], points.points, points.index);
       }
     });
-    part.buffer.drain([&](std::span<const Point<3>> points, std::span<const std::uint64_t> index) {
-      put(place, points, index);
-      place += points.size();
-    });
+    segment.buffer.drain(
+        [&](std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
+          put(position, points, index);
+          position += points.size();
+        });
   }
   return result;
 }

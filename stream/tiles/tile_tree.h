@@ -14,7 +14,7 @@
 #include "src/geometry/box.h"
 #include "src/runtime/stage_times.h"
 #include "stream/tiles/cut_tree.h"
-#include "stream/tiles/deal.h"
+#include "stream/tiles/dealt_points.h"
 #include "stream/tiles/point_buffer.h"
 #include "stream/tiles/point_feed.h"
 #include "stream/tiles/tile_block.h"
@@ -44,13 +44,13 @@ struct TileNode {
 
 /// A tile's points as they lay in the tree: on the disk, encoded, and in memory.
 struct StoredTile {
-  struct Part {
+  struct Segment {
     std::vector<std::byte> bytes;
     std::vector<TileBlock> blocks;
     std::string file;  ///< its name, for messages
     PointBuffer buffer;
   };
-  std::vector<Part> parts;
+  std::vector<Segment> segments;
   std::uint64_t points = 0;
 };
 
@@ -77,7 +77,7 @@ class TileTree {
   /// Points of the tiles that fill() has left too large.
   [[nodiscard]] std::uint64_t points_to_divide() const;
 
-  /// Divides those tiles, and parts of them that are too large again. Returns how many points were
+  /// Divides those tiles, and what is too large again of them. Returns how many points were
   /// dealt again, those dealt twice counted twice.
   std::uint64_t divide_large(const DivisionProgress& progress);
 
@@ -113,7 +113,7 @@ class TileTree {
     PointBlock points;
     SourcePiece piece;                        ///< as it came from the source
     std::vector<std::byte> stored;            ///< the points as read back from a file
-    std::string where;                        ///< in which file
+    FileSpot where;                           ///< in which file
     std::shared_ptr<const CutTree> dealt_by;  ///< the cuts that `dealt` comes from
     DealtPoints dealt;
     std::vector<Spill> spills;
@@ -124,11 +124,11 @@ class TileTree {
     PointBuffer buffer;  ///< what came after what is in the file
     std::unique_ptr<ScratchFile> file;
     std::vector<TileBlock> blocks;
-    std::vector<Point<3>> sample;
+    std::vector<LatticePoint> sample;
     std::uint64_t next_sample = 0;
   };
 
-  /// Sends batches through the stages: `fetch` fills them in order, `decode` makes their points.
+  /// Sends batches through the steps: `fetch` fills them in order, `decode` makes their points.
   void run_batches(const std::function<bool(Batch&)>& fetch,
                    const std::function<void(Batch&)>& decode);
   void deal(Batch& batch) const;
@@ -139,15 +139,15 @@ class TileTree {
 
   void divide_first();
   [[nodiscard]] bool sample_is_representative() const;
-  void add_expected_points(std::vector<Point<3>>& sample) const;
+  void add_expected_points(std::vector<LatticePoint>& sample) const;
   void divide(std::uint32_t number, const std::function<void(std::uint64_t points)>& progress);
-  void split(CutTree& cuts, std::uint32_t number, std::vector<Point<3>> sample,
-             std::size_t parts) const;
+  void split(CutTree& cuts, std::uint32_t number, std::vector<LatticePoint> sample,
+             std::size_t tile_count) const;
   void deal_from_memory(PointBuffer points);
   [[nodiscard]] bool too_large(const Tile& tile) const;
 
   template <int D>
-  std::optional<TileNode<D>> node_at(CutTree::Place place) const;
+  std::optional<TileNode<D>> node_at(CutTree::NodeRef ref) const;
 
   TileTreeOptions options_;
   ScratchFolder& folder_;

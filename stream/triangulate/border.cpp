@@ -38,7 +38,7 @@ class Merge {
 
  public:
   Merge(std::span<Border<D>> children, std::span<const Tree* const> trees, MemoryBudget& budget,
-        BaseCaseKernel kernel)
+        Kernel kernel)
       : children_(children), trees_(trees), budget_(budget), kernel_(kernel) {}
 
   MergedBorder<D> run(Task& task) {
@@ -100,7 +100,7 @@ class Merge {
     result_.tested = result_.border.simplices.size();
     result_.retriangulated = border_vertices_.size();
     task.points = border_vertices_.size();
-    task.pieces = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
+    task.grains = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
   }
 
   [[nodiscard]] std::vector<std::uint8_t> exposed_simplices(const Border<D>& child,
@@ -120,7 +120,7 @@ class Merge {
   }
 
   void triangulate(Task& task) {
-    BlockArray<Point<D>> points(border_vertices_.size());
+    SlabArray<Point<D>> points(border_vertices_.size());
     std::transform(border_vertices_.begin(), border_vertices_.end(), points.begin(),
                    [&](VertexId v) { return result_.border.vertices[v].position; });
     mesh_ = border_delaunay<D>(std::move(points), kernel_, task);
@@ -137,8 +137,8 @@ class Merge {
     for (std::size_t v = 0; v < number.size(); ++v) {
       number[v] = border_vertices_[mesh_.input_index[v]];
     }
-    for (const SimplexBlock<D>& block : mesh_.blocks) {
-      const std::span simplices(block.simplices.data(), block.simplices.size());
+    for (const SimplexList<D>& list : mesh_.lists) {
+      const std::span simplices(list.simplices.data(), list.simplices.size());
       std::vector<std::vector<Corners>> accepted(grain_count(simplices.size(), kGrain));
       parallel_for(
           simplices.size(), kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
@@ -151,7 +151,7 @@ class Merge {
       auto& result = result_.border.simplices;
       for (const auto& some : accepted) result.insert(result.end(), some.begin(), some.end());
     }
-    task.pieces = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
+    task.grains = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
   }
 
   /// Of a batch of the mesh's simplices, appends those to be accepted: first the new ones. `number`
@@ -173,7 +173,7 @@ class Merge {
   std::span<Border<D>> children_;
   std::span<const Tree* const> trees_;
   MemoryBudget& budget_;
-  BaseCaseKernel kernel_;
+  Kernel kernel_;
   std::vector<VertexId> first_vertex_;  ///< by child, and one more
   std::vector<bool> open_;              ///< by child
   std::vector<Corners> exposed_;
@@ -191,19 +191,19 @@ std::uint64_t enough_memory(std::uint64_t points) {
 
 template <int D, PointTree Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
-                              MemoryBudget& budget, Task& task, BaseCaseKernel kernel) {
+                              MemoryBudget& budget, Task& task, Kernel kernel) {
   return Merge<D, Tree>(children, trees, budget, kernel).run(task);
 }
 
 template std::uint64_t enough_memory<2>(std::uint64_t);
 template std::uint64_t enough_memory<3>(std::uint64_t);
 template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const Part<2>* const>,
-                                       MemoryBudget&, Task&, BaseCaseKernel);
+                                       MemoryBudget&, Task&, Kernel);
 template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const Part<3>* const>,
-                                       MemoryBudget&, Task&, BaseCaseKernel);
+                                       MemoryBudget&, Task&, Kernel);
 template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const TileNode<2>* const>,
-                                       MemoryBudget&, Task&, BaseCaseKernel);
+                                       MemoryBudget&, Task&, Kernel);
 template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const TileNode<3>* const>,
-                                       MemoryBudget&, Task&, BaseCaseKernel);
+                                       MemoryBudget&, Task&, Kernel);
 
 }  // namespace spillway::detail

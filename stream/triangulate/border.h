@@ -12,10 +12,13 @@
 #include "src/geometry/point.h"
 #include "stream/output/stream_place.h"
 
+namespace spillway {
+struct Task;
+}
+
 namespace spillway::detail {
 
 class MemoryBudget;
-struct Task;
 
 template <int D>
 struct BorderVertex {
@@ -67,7 +70,6 @@ std::uint64_t enough_memory(std::uint64_t points);
 /// Leases the memory of that from `budget`; throws Error if there is not enough.
 template <int D, PointTree Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
-                              MemoryBudget& budget, Task& task,
-                              BaseCaseKernel kernel = BaseCaseKernel::kOwn);
+                              MemoryBudget& budget, Task& task, Kernel kernel = Kernel::kSpillway);
 
 }  // namespace spillway::detail

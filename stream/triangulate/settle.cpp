@@ -130,11 +130,11 @@ class Settlement {
     result_.border.simplices.push_back(corners);
   }
 
-  [[nodiscard]] static Point<3> output_point(const BorderVertex<D>& vertex) {
+  [[nodiscard]] static LatticePoint output_point(const BorderVertex<D>& vertex) {
     if constexpr (D == 2) {
       return {vertex.position[0], vertex.position[1], vertex.height};
     } else {
-      return vertex.position;
+      return LatticePoint(vertex.position);
     }
   }
 

@@ -19,13 +19,13 @@ namespace spillway::detail {
 /// What a leaf or a merge gives to the stream, and what it keeps.
 template <int D>
 struct Settled {
-  MeshBlock mesh;                             ///< `imported` still empty
-  std::vector<StreamPlace> imported;          ///< where the imported vertices were announced
-  std::vector<Point<3>> imported_vertices;    ///< they themselves, like the mesh's, if asked for
-  std::vector<std::uint64_t> imported_index;  ///< likewise, if vertices carry it
-  CanonicalHash<D> hash;                      ///< of the simplices in `mesh`
-  std::uint64_t final_simplices = 0;          ///< finite and infinite ones
-  std::uint64_t hull_facets = 0;              ///< infinite simplices that are final
+  MeshBlock mesh;                               ///< `imported` still empty
+  std::vector<StreamPlace> imported;            ///< where the imported vertices were announced
+  std::vector<LatticePoint> imported_vertices;  ///< they themselves, like the mesh's, if asked for
+  std::vector<std::uint64_t> imported_index;    ///< likewise, if vertices carry it
+  CanonicalHash<D> hash;                        ///< of the simplices in `mesh`
+  std::uint64_t final_simplices = 0;            ///< finite and infinite ones
+  std::uint64_t hull_facets = 0;                ///< infinite simplices that are final
   std::uint64_t left_out = 0;  ///< finite ones that are final, but with too long an edge
   Border<D> border;
 };

@@ -62,7 +62,7 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
 template <int D>
 void TileEngine<D>::spill(const PointFeed& feed) {
   const Stopwatch watch(figures_.read_seconds);
-  const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(Point<3>),
+  const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(LatticePoint),
                             "points that wait to be spilled");
   tree_.fill({.fetch = feed.fetch, .decode = [&](SourcePiece& piece, PointBlock& block) {
                 feed.decode(piece, block);
@@ -73,7 +73,7 @@ void TileEngine<D>::spill(const PointFeed& feed) {
 template <int D>
 std::uint64_t TileEngine<D>::divide_large() {
   const Stopwatch watch(figures_.divide_seconds);
-  const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(Point<3>),
+  const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(LatticePoint),
                             "points that wait to be spilled");
   return figures_.divided_points = tree_.divide_large(options_.progress);
 }
@@ -201,12 +201,12 @@ void TileEngine<D>::report_progress() const {
 }
 
 template <int D>
-StreamFigures TileEngine<D>::figures() {
+RunFigures TileEngine<D>::figures() {
   figures_.threads = plan_.threads;
-  figures_.totals = sequencer_.totals();
-  figures_.totals.points = tree_.points();
-  figures_.totals.duplicates = counts_.duplicates;
-  if (!options_.max_edge) figures_.totals.hull_facets = counts_.hull_facets;
+  figures_.mesh = sequencer_.totals();
+  figures_.mesh.points = tree_.points();
+  figures_.mesh.duplicates = counts_.duplicates;
+  if (!options_.max_edge) figures_.mesh.hull_facets = counts_.hull_facets;
   figures_.left_out = counts_.left_out;
   figures_.leaves = counts_.leaves;
   figures_.tile_capacity = plan_.tile_capacity;
@@ -219,7 +219,7 @@ StreamFigures TileEngine<D>::figures() {
   figures_.border_simplices = counts_.borders.most_simplices();
   figures_.border_bytes = counts_.borders.most_bytes();
   for (std::size_t s = 0; s < kStageNames.size(); ++s) {
-    figures_.stage_seconds[s] = counts_.times.seconds(static_cast<Stage>(s));
+    figures_.stages.push_back({kStageNames[s], counts_.times.seconds(static_cast<Stage>(s))});
   }
   return std::move(figures_);
 }

@@ -86,7 +86,7 @@ class TileEngine {
   [[nodiscard]] const OpenFacets<D>& open_facets() const { return sequencer_.open_facets(); }
 
   /// Of all that has been done; to be called once, at the end.
-  [[nodiscard]] StreamFigures figures();
+  [[nodiscard]] RunFigures figures();
 
  private:
   /// What a node has, which is a tile or a merge of tiles. Its number is its slot of the stream.
@@ -122,7 +122,7 @@ class TileEngine {
   std::future<StoredTile> reading_ahead_;
   std::atomic<bool> failed_ = false;
   std::mutex figures_mutex_;  ///< guards the next one
-  StreamFigures figures_;
+  RunFigures figures_;
 };
 
 }  // namespace spillway::detail

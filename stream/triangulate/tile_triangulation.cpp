@@ -113,7 +113,7 @@ class TileRun {
           divide<D>(tile_.points, input_index_,
                     {options.leaf_size, options.division, options.children}, task.before.data());
     }
-    context_.sequencer.open_slot(slot_, root_.block + 1);
+    context_.sequencer.open_slot(slot_, root_.list + 1);
     tree_.emplace(root_, task);
     const std::vector<Node*>& leaves = tree_->leaves();
     parallel_for(leaves.size(), 1, [&](std::size_t, std::size_t begin, std::size_t) {
@@ -180,23 +180,24 @@ class TileRun {
         {.points = points,
          .input_index = std::span(input_index_).subspan(part.begin, part.size()),
          .first_vertex = part.begin,
-         .region = cell_of(node),
+         .clear_box = clear_box_of(node),
          .in_place = true,
          .kernel = context_.options.kernel});
   }
 
   /// The box around a leaf that has nothing in common with the box of any other part.
-  [[nodiscard]] Box<D> cell_of(const Node& node) const {
-    Box<D> cell = whole_space<D>();
-    for (const Part<D>* part : tree_->siblings_up(node)) cut_back(cell, node.tree->box, part->box);
-    for (const TileNode<D>* tile : outside_) cut_back(cell, node.tree->box, tile->box);
-    return cell;
+  [[nodiscard]] Box<D> clear_box_of(const Node& node) const {
+    Box<D> clear_box = whole_space<D>();
+    for (const Part<D>* part : tree_->siblings_up(node))
+      cut_back(clear_box, node.tree->box, part->box);
+    for (const TileNode<D>* tile : outside_) cut_back(clear_box, node.tree->box, tile->box);
+    return clear_box;
   }
 
   /// What can be settled of a leaf, but for its simplices.
   [[nodiscard]] LeafToSettle<D> leaf_of(const Part<D>& part) const {
     LeafToSettle<D> leaf;
-    leaf.block = {slot_, part.block};
+    leaf.block = {slot_, part.list};
     leaf.first_vertex = part.begin;
     leaf.points = std::span(tile_.points).subspan(part.begin, part.size());
     leaf.input_index = std::span(input_index_).subspan(part.begin, part.size());
@@ -221,12 +222,12 @@ class TileRun {
     return border;
   }
 
-  /// The simplices of a leaf whose circumspheres are not known to lie in its cell, if the kernel
-  /// has not told: infinite ones, those near the cell's sides, and some that are flat.
+  /// The simplices of a leaf whose circumspheres are not known to lie in its clear box, if the
+  /// kernel has not told: infinite ones, those near the box's sides, and some that are flat.
   [[nodiscard]] std::vector<std::uint32_t> open_questions(const Node& node,
                                                           const LeafToSettle<D>& leaf) const {
     std::vector<std::uint32_t> open;
-    const Box<D> cell = cell_of(node);
+    const Box<D> clear_box = clear_box_of(node);
     SimplexBatch<D> batch{};
     const auto count = static_cast<std::uint32_t>(leaf.simplex_count());
     for (std::uint32_t begin = 0; begin < count; begin += batch.kSize) {
@@ -237,7 +238,7 @@ class TileRun {
         const std::array<VertexId, D + 1> corners = leaf.finite_simplex(s);
         batch.set(s - begin, [&](int i) { return leaf.points[infinite ? 0 : corners[i]]; });
       }
-      const auto found = well_inside<D>(batch, cell);
+      const auto found = well_inside<D>(batch, clear_box);
       for (std::uint32_t s = begin; s < end; ++s) {
         if (!found[s - begin]) open.push_back(s);
       }

@@ -22,10 +22,10 @@ namespace spillway::detail {
 /// How tiles are triangulated.
 struct TileOptions {
   std::size_t leaf_size = 0;
-  DivisionScheme division = DivisionScheme::kLongestExtent;
+  Division division = Division::kLongestExtent;
   unsigned children = 2;
-  BaseCaseKernel kernel = BaseCaseKernel::kOwn;
-  HeightChoice heights = HeightChoice::kFirst;
+  Kernel kernel = Kernel::kSpillway;
+  Heights heights = Heights::kFirst;
   OutputOptions output;
 };
 

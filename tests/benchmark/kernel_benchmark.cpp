@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "src/delaunay/base_case.h"
-#include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/delaunay/kernel_3d/kernel_3d.h"
-#include "src/delaunay/kernel_common/vectors.h"
+#include "src/delaunay/kernel_common/hilbert_order.h"
+#include "src/delaunay/kernel_common/lane_width.h"
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "src/generators/random.h"
@@ -215,10 +215,10 @@ int main(int argc, char** argv) {
   if (counts.empty()) {
     counts = {50'000, 100'000, dimension == 2 ? std::size_t{200'000} : 300'000, 1'000'000};
   }
-  spillway::detail::limit_vectors(vectors);
+  spillway::detail::limit_lanes(vectors);
   try {
     if (dimension == 3) {
-      const int width = spillway::detail::vector_width();
+      const int width = spillway::detail::lane_width();
       fmt::print("{}\n\n", width == 8   ? "AVX2 with the registers of AVX-512"
                            : width == 4 ? "AVX2"
                                         : "SSE2");

@@ -4,6 +4,7 @@
 #include <spillway/delaunay.h>
 #include <spillway/version.h>
 
+#include "products.h"
 #include "streams.h"
 
 #include <cmath>
@@ -173,6 +174,7 @@ int main() {
   keep_subnormal_numbers();
   try {
     use_streams();
+    make_products();
   } catch (const std::logic_error& error) {
     expect(false, error.what());
   }

@@ -32,6 +32,8 @@ install_and_move() {
   mkdir -p "$work/elsewhere"
   mv "$work/first" "$work/elsewhere/prefix"
   prefix=$work/elsewhere/prefix
+  # Only the shared library knows where it lies itself.
+  SPILLWAY_MODULES=$(dirname "$(find "$prefix" -name spillway_gdal.so)")
 }
 
 # build_and_run OPTION...
@@ -55,11 +57,13 @@ case $what in
     ;;
   static)
     install_and_move
+    export SPILLWAY_MODULES
     build_and_run -DSpillway_USE_STATIC_LIBS=ON
     if uses_shared "$work/consumer/consumer"; then fail "the shared library is used"; fi
     ;;
   fast-math)
     install_and_move
+    export SPILLWAY_MODULES
     build_and_run -DCMAKE_CXX_FLAGS=-ffast-math -DSpillway_USE_STATIC_LIBS=ON
     ;;
   pkg-config)
@@ -68,12 +72,12 @@ case $what in
     export PKG_CONFIG_PATH=${pc%/*}
     read -ra flags <<<"$(pkg-config --cflags spillway)"
     read -ra libraries <<<"$(pkg-config --libs spillway)"
-    "$CXX" "${strict[@]}" "${flags[@]}" "$here/main.cpp" "$here/streams.cpp" -o "$work/main" "${libraries[@]}"
+    "$CXX" "${strict[@]}" "${flags[@]}" "$here"/*.cpp -o "$work/main" "${libraries[@]}"
     LD_LIBRARY_PATH=$(pkg-config --variable=libdir spillway) "$work/main"
     read -ra libraries <<<"$(pkg-config --static --libs spillway)"
     find "$prefix" -name 'libspillway.so*' -delete
-    "$CXX" "${strict[@]}" "${flags[@]}" "$here/main.cpp" "$here/streams.cpp" -o "$work/main" "${libraries[@]}"
-    "$work/main"
+    "$CXX" "${strict[@]}" "${flags[@]}" "$here"/*.cpp -o "$work/main" "${libraries[@]}"
+    SPILLWAY_MODULES=$SPILLWAY_MODULES "$work/main"
     ;;
   headers)
     install_and_move
@@ -96,13 +100,13 @@ case $what in
     install_and_move
     nm -DC --defined-only "$(find "$prefix" -name libspillway.so)" | cut -d' ' -f3- >"$work/symbols"
     grep -q '^spillway::Delaunay<3, int>::locate' "$work/symbols" || fail "locate is not exported"
-    if grep -vE '^((typeinfo|typeinfo name|vtable) for )?spillway::(Delaunay<[23], (int|long)>|Error|Context|PointSource|MeshSink|MeshInMemory)(::|$)|^spillway::(to_string|version|open_points|points_in_memory|open_mesh|mesh_to|triangulate)[[(]' \
+    if grep -vE '^((typeinfo|typeinfo name|vtable) for )?spillway::(Delaunay<[23], (int|long)>|Error|Context|Task|PointSource|PointSink|MeshSource|MeshSink|MeshInMemory|DemSink|ContourSink|PictureSink)(::|$)|^spillway::(to_string|version|describe|greedy_makespan|kind_of_input|stands_for_several|expand_inputs|open_points|points_in_memory|create_points|generate_points|point_families|open_mesh|create_mesh|mesh_to|triangulate|convert|check|describe_points|describe_mesh|dem_product_names|create_dem|create_contours|create_picture)[[(]' \
       "$work/symbols"; then
       fail "is exported, too"
     fi
     ;;
   docs)
-    cat "$here/main.cpp" "$here/streams.cpp" | tr -d ' \n' >"$work/program"
+    cat "$here"/*.cpp | tr -d ' \n' >"$work/program"
     sed -n '/^```cpp/,/^```$/{/^```/d;s# *//.*##;s/ //g;/./p}' "$here/../../docs/library.md" >"$work/lines"
     (($(wc -l <"$work/lines") > 30)) || fail "there is no code"
     while read -r line; do

@@ -4,6 +4,9 @@
 
 #include <spillway/triangulate.h>
 
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -114,7 +117,7 @@ void convert_ways(const Folder& folder) {
     for (int y = 0; y < 100; ++y) points.push_back({x + 0.5, y + 0.25, 0.001 * x * y});
   }
   const auto source = spillway::points_in_memory(points);
-  const auto file = spillway::open_mesh(folder.file("tin.ply"), {}, context);
+  const auto file = spillway::create_mesh(folder.file("tin.ply"), {}, context);
   const auto report = spillway::triangulate(*source, *file, {}, context);
   expect(report.mesh.simplices == 2 * 99 * 99, "a grid has two triangles a square");
   expect(fs::file_size(folder.file("tin.ply")) > 200'000, "the file is there");
@@ -135,16 +138,33 @@ void convert_ways(const Folder& folder) {
   expect(mesh.vertices().at(17) == points.at(index), "vertices know their index");
 }
 
-// The code of the error that the work ends with.
+// The error that the work ends with.
 template <typename Work>
-spillway::ErrorCode fault_of(Work&& work) {
+spillway::Error fault_of(Work&& work) {
   try {
     work();
   } catch (const spillway::Error& error) {
+    const spillway::ErrorFacts& facts = error.facts();
     std::printf("%s: %s\n", to_string(error.code()), error.what());
-    return error.code();
+    if (facts.place.unit != spillway::PlaceUnit::kNone) {
+      std::printf("  at %s %llu of %s\n", to_string(facts.place.unit),
+                  static_cast<unsigned long long>(facts.place.number), facts.file.c_str());
+    }
+    return error;
   }
   throw std::logic_error("an error is thrown");
+}
+
+// Points on a circle: no triangle is final before all of them are there.
+std::vector<spillway::Point<2>> circle(std::size_t count) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> turn(0, 6.28);
+  std::vector<spillway::Point<2>> points(count);
+  for (auto& point : points) {
+    const double angle = turn(random);
+    point = {1000 * std::cos(angle), 1000 * std::sin(angle)};
+  }
+  return points;
 }
 
 void catch_errors_of_streams(const Folder& folder) {
@@ -157,25 +177,57 @@ void catch_errors_of_streams(const Folder& folder) {
   const auto open = [&](const char* name) {
     return spillway::open_points({folder.file(name)}, {}, context);
   };
+  const auto create = [&](const char* name) {
+    Hills hills(100);
+    spillway::triangulate(hills, *spillway::create_mesh(folder.file(name), {}, context), {},
+                          context);
+  };
 
-  expect(
-      fault_of([&] { spillway::Context bad({.memory = "much"}); }) == ErrorCode::kInvalidArgument,
-      "a limit is a size");
-  expect(fault_of([&] { open("nowhere.las"); }) == ErrorCode::kInputOutput,
-         "what is not there is not read");
-  std::ofstream(folder.file("cut.las")) << "LASF and no more";
-  expect(fault_of([&] { open("cut.las"); }) == ErrorCode::kBadInput, "a cut file is not read");
-  expect(fault_of([&] { spillway::open_mesh(folder.file("tin.doc"), {}, context); }) ==
+  expect(fault_of([&] { spillway::Context bad({.memory = "much"}); }).code() ==
+             ErrorCode::kInvalidArgument,
+         "a limit is a size");
+  expect(fault_of([&] { spillway::create_mesh(folder.file("tin.doc"), {}, context); }).code() ==
              ErrorCode::kInvalidArgument,
          "a format is known");
 
+  const auto missing = fault_of([&] { open("nowhere.las"); });
+  expect(missing.code() == ErrorCode::kInputOutput, "what is not there is not read");
+  expect(missing.facts().file == folder.file("nowhere.las"), "the file is named");
+  expect(missing.facts().system_error == ENOENT, "so is the system's reason");
+  const auto no_folder = fault_of([&] { create("nowhere/tin.ply"); });
+  expect(no_folder.code() == ErrorCode::kInputOutput && no_folder.facts().system_error == ENOENT,
+         "nothing is written to a folder that is not there");
+
+  std::ofstream(folder.file("cut.las")) << "LASF and no more";
+  const auto cut = fault_of([&] { open("cut.las"); });
+  expect(cut.code() == ErrorCode::kBadInput, "a cut file is not read");
+  expect(cut.facts().place.unit == spillway::PlaceUnit::kByte && cut.facts().place.number == 16,
+         "it ends at that byte");
+  std::ofstream(folder.file("typo.txt")) << "1 2 3\n4 5 6\n7 8 g\n";
+  const auto typo = fault_of([&] { run(*open("typo.txt"), context); });
+  expect(typo.code() == ErrorCode::kBadInput, "text is made of numbers");
+  expect(typo.facts().file == folder.file("typo.txt") &&
+             typo.facts().place.unit == spillway::PlaceUnit::kLine &&
+             typo.facts().place.number == 3,
+         "the line is named");
+
   Hills few(2);
-  expect(fault_of([&] { run(few, context); }) == ErrorCode::kDegenerateInput,
+  expect(fault_of([&] { run(few, context); }).code() == ErrorCode::kDegenerateInput,
          "two points make no triangle");
+
+  const std::vector<spillway::Point<2>> round = circle(90'000);
+  const auto full = fault_of([&] { run(*spillway::points_in_memory(round), context); });
+  expect(full.code() == ErrorCode::kOutOfBudget, "a limit of memory holds");
+  const std::uint64_t enough = full.facts().enough;
+  expect(enough > std::uint64_t{32} << 20, "what is enough is known");
+  const std::string as_said = std::to_string(enough >> 20) + "M";
+  run(*spillway::points_in_memory(round),
+      spillway::Context({.memory = as_said, .scratch_folder = folder.path()}));
+
   const spillway::Context tight(
       {.memory = "32M", .scratch_folder = folder.path(), .scratch_limit = "1M"});
   Hills many(1'500'000);
-  expect(fault_of([&] { run(many, tight); }) == ErrorCode::kOutOfBudget,
+  expect(fault_of([&] { run(many, tight); }).code() == ErrorCode::kOutOfBudget,
          "a limit of scratch files holds");
   expect(!fs::exists(folder.file("tin.doc")), "nothing is left of what failed");
 }
@@ -191,8 +243,8 @@ void stop_a_run(const Folder& folder) {
   };
   const spillway::Context context(std::move(options));
   Hills hills(1'500'000);
-  const auto file = spillway::open_mesh(folder.file("stopped.spm"), {}, context);
-  expect(fault_of([&] { spillway::triangulate(hills, *file, {}, context); }) ==
+  const auto file = spillway::create_mesh(folder.file("stopped.spm"), {}, context);
+  expect(fault_of([&] { spillway::triangulate(hills, *file, {}, context); }).code() ==
              spillway::ErrorCode::kInterrupted,
          "a run can be stopped");
   expect(!fs::exists(folder.file("stopped.spm")), "a file that was stopped has no name");

@@ -9,8 +9,8 @@
 #include <set>
 #include <utility>
 
-#include "src/delaunay/delaunay.h"
 #include "src/delaunay/common/working_memory.h"
+#include "src/delaunay/delaunay.h"
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "tests/delaunay/cgal_oracle.h"
@@ -56,8 +56,8 @@ void expect_equal_to_cgal(const std::vector<Point<D>>& points,
 const std::vector<DelaunayOptions> kManyWays = {
     {.threads = 1, .base_case_size = 10},
     {.threads = 2, .base_case_size = 10, .children = 8},
-    {.threads = 4, .base_case_size = 25, .division = DivisionScheme::kCyclingAxis},
-    {.threads = 2, .base_case_size = 40, .division = DivisionScheme::kConstantAxis, .children = 3},
+    {.threads = 4, .base_case_size = 25, .division = Division::kCyclingAxis},
+    {.threads = 2, .base_case_size = 40, .division = Division::kConstantAxis, .children = 3},
     {.threads = 4, .base_case_size = 300, .children = 4},
 };
 
@@ -198,44 +198,44 @@ TYPED_TEST(DelaunayOfDegenerateSet, ListsTheSameSimplicesInTheSameOrderForAnyThr
   for (const unsigned threads : {2U, 4U}) {
     const auto again =
         delaunay<TestFixture::kD>(points, {.threads = threads, .base_case_size = 500});
-    ASSERT_EQ(once.blocks.size(), again.blocks.size());
+    ASSERT_EQ(once.lists.size(), again.lists.size());
     EXPECT_TRUE(std::ranges::equal(once.input_index, again.input_index));
     EXPECT_EQ(once.hull, again.hull);
-    for (std::size_t b = 0; b < once.blocks.size(); ++b) {
-      ASSERT_EQ(once.blocks[b].simplices.size(), again.blocks[b].simplices.size());
-      for (std::size_t i = 0; i < once.blocks[b].simplices.size(); ++i) {
-        ASSERT_EQ(once.blocks[b].simplices[i].vertices, again.blocks[b].simplices[i].vertices);
+    for (std::size_t b = 0; b < once.lists.size(); ++b) {
+      ASSERT_EQ(once.lists[b].simplices.size(), again.lists[b].simplices.size());
+      for (std::size_t i = 0; i < once.lists[b].simplices.size(); ++i) {
+        ASSERT_EQ(once.lists[b].simplices[i].vertices, again.lists[b].simplices[i].vertices);
       }
     }
   }
 }
 
-/// Triangulates points twice, the second time with the memory of the first. Returns how many blocks
+/// Triangulates points twice, the second time with the memory of the first. Returns how many slabs
 /// the second one took over.
 template <int D>
-std::size_t blocks_taken_over(const DelaunayOptions& options) {
+std::size_t slabs_taken_over(const DelaunayOptions& options) {
   const auto points = generate_points<D>({.family = Family::kUniform, .count = 30'000});
   Triangulation<D> first = delaunay<D>(points, options);
   const auto expected = finite_simplices(first);
   std::set<const void*> places;
-  for (const SimplexBlock<D>& block : first.blocks) places.insert(block.simplices.data());
+  for (const SimplexList<D>& list : first.lists) places.insert(list.simplices.data());
   recycle(std::move(first));
-  EXPECT_TRUE(places.contains(BorrowedBlock(BlockUse::kSimplices, 1)->data()));
+  EXPECT_TRUE(places.contains(BorrowedSlab(SlabUse::kSimplices, 1)->data()));
   const Triangulation<D> second = delaunay<D>(points, options);
   EXPECT_TRUE(finite_simplices(second) == expected);
-  EXPECT_EQ(BorrowedBlock(BlockUse::kSimplices, 1)->capacity(), 0U);
-  return std::count_if(second.blocks.begin(), second.blocks.end(),
-                       [&](const auto& block) { return places.contains(block.simplices.data()); });
+  EXPECT_EQ(BorrowedSlab(SlabUse::kSimplices, 1)->capacity(), 0U);
+  return std::count_if(second.lists.begin(), second.lists.end(),
+                       [&](const auto& list) { return places.contains(list.simplices.data()); });
 }
 
 TEST(RecycledTriangulation, LeavesItsMemoryToTheNextOne) {
-  EXPECT_EQ(blocks_taken_over<2>({.threads = 1}), 1);
-  EXPECT_EQ(blocks_taken_over<3>({.threads = 1}), 1);
+  EXPECT_EQ(slabs_taken_over<2>({.threads = 1}), 1);
+  EXPECT_EQ(slabs_taken_over<3>({.threads = 1}), 1);
 }
 
 TEST(RecycledTriangulation, OfManyBaseCasesLeavesItsMemoryToTheNextOne) {
-  EXPECT_GE(blocks_taken_over<2>({.threads = 1, .base_case_size = 4'000}), 5);
-  EXPECT_GE(blocks_taken_over<3>({.threads = 1, .base_case_size = 4'000}), 5);
+  EXPECT_GE(slabs_taken_over<2>({.threads = 1, .base_case_size = 4'000}), 5);
+  EXPECT_GE(slabs_taken_over<3>({.threads = 1, .base_case_size = 4'000}), 5);
 }
 
 TEST(RecycledTriangulation, IsGivenBackByARefusedCall) {
@@ -243,7 +243,7 @@ TEST(RecycledTriangulation, IsGivenBackByARefusedCall) {
   recycle(delaunay<2>(points));
   const std::span<const Point<2>> too_many(points.data(), kMaxVertices + std::size_t{1});
   EXPECT_THROW(delaunay<2>(too_many), Error);
-  EXPECT_EQ(BorrowedBlock(BlockUse::kSimplices, 1)->capacity(), 0U);
+  EXPECT_EQ(BorrowedSlab(SlabUse::kSimplices, 1)->capacity(), 0U);
 }
 
 }  // namespace

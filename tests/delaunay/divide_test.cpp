@@ -63,7 +63,7 @@ TEST(Divide, MakesDisjointTightBoxesAndSmallLeaves) {
     for (const Part<2>& child : part.children) {
       EXPECT_EQ(child.begin, next);
       EXPECT_GT(child.size(), 0U);
-      EXPECT_LT(child.block, part.block);
+      EXPECT_LT(child.list, part.list);
       next = child.end;
       for (const Part<2>& other : part.children) {
         if (&other == &child) continue;
@@ -110,19 +110,19 @@ TEST(Divide, CutsTheAxisThatTheSchemeSays) {
   for (std::size_t i = 0; i < wide.size(); ++i) {
     wide[i] = {static_cast<double>(i % 25), static_cast<double>(i)};
   }
-  const auto first_cut_axis = [&](DivisionScheme scheme) {
+  const auto first_cut_axis = [&](Division scheme) {
     const Divided d = divided(wide, {.leaf_size = 600, .scheme = scheme});
     return d.root.children[0].box.hi[0] < d.root.children[1].box.lo[0] ? 0 : 1;
   };
-  EXPECT_EQ(first_cut_axis(DivisionScheme::kLongestExtent), 1);
-  EXPECT_EQ(first_cut_axis(DivisionScheme::kCyclingAxis), 0);
-  EXPECT_EQ(first_cut_axis(DivisionScheme::kConstantAxis), 0);
+  EXPECT_EQ(first_cut_axis(Division::kLongestExtent), 1);
+  EXPECT_EQ(first_cut_axis(Division::kCyclingAxis), 0);
+  EXPECT_EQ(first_cut_axis(Division::kConstantAxis), 0);
 }
 
 TEST(Divide, CutsAnotherAxisWhereTheSchemesHasNoExtent) {
   std::vector<Point<2>> column(100);
   for (std::size_t i = 0; i < column.size(); ++i) column[i] = {7, static_cast<double>(i)};
-  const Divided d = divided(column, {.leaf_size = 10, .scheme = DivisionScheme::kConstantAxis});
+  const Divided d = divided(column, {.leaf_size = 10, .scheme = Division::kConstantAxis});
   EXPECT_FALSE(d.root.leaf());
 }
 
@@ -131,8 +131,8 @@ TEST(Divide, BalancesAGridWhoseRowsHaveTheSamplesPeriod) {
   for (int y = 0; y < 1024; ++y) {
     for (int x = 0; x < 512; ++x) grid.push_back({static_cast<double>(x), static_cast<double>(y)});
   }
-  const Divided d = divided(grid, {.leaf_size = grid.size() / 2 + grid.size() / 10,
-                                   .scheme = DivisionScheme::kConstantAxis});
+  const Divided d = divided(
+      grid, {.leaf_size = grid.size() / 2 + grid.size() / 10, .scheme = Division::kConstantAxis});
   ASSERT_EQ(d.root.children.size(), 2U);
   EXPECT_NEAR(static_cast<double>(d.root.children[0].size()), grid.size() / 2.0, grid.size() * 0.1);
 }

@@ -20,7 +20,7 @@ template <int D>
 bool destroyed(const Simplex<D>& simplex, const Triangulation<D>& triangulation,
                const std::vector<Point<D>>& others) {
   std::array<Point<D>, D + 1> corners;
-  const int infinite = simplex.infinite_place();
+  const int infinite = simplex.infinite_corner();
   for (int i = 0; i <= D; ++i) {
     if (i != infinite) corners[i] = triangulation.points[simplex.vertices[i]];
   }
@@ -83,9 +83,9 @@ TYPED_TEST(Finality, BorderSearchFindsAllThatASiblingDestroys) {
   constexpr int kD = TypeParam::value;
   Halves<kD> halves(7);
   const std::vector<const Part<kD>*> others{&halves.right};
-  std::vector<BlockMarks> marks;
-  for (const auto& block : halves.left.blocks) {
-    marks.emplace_back(block.simplices.size(), Mark::kInterior);
+  std::vector<ListMarks> marks;
+  for (const auto& list : halves.left.lists) {
+    marks.emplace_back(list.simplices.size(), Mark::kInterior);
   }
   auto border = find_border<kD>(halves.left, halves.left.hull, others, marks);
   std::sort(border.begin(), border.end());
@@ -94,7 +94,7 @@ TYPED_TEST(Finality, BorderSearchFindsAllThatASiblingDestroys) {
   halves.left.for_each_simplex([&](SimplexId id, const Simplex<kD>& simplex) {
     ++all;
     const bool found = std::binary_search(border.begin(), border.end(), id);
-    EXPECT_EQ(found, marks[id.block][id.index] == Mark::kBorder);
+    EXPECT_EQ(found, marks[id.list][id.index] == Mark::kBorder);
     if (destroyed<kD>(simplex, halves.left, halves.right_points)) {
       EXPECT_TRUE(found);
     }
@@ -119,27 +119,27 @@ PickedBorder<D> expect_border_of_search(const std::vector<Point<D>>& points, con
   std::iota(index.begin(), index.end(), VertexId{0});
   Box<D> box;
   for (const Point<D>& p : points) box.expand(p);
-  Box<D> cell = whole_space<D>();
-  cut_back(cell, box, sibling.box);
+  Box<D> clear_box = whole_space<D>();
+  cut_back(clear_box, box, sibling.box);
   BaseCase<D> leaf =
-      triangulate_base_case<D>({.points = points, .input_index = index, .region = cell});
+      triangulate_base_case<D>({.points = points, .input_index = index, .clear_box = clear_box});
   Triangulation<D> triangulation;
-  triangulation.points = BlockArray<Point<D>>(points.size());
+  triangulation.points = SlabArray<Point<D>>(points.size());
   std::copy(points.begin(), points.end(), triangulation.points.begin());
-  triangulation.blocks.resize(1);
-  triangulation.blocks[0].simplices = std::move(leaf.simplices);
+  triangulation.lists.resize(1);
+  triangulation.lists[0].simplices = std::move(leaf.simplices);
   for (const std::uint32_t s : leaf.hull) triangulation.hull.push_back({0, s});
-  const std::size_t count = triangulation.blocks[0].simplices.size();
+  const std::size_t count = triangulation.lists[0].simplices.size();
   const std::vector<std::uint32_t> candidates = leaf.not_inside.value();
   EXPECT_TRUE(std::is_sorted(candidates.begin(), candidates.end()));
 
   const std::vector<const Part<D>*> others{&sibling};
-  std::vector<BlockMarks> marks;
+  std::vector<ListMarks> marks;
   marks.emplace_back(count, Mark::kFinal);
   for (const std::uint32_t s : candidates) marks[0][s] = Mark::kInterior;
   const auto picked = border_among<D>(triangulation, 0, candidates, others, marks);
   EXPECT_TRUE(std::is_sorted(picked.begin(), picked.end()));
-  std::vector<BlockMarks> unmarked;
+  std::vector<ListMarks> unmarked;
   unmarked.emplace_back(count, Mark::kInterior);
   auto searched = find_border<D>(triangulation, triangulation.hull, others, unmarked);
   std::sort(searched.begin(), searched.end());

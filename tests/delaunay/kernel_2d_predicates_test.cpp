@@ -8,7 +8,7 @@
 #include "src/delaunay/kernel_2d/circles.h"
 #include "src/delaunay/kernel_2d/exact_predicates.h"
 #include "src/delaunay/kernel_2d/filters.h"
-#include "src/delaunay/kernel_common/vectors.h"
+#include "src/delaunay/kernel_common/lane_width.h"
 #include "src/generators/random.h"
 #include "src/geometry/predicates.h"
 
@@ -58,7 +58,7 @@ double largest(const WorkingPoints& points) {
 
 struct Scene {
   explicit Scene(const Four& four) : points(make_working_points(four, memory)) {}
-  Block memory;
+  Slab memory;
   WorkingPoints points;
 };
 
@@ -107,7 +107,7 @@ TEST(Kernel2dPredicates, CirclesAreRightWhereTheyAnswer) {
     const Scene scene(four);
     const int exact = exact_side(four);
     const std::size_t lane = random.below(4);
-    const bool wide = widest_vectors() >= 4;
+    const bool wide = widest_lanes() >= 4;
     const Triangle found =
         wide ? wide_circle(scene.points, lane) : circle<2>(scene.points, lane % 2);
     const double s = squared_distance(found, pair_of(scene.points.scaled[kQuad.query]));

@@ -157,7 +157,7 @@ TEST(Kernel2d, MakesWayForCgalWhenAsked) {
   const BaseCaseInput<2> input{.points = points, .input_index = index};
   const BaseCase<2> own = triangulate_base_case<2>(input);
   BaseCaseInput<2> with_cgal = input;
-  with_cgal.kernel = BaseCaseKernel::kCgal;
+  with_cgal.kernel = Kernel::kCgal;
   const BaseCase<2> cgal = triangulate_base_case<2>(with_cgal);
   EXPECT_EQ(own.simplices.size(), cgal.simplices.size());
   EXPECT_EQ(own.hull.size(), cgal.hull.size());
@@ -172,8 +172,8 @@ TEST(Kernel2d, RefusesMorePointsThanItCanNumber) {
   EXPECT_THROW(kernel_2d_base_case(input, basis), Error);
 }
 
-TEST(Kernel2d, EqualsCgalWithNarrowVectors) {
-  const VectorLimit limit(2);
+TEST(Kernel2d, EqualsCgalWithFewLanes) {
+  const LaneLimit limit(2);
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     ASSERT_EQ(compare_kernel_with_cgal<2>(hard_set<2>(seed), seed), "") << "seed " << seed;
   }

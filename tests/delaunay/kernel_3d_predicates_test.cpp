@@ -55,7 +55,7 @@ struct Scene {
   explicit Scene(const FivePoints& five) : points(make_working_points(five, memory)) {}
 
   /// The answer of the test with the fifth point goes to `inside`, if it is certain.
-  template <int kLanes, bool kRanked>
+  template <int kLanes, bool kHasOrderKeys>
   Cell cell(std::optional<bool>* inside = nullptr) const {
     std::array<Cell, 8> cells{};
     std::array<Handle, 8> handles{};
@@ -69,7 +69,7 @@ struct Scene {
     Corners<kLanes> corners;
     gather_corners<kLanes>(star, 0, corners);
     Integers<kLanes> certain = ~Integers<kLanes>{};
-    const std::uint32_t answer = make_spheres<kLanes, kRanked>(star, 0, corners, certain);
+    const std::uint32_t answer = make_spheres<kLanes, kHasOrderKeys>(star, 0, corners, certain);
     if (inside != nullptr && certain[0] != 0) *inside = (answer & 1) != 0;
     return cells[0];
   }
@@ -81,7 +81,7 @@ struct Scene {
     return sum - cell.squared_radius;
   }
 
-  Block memory;
+  Slab memory;
   WorkingPoints points;
 };
 
@@ -116,7 +116,7 @@ TEST(Kernel3dPredicates, NotedTiesAreTies) {
   for (int run = 0; run < 5 * kRuns; ++run) {
     const FivePoints five = near_sphere(random, 1 + static_cast<int>(random.below(9)));
     const Scene scene(five);
-    ASSERT_TRUE(scene.points.ranked);
+    ASSERT_TRUE(scene.points.has_order_keys);
     const Cell cell = scene.cell<4, true>();
     const double s = scene.power(cell);
     if (!(std::abs(s) <= tolerance_of(cell.squared_radius))) {

@@ -86,9 +86,9 @@ TEST(Kernel3d, EqualsCgalOnSmallHardSets) {
   }
 }
 
-TEST(Kernel3d, EqualsCgalWithNarrowVectors) {
+TEST(Kernel3d, EqualsCgalWithFewLanes) {
   for (const int doubles : {4, 2}) {
-    const VectorLimit limit(doubles);
+    const LaneLimit limit(doubles);
     for (std::uint64_t seed = 1; seed <= 500; ++seed) {
       ASSERT_EQ(compare_kernel_with_cgal<3>(hard_set<3>(seed), seed), "") << "seed " << seed;
     }
@@ -103,7 +103,7 @@ TEST(Kernel3d, GivesTheSameSimplicesWithVectorsOfAnyWidth) {
   const BaseCaseInput<3> input{.points = points, .input_index = index};
   const BaseCase<3> wide = triangulate_base_case<3>(input);
   for (const int doubles : {4, 2}) {
-    const VectorLimit limit(doubles);
+    const LaneLimit limit(doubles);
     const BaseCase<3> narrow = triangulate_base_case<3>(input);
     ASSERT_EQ(wide.simplices.size(), narrow.simplices.size());
     for (std::size_t i = 0; i < wide.simplices.size(); ++i) {
@@ -265,7 +265,7 @@ TEST(Kernel3d, MakesWayForCgalWhenAsked) {
   const BaseCaseInput<3> input{.points = points, .input_index = index};
   const BaseCase<3> own = triangulate_base_case<3>(input);
   BaseCaseInput<3> with_cgal = input;
-  with_cgal.kernel = BaseCaseKernel::kCgal;
+  with_cgal.kernel = Kernel::kCgal;
   const BaseCase<3> cgal = triangulate_base_case<3>(with_cgal);
   EXPECT_EQ(own.simplices.size(), cgal.simplices.size());
   EXPECT_EQ(own.hull.size(), cgal.hull.size());

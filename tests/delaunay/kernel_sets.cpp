@@ -9,9 +9,9 @@
 
 #include "src/delaunay/affine_basis.h"
 #include "src/delaunay/base_case.h"
-#include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/delaunay/kernel_2d/kernel_2d.h"
 #include "src/delaunay/kernel_3d/kernel_3d.h"
+#include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/generators/random.h"
 #include "tests/delaunay/cgal_oracle.h"
 
@@ -213,8 +213,8 @@ std::string compare_kernel_with_cgal(std::span<const Point<D>> points, std::uint
     place = hilbert_order<D>(points, box);
   }
   Triangulation<D> t;
-  t.points = BlockArray<Point<D>>(points.size());
-  t.input_index = BlockArray<VertexId>(points.size());
+  t.points = SlabArray<Point<D>>(points.size());
+  t.input_index = SlabArray<VertexId>(points.size());
   std::transform(place.begin(), place.end(), t.points.begin(),
                  [&](VertexId i) { return points[i]; });
   std::copy(place.begin(), place.end(), t.input_index.begin());
@@ -228,13 +228,13 @@ std::string compare_kernel_with_cgal(std::span<const Point<D>> points, std::uint
     return fmt::format("{} finite simplices, CGAL has {}, or others",
                        result.simplices.size() - result.hull.size(), expected.size());
   }
-  t.blocks.resize(1);
-  t.blocks[0].simplices = std::move(result.simplices);
+  t.lists.resize(1);
+  t.lists[0].simplices = std::move(result.simplices);
   for (const std::uint32_t i : result.hull) t.hull.push_back({0, i});
   t.duplicates = result.duplicates;
   t.dimension = D;
   const std::vector<std::string> faults = verify(t);
-  recycle(std::move(t.blocks[0].simplices));
+  recycle(std::move(t.lists[0].simplices));
   return faults.empty() ? "" : faults.front();
 }
 

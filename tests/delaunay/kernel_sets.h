@@ -7,18 +7,18 @@
 #include <string>
 #include <vector>
 
-#include "src/delaunay/kernel_common/vectors.h"
+#include "src/delaunay/kernel_common/lane_width.h"
 #include "src/geometry/point.h"
 
 namespace spillway::detail {
 
-/// Limits the vectors of the kernels for the length of its life.
-class VectorLimit {
+/// Limits the lanes of the kernels for the length of its life.
+class LaneLimit {
  public:
-  explicit VectorLimit(int doubles) { limit_vectors(doubles); }
-  ~VectorLimit() { limit_vectors(8); }
-  VectorLimit(const VectorLimit&) = delete;
-  VectorLimit& operator=(const VectorLimit&) = delete;
+  explicit LaneLimit(int doubles) { limit_lanes(doubles); }
+  ~LaneLimit() { limit_lanes(8); }
+  LaneLimit(const LaneLimit&) = delete;
+  LaneLimit& operator=(const LaneLimit&) = delete;
 };
 
 /// The set that belongs to a seed: a few points to some tens, on lattices, lines, planes, circles

@@ -24,7 +24,8 @@ class KernelsOfSharedFile : public ::testing::TestWithParam<const char*> {};
 TEST_P(KernelsOfSharedFile, EqualCgal) {
   const std::filesystem::path path = shared_file(GetParam());
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
-  std::vector<Point<3>> points = read_all_points(disk(), path, {"", true}).points;
+  const std::vector<LatticePoint> read = read_all_points(disk(), path, {"", true}).points;
+  std::vector<Point<3>> points(read.begin(), read.end());
   if (points.size() > kMostPoints) points.resize(kMostPoints);
   std::vector<Point<2>> flat;
   for (const Point<3>& p : points) flat.push_back({p[0], p[1]});

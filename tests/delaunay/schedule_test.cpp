@@ -5,10 +5,10 @@
 namespace spillway::detail {
 namespace {
 
-Task work(double seconds, std::size_t pieces = 1) {
+Task work(double seconds, std::size_t grains = 1) {
   Task task;
   task.seconds = seconds;
-  task.pieces = pieces;
+  task.grains = grains;
   return task;
 }
 

@@ -23,7 +23,7 @@ spillway_test(kernel_2d_test property
 
 spillway_test(kernel_3d_test property
   SOURCES delaunay/kernel_3d_test.cpp delaunay/kernel_3d_predicates_test.cpp
-          delaunay/kernel_region_test.cpp
+          delaunay/kernel_clear_box_test.cpp
   LIBS kernel_sets
   TIMEOUT 300)
 

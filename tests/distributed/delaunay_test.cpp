@@ -51,7 +51,7 @@ int rank_of(Dealing dealing, std::size_t i, std::size_t count) {
   return 0;
 }
 
-/// All points, ordered by the ranks that give them: place p is number first[p.rank] + p.index.
+/// All points, ordered by the ranks that give them: name p is number first[p.rank] + p.index.
 template <int D>
 struct Deal {
   std::vector<Point<D>> points;
@@ -71,7 +71,7 @@ struct Deal {
   [[nodiscard]] std::vector<Point<D>> own() const {
     return {points.begin() + first[world().rank()], points.begin() + first[world().rank() + 1]};
   }
-  [[nodiscard]] VertexId number(Place place) const { return first[place.rank] + place.index; }
+  [[nodiscard]] VertexId number(RankIndex name) const { return first[name.rank] + name.index; }
 };
 
 /// A simplex by the numbers of its points, sorted, with what it has beyond each facet, in the same
@@ -176,7 +176,7 @@ class ViewCheck {
     require(all.size() == total, "a vertex with two owners");
     require(total == expected_.triangulation.vertex_count(), "vertices without an owner");
     for (VertexId v = 0; v < view_.points.size(); ++v) {
-      const Place name = view_.names[v];
+      const RankIndex name = view_.names[v];
       const bool is_own = name.rank == static_cast<std::uint32_t>(world().rank());
       require(is_own == (v < view_.own), "own and foreign vertices mixed");
       require(!is_own || name.index == v, "an own vertex with another number as its name");
@@ -250,7 +250,7 @@ class ViewCheck {
     for (const Simplex<D>& simplex : view_.simplices) {
       if (simplex.infinite()) continue;
       std::array<Point<D>, D + 1> positions;
-      Place least = view_.names[simplex.vertices[0]];
+      RankIndex least = view_.names[simplex.vertices[0]];
       for (int i = 0; i <= D; ++i) {
         positions[i] = view_.points[simplex.vertices[i]];
         least = std::min(least, view_.names[simplex.vertices[i]]);

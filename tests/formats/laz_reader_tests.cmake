@@ -7,3 +7,6 @@ spillway_test(laz_shared_data_test unit
 spillway_test(point_pieces_test unit
   SOURCES formats/points/point_pieces_test.cpp
   LIBS laz_encoder fmt::fmt)
+spillway_test(damaged_file_test fault
+  SOURCES formats/inputs/damaged_file_test.cpp
+  LIBS laz_encoder fmt::fmt)

@@ -5,7 +5,7 @@ spillway_test(format_tables_test unit
     formats/points/point_formats_test.cpp
   LIBS spillway_formats fmt::fmt)
 spillway_test(mesh_writer_test unit
-  SOURCES formats/meshes/mesh_parts_test.cpp formats/meshes/mesh_writer_test.cpp
+  SOURCES formats/meshes/part_file_names_test.cpp formats/meshes/mesh_writer_test.cpp
   LIBS spillway_formats)
 spillway_test(mesh_reader_test unit
   SOURCES formats/inputs/endless_input_test.cpp formats/meshes/mesh_corruption_test.cpp formats/meshes/mesh_reader_test.cpp

@@ -19,7 +19,7 @@ namespace spillway::detail::testing {
 /// Everything that a reader gives.
 struct AllPoints {
   PointHeader header;
-  std::vector<Point<3>> points;
+  std::vector<LatticePoint> points;
   std::vector<std::uint64_t> index;
   std::vector<PointAttributes> attributes;
   std::uint64_t withheld = 0;

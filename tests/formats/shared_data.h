@@ -24,9 +24,9 @@ inline std::string content_of(const std::filesystem::path& path) {
 }
 
 /// The digest of all coordinates as int32 triples.
-inline std::string sha256_of_points(const std::vector<Point<3>>& points) {
+inline std::string sha256_of_points(const std::vector<LatticePoint>& points) {
   std::string integers;
-  for (const Point<3>& p : points) {
+  for (const LatticePoint& p : points) {
     integers += bytes_of(std::array<std::int32_t, 3>{static_cast<std::int32_t>(p[0]),
                                                      static_cast<std::int32_t>(p[1]),
                                                      static_cast<std::int32_t>(p[2])});

@@ -134,7 +134,7 @@ class StreamFault : public ::testing::TestWithParam<unsigned> {
     files_.files["points.txt"] = points_as_text(kPoints);
   }
 
-  StreamFigures run(BlockSink& writer) {
+  RunFigures run(BlockSink& writer) {
     PointSource source(files_, {"points.txt"}, {.dimension = 2, .index = true});
     return triangulate_stream<2>(source, writer, scratch_, budget_,
                                  {.threads = GetParam(),
@@ -168,10 +168,10 @@ class StreamFault : public ::testing::TestWithParam<unsigned> {
 
 TEST_P(StreamFault, NoneIsNoFault) {
   FailingWriter writer(FailingWriter::Way::kNever, 0);
-  const StreamFigures figures = run(writer);
+  const RunFigures figures = run(writer);
   EXPECT_GT(figures.spilled_points, 0U);
   EXPECT_EQ(figures.spilled_bytes, scratch_.bytes_written());
-  EXPECT_EQ(figures.totals.points, kPoints);
+  EXPECT_EQ(figures.mesh.points, kPoints);
   EXPECT_EQ(scratch_.files(), 0);
   EXPECT_EQ(budget_.used(), 0U);
 }

@@ -46,10 +46,10 @@ void expect_equal_to_cgal(const std::vector<Point<D>>& points,
     }
     const StreamRun run = run_stream<D>(path, options);
     ASSERT_TRUE(simplices_of<D>(run.mesh) == expected)
-        << run.figures.totals.simplices << " simplices, CGAL has " << expected.size();
-    EXPECT_EQ(run.figures.totals.hull_facets, hull_facets);
-    EXPECT_EQ(run.figures.totals.simplices, expected.size());
-    EXPECT_EQ(run.figures.totals.vertices + run.figures.totals.duplicates, points.size());
+        << run.figures.mesh.simplices << " simplices, CGAL has " << expected.size();
+    EXPECT_EQ(run.figures.mesh.hull_facets, hull_facets);
+    EXPECT_EQ(run.figures.mesh.simplices, expected.size());
+    EXPECT_EQ(run.figures.mesh.vertices + run.figures.mesh.duplicates, points.size());
     EXPECT_EQ(run.mesh.live(), 0U) << "vertices never finalized";
   }
   std::filesystem::remove(path);
@@ -136,8 +136,8 @@ void expect_written_in(const std::vector<const MeshFormat*>& formats) {
     const auto writer = open_mesh_stream_writer(disk(), mesh, *format, header, *scratch);
     MemoryBudget budget(std::uint64_t{1} << 30);
     const StreamOptions options{.threads = 2, .tile_capacity = 700, .leaf_size = 100};
-    const StreamFigures figures = triangulate_stream<D>(source, *writer, *scratch, budget, options);
-    EXPECT_NO_THROW(writer->finish(figures.totals));
+    const RunFigures figures = triangulate_stream<D>(source, *writer, *scratch, budget, options);
+    EXPECT_NO_THROW(writer->finish(figures.mesh));
     std::filesystem::remove(mesh);
   }
   std::filesystem::remove(path);

@@ -57,7 +57,7 @@ class KeepingWriter : public BlockSink {
   void finish(const MeshTotals&) override {}
   [[nodiscard]] std::size_t live() const { return live_.size(); }
 
-  std::vector<Point<3>> vertices;
+  std::vector<LatticePoint> vertices;
   std::vector<std::uint64_t> index;
   std::vector<std::uint64_t> corner_list;
   std::vector<MeshBlock> blocks;
@@ -76,9 +76,9 @@ std::string write_points(const std::vector<Point<D>>& points) {
   options.coordinates = D;
   options.count = points.size();
   const auto writer = open_point_writer(disk(), path, options);
-  std::vector<Point<3>> block;
+  std::vector<LatticePoint> block;
   for (const Point<D>& p : points) {
-    Point<3> point{};
+    LatticePoint point{};
     std::copy(p.begin(), p.end(), point.begin());
     block.push_back(point);
   }
@@ -88,7 +88,7 @@ std::string write_points(const std::vector<Point<D>>& points) {
 }
 
 struct StreamRun {
-  StreamFigures figures;
+  RunFigures figures;
   KeepingWriter mesh;
 };
 

@@ -1,9 +1,13 @@
 spillway_test(stream_unit_test unit
-  SOURCES stream/output/heights_test.cpp stream/output/sequencer_test.cpp stream/plan/memory_plan_test.cpp
-          stream/sinks/contour_test.cpp
-          stream/tiles/cut_tree_test.cpp stream/tiles/point_span_test.cpp stream/tiles/tile_tree_test.cpp
+  SOURCES stream/output/heights_test.cpp stream/output/open_facets_test.cpp
+          stream/output/sequencer_test.cpp stream/plan/memory_plan_test.cpp
+          stream/sinks/contour_test.cpp stream/sinks/raster_store_test.cpp
+          stream/sinks/tetrahedron_writers_test.cpp
+          stream/tiles/cut_tree_test.cpp stream/tiles/point_buffer_test.cpp
+          stream/tiles/point_span_test.cpp stream/tiles/tile_block_test.cpp stream/tiles/tile_tree_test.cpp
           stream/triangulate/border_test.cpp stream/triangulate/merge_tree_test.cpp
-          stream/triangulate/settle_test.cpp
+          stream/triangulate/settle_test.cpp stream/triangulate/tile_engine_test.cpp
+          stream/triangulate/tile_triangulation_test.cpp
   LIBS spillway_stream)
 
 spillway_test(stream_property_test property
@@ -16,8 +20,12 @@ spillway_test(stream_fault_test fault
   LIBS spillway_stream spillway_generators)
 
 spillway_test(point_input_test unit
-  SOURCES stream/source/common_lattice_test.cpp stream/source/point_filter_test.cpp stream/source/point_runs_test.cpp
-          stream/source/point_source_test.cpp stream/source/thinning_test.cpp
+  SOURCES stream/source/common_lattice_test.cpp stream/source/header_survey_test.cpp
+          stream/source/input_crs_test.cpp stream/source/input_list_test.cpp
+          stream/source/ordered_blocks_test.cpp stream/source/piece_sequence_test.cpp
+          stream/source/point_filter_test.cpp stream/source/point_runs_test.cpp
+          stream/source/point_source_test.cpp stream/source/source_coordinates_test.cpp
+          stream/source/source_facts_test.cpp stream/source/thinning_test.cpp
   LIBS spillway_stream fmt::fmt)
 
 spillway_test(dem_test property
@@ -31,6 +39,19 @@ spillway_mpi_test(rank_pipeline_test
   RANKS 1 2 3 4 5 8
   TIMEOUT 600)
 
+spillway_test(rank_messages_test unit
+  SOURCES stream/ranks/messages_test.cpp stream/ranks/part_file_numbers_test.cpp
+  LIBS spillway_stream_ranks)
+
+spillway_mpi_test(rank_unit_test
+  SOURCES stream/ranks/part_files_test.cpp stream/ranks/piece_table_test.cpp
+          stream/ranks/point_exchange_test.cpp stream/ranks/rank_tree_test.cpp
+          stream/ranks/raster_merge_test.cpp stream/ranks/stream_sections_test.cpp
+          stream/ranks/collective_step_test.cpp
+  LIBS spillway_stream_ranks
+  RANKS 1 2 3 5
+  TIMEOUT 300)
+
 spillway_mpi_test(rank_output_test
   SOURCES stream/ranks/rank_output_test.cpp
   LIBS spillway_stream_ranks
@@ -38,5 +59,8 @@ spillway_mpi_test(rank_output_test
   TIMEOUT 300)
 
 spillway_test(stream_library_test unit
-  SOURCES stream/library/triangulate_test.cpp
+  SOURCES stream/library/check_test.cpp stream/library/convert_points_test.cpp stream/library/generate_test.cpp
+          stream/library/info_test.cpp stream/library/point_comparison_test.cpp
+          stream/library/misuse_test.cpp stream/library/products_test.cpp stream/library/public_points_test.cpp
+          stream/library/triangulate_test.cpp stream/library/whole_mesh_test.cpp
   LIBS spillway_stream spillway_library)

@@ -33,8 +33,8 @@ inline std::vector<Triangle> triangles_of(const std::vector<Point<2>>& points,
                                           const HeightOf& height) {
   const Triangulation<2> mesh = delaunay<2>(points, {.threads = 1});
   std::vector<Triangle> triangles;
-  for (const auto& block : mesh.blocks) {
-    for (const auto& simplex : block.simplices) {
+  for (const auto& list : mesh.lists) {
+    for (const auto& simplex : list.simplices) {
       if (simplex.removed() || simplex.infinite()) continue;
       Triangle triangle;
       for (int i = 0; i < 3; ++i) {
@@ -49,8 +49,8 @@ inline std::vector<Triangle> triangles_of(const std::vector<Point<2>>& points,
 
 /// The window of a triangle.
 inline PixelWindow box_of(const PixelCentres& centres, const Triangle& triangle) {
-  return window_of(place_of(centres, triangle[0]), place_of(centres, triangle[1]),
-                   place_of(centres, triangle[2]));
+  return window_of(centres_around(centres, triangle[0]), centres_around(centres, triangle[1]),
+                   centres_around(centres, triangle[2]));
 }
 
 /// The number of sides of a counter-clockwise triangle that a point is on, by exact predicates; -1

@@ -32,22 +32,22 @@ Visits scan(const PixelGrid& grid, const std::vector<Triangle>& triangles) {
   std::vector<PixelRun> runs;
   for (const Triangle& triangle : triangles) {
     const Triangle canonical = in_canonical_order(triangle);
-    std::vector<int> place(pixels, -1);
+    std::vector<int> relation(pixels, -1);
     find_pixels(centres, canonical, box_of(centres, canonical), runs);
     for (const PixelRun& run : runs) {
       for (std::uint32_t column = run.begin; column < run.end; ++column) {
         const std::size_t pixel = std::size_t{run.row} * grid.columns + column;
-        EXPECT_EQ(place[pixel], -1) << "a pixel comes twice";
-        place[pixel] = run.place == PixelPlace::kInside   ? 0
-                       : run.place <= PixelPlace::kEdge12 ? 1
-                                                          : 2;
+        EXPECT_EQ(relation[pixel], -1) << "a pixel comes twice";
+        relation[pixel] = run.relation == PixelRelation::kInside   ? 0
+                          : run.relation <= PixelRelation::kEdge12 ? 1
+                                                                   : 2;
         ++visits.touched[pixel];
         if (run.owned) ++visits.owners[pixel];
       }
     }
     for (std::uint32_t row = 0; row < grid.rows; ++row) {
       for (std::uint32_t column = 0; column < grid.columns; ++column) {
-        EXPECT_EQ(place[std::size_t{row} * grid.columns + column],
+        EXPECT_EQ(relation[std::size_t{row} * grid.columns + column],
                   edges_touched(triangle, {grid.centre_x(column), grid.centre_y(row)}))
             << "row " << row << ", column " << column;
       }

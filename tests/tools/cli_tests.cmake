@@ -6,7 +6,8 @@ spillway_test(command_unit_tests unit
 function(spillway_command_test name label)
   spillway_test(${name} ${label}
     SOURCES tools/command_runner.cpp ${ARGN}
-    LIBS spillway_runtime fmt::fmt nlohmann_json::nlohmann_json)
+    LIBS spillway_runtime fmt::fmt nlohmann_json::nlohmann_json
+    SKIPS_BY_ITSELF)
   target_compile_definitions(${name} PRIVATE SPILLWAY_COMMAND="$<TARGET_FILE:spillway>")
   add_dependencies(${name} spillway)
 endfunction()

@@ -152,6 +152,11 @@ int wait_for_exit(pid_t process) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+bool build_lacks(const std::string& part) {
+  static const std::string version = Workspace().succeed("spillway --version");
+  return version.find("without " + part) != std::string::npos;
+}
+
 fs::path shared_file(const std::string& name) {
   const fs::path path = fs::path(SPILLWAY_SHARED_DATA) / name;
   return fs::exists(path) ? path : fs::path();

@@ -60,6 +60,11 @@ class Workspace {
 /// Waits for a started process. Returns its exit code, 128 + signal if it was killed.
 int wait_for_exit(pid_t process);
 
+/// Whether the command was built without `part`, "MPI" or "GDAL": by what its --version says. For
+/// tests that skip what needs it.
+bool build_lacks(const std::string& part);
+inline constexpr const char* kNoGdal = "rasters, contours and the like take GDAL";
+
 /// A file of the shared sample data, or an empty path if that folder is not there.
 std::filesystem::path shared_file(const std::string& name);
 

@@ -11,13 +11,12 @@
 #include <vector>
 
 #include "src/error.h"
-#include "tools/commands/facet_count.h"
 #include "tools/options/command_options.h"
 #include "tools/options/triangulation_options.h"
-#include "tools/report/core_simulation.h"
 #include "tools/report/json_text.h"
 #include "tools/report/progress.h"
 #include "tools/report/progress_line.h"
+#include "tools/report/speed_up_estimate.h"
 
 namespace spillway::detail {
 namespace {
@@ -140,17 +139,6 @@ TEST(ProgressOfThreads, TheMostCountsInWhateverOrderTheySayIt) {
 
 TEST(JsonText, BytesThatAreNoTextDoNotFail) {
   EXPECT_EQ(json_text({{"name", "a\xff"}}), "{\"name\":\"a\xEF\xBF\xBD\"}");
-}
-
-TEST(FacetCount, CountsWhatOneSimplexHasAlone) {
-  Mesh square;
-  square.header.dimension = 2;
-  square.corners = {0, 1, 2, 0, 2, 3};
-  EXPECT_EQ(count_boundary_facets(square), 4U);
-  Mesh tetrahedra;
-  tetrahedra.header.dimension = 3;
-  tetrahedra.corners = {0, 1, 2, 3, 1, 2, 3, 4};
-  EXPECT_EQ(count_boundary_facets(tetrahedra), 6U);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "formats/bytes/bytes.h"
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/bytes/json.h"
 #include "formats/bytes/whole_file.h"
 #include "formats/disk/extension.h"
@@ -20,7 +20,7 @@ namespace spillway::detail {
 namespace {
 
 std::string read_text(const std::string& path) {
-  InputSource source(disk().open(path));
+  InputBytes source(disk().open(path));
   return std::string(as_text(read_whole(source)));
 }
 
@@ -49,13 +49,13 @@ Json parse_list(const std::string& path) {
       return parse_json(text);
     } catch (const JsonError& error) {
       throw Error(
-          fmt::format("{}, byte {}: this is no JSON; {}", path, error.byte(), error.what()));
+          fmt::format("{}, byte {}: this is not JSON; {}", path, error.byte(), error.what()));
     }
   }
   try {
     return json_of(toml::parse(text));
   } catch (const toml::parse_error& error) {
-    throw Error(fmt::format("{}, line {}: this is no TOML; {}", path, error.source().begin.line,
+    throw Error(fmt::format("{}, line {}: this is not TOML; {}", path, error.source().begin.line,
                             error.description()));
   }
 }
@@ -92,7 +92,7 @@ class ListReader {
   }
 
   void expect_keys(const Json& object, const std::set<std::string>& known) const {
-    if (!object.is_object()) fail("this is no table of keys and values");
+    if (!object.is_object()) fail("this is not a table of keys and values");
     for (const auto& [key, value] : object.members()) {
       if (!known.contains(key)) fail(fmt::format("the key \"{}\" is not known", key));
     }
@@ -119,7 +119,7 @@ class ListReader {
   }
 
   void add_options(const Json& object, JobOptions& options) const {
-    if (!object.is_object()) fail("\"options\" is no table of names and values");
+    if (!object.is_object()) fail("\"options\" is not a table of names and values");
     for (const auto& [name, value] : object.members()) {
       if (value.is_boolean()) {
         options.erase(name);
@@ -157,8 +157,8 @@ void check_jobs(const std::vector<Job>& jobs) {
           fmt::format("{}: a job of a batch cannot read standard input: name a file", job.name));
     }
     if (job.name.empty() || job.name.starts_with('.') || job.name.find('/') != std::string::npos) {
-      throw Error(
-          fmt::format("\"{}\" cannot be the name of a job: its files are called so", job.name));
+      throw Error(fmt::format("\"{}\" cannot be the name of a job: its files are named after it",
+                              job.name));
     }
     if (!names.insert(job.name).second) {
       throw UsageError(

@@ -1,5 +1,6 @@
 #include "tools/batch/job_record.h"
 
+#include <spillway/input.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -9,7 +10,6 @@
 #include <iterator>
 #include <string>
 
-#include "stream/source/input_list.h"
 #include "tools/report/json_text.h"
 #include "tools/report/text_output.h"
 
@@ -50,7 +50,9 @@ Json description(const JobRun& run, const Json& inputs) {
 
 Json input_fingerprints(const Job& job) {
   Json json = Json::array();
-  for (const std::string& input : expand_inputs(job.inputs)) json.push_back(fingerprint(input));
+  for (const std::string& input : spillway::expand_inputs(job.inputs, Context())) {
+    json.push_back(fingerprint(input));
+  }
   return json;
 }
 

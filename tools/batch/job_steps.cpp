@@ -113,7 +113,7 @@ std::vector<JobStep> JobPlanner::plan(const Job& job) const {
   std::vector<std::string> kinds = job.to;
   for (auto kind = kinds.begin(); kind != kinds.end(); ++kind) {
     if (std::find(kinds.begin(), kind, *kind) == kind) continue;
-    throw UsageError(fmt::format("{}: the output {} is there twice", job.name, *kind));
+    throw UsageError(fmt::format("{}: the output {} appears twice", job.name, *kind));
   }
   if (kinds.size() == 1) {
     steps.push_back(step(job, kinds.front(), job.inputs, true));
@@ -207,15 +207,14 @@ void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps
       return used && has_option(step.arguments.front(), name);
     });
     if (taker == steps.end()) {
-      throw UsageError(
-          fmt::format("{}: none of its outputs has a use for the option --{}", job.name, name));
+      throw UsageError(fmt::format("{}: none of its outputs uses the option --{}", job.name, name));
     }
     // The parser would take the next argument for it.
     const bool wants_value = root_.subcommand(taker->arguments.front()).takes_value("--" + name);
     const bool empty = std::find(values.begin(), values.end(), "") != values.end();
     if (empty || (wants_value && values.empty())) {
       throw UsageError(
-          fmt::format("{}: --{} has no value: give one, or leave it away", job.name, name));
+          fmt::format("{}: --{} has no value: give one, or leave it out", job.name, name));
     }
   }
 }

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <spillway/input.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,7 +18,6 @@
 #include "formats/disk/unfinished_files.h"
 #include "src/distributed/ranks.h"
 #include "src/parallel/parallel.h"
-#include "stream/source/input_list.h"
 #include "tools/batch/child_process.h"
 #include "tools/batch/job_log.h"
 #include "tools/batch/job_record.h"
@@ -192,8 +192,9 @@ class Batch {
       return read_job_list(options_.sources.front(), options_.to, passed_on);
     }
     if (options_.to.empty()) throw UsageError("--to is missing: it names the outputs, like ply");
-    const auto notice = [this](std::string_view text) { progress_.say(text); };
-    return jobs_of_files(expand_inputs(options_.sources, notice), options_.to, passed_on);
+    const Context context({.warning = [this](std::string_view text) { progress_.say(text); }});
+    return jobs_of_files(spillway::expand_inputs(options_.sources, context), options_.to,
+                         passed_on);
   }
 
   [[nodiscard]] std::size_t at_a_time() const {

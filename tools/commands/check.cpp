@@ -1,22 +1,17 @@
 #include <fmt/format.h>
+#include <spillway/check.h>
 
 #include <algorithm>
 #include <iterator>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "formats/inputs/input_kind.h"
-#include "formats/inputs/open_mesh.h"
-#include "formats/inputs/open_mesh_stream.h"
-#include "formats/meshes/common/mesh_stream.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/points/point_formats.h"
 #include "src/geometry/canonical_hash.h"
-#include "stream/checker/checker.h"
+#include "src/parallel/most_threads.h"
 #include "tools/commands/command.h"
-#include "tools/commands/point_comparison.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 #include "tools/report/json_text.h"
@@ -54,82 +49,21 @@ struct Outcome {
   int dimension;
 };
 
-CheckOptions check_options(const CheckCommandOptions& options) {
-  CheckOptions result;
-  result.any_delaunay = options.any_delaunay;
-  result.threads = options.threads;
-  return result;
-}
-
-/// The input that the vertices are compared with, if any is given; its lattice is noted for the
-/// proof.
-class Comparison {
- public:
-  Comparison(int dimension, const CheckCommandOptions& options, CheckOptions& how,
-             Progress& progress)
-      : progress_(progress) {
-    if (options.points.empty()) return;
-    const std::uint64_t memory = memory_limit(options.memory);
-    scratch_ = make_scratch_folder(options.memory);
-    source_ = make_point_source(disk(), options.points, options.input,
-                                {.dimension = dimension, .index = true, .memory = memory},
-                                *scratch_, progress);
-    how.input_lattice = source_->lattice();
-    points_.emplace(dimension, memory, *scratch_);
-    how.vertex = [this](const Point<3>& vertex) { points_->add_vertex(vertex); };
+Outcome check_input(const CheckCommandOptions& options, Progress& progress) {
+  // Memory is for the points alone.
+  const MemoryOptions memory = options.points.empty() ? MemoryOptions{} : options.memory;
+  const Context context(context_options(memory, options.threads, progress));
+  const auto mesh = open_mesh(options.mesh, {.format = options.mesh_format}, context);
+  const int dimension = mesh->header().dimension;
+  std::unique_ptr<PointSource> points;
+  if (!options.points.empty()) {
+    points = open_points(options.points, point_options(options.input, dimension), context);
   }
-  Comparison(const Comparison&) = delete;
-  Comparison& operator=(const Comparison&) = delete;
-
-  void run(const CheckOptions& how, CheckReport& report) {
-    if (!source_) return;
-    points_->compare(*source_, how, report, progress_);
-    if (source_->counts().dropped() > 0) progress_.say(describe(source_->counts()));
-  }
-
- private:
-  Progress& progress_;
-  std::unique_ptr<ScratchFolder> scratch_;
-  std::unique_ptr<PointSource> source_;
-  std::optional<PointComparison> points_;
-};
-
-Outcome check_whole(ProbedInput& input, const CheckCommandOptions& options, Progress& progress) {
-  progress.begin("read mesh", "simplices");
-  const Mesh mesh = read_mesh(input, options.mesh, options.mesh_format);
-  progress.end(mesh.corners.size() / mesh.corners_per_simplex());
-  const int dimension = mesh.header.dimension;
-  CheckOptions how = check_options(options);
-  Comparison comparison(dimension, options, how, progress);
-  progress.begin("check", "simplices");
-  CheckReport report = check_mesh(mesh, how);
-  if (how.vertex) std::for_each(mesh.vertices.begin(), mesh.vertices.end(), how.vertex);
-  progress.end(report.simplices);
-  comparison.run(how, report);
-  return {report, dimension};
-}
-
-Outcome check_stream(ProbedInput& input, const CheckCommandOptions& options, Progress& progress) {
-  const auto reader = open_mesh_stream_reader(input, options.mesh, options.mesh_format);
-  const int dimension = reader->header().dimension;
-  CheckOptions how = check_options(options);
-  Comparison comparison(dimension, options, how, progress);
-  how.progress = [&progress](std::uint64_t simplices, std::optional<double> fraction) {
-    progress.update(simplices, fraction);
-  };
-  progress.begin("check", "simplices");
-  CheckReport report = check_mesh_stream(*reader, how);
-  progress.end(report.simplices);
-  comparison.run(how, report);
-  return {report, dimension};
-}
-
-/// Whether the mesh is to be read as a stream. A pipe always is: other formats need a file.
-bool is_stream(ProbedInput& input, const CheckCommandOptions& options) {
-  if (!options.mesh_format.empty()) {
-    return mesh_format(options.mesh, options.mesh_format).is_stream();
-  }
-  return input.is_pipe() || kind_of_input(input) == InputKind::kMeshStream;
+  Outcome outcome{check(*mesh, {.any_delaunay = options.any_delaunay}, context, points.get()),
+                  dimension};
+  const PointCounts& counts = outcome.report.points;
+  if (counts.dropped() > 0) progress.say(describe(counts));
+  return outcome;
 }
 
 std::string json_report(const Outcome& outcome, const CheckCommandOptions& options) {
@@ -191,9 +125,7 @@ int run(const CheckCommandOptions& options) {
     refuse_given(*options.app, kInputOptionNames, "without --points");
   }
   Progress progress = make_progress(options.report, options.mesh == "-");
-  ProbedInput input(disk(), options.mesh);
-  const Outcome outcome = is_stream(input, options) ? check_stream(input, options, progress)
-                                                    : check_whole(input, options, progress);
+  const Outcome outcome = check_input(options, progress);
   write_text("-", options.json ? json_report(outcome, options) : text_report(outcome, options));
   return outcome.report.fault_count == 0 ? kExitDone : kExitFailed;
 }

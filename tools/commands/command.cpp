@@ -64,7 +64,7 @@ UsageError usage_error(const CommandLine& root, const std::string& wrong) {
     const std::string name = word.substr(0, word.find('='));
     if (std::find(names.begin(), names.end(), name) != names.end()) {
       return UsageError(
-          fmt::format("{} is an option of {}: give it behind that word", name, app.name()));
+          fmt::format("{} is an option of {}: give it after that word", name, app.name()));
     }
     const std::string meant = name.starts_with("--") ? suggestion(name, names) : "";
     return UsageError(fmt::format("{} has no option {}{} (see `spillway {} --help`)", app.name(),
@@ -74,7 +74,7 @@ UsageError usage_error(const CommandLine& root, const std::string& wrong) {
 }
 
 /// Throws UsageError if an option or a positional was given an empty text: "$UNSET" in a script is
-/// no way to leave it away.
+/// no way to leave it out.
 void refuse_empty_values(const CommandLine& root) {
   const CommandLine* const app = root.given_subcommand();
   if (app == nullptr) return;

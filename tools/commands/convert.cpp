@@ -1,22 +1,24 @@
 #include <fmt/format.h>
+#include <spillway/convert.h>
+#include <spillway/input.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <array>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "formats/inputs/input_kind.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/points/create_points.h"
-#include "stream/source/input_list.h"
+#include "src/error.h"
+#include "src/runtime/peak_memory.h"
 #include "tools/commands/command.h"
-#include "tools/commands/convert_meshes.h"
-#include "tools/commands/convert_points.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
+#include "tools/options/point_output.h"
 #include "tools/report/usage_error.h"
 
 namespace spillway::detail {
@@ -32,13 +34,14 @@ constexpr const char* kExamples =
     "Points and spm streams are converted as they come, in little memory; other meshes are read as "
     "a whole.";
 
-struct ConvertOptions {
+struct ConvertCommandOptions {
   const CommandLine* app = nullptr;
   std::vector<std::string> inputs;
   InputOptions input;
   std::string mesh_format;
   PointOutput output;
-  LatticeChoice lattice;
+  std::vector<double> scale;   ///< none, one for all axes, or three
+  std::vector<double> offset;  ///< likewise
   MemoryOptions memory;
   ReportOptions report;
 };
@@ -55,13 +58,13 @@ std::vector<std::string> output_format_names() {
 }
 
 /// Several inputs, and what stands for several, are points.
-InputKind kind_of(const ConvertOptions& options, ProbedInput& input) {
+InputKind kind_of(const ConvertCommandOptions& options, const Context& context) {
   if (!options.mesh_format.empty()) return InputKind::kMesh;
-  if (!options.input.format.empty() || options.inputs.size() > 1 ||
-      stands_for_several(input.path())) {
+  const std::string& input = options.inputs.front();
+  if (!options.input.format.empty() || options.inputs.size() > 1 || stands_for_several(input)) {
     return InputKind::kPoints;
   }
-  return kind_of_input(input);
+  return kind_of_input(input, context);
 }
 
 bool is_mesh_output(const PointOutput& output) {
@@ -74,7 +77,7 @@ bool is_mesh_output(const PointOutput& output) {
 }
 
 /// Throws if the output is of no point format, or bytes would go to a terminal.
-void check_points_output(const ConvertOptions& options) {
+void check_points_output(const ConvertCommandOptions& options) {
   const PointOutput& output = options.output;
   const bool piped = output.path == "-" && output.format.empty();
   const PointFormat* format = &own_point_stream();
@@ -90,19 +93,45 @@ void check_points_output(const ConvertOptions& options) {
   static_cast<void>(format_name_of(output));
 }
 
-void run_points(const ConvertOptions& options, FileSystem& files, ScratchFolder& scratch,
-                Progress& progress) {
+/// "0.001", or "0.01, 0.01, 0.001" if the axes differ.
+std::string axes_text(const std::array<double, 3>& values) {
+  if (values[0] == values[1] && values[1] == values[2]) return fmt::format("{}", values[0]);
+  return fmt::format("{}, {}, {}", values[0], values[1], values[2]);
+}
+
+/// Says what is not as it was in the inputs.
+void tell_changes(const PointConversion& done, Progress& progress) {
+  if (done.farthest > 0) {
+    progress.say(fmt::format(
+        "coordinates rounded to multiples of {} from {} on, which moved them by {:.3g} at most; "
+        "--scale and --offset choose others",
+        axes_text(done.scale), axes_text(done.offset), done.farthest));
+  }
+  if (done.adds_heights) progress.say("the points have no z: in LAS it is 0");
+  if (!done.lost.empty()) progress.say(fmt::format("not kept: {}", fmt::join(done.lost, ", ")));
+  if (done.points.dropped() > 0) progress.say(describe(done.points));
+}
+
+void run_points(const ConvertCommandOptions& options, const Context& context, Progress& progress) {
   check_points_output(options);
-  progress.begin("convert", "points");
-  const auto source =
-      make_point_source(files, options.inputs, options.input,
-                        {.index = true, .attributes = true, .memory = memory_limit(options.memory)},
-                        scratch, progress);
-  convert_points(*source, options.output, options.lattice, scratch, progress);
+  const PointOutput& output = options.output;
+  const auto file = create_points(output.path,
+                                  {.format = format_name_of(output),
+                                   .las_version = output.las_version,
+                                   .scale = options.scale,
+                                   .offset = options.offset},
+                                  context);
+  PointOptions how = point_options(options.input, 2);
+  how.attributes = true;
+  const auto points = open_points(options.inputs, how, context);
+  const PointConversion done = convert(*points, *file, context);
+  tell_changes(done, progress);
+  progress.detail(fmt::format("peak memory {} bytes", peak_memory()));
+  progress.say(fmt::format("{} points in {}", done.written, output.name()));
 }
 
 /// Throws if the output is of a point format, and of no mesh format.
-void check_mesh_output(const ConvertOptions& options) {
+void check_mesh_output(const ConvertCommandOptions& options) {
   const PointOutput& output = options.output;
   if (is_mesh_output(output)) return;
   try {
@@ -115,17 +144,32 @@ void check_mesh_output(const ConvertOptions& options) {
                   options.inputs.front(), output.name()));
 }
 
-void run_mesh(const ConvertOptions& options, ProbedInput& input, InputKind kind,
-              ScratchFolder& scratch, Progress& progress) {
+/// What a mesh was written to, in words.
+std::string files_of(const std::string& output, const MeshFormat& format) {
+  if (output == "-") return "standard output";
+  return format.file_set != nullptr ? format.file_set->names(output) : output;
+}
+
+void run_mesh(const ConvertCommandOptions& options, const Context& context, Progress& progress) {
+  const std::string& input = options.inputs.front();
   if (options.inputs.size() > 1) {
     throw UsageError("several meshes do not become one: convert them one by one");
   }
   std::vector<std::string_view> of_points(kInputOptionNames.begin(), kInputOptionNames.end());
   of_points.insert(of_points.end(), {"--scale", "--offset", "--las-version"});
-  refuse_given(*options.app, of_points, fmt::format("on {}, which is a mesh", input.path()));
+  refuse_given(*options.app, of_points, fmt::format("on {}, which is a mesh", input));
   check_mesh_output(options);
-  convert_mesh(input, kind, {options.mesh_format, options.output.path, options.output.format},
-               scratch, progress);
+  const PointOutput& output = options.output;
+  const MeshFormat& format = mesh_format(output.path, output.format);
+  if (output.path == "-" && ::isatty(STDOUT_FILENO) != 0 && output.format.empty()) {
+    throw UsageError("a mesh stream cannot go to a terminal: name a file, or pipe it on");
+  }
+  const auto mesh = open_mesh(input, {.format = options.mesh_format}, context);
+  const auto file = create_mesh(output.path, {.format = output.format}, context);
+  const MeshTotals totals = convert(*mesh, *file, context).mesh;
+  progress.say(fmt::format("{} vertices, {} simplices in {}", totals.vertices, totals.simplices,
+                           files_of(output.path, format)));
+  if (const std::string note = rounding_note(format); !note.empty()) progress.say(note);
 }
 
 /// One number for all axes, or one each.
@@ -135,18 +179,16 @@ void check_axes(std::string_view option, const std::vector<double>& values) {
   }
 }
 
-int run(const ConvertOptions& options) {
-  check_axes("--scale", options.lattice.scale);
-  check_axes("--offset", options.lattice.offset);
+int run(const ConvertCommandOptions& options) {
+  check_axes("--scale", options.scale);
+  check_axes("--offset", options.offset);
   const bool reads_pipe = std::ranges::find(options.inputs, "-") != options.inputs.end();
   Progress progress = make_progress(options.report, reads_pipe);
-  const auto scratch = make_scratch_folder(options.memory);
-  ProbedInput input(disk(), options.inputs.front());
-  const InputKind kind = kind_of(options, input);
-  if (kind == InputKind::kPoints) {
-    run_points(options, input, *scratch, progress);
+  const Context context(context_options(options.memory, 0, progress));
+  if (kind_of(options, context) == InputKind::kPoints) {
+    run_points(options, context, progress);
   } else {
-    run_mesh(options, input, kind, *scratch, progress);
+    run_mesh(options, context, progress);
   }
   return kExitDone;
 }
@@ -154,7 +196,7 @@ int run(const ConvertOptions& options) {
 }  // namespace
 
 Subcommand add_convert(CommandLine& root) {
-  const auto options = std::make_shared<ConvertOptions>();
+  const auto options = std::make_shared<ConvertCommandOptions>();
   CommandLine& app = root.add_subcommand("convert", "Write points or a mesh in another format");
   options->app = &app;
   app.set_footer(kExamples);
@@ -170,11 +212,10 @@ Subcommand add_convert(CommandLine& root) {
   add_choice(app, "--mesh-format", options->mesh_format, mesh_format_names(),
              "The input is a mesh of this format, which neither content nor name tell");
   add_las_version(app, options->output);
-  add_number_list(app, "--scale", options->lattice.scale,
+  add_number_list(app, "--scale", options->scale,
                   "Round coordinates to multiples of this; one number, or one for each axis", true)
       .value_name("N[,N,N]");
-  add_number_list(app, "--offset", options->lattice.offset,
-                  "Count these multiples from here on; likewise")
+  add_number_list(app, "--offset", options->offset, "Count these multiples from here on; likewise")
       .value_name("N[,N,N]");
   add_input_options(app, options->input);
   add_memory_options(app, options->memory);

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
 #include <string>
 
-#include "formats/gdal/gdal.h"
 #include "tools/report/usage_error.h"
 
 namespace spillway::detail {
@@ -18,7 +18,7 @@ double parse_resolution(const std::string& text) {
   constexpr double kLargest = 1e100;
   const auto resolution = parse_number(text);
   if (!resolution || !(*resolution >= 1 / kLargest && *resolution <= kLargest)) {
-    throw UsageError(fmt::format("\"{}\" is no length; give a number above 0", text));
+    throw UsageError(fmt::format("\"{}\" is not a length; give a number above 0", text));
   }
   return *resolution;
 }
@@ -27,7 +27,7 @@ float parse_nodata(const std::string& text) {
   if (text == "nan" || text == "NaN") return std::numeric_limits<float>::quiet_NaN();
   const auto value = parse_number(text);
   if (!value || std::isinf(static_cast<float>(*value))) {
-    throw UsageError(fmt::format("\"{}\" is no value of a pixel; give a number or nan", text));
+    throw UsageError(fmt::format("\"{}\" is not a pixel value; give a number or nan", text));
   }
   return static_cast<float>(*value) + 0.0F;  // -0 becomes 0
 }
@@ -39,12 +39,12 @@ std::vector<DemProduct> parse_products(const std::string& text) {
   for (std::string name; std::getline(words, name, ',');) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-      throw UsageError(fmt::format("\"{}\" is none; give {}, several separated by commas", name,
-                                   fmt::join(names, ", ")));
+      throw UsageError(fmt::format("\"{}\" is not a product; give {}, several separated by commas",
+                                   name, fmt::join(names, ", ")));
     }
     products.push_back(static_cast<DemProduct>(found - names.begin()));
     if (std::count(products.begin(), products.end(), products.back()) > 1) {
-      throw UsageError(fmt::format("{} is there twice", name));
+      throw UsageError(fmt::format("{} appears twice", name));
     }
   }
   return products;
@@ -62,12 +62,12 @@ void check_products(const CommandLine& app, const std::vector<DemProduct>& produ
   }
 }
 
-Box<2> parse_raster_bounds(const std::string& text) {
-  const Box<3> box = parse_bounds(text);
-  if (std::isfinite(box.lo[2]) || !(box.lo[0] < box.hi[0] && box.lo[1] < box.hi[1])) {
-    throw UsageError(fmt::format("\"{}\" is no area; give xmin,ymin,xmax,ymax", text));
+std::array<double, 4> parse_raster_bounds(const std::string& text) {
+  const Extent box = parse_bounds(text);
+  if (std::isfinite(box.low[2]) || !(box.low[0] < box.high[0] && box.low[1] < box.high[1])) {
+    throw UsageError(fmt::format("\"{}\" is not an area; give xmin,ymin,xmax,ymax", text));
   }
-  return {{box.lo[0], box.lo[1]}, {box.hi[0], box.hi[1]}};
+  return {box.low[0], box.low[1], box.high[0], box.high[1]};
 }
 
 }  // namespace
@@ -106,13 +106,12 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
       .show_default()
       .group(group);
   take_number_between(
-      app.add_option("--azimuth", options.light.azimuth, "Where a hillshade's light comes from"), 0,
-      360)
+      app.add_option("--azimuth", options.azimuth, "Where a hillshade's light comes from"), 0, 360)
       .value_name("DEGREES")
       .show_default()
       .group(group);
   take_number_between(
-      app.add_option("--altitude", options.light.altitude, "Its height above the horizon"), 0, 90)
+      app.add_option("--altitude", options.altitude, "Its height above the horizon"), 0, 90)
       .value_name("DEGREES")
       .show_default()
       .group(group);
@@ -129,8 +128,8 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
   add_report_options(app, options.report);
 }
 
-DemOptions dem_options(const DemCommandOptions& options, RasterGrid& like) {
-  DemOptions dem;
+spillway::DemOptions dem_options(const DemCommandOptions& options) {
+  spillway::DemOptions dem;
   if (!options.bounds.empty()) {
     refuse_given(*options.app, {"--force-size"}, "with --bounds, which tells what to cover");
   }
@@ -138,19 +137,24 @@ DemOptions dem_options(const DemCommandOptions& options, RasterGrid& like) {
     if (options.resolution.empty()) {
       throw UsageError("--resolution R, the side of a pixel, is missing (or --like FILE)");
     }
-    dem.grid.resolution = parse_resolution(options.resolution);
-    if (!options.bounds.empty()) dem.grid.bounds = parse_raster_bounds(options.bounds);
-    dem.grid.align = options.align;
+    dem.resolution = parse_resolution(options.resolution);
+    if (!options.bounds.empty()) dem.bounds = parse_raster_bounds(options.bounds);
+    dem.align = options.align;
+    dem.many_pixels = options.force_size;
   } else {
     refuse_given(*options.app, {"--resolution", "--bounds", "--align", "--force-size"},
                  "with --like, which tells where all pixels lie");
-    like = gdal().read_raster_grid(options.like);
-    dem.grid.given = like.pixels;
+    dem.like = options.like;
+    dem.foreign_crs = options.input.force_crs;
   }
   dem.products = parse_products(options.products);
   check_products(*options.app, dem.products);
-  dem.light = options.light;
+  dem.azimuth = options.azimuth;
+  dem.altitude = options.altitude;
+  dem.max_edge = max_edge(options);
   dem.nodata = parse_nodata(options.nodata);
+  dem.compression = options.compression;
+  dem.cloud_optimized = options.cloud_optimized;
   return dem;
 }
 

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include <spillway/dem.h>
 
-#include "formats/gdal/raster.h"
-#include "stream/sinks/dem.h"
+#include <string>
+
 #include "tools/commands/terrain_input.h"
 
 namespace spillway::detail {
@@ -21,13 +20,13 @@ struct DemCommandOptions : TerrainOptions {
   std::string nodata = "-9999";
   std::string compression = "deflate";
   bool cloud_optimized = false;
-  Light light;
+  double azimuth = 315;
+  double altitude = 45;
 };
 
 void add_dem_options(CommandLine& app, DemCommandOptions& options);
 
-/// What is to be made. Opens the raster of --like, whose grid and coordinate system go to `like`.
-/// Throws UsageError for options that are wrong or contradict each other.
-DemOptions dem_options(const DemCommandOptions& options, RasterGrid& like);
+/// What is to be made. Throws UsageError for options that are wrong or contradict each other.
+spillway::DemOptions dem_options(const DemCommandOptions& options);
 
 }  // namespace spillway::detail

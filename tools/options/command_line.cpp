@@ -130,104 +130,104 @@ bool OptionInfo::names_file() const {
   return words.empty() && (value_name == "FILE" || value_name == "IN" || value_name == "MESH");
 }
 
-struct CommandLine::Parts {
+struct CommandLine::Impl {
   std::unique_ptr<CLI::App> root;  ///< null for a subcommand
   CLI::App* app;
   std::vector<std::unique_ptr<CommandLine>> subcommands;
 };
 
-CommandLine::CommandLine() : parts_(std::make_unique<Parts>()) {
-  parts_->root = std::make_unique<CLI::App>();
-  parts_->app = parts_->root.get();
-  parts_->app->set_help_flag();
+CommandLine::CommandLine() : impl_(std::make_unique<Impl>()) {
+  impl_->root = std::make_unique<CLI::App>();
+  impl_->app = impl_->root.get();
+  impl_->app->set_help_flag();
 }
 
 CommandLine::CommandLine(const std::string& name, const std::string& description,
                          const std::string& version)
-    : parts_(std::make_unique<Parts>()) {
-  parts_->root = std::make_unique<CLI::App>(description, name);
-  CLI::App& app = *parts_->root;
-  parts_->app = &app;
+    : impl_(std::make_unique<Impl>()) {
+  impl_->root = std::make_unique<CLI::App>(description, name);
+  CLI::App& app = *impl_->root;
+  impl_->app = &app;
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_help_flag("-h,--help", "Print this help and exit");
   app.set_version_flag("-V,--version", version, "Print the version and exit");
   app.require_subcommand(1);
 }
 
-CommandLine::CommandLine(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+CommandLine::CommandLine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 CommandLine::~CommandLine() = default;
 
 CommandLine& CommandLine::add_subcommand(const std::string& name, const std::string& description) {
-  auto parts = std::make_unique<Parts>();
-  parts->app = parts_->app->add_subcommand(name, description);
-  parts_->subcommands.emplace_back(new CommandLine(std::move(parts)));
-  return *parts_->subcommands.back();
+  auto impl = std::make_unique<Impl>();
+  impl->app = impl_->app->add_subcommand(name, description);
+  impl_->subcommands.emplace_back(new CommandLine(std::move(impl)));
+  return *impl_->subcommands.back();
 }
 
-void CommandLine::set_footer(const std::string& footer) { parts_->app->footer(footer); }
+void CommandLine::set_footer(const std::string& footer) { impl_->app->footer(footer); }
 
 Option CommandLine::add_flag(const std::string& names, bool& given,
                              const std::string& description) {
-  return Option(parts_->app->add_flag(names, given, description));
+  return Option(impl_->app->add_flag(names, given, description));
 }
 
 Option CommandLine::add_option(const std::string& names, std::string& value,
                                const std::string& description) {
-  return Option(parts_->app->add_option(names, value, description));
+  return Option(impl_->app->add_option(names, value, description));
 }
 
 Option CommandLine::add_option(const std::string& names, double& value,
                                const std::string& description) {
-  return Option(parts_->app->add_option(names, value, description));
+  return Option(impl_->app->add_option(names, value, description));
 }
 
 Option CommandLine::add_option(const std::string& names, std::optional<double>& value,
                                const std::string& description) {
-  return Option(parts_->app->add_option(names, value, description));
+  return Option(impl_->app->add_option(names, value, description));
 }
 
 Option CommandLine::add_option(const std::string& names, int& value,
                                const std::string& description) {
-  return Option(parts_->app->add_option(names, value, description));
+  return Option(impl_->app->add_option(names, value, description));
 }
 
 Option CommandLine::add_option(const std::string& names, unsigned& value,
                                const std::string& description) {
-  return Option(parts_->app->add_option(names, value, description));
+  return Option(impl_->app->add_option(names, value, description));
 }
 
 Option CommandLine::add_option(const std::string& names, std::uint64_t& value,
                                const std::string& description) {
-  return Option(parts_->app->add_option(names, value, description));
+  return Option(impl_->app->add_option(names, value, description));
 }
 
 Option CommandLine::add_option(const std::string& names, std::vector<std::string>& values,
                                const std::string& description) {
-  return Option(parts_->app->add_option(names, values, description));
+  return Option(impl_->app->add_option(names, values, description));
 }
 
 Option CommandLine::add_option(const std::string& names,
                                std::function<void(const std::vector<std::string>&)> keep,
                                const std::string& description) {
   return Option(
-      parts_->app->add_option_function<std::vector<std::string>>(names, keep, description));
+      impl_->app->add_option_function<std::vector<std::string>>(names, keep, description));
 }
 
 void CommandLine::remove_option(const std::string& name) {
-  CLI::Option* const option = parts_->app->get_option_no_throw(name);
+  CLI::Option* const option = impl_->app->get_option_no_throw(name);
   if (option == nullptr) throw std::invalid_argument("there is no option " + name);
-  parts_->app->remove_option(option);
+  impl_->app->remove_option(option);
 }
 
-const std::string& CommandLine::name() const { return parts_->app->get_name(); }
+const std::string& CommandLine::name() const { return impl_->app->get_name(); }
 
-std::string CommandLine::description() const { return parts_->app->get_description(); }
+std::string CommandLine::description() const { return impl_->app->get_description(); }
 
-std::string CommandLine::footer() const { return parts_->app->get_footer(); }
+std::string CommandLine::footer() const { return impl_->app->get_footer(); }
 
 std::vector<OptionInfo> CommandLine::options() const {
-  const CLI::App& app = *parts_->app;
+  const CLI::App& app = *impl_->app;
   std::vector<OptionInfo> options;
   for (const bool positional : {true, false}) {
     for (const CLI::Option* option : app.get_options()) {
@@ -238,21 +238,21 @@ std::vector<OptionInfo> CommandLine::options() const {
 }
 
 bool CommandLine::has_option(const std::string& name) const {
-  return parts_->app->get_option_no_throw(name) != nullptr;
+  return impl_->app->get_option_no_throw(name) != nullptr;
 }
 
 bool CommandLine::takes_value(const std::string& name) const {
-  return parts_->app->get_option_no_throw(name)->get_expected_min() > 0;
+  return impl_->app->get_option_no_throw(name)->get_expected_min() > 0;
 }
 
 std::vector<const CommandLine*> CommandLine::subcommands() const {
   std::vector<const CommandLine*> all;
-  for (const auto& subcommand : parts_->subcommands) all.push_back(subcommand.get());
+  for (const auto& subcommand : impl_->subcommands) all.push_back(subcommand.get());
   return all;
 }
 
 const CommandLine& CommandLine::subcommand(const std::string& name) const {
-  for (const auto& subcommand : parts_->subcommands) {
+  for (const auto& subcommand : impl_->subcommands) {
     if (subcommand->name() == name) return *subcommand;
   }
   throw std::out_of_range("there is no subcommand " + name);
@@ -261,7 +261,7 @@ const CommandLine& CommandLine::subcommand(const std::string& name) const {
 Request CommandLine::parse(std::vector<std::string> arguments) {
   std::reverse(arguments.begin(), arguments.end());  // CLI11 wants the last one first
   try {
-    parts_->app->parse(std::move(arguments));
+    impl_->app->parse(std::move(arguments));
     return Request::kRun;
   } catch (const CLI::CallForHelp&) {
     return Request::kHelp;
@@ -272,33 +272,33 @@ Request CommandLine::parse(std::vector<std::string> arguments) {
   }
 }
 
-std::string CommandLine::help() const { return parts_->app->help(); }
+std::string CommandLine::help() const { return impl_->app->help(); }
 
-std::string CommandLine::version() const { return parts_->app->version(); }
+std::string CommandLine::version() const { return impl_->app->version(); }
 
 const CommandLine* CommandLine::given_subcommand() const {
-  const auto given = parts_->app->get_subcommands();
+  const auto given = impl_->app->get_subcommands();
   return given.empty() ? nullptr : &subcommand(given.front()->get_name());
 }
 
 std::vector<std::string> CommandLine::unknown_arguments(bool deep) const {
-  return parts_->app->remaining(deep);
+  return impl_->app->remaining(deep);
 }
 
 bool CommandLine::is_given(std::string_view name) const {
-  const CLI::Option* const option = parts_->app->get_option_no_throw(std::string(name));
+  const CLI::Option* const option = impl_->app->get_option_no_throw(std::string(name));
   return option != nullptr && option->count() > 0;
 }
 
 std::vector<GivenOption> CommandLine::given_options() const {
   std::vector<GivenOption> given;
-  const CLI::App& app = *parts_->app;
+  const CLI::App& app = *impl_->app;
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() > 0) given.push_back({option->get_name(), option->results()});
   }
   return given;
 }
 
-std::string CommandLine::given_text() const { return parts_->app->config_to_str(); }
+std::string CommandLine::given_text() const { return impl_->app->config_to_str(); }
 
 }  // namespace spillway::detail

@@ -149,9 +149,9 @@ class CommandLine {
   [[nodiscard]] std::string given_text() const;
 
  private:
-  struct Parts;
-  explicit CommandLine(std::unique_ptr<Parts> parts);
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  explicit CommandLine(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace spillway::detail

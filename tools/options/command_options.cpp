@@ -27,7 +27,7 @@ std::vector<double> parse_numbers(const std::string& text) {
     const auto number = parse_number(part);
     if (!number) {
       throw UsageError(
-          fmt::format("\"{}\" is no number; give several with commas between them", part));
+          fmt::format("\"{}\" is not a number; give several with commas between them", part));
     }
     numbers.push_back(*number);
     begin = end + 1;
@@ -57,16 +57,20 @@ std::uint64_t memory_limit(const MemoryOptions& options) {
   return default_memory_limit(static_cast<unsigned>(distributed::launch().ranks_here));
 }
 
-std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options) {
-  std::optional<std::uint64_t> cap;
-  if (!options.scratch_cap.empty()) cap = parse_memory_size(options.scratch_cap);
+ContextOptions context_options(const MemoryOptions& options, unsigned threads, Progress& progress) {
   // What was asked for by name is tried at once, not when hours of work are to be written there.
   const std::string& parent = options.scratch_parent;
   if (!parent.empty() && ::access((parent + "/.").c_str(), W_OK | X_OK) != 0) {
     throw Error(fmt::format("--tmpdir: cannot write to {}: {}", parent,
                             std::generic_category().message(errno)));
   }
-  return make_scratch_folder(parent, cap);
+  return {.memory = fmt::format("{}", memory_limit(options)),
+          .threads = threads,
+          .scratch_folder = parent,
+          .scratch_limit = options.scratch_cap,
+          .progress = [&progress](const spillway::Progress& state) { progress.tell(state); },
+          .warning = [&progress](std::string_view text) { progress.say(text); },
+          .detail = [&progress](std::string_view text) { progress.detail(text); }};
 }
 
 std::vector<std::string_view> given_options(const CommandLine& app,
@@ -84,7 +88,7 @@ void refuse_given(const CommandLine& app, std::span<const std::string_view> opti
   if (given.empty()) return;
   const std::string_view last = given.back();
   given.pop_back();
-  throw UsageError(fmt::format("{}{}{} {} no effect {}: leave {} away", fmt::join(given, ", "),
+  throw UsageError(fmt::format("{}{}{} {} no effect {}: leave {} out", fmt::join(given, ", "),
                                given.empty() ? "" : " and ", last, given.empty() ? "has" : "have",
                                where, given.empty() ? "it" : "them"));
 }
@@ -146,22 +150,22 @@ Option take_whole_number(Option option, std::uint64_t least, std::uint64_t most)
       return "";
     }
     if (most == std::numeric_limits<std::uint64_t>::max()) {
-      return fmt::format("\"{}\" is no whole number of at least {}", text, least);
+      return fmt::format("\"{}\" is not a whole number of at least {}", text, least);
     }
-    return fmt::format("\"{}\" is no whole number from {} to {}", text, least, most);
+    return fmt::format("\"{}\" is not a whole number from {} to {}", text, least, most);
   });
 }
 
 Option take_number(Option option) {
   return option.check([](std::string& text) -> std::string {
-    return parse_number(text) ? "" : fmt::format("\"{}\" is no number", text);
+    return parse_number(text) ? "" : fmt::format("\"{}\" is not a number", text);
   });
 }
 
 Option take_positive_number(Option option) {
   return option.check([](std::string& text) -> std::string {
     return parse_number(text).value_or(0) > 0 ? ""
-                                              : fmt::format("\"{}\" is no number above 0", text);
+                                              : fmt::format("\"{}\" is not a number above 0", text);
   });
 }
 
@@ -169,7 +173,7 @@ Option take_number_between(Option option, double least, double most) {
   return option.check([least, most](std::string& text) -> std::string {
     const auto number = parse_number(text);
     if (number && *number >= least && *number <= most) return "";
-    return fmt::format("\"{}\" is no number from {} to {}", text, least, most);
+    return fmt::format("\"{}\" is not a number from {} to {}", text, least, most);
   });
 }
 
@@ -198,7 +202,7 @@ Option add_number_list(CommandLine& app, const std::string& name, std::vector<do
         const std::vector<double> numbers = parse_numbers(text);
         const auto wrong = std::ranges::find_if(numbers, [](double number) { return number <= 0; });
         if (positive && wrong != numbers.end()) {
-          throw UsageError(fmt::format("\"{}\" is no number above 0", *wrong));
+          throw UsageError(fmt::format("\"{}\" is not a number above 0", *wrong));
         }
       });
 }

@@ -1,18 +1,18 @@
 #pragma once
 // What several subcommands' options have in common.
 
+#include <spillway/context.h>
+
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "formats/disk/scratch_folder.h"
 #include "src/parallel/most_threads.h"
 #include "tools/options/command_line.h"
 #include "tools/report/progress.h"
@@ -43,16 +43,17 @@ void add_memory_options(CommandLine& app, MemoryOptions& options);
 /// What --memory says, or the default. Throws UsageError.
 std::uint64_t memory_limit(const MemoryOptions& options);
 
-/// A scratch folder as --tmpdir and --max-tmp ask for it. Throws UsageError, and Error if the
-/// folder of --tmpdir cannot be written to.
-std::unique_ptr<ScratchFolder> make_scratch_folder(const MemoryOptions& options);
+/// What a run may take and whom it tells, for the library: phases, warnings and details go to
+/// `progress`, which must outlive it. Throws UsageError, and Error if the folder of --tmpdir cannot
+/// be written to.
+ContextOptions context_options(const MemoryOptions& options, unsigned threads, Progress& progress);
 
 /// Those of these options that were given to the subcommand. What it does not have is never given.
 std::vector<std::string_view> given_options(const CommandLine& app,
                                             std::span<const std::string_view> options);
 
 /// Throws UsageError if any of these options was given to the subcommand: "--id and --every have no
-/// effect WHERE: leave them away".
+/// effect WHERE: leave them out".
 void refuse_given(const CommandLine& app, std::span<const std::string_view> options,
                   std::string_view where);
 inline void refuse_given(const CommandLine& app, std::initializer_list<std::string_view> options,

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "formats/gdal/gdal.h"
 #include "formats/points/point_formats.h"
 #include "tools/options/command_options.h"
 #include "tools/report/usage_error.h"
@@ -18,7 +17,7 @@ void add_las_version(CommandLine& app, PointOutput& output) {
 void check_las_version(const PointOutput& output, bool is_las) {
   if (is_las || output.las_version.empty()) return;
   throw UsageError(
-      fmt::format("--las-version is for LAS, and {} is none: leave it away", output.name()));
+      fmt::format("--las-version is for LAS, and {} is not LAS: leave it out", output.name()));
 }
 
 std::string format_name_of(const PointOutput& output) {
@@ -27,19 +26,10 @@ std::string format_name_of(const PointOutput& output) {
   const bool is_text = named != nullptr && named->is_text;
   if (!is_text && isatty(STDOUT_FILENO) != 0) {
     throw UsageError(
-        "standard output is a terminal, and the points are no text; name a file with -o, pipe "
+        "standard output is a terminal, and the points are not text; name a file with -o, pipe "
         "them into another command, or ask for --output-format text");
   }
   return output.format.empty() ? std::string(own_point_stream().name) : output.format;
-}
-
-std::string wkt_of_code(const std::string& crs) {
-  if (crs.empty() || crs.find('[') != std::string::npos) return "";
-  try {
-    return gdal().crs_to_wkt(crs);
-  } catch (const Error&) {  // LAS can tell the code alone too, or refuses it
-    return "";
-  }
 }
 
 }  // namespace spillway::detail

@@ -23,11 +23,8 @@ void add_las_version(CommandLine& app, PointOutput& output);
 /// Throws UsageError if a version of LAS was asked for, but the output is none.
 void check_las_version(const PointOutput& output, bool is_las);
 
-/// The format by name for open_point_writer(); empty if the extension is to tell. Throws UsageError
+/// The format by name for create_points(); empty if the extension is to tell. Throws UsageError
 /// if bytes would go to a terminal.
 std::string format_name_of(const PointOutput& output);
-
-/// `crs` as WKT if it is a code and GDAL is there to tell; else empty.
-std::string wkt_of_code(const std::string& crs);
 
 }  // namespace spillway::detail

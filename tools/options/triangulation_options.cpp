@@ -6,25 +6,34 @@
 
 #include <algorithm>
 
-#include "src/delaunay/base_case.h"
 #include "src/distributed/ranks.h"
 #include "src/parallel/parallel.h"
-#include "stream/output/heights.h"
 
 namespace spillway::detail {
 namespace {
 
-DivisionScheme division_by_name(const std::string& name) {
-  if (name == "cycling") return DivisionScheme::kCyclingAxis;
-  if (name == "constant") return DivisionScheme::kConstantAxis;
-  return DivisionScheme::kLongestExtent;
+const std::vector<std::string>& heights_names() {
+  static const std::vector<std::string> names = {"first", "lowest", "highest", "mean"};
+  return names;
+}
+
+/// The choice of that name, which must be one of heights_names().
+Heights heights_by_name(const std::string& name) {
+  const auto& names = heights_names();
+  return static_cast<Heights>(std::ranges::find(names, name) - names.begin());
+}
+
+Division division_by_name(const std::string& name) {
+  if (name == "cycling") return Division::kCyclingAxis;
+  if (name == "constant") return Division::kConstantAxis;
+  return Division::kLongestExtent;
 }
 
 }  // namespace
 
 void add_triangulation_options(CommandLine& app, TriangulationOptions& options) {
   options.app = &app;
-  add_choice(app, "--duplicates", options.duplicates, height_choice_names(),
+  add_choice(app, "--duplicates", options.duplicates, heights_names(),
              "Which z a vertex of several points of equal x, y gets");
   take_positive_number(app.add_option("--max-edge", options.max_edge,
                                       "Leave out simplices with an edge longer than L"))
@@ -64,8 +73,8 @@ void check_duplicates(const TriangulationOptions& options, int dimension) {
                "with --dim 3, as it chooses a height for points of equal x and y");
 }
 
-void check_heights(const TriangulationOptions& options, const PointSource& source) {
-  if (source.has_heights()) return;
+void check_heights(const TriangulationOptions& options, const PointsHeader& points) {
+  if (points.coordinates == 3) return;
   refuse_given(*options.app, {"--duplicates"}, "on points without z");
 }
 
@@ -82,22 +91,17 @@ std::optional<double> max_edge(const TriangulationOptions& options) {
   return parse_number(options.max_edge);
 }
 
-StreamOptions stream_options(const TriangulationOptions& options, Progress& progress) {
-  StreamOptions stream;
-  stream.kernel = options.kernel == "cgal" ? BaseCaseKernel::kCgal : BaseCaseKernel::kOwn;
-  stream.threads = thread_count(options);
-  stream.tile_capacity = options.tile_capacity;
-  stream.leaf_size = options.base_case_size;
-  stream.division = division_by_name(options.division);
-  stream.children = options.children;
-  stream.heights = height_choice_by_name(options.duplicates);
-  stream.max_edge = max_edge(options);
-  stream.begin_phase = [&progress](const char* phase) { progress.begin(phase, "points"); };
-  stream.end_phase = [&progress](std::uint64_t points) { progress.end(points); };
-  stream.progress = [&progress](std::uint64_t points, std::optional<double> fraction) {
-    progress.update(points, fraction);
-  };
-  return stream;
+TriangulateOptions triangulate_options(const TriangulationOptions& options, int dimension) {
+  TriangulateOptions how;
+  how.dimension = dimension;
+  how.heights = heights_by_name(options.duplicates);
+  how.max_edge = max_edge(options);
+  how.tile_points = options.tile_capacity;
+  how.leaf_points = options.base_case_size;
+  how.division = division_by_name(options.division);
+  how.children = options.children;
+  if (options.kernel == "cgal") how.kernel = Kernel::kCgal;
+  return how;
 }
 
 void reuse_freed_memory(std::size_t kept) {

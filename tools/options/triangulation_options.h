@@ -1,6 +1,8 @@
 #pragma once
 // What subcommands that triangulate points have in common.
 
+#include <spillway/triangulate.h>
+
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -8,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "stream/pipeline.h"
 #include "tools/options/command_line.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
@@ -47,7 +48,7 @@ inline constexpr std::array<std::string_view, 6> kTriangulationOptionNames = {
 void check_duplicates(const TriangulationOptions& options, int dimension);
 
 /// Throws UsageError if --duplicates is given for points without heights.
-void check_heights(const TriangulationOptions& options, const PointSource& source);
+void check_heights(const TriangulationOptions& options, const PointsHeader& points);
 
 /// The number of threads that --threads asks for.
 unsigned thread_count(const TriangulationOptions& options);
@@ -55,8 +56,8 @@ unsigned thread_count(const TriangulationOptions& options);
 /// The length that --max-edge gives; nothing if it is not given.
 std::optional<double> max_edge(const TriangulationOptions& options);
 
-/// The pipeline's options, phases and progress going to `progress`, which must outlive them.
-StreamOptions stream_options(const TriangulationOptions& options, Progress& progress);
+/// The same for triangulate().
+TriangulateOptions triangulate_options(const TriangulationOptions& options, int dimension);
 
 /// Buffers of some megabytes come and go with every leaf: taken from the system anew each time,
 /// they would cost a fifth of the run in page faults. So much memory stays with the process, in

@@ -13,6 +13,7 @@
 
 #include "formats/bytes/bytes.h"
 #include "formats/disk/unfinished_files.h"
+#include "stream/ranks/rank_executor.h"
 #include "tools/report/advice.h"
 #include "tools/report/printable_text.h"
 #include "tools/report/standard_error.h"
@@ -48,6 +49,11 @@ const distributed::Ranks* join_ranks() {
   if (!launch().as_ranks) return nullptr;
   if (!joined()) joined() = distributed::Ranks::all();
   return &*joined();
+}
+
+std::shared_ptr<Executor> rank_executor() {
+  const distributed::Ranks* const ranks = join_ranks();
+  return ranks == nullptr ? nullptr : make_rank_executor(*ranks);
 }
 
 void check_same_options(const std::string& options) {

@@ -1,6 +1,9 @@
 #pragma once
 // A run that is one of several processes, started by mpirun or Slurm.
 
+#include <spillway/context.h>
+
+#include <memory>
 #include <string>
 
 #include "src/distributed/ranks.h"
@@ -10,6 +13,9 @@ namespace spillway::detail {
 
 /// The ranks that this process works with, joined at the first call; null if it was started alone.
 const distributed::Ranks* join_ranks();
+
+/// The same for the library; null likewise.
+std::shared_ptr<Executor> rank_executor();
 
 /// Throws UsageError, at rank 0, unless all ranks were given the same options (lines of
 /// name=value), but for those that each may have of its own. Joins the ranks. Collective.

@@ -57,6 +57,14 @@ std::string advice(const ErrorFacts& facts) {
       return " (without --parts)";
     case Remedy::kLas14:
       return "; choose --las-version 1.4";
+    case Remedy::kPointLattice:
+      return "; choose another --scale or --offset";
+    case Remedy::kRanks:
+      return ": start it with mpirun";
+    case Remedy::kRasterExtent:
+      return "; say what to cover with --bounds xmin,ymin,xmax,ymax, give a larger --resolution, "
+             "or "
+             "make it as it is with --force-size";
   }
   return "";
 }

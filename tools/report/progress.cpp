@@ -96,6 +96,26 @@ void Progress::end_inner(std::uint64_t done) {
   inner_.reset();
 }
 
+void Progress::tell(const spillway::Progress& state) {
+  using Event = spillway::Progress::Event;
+  switch (state.event) {
+    case Event::kBegun:
+      state.nested ? begin_inner(std::string(state.phase), std::string(state.unit))
+                   : begin(std::string(state.phase), std::string(state.unit));
+      break;
+    case Event::kUpdated:
+      state.nested ? update_inner(state.done, state.fraction) : update(state.done, state.fraction);
+      break;
+    case Event::kEnded:
+      if (state.nested) {
+        end_inner(state.done);
+      } else {
+        end(state.done);
+      }
+      break;
+  }
+}
+
 void Progress::give_up() {
   ticker_ = {};
   const std::lock_guard lock(mutex_);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spillway/context.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -44,6 +46,8 @@ class Progress {
   void begin_inner(const std::string& phase, const std::string& unit);
   void update_inner(std::uint64_t done, std::optional<double> fraction);
   void end_inner(std::uint64_t done);
+  /// What the library tells of a run: one of the functions above.
+  void tell(const spillway::Progress& state);
   /// Ends a phase that failed, or none, without a line about it.
   void give_up();
 

@@ -1,8 +1,9 @@
 #include "tools/report/statistics.h"
 
-#include <sys/resource.h>
+#include <utility>
 
 #include "src/geometry/canonical_hash.h"
+#include "src/runtime/peak_memory.h"
 
 namespace spillway::detail {
 namespace {
@@ -29,7 +30,7 @@ Json to_json(const Task& task) {
   Json json = {{"kind", name_of(task.kind)},
                {"points", task.points},
                {"seconds", task.seconds},
-               {"pieces", task.pieces}};
+               {"pieces", task.grains}};
   const auto add_list = [&json](const char* key, const std::vector<Task>& tasks) {
     if (tasks.empty()) return;
     json[key] = Json::array();
@@ -41,77 +42,136 @@ Json to_json(const Task& task) {
   return json;
 }
 
-}  // namespace
-
-std::uint64_t peak_rss_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+Json phases(const RunFigures& figures) {
+  return {{"read", figures.read_seconds},
+          {"divide", figures.divide_seconds},
+          {"triangulate", figures.triangulate_seconds}};
 }
 
+Json stages(const RunFigures& figures) {
+  Json json;
+  for (const StageSeconds& stage : figures.stages) json[std::string(stage.stage)] = stage.seconds;
+  return json;
+}
+
+Json to_json(const RankMerge& merge) {
+  return {{"level", merge.level},
+          {"border_simplices", merge.border_simplices},
+          {"received_simplices", merge.received_simplices},
+          {"received_bytes", merge.received_bytes},
+          {"retriangulated_points", merge.retriangulated},
+          {"wait_seconds", merge.wait_seconds},
+          {"seconds", merge.seconds}};
+}
+
+Json to_json(const RankFigures& rank, std::size_t number) {
+  const RunFigures& run = rank.run;
+  Json json = {{"rank", number},
+               {"points", run.mesh.points},
+               {"vertices", run.mesh.vertices},
+               {"simplices", run.mesh.simplices},
+               {"threads", run.threads},
+               {"tiles", run.tiles},
+               {"leaves", run.leaves},
+               {"spilled_bytes", run.spilled_bytes},
+               {"border_simplices", run.border_simplices},
+               {"border_bytes", run.border_bytes},
+               {"peak_rss_bytes", rank.peak_memory},
+               {"phases", phases(run)},
+               {"messages_sent", rank.messages_sent},
+               {"bytes_sent", rank.bytes_sent},
+               {"points_sent", rank.points_sent},
+               {"point_bytes_sent", rank.point_bytes_sent},
+               {"border_simplices_sent", rank.border_simplices_sent},
+               {"border_bytes_sent", rank.border_bytes_sent}};
+  json["stages"] = stages(run);
+  json["merges"] = Json::array();
+  for (const RankMerge& merge : rank.merges) json["merges"].push_back(to_json(merge));
+  return json;
+}
+
+double ratio(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+/// "ranks": what all of them have sent, and what each has done.
+Json ranks(const Report& report) {
+  RankFigures sent;
+  Json each = Json::array();
+  std::size_t number = 0;
+  for (const RankFigures& rank : report.ranks) {
+    sent.points_sent += rank.points_sent;
+    sent.point_bytes_sent += rank.point_bytes_sent;
+    sent.border_simplices_sent += rank.border_simplices_sent;
+    sent.border_bytes_sent += rank.border_bytes_sent;
+    each.push_back(to_json(rank, number++));
+  }
+  return {{"count", report.ranks.size()},
+          {"point_bytes_sent_per_point", ratio(sent.point_bytes_sent, report.mesh.points)},
+          {"points_sent_share", ratio(sent.points_sent, report.mesh.points)},
+          {"border_bytes_sent_per_border_simplex",
+           ratio(sent.border_bytes_sent, sent.border_simplices_sent)},
+          {"each", std::move(each)}};
+}
+
+}  // namespace
+
 Json to_json(const PointCounts& counts) {
-  return {{"read", counts.read},       {"withheld", counts.withheld}, {"every", counts.every},
+  return {{"read", counts.read},       {"withheld", counts.withheld}, {"every", counts.skipped},
           {"class", counts.classes},   {"returns", counts.returns},   {"bounds", counts.bounds},
           {"thinned", counts.thinned}, {"kept", counts.kept()}};
 }
 
-Json to_json(const RunStatistics& statistics) {
-  const StreamFigures& stream = statistics.stream;
-  const MeshTotals& totals = stream.totals;
+Json to_json(const Report& report, const RunFacts& facts) {
+  const MeshTotals& mesh = report.mesh;
   Json json;
   json["version"] = SPILLWAY_VERSION;
-  json["dimension"] = statistics.dimension;
-  json["threads"] = stream.threads;
-  json["inputs"] = statistics.inputs;
-  json["output"] = statistics.output;
-  json["output_format"] = statistics.output_format;
-  json["output_bytes"] = statistics.output_bytes;
-  json["on_lattice"] = statistics.on_lattice;
-  json["points"] = totals.points;
-  json["withheld"] = statistics.input.withheld;
-  json["filters"] = to_json(statistics.input);
-  json["duplicates"] = totals.duplicates;
-  json["vertices"] = totals.vertices;
-  json["simplices"] = totals.simplices;
-  json["left_out"] = stream.left_out;
-  json["hull_facets"] = totals.hull_facets;
-  json["canonical_hash"] = hash_to_hex(totals.canonical_hash);
-  json["memory_limit"] = statistics.memory_limit;
-  json["peak_rss_bytes"] = peak_rss_bytes();
-  json["seconds"] = statistics.seconds;
-  json["phases"] = {{"read", stream.read_seconds},
-                    {"divide", stream.divide_seconds},
-                    {"triangulate", stream.triangulate_seconds},
-                    {"write", statistics.write_seconds}};
-  Json stages;
-  for (std::size_t s = 0; s < kStageNames.size(); ++s) {
-    stages[kStageNames[s]] = stream.stage_seconds[s];
-  }
-  json["stages"] = std::move(stages);
-  json["tiles"] = stream.tiles;
-  json["tile_capacity"] = stream.tile_capacity;
-  json["leaves"] = stream.leaves;
-  json["leaf_size"] = stream.leaf_size;
-  json["spilled_points"] = stream.spilled_points;
-  json["spilled_bytes"] = stream.spilled_bytes;
-  json["divided_points"] = stream.divided_points;
-  json["final"] = {{"in_leaves", stream.final_in_leaves},
-                   {"in_tiles", stream.final_in_tiles},
-                   {"by_level", stream.final_by_level}};
-  json["retriangulated_points"] = stream.retriangulated;
-  json["border_simplices"] = stream.border_simplices;
-  json["border_bytes"] = stream.border_bytes;
-  if (!statistics.simulated.empty()) {
+  json["dimension"] = report.dimension;
+  json["threads"] = report.threads;
+  json["inputs"] = facts.inputs;
+  json["output"] = facts.output;
+  json["output_format"] = report.output_format;
+  json["output_bytes"] = report.output_bytes;
+  json["on_lattice"] = report.on_lattice;
+  json["points"] = mesh.points;
+  json["withheld"] = report.points.withheld;
+  json["filters"] = to_json(report.points);
+  json["duplicates"] = mesh.duplicates;
+  json["vertices"] = mesh.vertices;
+  json["simplices"] = mesh.simplices;
+  json["left_out"] = report.left_out;
+  json["hull_facets"] = mesh.hull_facets;
+  json["canonical_hash"] = hash_to_hex(mesh.canonical_hash);
+  json["memory_limit"] = facts.memory_limit;
+  json["peak_rss_bytes"] = peak_memory();
+  json["seconds"] = facts.seconds;
+  json["phases"] = phases(report);
+  json["phases"]["write"] = report.write_seconds;
+  json["stages"] = stages(report);
+  json["tiles"] = report.tiles;
+  json["tile_capacity"] = report.tile_capacity;
+  json["leaves"] = report.leaves;
+  json["leaf_size"] = report.leaf_size;
+  json["spilled_points"] = report.spilled_points;
+  json["spilled_bytes"] = report.spilled_bytes;
+  json["divided_points"] = report.divided_points;
+  json["final"] = {{"in_leaves", report.final_in_leaves},
+                   {"in_tiles", report.final_in_tiles},
+                   {"by_level", report.final_by_level}};
+  json["retriangulated_points"] = report.retriangulated;
+  json["border_simplices"] = report.border_simplices;
+  json["border_bytes"] = report.border_bytes;
+  if (!facts.simulated.empty()) {
     json["simulated"] = Json::array();
-    for (const SimulatedRun& run : statistics.simulated) {
+    for (const SimulatedRun& run : facts.simulated) {
       json["simulated"].push_back(
           {{"cores", run.cores}, {"seconds", run.seconds}, {"speed_up", run.speed_up}});
     }
   }
-  if (statistics.ranks) {
-    json["ranks"] = *statistics.ranks;
+  if (report.ranks.empty()) {
+    json["tasks"] = to_json(report.tasks);
   } else {
-    json["tasks"] = to_json(stream.tasks);
+    json["ranks"] = ranks(report);
   }
   return json;
 }

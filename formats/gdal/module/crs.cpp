@@ -129,8 +129,9 @@ OGRSpatialReference parse_crs(const std::string& crs) {
     std::string shown = crs.substr(0, kLongestQuote);
     std::replace(shown.begin(), shown.end(), '\n', ' ');
     if (crs.size() > kLongestQuote) shown += "...";
-    throw Error(fmt::format("\"{}\" is no coordinate system ({}); give \"EPSG:n\" or WKT", shown,
-                            gdal_reason()));
+    throw Error(fmt::format("\"{}\" is not a coordinate system ({}); give \"EPSG:n\" or WKT", shown,
+                            gdal_reason()),
+                ErrorCode::kInvalidArgument);
   }
   result.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return result;
@@ -155,7 +156,10 @@ std::string wkt_of(const OGRSpatialReference* crs) {
   forget_gdal_errors();
   std::string wkt = exported(*crs, "FORMAT=WKT1_GDAL");
   if (wkt.empty()) wkt = exported(*crs, "FORMAT=WKT2_2019");
-  if (wkt.empty()) throw Error("cannot write a coordinate system as WKT: " + gdal_reason());
+  if (wkt.empty()) {
+    throw Error("cannot write a coordinate system as WKT: " + gdal_reason(),
+                ErrorCode::kInvalidArgument);
+  }
   return wkt;
 }
 

@@ -35,7 +35,7 @@ std::string upper(std::string text) {
 }
 
 [[noreturn]] void fail_for(const RasterOptions& options, const std::string& what) {
-  throw Error(fmt::format("cannot write {}: {}", options.name, what));
+  throw SystemRefusal(fmt::format("cannot write {}: {}", options.name, what), options.name, 0);
 }
 
 /// The driver of that name, which must have the compression that is wished.
@@ -183,21 +183,22 @@ RasterGrid read_geotiff_grid(const std::string& path) {
   forget_gdal_errors();
   const GDALDatasetUniquePtr file(
       GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
-  if (!file) throw Error(fmt::format("cannot read {}: {}", path, gdal_reason()));
+  if (!file) {
+    throw Error(fmt::format("cannot read {}: {}", path, gdal_reason()), ErrorCode::kBadInput,
+                {.file = path});
+  }
   std::array<double, 6> transform{};
   if (file->GetGeoTransform(transform.data()) != CE_None) {
-    throw Error(
-        fmt::format("{}: the raster has no geotransform, so nobody knows where it lies", path));
+    throw BadInput(path, "the raster has no geotransform, so its place is not known");
   }
   const auto [west, width, row_shift, north, column_shift, height] = transform;
   const auto columns = static_cast<std::uint32_t>(file->GetRasterXSize());
   const auto rows = static_cast<std::uint32_t>(file->GetRasterYSize());
   if (!(width > 0) || row_shift != 0 || column_shift != 0 ||
       !(std::abs(width + height) * std::max(columns, rows) <= kSquare * width)) {
-    throw Error(
-        fmt::format("{}: only rasters with square pixels and north up can be followed "
-                    "(gdalwarp makes them); a pixel is {} by {}",
-                    path, width, -height));
+    throw BadInput(path, fmt::format("only rasters with square pixels and north up can be followed "
+                                     "(gdalwarp makes them); a pixel is {} by {}",
+                                     width, -height));
   }
   return {{west, north, width, columns, rows}, wkt_of(file->GetSpatialRef())};
 }

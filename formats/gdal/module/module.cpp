@@ -7,7 +7,7 @@
 #include "formats/gdal/module/crs.h"
 #include "formats/gdal/module/gdal_errors.h"
 #include "formats/gdal/module/geotiff.h"
-#include "formats/gdal/vectors.h"
+#include "formats/gdal/vector_drivers.h"
 
 namespace spillway::detail {
 namespace {

@@ -6,13 +6,14 @@
 #include <unistd.h>
 
 #include <cctype>
+#include <cerrno>
 #include <cstdint>
 #include <fstream>
 #include <utility>
 
 #include "formats/gdal/module/crs.h"
 #include "formats/gdal/module/gdal_errors.h"
-#include "formats/gdal/vectors.h"
+#include "formats/gdal/vector_drivers.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -67,12 +68,12 @@ class OgrLayer : public VectorLayer {
     forget_gdal_errors();
   }
 
-  void add_triangle(std::span<const Point<3>, 3> corners) override {
+  void add_triangle(std::span<const WorldPoint, 3> corners) override {
     take_space(4);
     OGRLinearRing ring;
     ring.setNumPoints(4, FALSE);
     for (int i = 0; i < 4; ++i) {
-      const Point<3>& corner = corners[i % 3];
+      const WorldPoint& corner = corners[i % 3];
       ring.setPoint(i, corner[0], corner[1], corner[2]);
     }
     OGRPolygon polygon;
@@ -80,7 +81,7 @@ class OgrLayer : public VectorLayer {
     add(polygon, nullptr);
   }
 
-  void add_line(std::span<const Point<3>> points, double elevation) override {
+  void add_line(std::span<const WorldPoint> points, double elevation) override {
     take_space(points.size());
     OGRLineString line;
     line.setNumPoints(static_cast<int>(points.size()), FALSE);
@@ -118,8 +119,11 @@ class OgrLayer : public VectorLayer {
   void take_space(std::size_t points) {
     shapefile_bytes_ += kShapefileRecord + kShapefilePoint * points;
     if (is_shapefile_ && shapefile_bytes_ > kShapefileLimit) {
-      fail(fmt::format("a shapefile holds 2 GB, which are full after {} features; choose gpkg",
-                       features_));
+      throw CannotWrite(
+          name_,
+          fmt::format("a shapefile holds 2 GB, which are full after {} features; choose gpkg",
+                      features_),
+          ErrorCode::kTooLarge, at_record(features_));
     }
   }
 
@@ -132,7 +136,7 @@ class OgrLayer : public VectorLayer {
     ++features_;
     // GDAL's driver for GeoJSON does not notice that its writes fail.
     if (is_json_ && features_ % kFeaturesPerLook == 0 && disk_is_full(path_)) {
-      fail("the disk is full");
+      fail("the disk is full", ENOSPC);
     }
     if (in_transaction_ && features_ % kFeaturesPerTransaction == 0 &&
         (file_->CommitTransaction() != OGRERR_NONE || file_->StartTransaction() != OGRERR_NONE)) {
@@ -140,8 +144,9 @@ class OgrLayer : public VectorLayer {
     }
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("cannot write {}: {}", name_, what));
+  /// Because of the system, as far as GDAL tells: it gives a text and no number.
+  [[noreturn]] void fail(const std::string& what, int system_error = 0) const {
+    throw SystemRefusal(fmt::format("cannot write {}: {}", name_, what), name_, system_error);
   }
 
   std::string name_;

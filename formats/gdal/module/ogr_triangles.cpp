@@ -11,17 +11,17 @@
 
 #include "formats/gdal/module/crs.h"
 #include "formats/gdal/module/gdal_errors.h"
-#include "formats/gdal/vectors.h"
+#include "formats/gdal/vector_drivers.h"
 #include "src/error.h"
 
 namespace spillway::detail {
 namespace {
 
-Point<3> point_of(const OGRLineString& line, int i) {
+WorldPoint point_of(const OGRLineString& line, int i) {
   return {line.getX(i), line.getY(i), line.Is3D() != 0 ? line.getZ(i) : 0.0};
 }
 
-bool is_clockwise(const std::array<Point<3>, 3>& p) {
+bool is_clockwise(const std::array<WorldPoint, 3>& p) {
   return (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) < (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
 }
 
@@ -54,7 +54,7 @@ class OgrTriangles : public TriangleLayer {
     return text == nullptr ? "" : text;
   }
 
-  bool next(std::array<Point<3>, 3>& corners) override {
+  bool next(std::array<WorldPoint, 3>& corners) override {
     while (true) {
       if (waiting_.empty() && !read_feature()) return false;
       const OGRGeometry& geometry = *waiting_.back();
@@ -94,7 +94,7 @@ class OgrTriangles : public TriangleLayer {
            unpack_parts<OGRGeometryCollection>(geometry);
   }
 
-  [[nodiscard]] std::array<Point<3>, 3> corners_of(const OGRGeometry& geometry) const {
+  [[nodiscard]] std::array<WorldPoint, 3> corners_of(const OGRGeometry& geometry) const {
     const auto* const polygon = dynamic_cast<const OGRPolygon*>(&geometry);
     if (polygon == nullptr) {
       fail_for_feature(
@@ -102,9 +102,9 @@ class OgrTriangles : public TriangleLayer {
     }
     const OGRLinearRing* const ring = polygon->getExteriorRing();
     if (ring == nullptr || polygon->getNumInteriorRings() > 0 || ring->getNumPoints() != 4) {
-      fail_for_feature("it is a polygon, but no triangle");
+      fail_for_feature("it is a polygon, but not a triangle");
     }
-    std::array<Point<3>, 3> corners;
+    std::array<WorldPoint, 3> corners;
     for (int i = 0; i < 3; ++i) {
       corners[i] = point_of(*ring, i);
       for (const double coordinate : corners[i]) {
@@ -118,11 +118,13 @@ class OgrTriangles : public TriangleLayer {
   }
 
   [[noreturn]] void fail_for_feature(const std::string& what) const {
-    fail(fmt::format("feature {}: {}", feature_->GetFID(), what));
+    const auto number = static_cast<std::uint64_t>(feature_->GetFID());
+    fail(fmt::format("feature {}: {}", number, what), at_record(number));
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("cannot read {}: {}", path_, what));
+  [[noreturn]] void fail(const std::string& what, FilePlace place = {}) const {
+    throw Error(fmt::format("cannot read {}: {}", path_, what), ErrorCode::kBadInput,
+                {.file = path_, .place = place});
   }
 
   std::string path_;

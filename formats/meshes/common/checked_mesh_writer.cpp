@@ -19,7 +19,7 @@ CheckedMeshWriter::CheckedMeshWriter(MeshHeader header, std::string name)
   }
 }
 
-void CheckedMeshWriter::write_vertices(std::span<const Point<3>> vertices,
+void CheckedMeshWriter::write_vertices(std::span<const WorldPoint> vertices,
                                        std::span<const std::uint64_t> input_index) {
   if (vertices.size() > header_.vertices - vertices_) {
     fail(fmt::format("more than the {} vertices that were promised came", header_.vertices));
@@ -60,8 +60,8 @@ void CheckedMeshWriter::finish() {
   complete();
 }
 
-void CheckedMeshWriter::fail(const std::string& what) const {
-  throw Error(fmt::format("cannot write {}: {}", name_, what));
+void CheckedMeshWriter::fail(const std::string& what, ErrorCode code) const {
+  throw CannotWrite(name_, what, code);
 }
 
 }  // namespace spillway::detail

@@ -4,6 +4,7 @@
 
 #include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/mesh_writer.h"
+#include "src/error.h"
 
 namespace spillway::detail {
 
@@ -11,7 +12,7 @@ namespace spillway::detail {
 /// numbers are valid is checked here; a format only puts values down.
 class CheckedMeshWriter : public MeshWriter {
  public:
-  void write_vertices(std::span<const Point<3>> vertices,
+  void write_vertices(std::span<const WorldPoint> vertices,
                       std::span<const std::uint64_t> input_index) final;
   void write_simplices(std::span<const std::uint64_t> corners) final;
   void finish() final;
@@ -21,7 +22,7 @@ class CheckedMeshWriter : public MeshWriter {
   CheckedMeshWriter(MeshHeader header, std::string name);
 
   /// Appends vertices that have passed the checks.
-  virtual void put_vertices(std::span<const Point<3>> vertices,
+  virtual void put_vertices(std::span<const WorldPoint> vertices,
                             std::span<const std::uint64_t> input_index) = 0;
 
   /// Appends simplices that have passed the checks, after the last vertex.
@@ -33,7 +34,8 @@ class CheckedMeshWriter : public MeshWriter {
   [[nodiscard]] const MeshHeader& header() const { return header_; }
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::size_t corners_per_simplex() const { return header_.dimension + 1; }
-  [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void fail(const std::string& what,
+                         ErrorCode code = ErrorCode::kInvalidArgument) const;
 
  private:
   MeshHeader header_;

@@ -18,11 +18,11 @@ double rounded(double coordinate) {
 
 }  // namespace
 
-Point<3> local_origin(const Point<3>& vertex) {
+WorldPoint local_origin(const WorldPoint& vertex) {
   return {rounded(vertex[0]), rounded(vertex[1]), rounded(vertex[2])};
 }
 
-std::optional<std::array<float, 3>> to_local(const Point<3>& vertex, const Point<3>& origin) {
+std::optional<std::array<float, 3>> to_local(const WorldPoint& vertex, const WorldPoint& origin) {
   std::array<float, 3> local{};
   for (int axis = 0; axis < 3; ++axis) {
     const double difference = vertex[axis] - origin[axis];

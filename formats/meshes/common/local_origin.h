@@ -3,15 +3,15 @@
 
 #include <optional>
 
-#include "src/geometry/point.h"
+#include "src/geometry/framed_point.h"
 
 namespace spillway::detail {
 
 /// An origin for a mesh with this vertex: its coordinates rounded to whole numbers, and to nine
 /// digits, so that it can be said in few characters.
-Point<3> local_origin(const Point<3>& vertex);
+WorldPoint local_origin(const WorldPoint& vertex);
 
 /// `vertex` as seen from `origin`, rounded to float; nothing if that is beyond float's range.
-std::optional<std::array<float, 3>> to_local(const Point<3>& vertex, const Point<3>& origin);
+std::optional<std::array<float, 3>> to_local(const WorldPoint& vertex, const WorldPoint& origin);
 
 }  // namespace spillway::detail

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
-#include "src/geometry/point.h"
 
 namespace spillway::detail {
 
@@ -34,7 +34,7 @@ struct MeshHeader {
 /// A whole mesh in memory, as `check`, `info` and `convert` read it.
 struct Mesh {
   MeshHeader header;
-  std::vector<Point<3>> vertices;          ///< output coordinates; z is 0 where the file has none
+  std::vector<WorldPoint> vertices;        ///< output coordinates; z is 0 where the file has none
   std::vector<std::uint64_t> corners;      ///< dimension+1 vertex numbers a simplex, in file order
   std::vector<std::uint64_t> input_index;  ///< one a vertex if header.has_input_index, else empty
 

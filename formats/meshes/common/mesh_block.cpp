@@ -26,9 +26,33 @@ MeshHeader header_of_mesh(const MeshStreamHeader& header, const MeshTotals& tota
   return mesh;
 }
 
-void move_to_world(const MeshStreamHeader& header, MeshBlock& block) {
-  if (!header.lattice) return;
-  for (Point<3>& vertex : block.vertices) vertex = header.lattice->to_world(vertex);
+std::optional<std::vector<LatticePoint>> vertices_on_lattice(const Mesh& mesh,
+                                                             const Lattice& lattice, int axes) {
+  std::vector<LatticePoint> vertices = vertices_without_lattice(mesh);
+  for (LatticePoint& vertex : vertices) {
+    for (int k = 0; k < axes; ++k) {
+      const auto integer = lattice.to_integer(k, vertex[k]);
+      if (!integer) return std::nullopt;
+      vertex[k] = *integer;
+    }
+  }
+  return vertices;
+}
+
+std::vector<LatticePoint> vertices_without_lattice(const Mesh& mesh) {
+  std::vector<LatticePoint> vertices;
+  vertices.reserve(mesh.vertices.size());
+  for (const WorldPoint& vertex : mesh.vertices) vertices.emplace_back(vertex.numbers());
+  return vertices;
+}
+
+std::vector<WorldPoint> world_vertices(const MeshStreamHeader& header, const MeshBlock& block) {
+  std::vector<WorldPoint> vertices;
+  vertices.reserve(block.vertices.size());
+  for (const LatticePoint& vertex : block.vertices) {
+    vertices.push_back(in_world(header.lattice, vertex));
+  }
+  return vertices;
 }
 
 }  // namespace spillway::detail

@@ -2,6 +2,7 @@
 // From a block's own numbers and coordinates to those of the whole mesh.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "formats/meshes/common/mesh.h"
@@ -17,7 +18,15 @@ void append_stream_numbers(const MeshBlock& block, std::uint64_t first,
 /// What a mesh file says of the whole that the stream has become.
 MeshHeader header_of_mesh(const MeshStreamHeader& header, const MeshTotals& totals);
 
-/// Maps the vertices of a block to output coordinates.
-void move_to_world(const MeshStreamHeader& header, MeshBlock& block);
+/// The vertices of a mesh as a stream with this lattice has them, whose first `axes` axes are
+/// integers; nothing if a vertex is not on it.
+std::optional<std::vector<LatticePoint>> vertices_on_lattice(const Mesh& mesh,
+                                                             const Lattice& lattice, int axes);
+
+/// The same for a stream without a lattice.
+std::vector<LatticePoint> vertices_without_lattice(const Mesh& mesh);
+
+/// The vertices of a block in output coordinates.
+std::vector<WorldPoint> world_vertices(const MeshStreamHeader& header, const MeshBlock& block);
 
 }  // namespace spillway::detail

@@ -17,10 +17,11 @@ bool begins_with_word(std::string_view first_bytes, std::string_view word) {
 }
 
 void fail_for_point_cloud(const std::string& file, std::string_view format) {
-  throw Error(fmt::format(
-      "{}: there are no faces or tetrahedra: this is a cloud of points, and Spillway does not read "
-      "points from {}; convert it to LAS, text or npy (with PDAL or CloudCompare, say)",
-      file, format));
+  throw BadInput(file,
+                 fmt::format("there are no faces or tetrahedra: this is a cloud of points, and "
+                             "Spillway does not read points from {}; convert it to LAS, text "
+                             "or npy (with PDAL or CloudCompare, say)",
+                             format));
 }
 
 }  // namespace spillway::detail

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/bytes/not_copied.h"
 #include "formats/disk/file_system.h"
 #include "formats/meshes/common/mesh.h"
@@ -36,7 +36,7 @@ struct MeshFileSet {
   /// Throws Error if `path` is a file of a mesh that is there, and none that could be points.
   void (*check_is_points)(const FileSystem& files, const std::string& path);
   /// Throws Error if the source is one such file, but not the mesh that `path` would be.
-  void (*check_is_no_part)(InputSource& source, const std::string& path);
+  void (*check_is_no_part)(InputBytes& source, const std::string& path);
   /// Throws Error unless all files are there.
   Mesh (*read)(FileSystem& files, const std::string& path);
   /// Throws Error for standard output.
@@ -78,12 +78,12 @@ struct MeshFormat {
   bool (*resembles)(std::string_view first_bytes) = nullptr;
   /// Whether a file of this format has simplices; without, it is a cloud of points. Null if all are
   /// meshes. Throws Error if the header is damaged.
-  bool (*has_simplices)(InputSource& source) = nullptr;
+  bool (*has_simplices)(InputBytes& source) = nullptr;
 
   /// Reads the whole of a mesh.
-  Mesh (*read)(InputSource& source) = nullptr;
+  Mesh (*read)(InputBytes& source) = nullptr;
   /// Reads a stream block by block.
-  std::unique_ptr<MeshStreamReader> (*open_stream)(std::unique_ptr<InputSource> source) = nullptr;
+  std::unique_ptr<MeshStreamReader> (*open_stream)(std::unique_ptr<InputBytes> source) = nullptr;
   /// Reads the whole of a table of shapes, which a library opens again by its name, so it is no
   /// pipe. Whether the shapes are triangles is not known before.
   Mesh (*read_table)(const std::string& path) = nullptr;

@@ -2,6 +2,8 @@
 // A mesh as it flows: blocks of vertices, of the simplices that use them, and of the word that a
 // vertex is not used any more, so that whoever reads along never holds more than a border.
 
+#include <spillway/figures.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -9,8 +11,8 @@
 #include <vector>
 
 #include "src/geometry/box.h"
+#include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
-#include "src/geometry/point.h"
 
 namespace spillway::detail {
 
@@ -30,7 +32,7 @@ struct MeshStreamHeader {
 struct MeshBlock {
   /// Vertices that come for the first time. On the header's lattice if there is one (x, y and, in
   /// space, z are integers; in the plane z may lie between), else in output coordinates.
-  std::vector<Point<3>> vertices;
+  std::vector<LatticePoint> vertices;
   std::vector<std::uint64_t> input_index;  ///< of `vertices`, if the header says has_input_index
   std::vector<std::uint64_t> imported;     ///< stream numbers of earlier vertices used here
   std::vector<std::uint32_t> corners;      ///< dimension+1 short numbers a simplex, oriented
@@ -53,18 +55,6 @@ struct MeshBlock {
     finalized.clear();
     prepared.clear();
   }
-};
-
-/// What is known at the end of a stream.
-struct MeshTotals {
-  std::uint64_t vertices = 0;
-  std::uint64_t simplices = 0;
-  std::uint64_t hull_facets = 0;  ///< facets of one simplex only
-  std::uint64_t points = 0;       ///< of the input
-  std::uint64_t duplicates = 0;   ///< points that equal another one
-  std::uint64_t canonical_hash = 0;
-
-  bool operator==(const MeshTotals&) const = default;
 };
 
 /// Takes a mesh block by block: a file, a raster, lines, a picture. A block comes twice: absorb()

@@ -14,18 +14,18 @@ std::byte* bytes(char* text) { return reinterpret_cast<std::byte*>(text); }
 
 }  // namespace
 
-void append_coordinates(BlockOutput& output, std::string_view before, const Point<3>& point) {
+void append_coordinates(BufferedOutput& output, std::string_view before, const WorldPoint& point) {
   char* const at = text(output.reserve(kLongestLine));
   output.advance_to(
       bytes(fmt::format_to(at, FMT_COMPILE("{}{} {} {}"), before, point[0], point[1], point[2])));
 }
 
-void append_number(BlockOutput& output, std::string_view before, std::uint64_t number) {
+void append_number(BufferedOutput& output, std::string_view before, std::uint64_t number) {
   char* const at = text(output.reserve(kLongestLine));
   output.advance_to(bytes(fmt::format_to(at, FMT_COMPILE("{}{}"), before, number)));
 }
 
-void append_simplex(BlockOutput& output, std::string_view keyword,
+void append_simplex(BufferedOutput& output, std::string_view keyword,
                     std::span<const std::uint64_t> corners, std::uint64_t first) {
   char* at = text(output.reserve(kLongestLine));
   at = fmt::format_to(at, FMT_COMPILE("{}"), keyword);
@@ -36,6 +36,6 @@ void append_simplex(BlockOutput& output, std::string_view keyword,
   output.advance_to(bytes(at));
 }
 
-void append_line_end(BlockOutput& output) { output.append("\n"); }
+void append_line_end(BufferedOutput& output) { output.append("\n"); }
 
 }  // namespace spillway::detail

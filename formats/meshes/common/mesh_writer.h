@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "src/geometry/point.h"
+#include "src/geometry/framed_point.h"
 
 namespace spillway::detail {
 
@@ -16,7 +16,7 @@ class MeshWriter {
 
   /// Appends vertices. `input_index` has one entry a vertex if the header says has_input_index and
   /// is empty otherwise.
-  virtual void write_vertices(std::span<const Point<3>> vertices,
+  virtual void write_vertices(std::span<const WorldPoint> vertices,
                               std::span<const std::uint64_t> input_index) = 0;
 
   /// Appends simplices: dimension+1 vertex numbers each, counted from 0, positively oriented.

@@ -14,12 +14,11 @@ TriangleStreamWriter::TriangleStreamWriter(MeshStreamHeader header, std::string 
     : header_(std::move(header)), name_(std::move(name)) {}
 
 void TriangleStreamWriter::write(MeshBlock&& block) {
-  move_to_world(header_, block);
   take_positions(block);
   check_short_numbers(block);
   if (block.corners.size() % 3 != 0) fail("a block's corners make no whole number of triangles");
   for (std::size_t i = 0; i < block.corners.size(); i += 3) {
-    std::array<Point<3>, 3> corners;
+    std::array<WorldPoint, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = positions_[block.corners[i + k]];
     put_triangle(corners);
     ++triangles_;
@@ -37,18 +36,19 @@ void TriangleStreamWriter::finish(const MeshTotals& totals) {
 }
 
 void TriangleStreamWriter::take_positions(const MeshBlock& block) {
-  for (const Point<3>& vertex : block.vertices) {
+  positions_ = world_vertices(header_, block);
+  for (const WorldPoint& vertex : positions_) {
     for (const double coordinate : vertex) {
       if (!std::isfinite(coordinate)) {
         fail(fmt::format("a vertex has a coordinate {}; repair the points", coordinate));
       }
     }
   }
-  positions_ = block.vertices;
   for (const std::uint64_t number : block.imported) {
-    const Point<3>* const position = live_.find(number);
+    const WorldPoint* const position = live_.find(number);
     if (position == nullptr) {
-      fail(fmt::format("a block imports vertex {}, which has not come or comes no more", number));
+      fail(
+          fmt::format("a block imports vertex {}, which has not come yet or is finalized", number));
     }
     positions_.push_back(*position);
   }
@@ -62,8 +62,8 @@ void TriangleStreamWriter::check_short_numbers(const MeshBlock& block) const {
   }
 }
 
-void TriangleStreamWriter::fail(const std::string& what) const {
-  throw Error(fmt::format("cannot write {}: {}", name_, what));
+void TriangleStreamWriter::fail(const std::string& what, ErrorCode code) const {
+  throw CannotWrite(name_, what, code);
 }
 
 }  // namespace spillway::detail

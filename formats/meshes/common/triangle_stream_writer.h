@@ -7,6 +7,7 @@
 
 #include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "src/error.h"
 
 namespace spillway::detail {
 
@@ -23,14 +24,15 @@ class TriangleStreamWriter : public MeshStreamWriter {
   TriangleStreamWriter(MeshStreamHeader header, std::string name);
 
   /// Appends a triangle in output coordinates.
-  virtual void put_triangle(const std::array<Point<3>, 3>& corners) = 0;
+  virtual void put_triangle(const std::array<WorldPoint, 3>& corners) = 0;
 
   /// Called once, after all triangles.
   virtual void complete() = 0;
 
   [[nodiscard]] const MeshStreamHeader& header() const { return header_; }
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
-  [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void fail(const std::string& what,
+                         ErrorCode code = ErrorCode::kInvalidArgument) const;
 
  private:
   void take_positions(const MeshBlock& block);
@@ -38,9 +40,9 @@ class TriangleStreamWriter : public MeshStreamWriter {
 
   MeshStreamHeader header_;
   std::string name_;
-  LiveVertices<Point<3>> live_;
-  std::vector<Point<3>> positions_;  // of the block in work, by short number
-  std::uint64_t triangles_ = 0;      // written so far
+  LiveVertices<WorldPoint> live_;
+  std::vector<WorldPoint> positions_;  // of the block in work, by short number
+  std::uint64_t triangles_ = 0;        // written so far
 };
 
 }  // namespace spillway::detail

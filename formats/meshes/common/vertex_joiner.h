@@ -16,7 +16,7 @@ class VertexJoiner {
   explicit VertexJoiner(Mesh& mesh) : mesh_(mesh) {}
 
   /// Appends the corner of a simplex.
-  void add(const Point<3>& corner) {
+  void add(const WorldPoint& corner) {
     const auto [found, is_new] = numbers_.try_emplace(corner, mesh_.vertices.size());
     if (is_new) mesh_.vertices.push_back(corner);
     mesh_.corners.push_back(found->second);
@@ -30,7 +30,7 @@ class VertexJoiner {
 
  private:
   struct Hash {
-    std::size_t operator()(const Point<3>& point) const {
+    std::size_t operator()(const WorldPoint& point) const {
       std::size_t hash = 0;
       for (const double coordinate : point) {
         hash = (hash ^ std::hash<double>()(coordinate)) * 0x9E3779B97F4A7C15U;
@@ -41,7 +41,7 @@ class VertexJoiner {
   };
 
   Mesh& mesh_;
-  std::unordered_map<Point<3>, std::uint64_t, Hash> numbers_;
+  std::unordered_map<WorldPoint, std::uint64_t, Hash> numbers_;
 };
 
 }  // namespace spillway::detail

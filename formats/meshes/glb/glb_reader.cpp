@@ -38,11 +38,11 @@ std::size_t size_of_component(int type) {
 }
 
 /// y up, as glTF has it, to z up.
-Point<3> z_up(const Point<3>& p) { return {p[0], -p[2], p[1]}; }
+WorldPoint z_up(const Point<3>& p) { return {p[0], -p[2], p[1]}; }
 
 class GlbReader {
  public:
-  explicit GlbReader(InputSource& source) : source_(source) {}
+  explicit GlbReader(InputBytes& source) : source_(source) {}
 
   Mesh read() {
     read_chunks();
@@ -59,21 +59,24 @@ class GlbReader {
  private:
   void read_chunks() {
     const std::vector<std::byte> head = read_bytes(glb::kHeader + glb::kChunkHeader, "its header");
-    if (!as_text(head).starts_with(glb::kMagic)) fail("byte 0: this is no binary glTF file");
+    if (!as_text(head).starts_with(glb::kMagic)) fail_at(0, "this is not a binary glTF file");
     const auto version = load<std::uint32_t>(&head[4]);
-    if (version != glb::kVersion) fail(fmt::format("byte 4: glTF {} is not read, only 2", version));
+    if (version != glb::kVersion) fail_at(4, fmt::format("glTF {} is not read, only 2", version));
     length_ = load<std::uint32_t>(&head[8]);
     const std::optional<std::uint64_t> size = source_.size();
     if (size && length_ > *size) {
-      fail(fmt::format("byte 8: the file shall have {} bytes, but has {}; get a complete copy",
-                       length_, *size));
+      fail_at(8, fmt::format("the header says {} bytes, but the file has {}; get a complete copy",
+                             length_, *size));
     }
-    if (load<std::uint32_t>(&head[16]) != glb::kJson) fail("byte 16: the first chunk is no JSON");
+    if (load<std::uint32_t>(&head[16]) != glb::kJson) {
+      fail_at(16, "the first chunk is not JSON");
+    }
     const std::vector<std::byte> json = read_chunk(load<std::uint32_t>(&head[12]), "its JSON");
     try {
       gltf_ = Json::parse(as_text(json));
     } catch (const Json::exception& error) {
-      fail(fmt::format("its JSON cannot be parsed: {}", error.what()));
+      fail(fmt::format("its JSON cannot be parsed: {}", error.what()),
+           at_byte(glb::kHeader + glb::kChunkHeader));
     }
     while (length_ - source_.position() >= glb::kChunkHeader && binary_.empty()) {
       const std::vector<std::byte> chunk = read_bytes(glb::kChunkHeader, "a chunk's header");
@@ -86,15 +89,17 @@ class GlbReader {
     std::vector<std::byte> bytes = read_up_to(source_, count);
     if (bytes.size() < count) {
       fail(fmt::format("the file ends at byte {}, within {}; get a complete copy",
-                       source_.position(), what));
+                       source_.position(), what),
+           at_byte(source_.position()));
     }
     return bytes;
   }
 
   std::vector<std::byte> read_chunk(std::uint64_t size, const char* what) {
     if (source_.position() > length_ || size > length_ - source_.position()) {
-      fail(fmt::format("before byte {}: {} shall have {} bytes, but the file ends at {}",
-                       source_.position(), what, size, length_));
+      fail(fmt::format("before byte {}: the header of {} says {} bytes, but the file ends at {}",
+                       source_.position(), what, size, length_),
+           at_byte(source_.position()));
     }
     return read_bytes(size, what);
   }
@@ -109,18 +114,18 @@ class GlbReader {
       fail(fmt::format("it needs the extension {}, which is not read; export it without",
                        gltf_.at("extensionsRequired").at(0).dump()));
     }
-    for (const glb::PlacedMesh& placed : meshes_of_scene()) {
-      for (const Json& primitive : gltf_.at("meshes").at(placed.mesh).at("primitives")) {
-        read_primitive(primitive, placed.transform);
+    for (const glb::NodeMesh& node : meshes_of_scene()) {
+      for (const Json& primitive : gltf_.at("meshes").at(node.mesh).at("primitives")) {
+        read_primitive(primitive, node.transform);
       }
     }
     const bool by_spillway = asset.value("generator", std::string()) == glb::kGenerator;
     if (mesh_.corners.empty() && !by_spillway) fail_for_point_cloud(source_.name(), "glTF");
   }
 
-  [[nodiscard]] std::vector<glb::PlacedMesh> meshes_of_scene() const {
+  [[nodiscard]] std::vector<glb::NodeMesh> meshes_of_scene() const {
     try {
-      return glb::placed_meshes(gltf_);
+      return glb::node_meshes(gltf_);
     } catch (const Error& error) {
       fail(error.what());
     }
@@ -151,9 +156,10 @@ class GlbReader {
     if (positions.type != glb::kFloat32) fail("positions must be float32");
     for (std::uint64_t i = 0; i < positions.count; ++i) {
       const auto local = load<std::array<float, 3>>(positions.bytes.data() + i * positions.stride);
-      const Point<3> point = z_up(glb::apply(transform, {local[0], local[1], local[2]}));
+      const WorldPoint point = z_up(glb::apply(transform, {local[0], local[1], local[2]}));
       for (const double coordinate : point) {
-        if (!std::isfinite(coordinate)) fail(fmt::format("position {} is not finite", i));
+        if (!std::isfinite(coordinate))
+          fail(fmt::format("position {} is not finite", i), at_record(i));
       }
       mesh_.vertices.push_back(point);
     }
@@ -167,7 +173,8 @@ class GlbReader {
                                   : indices.type == glb::kUint16 ? load<std::uint16_t>(at)
                                                                  : load<std::uint32_t>(at);
       if (index >= count) {
-        fail(fmt::format("index {} is {}, but there are only {} positions", i, index, count));
+        fail(fmt::format("index {} is {}, but there are only {} positions", i, index, count),
+             at_record(i));
       }
       mesh_.corners.push_back(first + index);
     }
@@ -211,17 +218,21 @@ class GlbReader {
   [[nodiscard]] std::span<const std::byte> part(std::span<const std::byte> bytes,
                                                 std::uint64_t offset, std::uint64_t size) const {
     if (offset > bytes.size() || size > bytes.size() - offset) {
-      fail(fmt::format("bytes {} to {} of its binary chunk are spoken of, but it has {}", offset,
+      fail(fmt::format("bytes {} to {} of its binary chunk are referred to, but it has {}", offset,
                        offset + size, bytes.size()));
     }
     return bytes.subspan(offset, size);
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: {}", source_.name(), what));
+  [[noreturn]] void fail(const std::string& what, FilePlace place = {}) const {
+    throw BadInput(source_.name(), what, place);
   }
 
-  InputSource& source_;
+  [[noreturn]] void fail_at(std::uint64_t byte, const std::string& what) const {
+    throw BadInput::at(source_.name(), at_byte(byte), what);
+  }
+
+  InputBytes& source_;
   std::uint64_t length_ = 0;  // of the file, as it says itself
   Json gltf_;
   std::vector<std::byte> binary_;
@@ -230,6 +241,6 @@ class GlbReader {
 
 }  // namespace
 
-Mesh read_glb(InputSource& source) { return GlbReader(source).read(); }
+Mesh read_glb(InputBytes& source) { return GlbReader(source).read(); }
 
 }  // namespace spillway::detail

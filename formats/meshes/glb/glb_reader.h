@@ -1,6 +1,6 @@
 #pragma once
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh.h"
 
 namespace spillway::detail {
@@ -8,6 +8,6 @@ namespace spillway::detail {
 /// Reads the triangles of a binary glTF file's scene: lists of triangles of float32 positions in
 /// the file's own buffer, moved by their nodes in double, with z up again. Nothing else may be
 /// needed: no compression, no outside buffers. Throws Error that names the file.
-Mesh read_glb(InputSource& source);
+Mesh read_glb(InputBytes& source);
 
 }  // namespace spillway::detail

@@ -74,7 +74,7 @@ Point<3> apply(const Transform& transform, const Point<3>& point) {
   return result;
 }
 
-std::vector<PlacedMesh> placed_meshes(const Json& gltf) {
+std::vector<NodeMesh> node_meshes(const Json& gltf) {
   const Json& scenes = gltf.at("scenes");
   const Json& scene = scenes.at(gltf.value("scene", std::size_t{0}));
   const Json nodes = gltf.value("nodes", Json::array());
@@ -85,7 +85,7 @@ std::vector<PlacedMesh> placed_meshes(const Json& gltf) {
       waiting.emplace_back(number->get<std::size_t>(), outer);
     }
   };
-  std::vector<PlacedMesh> result;
+  std::vector<NodeMesh> result;
   wait_for(scene.value("nodes", Json::array()), kIdentity);
   while (!waiting.empty()) {
     const auto [number, outer] = waiting.back();

@@ -17,13 +17,13 @@ using Transform = std::array<std::array<double, 4>, 3>;
 Point<3> apply(const Transform& transform, const Point<3>& point);
 
 /// A mesh of the file and where it stands.
-struct PlacedMesh {
+struct NodeMesh {
   std::size_t mesh = 0;
   Transform transform{};
 };
 
 /// The meshes of the default scene, in the order of its nodes. Throws Error without the file's name
 /// if the nodes make no tree, and nlohmann::json::exception for what is not as glTF has it.
-std::vector<PlacedMesh> placed_meshes(const nlohmann::json& gltf);
+std::vector<NodeMesh> node_meshes(const nlohmann::json& gltf);
 
 }  // namespace spillway::detail::glb

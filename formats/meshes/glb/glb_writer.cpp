@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "formats/bytes/block_output.h"
+#include "formats/bytes/buffered_output.h"
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/json.h"
 #include "formats/meshes/common/checked_mesh_writer.h"
@@ -39,14 +39,14 @@ class GlbWriter : public CheckedMeshWriter {
     if (!output_.rewrite(0, head())) {  // a pipe is refused now, not at the end
       fail(
           "glTF begins with the extent of its positions, and this file cannot go back to its "
-          "begin; name a regular file");
+          "beginning; name a regular file");
     }
   }
 
  private:
-  void put_vertices(std::span<const Point<3>> vertices,
+  void put_vertices(std::span<const WorldPoint> vertices,
                     std::span<const std::uint64_t> /*input_index*/) override {
-    for (const Point<3>& vertex : vertices) {
+    for (const WorldPoint& vertex : vertices) {
       if (written_ == 0) origin_ = local_origin(vertex);
       const auto position = to_local(vertex, origin_);
       if (!position) {
@@ -160,16 +160,16 @@ class GlbWriter : public CheckedMeshWriter {
   }
 
   [[noreturn]] void fail_for_size() const {
-    fail(
-        fmt::format("{} vertices and {} triangles take more than the 4 GiB that glTF holds; "
-                    "choose ply",
-                    header().vertices, header().simplices));
+    fail(fmt::format("{} vertices and {} triangles take more than the 4 GiB that glTF holds; "
+                     "choose ply",
+                     header().vertices, header().simplices),
+         ErrorCode::kTooLarge);
   }
 
-  BlockOutput output_;
+  BufferedOutput output_;
   std::uint64_t json_size_ = 0;
   std::uint64_t written_ = 0;  // vertices
-  Point<3> origin_{};
+  WorldPoint origin_{};
   Position lowest_{};
   Position highest_{};
 };

@@ -40,7 +40,7 @@ std::string unescaped(std::string_view text) {
 /// Goes through the tags of a file of any size, a window of which is in memory.
 class XmlTags {
  public:
-  explicit XmlTags(InputSource& source) : source_(source) {}
+  explicit XmlTags(InputBytes& source) : source_(source) {}
 
   /// Goes to the next tag; false at the end. Throws Error for what is no XML.
   bool next(XmlTag& tag) {
@@ -50,7 +50,7 @@ class XmlTags {
       const bool whole = result == XmlScanner::Result::kTag && scanner_.has_content_end();
       if (whole || (ended_ && result == XmlScanner::Result::kTag)) return true;
       if (ended_ && result == XmlScanner::Result::kEnd) return false;
-      if (ended_) fail("here is no XML tag");
+      if (ended_) fail("an XML tag is expected here");
       read_on(before);
     }
   }
@@ -60,8 +60,8 @@ class XmlTags {
 
   [[noreturn]] void fail(const std::string& what) const {
     const std::string_view passed = std::string_view(window_).substr(0, scanner_.position());
-    throw Error(fmt::format("{}: line {}: {}", source_.name(),
-                            lines_before_ + std::count(passed.begin(), passed.end(), '\n'), what));
+    const auto line = lines_before_ + std::count(passed.begin(), passed.end(), '\n');
+    throw BadInput::at(source_.name(), at_line(line), what);
   }
 
  private:
@@ -85,12 +85,12 @@ class XmlTags {
     scanner_ = XmlScanner(window_);
     if (!looks_like_text(std::string_view(window_).substr(had))) {
       fail(
-          "behind here is a control character, which is in no XML; the file is corrupt or has "
-          "another format");
+          "after this line comes a control character, which XML cannot have; the file is corrupt "
+          "or has another format");
     }
   }
 
-  InputSource& source_;
+  InputBytes& source_;
   std::string window_;
   XmlScanner scanner_{std::string_view()};
   bool ended_ = false;               // the window reaches to the end of the file
@@ -99,7 +99,7 @@ class XmlTags {
 
 class LandXmlReader {
  public:
-  explicit LandXmlReader(InputSource& source) : tags_(source) {}
+  explicit LandXmlReader(InputBytes& source) : tags_(source) {}
 
   Mesh read() {
     while (tags_.next(tag_)) {
@@ -156,12 +156,12 @@ class LandXmlReader {
 
   void read_point() {
     const std::optional<std::uint64_t> id = parse_count(tag_.attribute("id"));
-    if (!id) fail(fmt::format("the point's id {} is no number", quoted(tag_.attribute("id"))));
+    if (!id) fail(fmt::format("the point's id {} is not a number", quoted(tag_.attribute("id"))));
     if (!numbers_.emplace(*id, mesh_.vertices.size()).second) {
       fail(fmt::format("there is a second point {}", *id));
     }
     Fields fields(content());
-    Point<3> northing_first;
+    WorldPoint northing_first;
     for (double& coordinate : northing_first) {
       const std::optional<double> number = fields.number();
       if (!number || !std::isfinite(*number)) {
@@ -179,7 +179,7 @@ class LandXmlReader {
     for (int k = 0; k < 3; ++k) {
       const std::optional<std::uint64_t> id = fields.count();
       const auto found = id ? numbers_.find(*id) : numbers_.end();
-      if (found == numbers_.end()) fail("a face needs the ids of three points that stand before");
+      if (found == numbers_.end()) fail("a face needs the ids of three points that come before it");
       mesh_.corners.push_back(found->second);
     }
     if (!fields.at_end()) fail("a face has more than three points; only triangles are read");
@@ -199,6 +199,6 @@ class LandXmlReader {
 
 }  // namespace
 
-Mesh read_landxml(InputSource& source) { return LandXmlReader(source).read(); }
+Mesh read_landxml(InputBytes& source) { return LandXmlReader(source).read(); }
 
 }  // namespace spillway::detail

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh.h"
 
 namespace spillway::detail {
 
 /// Reads the one TIN surface of a LandXML file. The text is held in memory as a whole. Throws Error
 /// that names the file and the line.
-Mesh read_landxml(InputSource& source);
+Mesh read_landxml(InputBytes& source);
 
 }  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "formats/bytes/block_output.h"
+#include "formats/bytes/buffered_output.h"
 #include "formats/bytes/xml_scanner.h"
 #include "formats/gdal/gdal.h"
 #include "formats/meshes/common/checked_mesh_writer.h"
@@ -71,9 +71,9 @@ class LandXmlWriter : public CheckedMeshWriter {
   }
 
  private:
-  void put_vertices(std::span<const Point<3>> vertices,
+  void put_vertices(std::span<const WorldPoint> vertices,
                     std::span<const std::uint64_t> /*input_index*/) override {
-    for (const Point<3>& vertex : vertices) {
+    for (const WorldPoint& vertex : vertices) {
       append_number(output_, "<P id=\"", ++points_);
       append_coordinates(output_, "\">", {vertex[1], vertex[0], vertex[2]});
       output_.append("</P>\n");
@@ -108,7 +108,7 @@ class LandXmlWriter : public CheckedMeshWriter {
     if (!std::exchange(has_faces_, true)) output_.append("</Pnts>\n<Faces>\n");
   }
 
-  BlockOutput output_;
+  BufferedOutput output_;
   std::uint64_t points_ = 0;  // written so far
   bool has_faces_ = false;    // the element Faces has begun
 };

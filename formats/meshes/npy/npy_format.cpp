@@ -21,19 +21,19 @@ bool is_meant(const FileSystem& files, const std::string& path) {
 
 void check_is_points(const FileSystem& files, const std::string& path) {
   if (!path.ends_with(kNpySimplices) || !is_part_of_npy_mesh(files, path)) return;
-  throw Error(fmt::format(
-      "{}: these are the simplices of an npy mesh, not points; its vertices are in a file "
-      "beside it",
-      path));
+  throw BadInput(path,
+                 "these are the simplices of an npy mesh, not points; its vertices are in a file "
+                 "beside it");
 }
 
-void check_is_no_part(InputSource& source, const std::string& path) {
+void check_is_no_part(InputBytes& source, const std::string& path) {
   if (!as_text(source.peek(kNpyMagic.size())).starts_with(kNpyMagic)) return;
   const NpyMeshNames names = npy_mesh_names(path);
-  throw Error(
-      fmt::format("{}: this is one npy array, but a mesh is two, such as {} and {}; name "
-                  "one of these",
-                  source.name(), names.vertices, names.simplices));
+  throw BadInput(
+      source.name(),
+      fmt::format("this is one npy array, but a mesh is two, such as {} and {}; name one "
+                  "of these",
+                  names.vertices, names.simplices));
 }
 
 Mesh read(FileSystem& files, const std::string& path) {
@@ -41,9 +41,9 @@ Mesh read(FileSystem& files, const std::string& path) {
     return read_npy_mesh(files, *names);
   }
   const NpyMeshNames names = npy_mesh_names(path);
-  throw Error(
-      fmt::format("{}: an npy mesh is two files, such as {} and {}, which are not both there", path,
-                  names.vertices, names.simplices));
+  throw BadInput(
+      path, fmt::format("an npy mesh is two files, such as {} and {}, which are not both there",
+                        names.vertices, names.simplices));
 }
 
 MeshFiles create(FileSystem& files, const std::string& path, bool has_input_index) {

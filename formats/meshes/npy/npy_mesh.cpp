@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "formats/bytes/block_input.h"
+#include "formats/bytes/buffered_input.h"
 #include "formats/bytes/number_type.h"
 #include "formats/points/npy/npy_header.h"
 #include "src/error.h"
@@ -88,19 +88,20 @@ class ArrayInput {
     if (const std::optional<std::uint64_t> size = source_.size()) {
       const std::uint64_t room = *size - std::min(*size, source_.position());
       if (rows() > room / each || rows() * each != room) {
-        fail(
-            fmt::format("the header says {} rows of {} bytes, but {} bytes follow it; get a "
-                        "complete copy",
-                        rows(), each, room));
+        fail(fmt::format("the header says {} rows of {} bytes, but {} bytes follow it; get a "
+                         "complete copy",
+                         rows(), each, room),
+             at_byte(data_begin_));
       }
       reserve(rows());
     }
-    BlockInput input(source_);
+    BufferedInput input(source_);
     for (row_ = 0; row_ < rows(); ++row_) {
       const std::byte* const bytes = input.take(each);
       if (bytes == nullptr) {
         fail(fmt::format("the file ends at byte {}, within row {}; get a complete copy",
-                         input.end(), row_));
+                         input.end(), row_),
+             at_byte(input.end()));
       }
       take(bytes);
     }
@@ -117,13 +118,14 @@ class ArrayInput {
     return *index;
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: {}", source_.name(), what));
+  [[noreturn]] void fail(const std::string& what, FilePlace place = {}) const {
+    throw BadInput(source_.name(), what, place);
   }
 
   /// Throws Error about the row that is being read.
   [[noreturn]] void fail_at_row(const std::string& what) const {
-    fail(fmt::format("row {} at byte {}: {}", row_, data_begin_ + row_ * row_size_, what));
+    const std::uint64_t byte = data_begin_ + row_ * row_size_;
+    fail(fmt::format("row {} at byte {}: {}", row_, byte, what), at_byte(byte));
   }
 
  private:
@@ -143,7 +145,7 @@ class ArrayInput {
                     header_.type));
   }
 
-  InputSource source_;
+  InputBytes source_;
   NpyHeader header_;
   NumberType type_ = NumberType::kFloat64;
   bool swap_ = false;
@@ -162,7 +164,7 @@ int read_vertices(FileSystem& files, const std::string& path, Mesh& mesh) {
   array.read_rows(
       columns, [&](std::uint64_t rows) { mesh.vertices.reserve(rows); },
       [&](const std::byte* row) {
-        Point<3> point{};
+        WorldPoint point{};
         for (std::uint64_t axis = 0; axis < columns; ++axis) {
           point[axis] = array.number(row, axis);
           if (!std::isfinite(point[axis])) {

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "formats/bytes/block_output.h"
+#include "formats/bytes/buffered_output.h"
 #include "formats/bytes/bytes.h"
-#include "formats/disk/naming_turn.h"
+#include "formats/disk/folder_lock.h"
 #include "formats/disk/unfinished_files.h"
 #include "formats/meshes/common/checked_mesh_writer.h"
 #include "formats/meshes/npy/npy_mesh.h"
@@ -39,7 +39,7 @@ class ArrayOutput {
 
  private:
   std::string header_;
-  BlockOutput output_;
+  BufferedOutput output_;
 };
 
 class NpyMeshWriter : public CheckedMeshWriter {
@@ -55,7 +55,7 @@ class NpyMeshWriter : public CheckedMeshWriter {
   }
 
  private:
-  void put_vertices(std::span<const Point<3>> vertices,
+  void put_vertices(std::span<const WorldPoint> vertices,
                     std::span<const std::uint64_t> input_index) override {
     vertices_.append(vertices);
     if (input_index_) input_index_->append(input_index);
@@ -69,7 +69,7 @@ class NpyMeshWriter : public CheckedMeshWriter {
     vertices_.settle();
     simplices_.settle();
     if (input_index_) input_index_->settle();
-    const NamingTurn turn(name());
+    const FolderLock lock(name());
     const auto undisturbed = hold_off_end_of_run();
     if (input_index_) input_index_->commit();
     vertices_.commit();
@@ -87,14 +87,15 @@ NpyMeshNames npy_mesh_to_write(const FileSystem& files, const std::string& path,
                                bool has_input_index) {
   if (path == "-") {
     throw InvalidArgument(
-        "standard output cannot take an npy mesh, which is two files; choose ply or vtu");
+        "standard output cannot take an npy mesh, which is two files; choose ply or vtu",
+        {.file = path});
   }
   NpyMeshNames names = npy_mesh_names(path);
   if (!has_input_index && files.exists(names.input_index)) {
-    throw Error(
-        fmt::format("cannot write {}: {} of an earlier mesh would be taken for part of it; "
-                    "remove it or choose another name",
-                    names.vertices, names.input_index));
+    throw CannotWrite(names.vertices,
+                      fmt::format("{} of an earlier mesh would be taken for part of it; remove it "
+                                  "or choose another name",
+                                  names.input_index));
   }
   return names;
 }

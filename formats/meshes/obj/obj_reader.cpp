@@ -16,7 +16,7 @@ namespace {
 
 class ObjReader {
  public:
-  explicit ObjReader(InputSource& source) : file_(source.name()), lines_(source) {}
+  explicit ObjReader(InputBytes& source) : file_(source.name()), lines_(source) {}
 
   Mesh read() {
     std::string_view line;
@@ -30,8 +30,9 @@ class ObjReader {
     }
     if (mesh_.corners.empty() && !by_spillway_) fail_for_point_cloud(file_, "OBJ");
     if (!mesh_.corners.empty() && largest_ >= mesh_.vertices.size()) {
-      throw Error(fmt::format("{}: line {}: a face has vertex {}, but there are only {}", file_,
-                              largest_line_, largest_ + 1, mesh_.vertices.size()));
+      throw BadInput::at(file_, at_line(largest_line_),
+                         fmt::format("a face has vertex {}, but there are only {}", largest_ + 1,
+                                     mesh_.vertices.size()));
     }
     mesh_.header.vertices = mesh_.vertices.size();
     mesh_.header.simplices = mesh_.corners.size() / 3;
@@ -62,7 +63,7 @@ class ObjReader {
 
   /// What follows x, y, z is a weight or a colour.
   void read_vertex(Fields& fields) {
-    Point<3> point;
+    WorldPoint point;
     for (double& coordinate : point) {
       const std::optional<double> number = fields.number();
       if (!number || !std::isfinite(*number)) {
@@ -85,7 +86,7 @@ class ObjReader {
       }
     }
     if (corners != 3) {
-      fail(fmt::format("face {} is no triangle; only triangles are read", face_number(corners)));
+      fail(fmt::format("face {} is not a triangle; only triangles are read", face_number(corners)));
     }
   }
 
@@ -101,13 +102,13 @@ class ObjReader {
     const std::optional<std::int64_t> number = vertex.integer();
     const auto vertices = static_cast<std::int64_t>(mesh_.vertices.size());
     if (!number || *number == 0 || *number < -vertices) {
-      fail(fmt::format("{} is no vertex of a face", quoted(text)));
+      fail(fmt::format("{} is not a vertex of a face", quoted(text)));
     }
     return static_cast<std::uint64_t>(*number > 0 ? *number - 1 : vertices + *number);
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: line {}: {}", file_, lines_.number(), what));
+    throw BadInput::at(file_, at_line(lines_.number()), what);
   }
 
   std::string file_;
@@ -120,6 +121,6 @@ class ObjReader {
 
 }  // namespace
 
-Mesh read_obj(InputSource& source) { return ObjReader(source).read(); }
+Mesh read_obj(InputBytes& source) { return ObjReader(source).read(); }
 
 }  // namespace spillway::detail

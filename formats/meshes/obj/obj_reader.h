@@ -1,12 +1,12 @@
 #pragma once
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh.h"
 
 namespace spillway::detail {
 
 /// Reads the vertices and triangles of a Wavefront OBJ file; normals, texture, groups, materials,
 /// points and lines are passed over. Throws Error that names the line.
-Mesh read_obj(InputSource& source);
+Mesh read_obj(InputBytes& source);
 
 }  // namespace spillway::detail

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "formats/bytes/block_output.h"
+#include "formats/bytes/buffered_output.h"
 #include "formats/meshes/common/checked_mesh_writer.h"
 #include "formats/meshes/common/mesh_notes.h"
 #include "formats/meshes/common/mesh_text.h"
@@ -18,9 +18,9 @@ class ObjWriter : public CheckedMeshWriter {
   }
 
  private:
-  void put_vertices(std::span<const Point<3>> vertices,
+  void put_vertices(std::span<const WorldPoint> vertices,
                     std::span<const std::uint64_t> /*input_index*/) override {
-    for (const Point<3>& vertex : vertices) {
+    for (const WorldPoint& vertex : vertices) {
       append_coordinates(output_, "v ", vertex);
       append_line_end(output_);
     }
@@ -34,7 +34,7 @@ class ObjWriter : public CheckedMeshWriter {
 
   void complete() override { output_.commit(); }
 
-  BlockOutput output_;
+  BufferedOutput output_;
 };
 
 }  // namespace

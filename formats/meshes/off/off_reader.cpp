@@ -20,11 +20,11 @@ constexpr std::uint64_t kSmallestFace = 8;
 
 class OffReader {
  public:
-  explicit OffReader(InputSource& source) : source_(source), lines_(source) {}
+  explicit OffReader(InputBytes& source) : source_(source), lines_(source) {}
 
   Mesh read() {
     if (!next_line() || fields_.word() != "OFF") {
-      fail("this is no OFF file: its first line is not \"OFF\"; name its format");
+      fail("this is not an OFF file: its first line is not \"OFF\"; name its format");
     }
     read_counts();
     for (std::uint64_t i = 0; i < mesh_.header.vertices; ++i) read_vertex(i);
@@ -40,7 +40,7 @@ class OffReader {
     if (fields_.at_end() && !next_line()) fail_at_end("the counts");
     const std::optional<std::uint64_t> vertices = fields_.count();
     const std::optional<std::uint64_t> faces = fields_.count();
-    if (!vertices || !faces) fail("the numbers of vertices and faces must stand here");
+    if (!vertices || !faces) fail("the numbers of vertices and faces are missing");
     mesh_.header.vertices = *vertices;
     mesh_.header.simplices = *faces;
     const std::optional<std::uint64_t> size = source_.size();
@@ -58,7 +58,7 @@ class OffReader {
 
   void read_vertex(std::uint64_t number) {
     if (!next_line()) fail_at_end(fmt::format("vertex {}", number));
-    Point<3> point;
+    WorldPoint point;
     for (double& coordinate : point) {
       const std::optional<double> value = fields_.number();
       if (!value || !std::isfinite(*value)) {
@@ -75,7 +75,7 @@ class OffReader {
     if (!next_line()) fail_at_end(fmt::format("face {}", number));
     const std::optional<std::uint64_t> length = fields_.count();
     if (length != 3) {
-      fail(fmt::format("face {} is no triangle; only triangles are read", number));
+      fail(fmt::format("face {} is not a triangle; only triangles are read", number));
     }
     for (int c = 0; c < 3; ++c) {
       const std::optional<std::uint64_t> corner = fields_.count();
@@ -107,15 +107,17 @@ class OffReader {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: line {}: {}", source_.name(), lines_.number(), what));
+    throw BadInput::at(source_.name(), at_line(lines_.number()), what);
   }
 
   [[noreturn]] void fail_at_end(const std::string& what) const {
-    throw Error(fmt::format("{}: the file ends with line {}, before {}; get a complete copy",
-                            source_.name(), lines_.number(), what));
+    throw BadInput(source_.name(),
+                   fmt::format("the file ends with line {}, before {}; get a complete copy",
+                               lines_.number(), what),
+                   at_line(lines_.number()));
   }
 
-  InputSource& source_;
+  InputBytes& source_;
   LineReader lines_;
   Fields fields_{""};
   Mesh mesh_;
@@ -124,6 +126,6 @@ class OffReader {
 
 }  // namespace
 
-Mesh read_off(InputSource& source) { return OffReader(source).read(); }
+Mesh read_off(InputBytes& source) { return OffReader(source).read(); }
 
 }  // namespace spillway::detail

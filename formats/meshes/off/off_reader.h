@@ -1,12 +1,12 @@
 #pragma once
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh.h"
 
 namespace spillway::detail {
 
 /// Reads a text OFF file of triangles; colours of faces are passed over. Throws Error that names
 /// the line.
-Mesh read_off(InputSource& source);
+Mesh read_off(InputBytes& source);
 
 }  // namespace spillway::detail

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "formats/bytes/block_output.h"
+#include "formats/bytes/buffered_output.h"
 #include "formats/meshes/common/checked_mesh_writer.h"
 #include "formats/meshes/common/mesh_notes.h"
 #include "formats/meshes/common/mesh_text.h"
@@ -23,9 +23,9 @@ class OffWriter : public CheckedMeshWriter {
   }
 
  private:
-  void put_vertices(std::span<const Point<3>> vertices,
+  void put_vertices(std::span<const WorldPoint> vertices,
                     std::span<const std::uint64_t> /*input_index*/) override {
-    for (const Point<3>& vertex : vertices) {
+    for (const WorldPoint& vertex : vertices) {
       append_coordinates(output_, "", vertex);
       append_line_end(output_);
     }
@@ -39,7 +39,7 @@ class OffWriter : public CheckedMeshWriter {
 
   void complete() override { output_.commit(); }
 
-  BlockOutput output_;
+  BufferedOutput output_;
 };
 
 }  // namespace

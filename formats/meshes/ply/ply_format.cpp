@@ -24,7 +24,7 @@ constinit const MeshFormat kPlyMesh = {
     .stands_in_parts = true,
     .recognises = [](std::string_view text) { return begins_with_word(text, "ply"); },
     .has_simplices =
-        [](InputSource& source) { return read_ply_header(source).simplices() != nullptr; },
+        [](InputBytes& source) { return read_ply_header(source).simplices() != nullptr; },
     .read = read_ply,
     .open_writer =
         [](MeshFiles files, const MeshHeader& header) {

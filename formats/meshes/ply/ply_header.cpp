@@ -37,16 +37,15 @@ constexpr std::array kTypes = {
     NamedType{"double", NumberType::kFloat64}, NamedType{"float64", NumberType::kFloat64}};
 
 /// The header's bytes, the last line's end included.
-std::string_view header_text(InputSource& source) {
+std::string_view header_text(InputBytes& source) {
   const std::string last = fmt::format("\n{}", kLast);
   for (std::size_t wanted = kFirstPeek;; wanted *= 4) {
     const std::string_view text = as_text(source.peek(wanted));
     const std::size_t magic_end = text.find_first_of("\r\n");
     if (text.substr(0, magic_end) != kMagic) {
-      throw Error(
-          fmt::format("{}: this is no PLY file: its first line is not \"ply\"; name its "
-                      "format",
-                      source.name()));
+      throw BadInput(source.name(),
+                     "this is not a PLY file: its first line is not \"ply\"; name its format",
+                     at_line(1));
     }
     for (std::size_t at = text.find(last); at != text.npos; at = text.find(last, at + 1)) {
       const std::size_t end = at + last.size();
@@ -54,10 +53,11 @@ std::string_view header_text(InputSource& source) {
       if (text.substr(end).starts_with("\r\n")) return text.substr(0, end + 2);
     }
     if (text.size() < wanted || wanted >= kLongestHeader) {
-      throw Error(
-          fmt::format("{}: the header has no line \"{}\" in its first {} bytes; get a "
-                      "complete copy",
-                      source.name(), kLast, text.size()));
+      throw BadInput(source.name(),
+                     fmt::format("the header has no line \"{}\" in its first {} bytes; get a "
+                                 "complete copy",
+                                 kLast, text.size()),
+                     at_byte(text.size()));
     }
   }
 }
@@ -75,7 +75,7 @@ class HeaderParser {
       ++header_.lines;
       if (header_.lines > 1 && line != kLast) parse_line(line);
     }
-    if (!has_format_) fail("no line \"format ... 1.0\" stands before it");
+    if (!has_format_) fail("there is no line \"format ... 1.0\" before it");
     return std::move(header_);
   }
 
@@ -99,7 +99,7 @@ class HeaderParser {
     } else if (keyword == "property") {
       parse_property(fields);
     } else if (keyword != "comment" && keyword != "obj_info") {
-      fail(fmt::format("{} begins no line of a PLY header", quoted(keyword)));
+      fail(fmt::format("{} is not a keyword of a PLY header", quoted(keyword)));
     }
   }
 
@@ -135,7 +135,7 @@ class HeaderParser {
   }
 
   void parse_property(Fields& fields) {
-    if (header_.elements.empty()) fail("a property stands before the first element");
+    if (header_.elements.empty()) fail("a property comes before the first element");
     PlyElement& element = header_.elements.back();
     PlyProperty property;
     std::string_view type = fields.word();
@@ -163,7 +163,8 @@ class HeaderParser {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: line {}: {}; the header is corrupt", file_, header_.lines, what));
+    throw BadInput::at(file_, at_line(header_.lines),
+                       fmt::format("{}; the header is corrupt", what));
   }
 
   const std::string& file_;
@@ -196,7 +197,7 @@ const PlyElement* PlyHeader::simplices() const {
   return tetrahedra != nullptr ? tetrahedra : faces;
 }
 
-PlyHeader read_ply_header(InputSource& source) {
+PlyHeader read_ply_header(InputBytes& source) {
   const std::string_view text = header_text(source);
   PlyHeader header = HeaderParser(source.name()).parse(text);
   source.skip(text.size());

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/bytes/number_type.h"
 #include "formats/meshes/common/mesh.h"
 
@@ -54,6 +54,6 @@ inline constexpr std::string_view kPlyFace = "face";
 inline constexpr std::string_view kPlyTetrahedron = "tetrahedron";
 
 /// Reads the header, up to the first value. Throws Error that says what is wrong and in which line.
-PlyHeader read_ply_header(InputSource& source);
+PlyHeader read_ply_header(InputBytes& source);
 
 }  // namespace spillway::detail

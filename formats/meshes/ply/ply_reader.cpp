@@ -27,7 +27,7 @@ int corner_list(const PlyElement& element) {
 
 class PlyReader {
  public:
-  explicit PlyReader(InputSource& source)
+  explicit PlyReader(InputBytes& source)
       : source_(source),
         header_(read_ply_header(source)),
         vertices_(header_.find(kPlyVertex)),
@@ -147,7 +147,7 @@ class PlyReader {
     aim(kInputIndex, kToIndex);
     for (std::uint64_t i = 0; i < vertices_->count; ++i) {
       values.begin_item(kPlyVertex, i);
-      Point<3> point{};
+      WorldPoint point{};
       for (std::size_t p = 0; p < targets.size(); ++p) {
         const PlyProperty& property = vertices_->properties[p];
         if (targets[p] < 3) {
@@ -213,10 +213,11 @@ class PlyReader {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: {}", source_.name(), what));
+    // These faults are of the header; that is its last line.
+    throw BadInput(source_.name(), what, at_line(header_.lines));
   }
 
-  InputSource& source_;
+  InputBytes& source_;
   PlyHeader header_;
   const PlyElement* vertices_;
   const PlyElement* simplices_;
@@ -226,6 +227,6 @@ class PlyReader {
 
 }  // namespace
 
-Mesh read_ply(InputSource& source) { return PlyReader(source).read(); }
+Mesh read_ply(InputBytes& source) { return PlyReader(source).read(); }
 
 }  // namespace spillway::detail

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh.h"
 
 namespace spillway::detail {
@@ -8,6 +8,6 @@ namespace spillway::detail {
 /// Reads a PLY mesh, binary of either byte order or ASCII. Elements and properties that are not the
 /// mesh's are passed over, faces too where there are tetrahedra. Throws Error that names the item
 /// and its byte or line.
-Mesh read_ply(InputSource& source);
+Mesh read_ply(InputBytes& source);
 
 }  // namespace spillway::detail

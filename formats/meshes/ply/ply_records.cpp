@@ -32,8 +32,9 @@ std::byte* put(std::byte* at, const T& value) {
 
 std::string ply_header_text(const MeshHeader& header, bool ascii, const std::string& name) {
   if (header.vertices > kMostInUint) {
-    throw Error(fmt::format("cannot write {}: PLY numbers at most {} vertices; choose vtu or npy",
-                            name, kMostInUint));
+    throw CannotWrite(
+        name, fmt::format("PLY numbers at most {} vertices; choose vtu or npy", kMostInUint),
+        ErrorCode::kTooLarge);
   }
   std::string text = fmt::format("ply\nformat {} 1.0\n", ascii ? "ascii" : "binary_little_endian");
   for (const std::string& note : mesh_notes(header)) text += "comment " + note + '\n';
@@ -49,13 +50,15 @@ std::string ply_header_text(const MeshHeader& header, bool ascii, const std::str
 
 double ply_index(std::uint64_t index, const std::string& name) {
   if (index > kLargestIndex) {
-    throw Error(fmt::format(
-        "cannot write {}: PLY cannot hold the input index {}; choose vtu or npy", name, index));
+    throw CannotWrite(name,
+                      fmt::format("PLY cannot hold the input index {}; choose vtu or npy", index),
+                      ErrorCode::kTooLarge);
   }
   return static_cast<double>(index);
 }
 
-std::byte* put_ply_vertex(std::byte* at, const Point<3>& vertex, std::span<const double> indices) {
+std::byte* put_ply_vertex(std::byte* at, const WorldPoint& vertex,
+                          std::span<const double> indices) {
   for (const double coordinate : vertex) at = put(at, coordinate);
   for (const double index : indices) at = put(at, index);
   return at;

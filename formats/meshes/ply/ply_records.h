@@ -27,7 +27,7 @@ constexpr std::size_t ply_simplex_size(int dimension) {
 }
 
 /// Puts down a vertex or a simplex in binary and returns where it ends.
-std::byte* put_ply_vertex(std::byte* at, const Point<3>& vertex, std::span<const double> indices);
+std::byte* put_ply_vertex(std::byte* at, const WorldPoint& vertex, std::span<const double> indices);
 std::byte* put_ply_simplex(std::byte* at, std::span<const std::uint64_t> corners);
 
 }  // namespace spillway::detail

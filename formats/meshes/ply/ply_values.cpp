@@ -8,38 +8,42 @@ namespace spillway::detail {
 
 std::string PlyItem::text() const { return fmt::format("{} {}", element_, number_); }
 
-void PlyItem::fail(const std::string& place, const std::string& what) const {
-  throw Error(fmt::format("{}: {}: {}: {}; the file is corrupt or not what it says", file_, place,
-                          text(), what));
+void PlyItem::fail(const FilePlace& place, const std::string& what) const {
+  const bool in_bytes = place.unit == PlaceUnit::kByte;
+  throw BadInput(file_,
+                 fmt::format("{}{}: {}: {}; the file is corrupt or not what it says",
+                             in_bytes ? "before " : "", text_of(place), text(), what),
+                 place);
 }
 
-void PlyItem::fail_for_end(const std::string& place) const {
-  throw Error(fmt::format("{}: the file ends at {}, before the end of {}; get a complete copy",
-                          file_, place, text()));
+void PlyItem::fail_for_end(const FilePlace& place) const {
+  throw BadInput(file_,
+                 fmt::format("the file ends at {}, before the end of {}; get a complete copy",
+                             text_of(place), text()),
+                 place);
 }
 
-void PlyItem::fail_for_excess(const std::string& place) const {
-  throw Error(
-      fmt::format("{}: the file goes on at {} after all that its header says; the header "
-                  "is corrupt or there is more than one mesh",
-                  file_, place));
+void PlyItem::fail_for_excess(const FilePlace& place) const {
+  throw BadInput(file_,
+                 fmt::format("the file goes on at {} after all that its header says; the header is "
+                             "corrupt or there is more than one mesh",
+                             text_of(place)),
+                 place);
 }
 
 void PlyBinaryValues::finish() {
   const std::uint64_t end = input_.position();
-  if (input_.take(1) != nullptr) item_.fail_for_excess(fmt::format("byte {}", end));
+  if (input_.take(1) != nullptr) item_.fail_for_excess(at_byte(end));
 }
 
 void PlyBinaryValues::fail(const std::string& what) const {
-  item_.fail(fmt::format("before byte {}", input_.position()), what);
+  item_.fail(at_byte(input_.position()), what);
 }
-
-std::string PlyBinaryValues::end_place() const { return fmt::format("byte {}", input_.end()); }
 
 double PlyTextValues::number(NumberType type) {
   const std::string_view word = fields_.word();
   const std::optional<double> value = Fields(word).number();
-  if (!value) fail(word.empty() ? "a value is missing" : quoted(word) + " is no number");
+  if (!value) fail(word.empty() ? "a value is missing" : quoted(word) + " is not a number");
   // What was computed with was the float, not the decimals that stand for it.
   return type == NumberType::kFloat32 ? static_cast<float>(*value) : *value;
 }
@@ -79,10 +83,6 @@ bool PlyTextValues::next_line() {
     lines_.pass_over();
   }
   return false;
-}
-
-std::string PlyTextValues::place() const {
-  return fmt::format("line {}", header_lines_ + lines_.number());
 }
 
 }  // namespace spillway::detail

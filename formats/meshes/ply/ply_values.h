@@ -6,17 +6,18 @@
 #include <string>
 #include <string_view>
 
-#include "formats/bytes/block_input.h"
+#include "formats/bytes/buffered_input.h"
 #include "formats/bytes/fields.h"
 #include "formats/bytes/line_reader.h"
 #include "formats/bytes/number_type.h"
+#include "src/error.h"
 
 namespace spillway::detail {
 
 /// The item that is being read, for messages: "face 7".
 class PlyItem {
  public:
-  explicit PlyItem(const InputSource& source) : file_(source.name()) {}
+  explicit PlyItem(const InputBytes& source) : file_(source.name()) {}
 
   void set(std::string_view element, std::uint64_t number) {
     element_ = element;
@@ -25,10 +26,10 @@ class PlyItem {
 
   [[nodiscard]] std::string text() const;
 
-  /// Throws Error; `place` is "byte 7" or "line 7".
-  [[noreturn]] void fail(const std::string& place, const std::string& what) const;
-  [[noreturn]] void fail_for_end(const std::string& place) const;
-  [[noreturn]] void fail_for_excess(const std::string& place) const;
+  /// Throws BadInput. `place` is a line, or the byte where reading has come to.
+  [[noreturn]] void fail(const FilePlace& place, const std::string& what) const;
+  [[noreturn]] void fail_for_end(const FilePlace& place) const;
+  [[noreturn]] void fail_for_excess(const FilePlace& place) const;
 
  private:
   std::string file_;
@@ -39,7 +40,7 @@ class PlyItem {
 /// Values in binary, of the machine's byte order or the other one.
 class PlyBinaryValues {
  public:
-  PlyBinaryValues(InputSource& source, bool swap) : item_(source), input_(source), swap_(swap) {}
+  PlyBinaryValues(InputBytes& source, bool swap) : item_(source), input_(source), swap_(swap) {}
 
   /// Begins item `number` of the element, whose name must outlive it.
   void begin_item(std::string_view element, std::uint64_t number) { item_.set(element, number); }
@@ -73,17 +74,17 @@ class PlyBinaryValues {
     return bytes;
   }
 
-  [[nodiscard]] std::string end_place() const;
+  [[nodiscard]] FilePlace end_place() const { return at_byte(input_.end()); }
 
   PlyItem item_;
-  BlockInput input_;
+  BufferedInput input_;
   bool swap_;
 };
 
 /// Values in text, one item a line.
 class PlyTextValues {
  public:
-  PlyTextValues(InputSource& source, std::uint64_t header_lines)
+  PlyTextValues(InputBytes& source, std::uint64_t header_lines)
       : item_(source), lines_(source), header_lines_(header_lines) {}
 
   void begin_item(std::string_view element, std::uint64_t number) {
@@ -105,7 +106,7 @@ class PlyTextValues {
   /// Goes to the next line that is not blank; false at the end.
   bool next_line();
 
-  [[nodiscard]] std::string place() const;
+  [[nodiscard]] FilePlace place() const { return at_line(header_lines_ + lines_.number()); }
 
   PlyItem item_;
   LineReader lines_;

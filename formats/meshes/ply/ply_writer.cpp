@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "formats/bytes/block_output.h"
+#include "formats/bytes/buffered_output.h"
 #include "formats/meshes/common/checked_mesh_writer.h"
 #include "formats/meshes/common/global_ids.h"
 #include "formats/meshes/common/mesh_text.h"
@@ -22,7 +22,7 @@ class PlyWriter : public CheckedMeshWriter {
   }
 
  private:
-  void put_vertices(std::span<const Point<3>> vertices,
+  void put_vertices(std::span<const WorldPoint> vertices,
                     std::span<const std::uint64_t> input_index) override {
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       std::size_t count = 0;
@@ -33,7 +33,7 @@ class PlyWriter : public CheckedMeshWriter {
     }
   }
 
-  void put_vertex(const Point<3>& vertex, std::span<const double> indices) {
+  void put_vertex(const WorldPoint& vertex, std::span<const double> indices) {
     if (ascii_) {
       append_coordinates(output_, "", vertex);
       for (const double index : indices) {
@@ -61,7 +61,7 @@ class PlyWriter : public CheckedMeshWriter {
 
   void complete() override { output_.commit(); }
 
-  BlockOutput output_;
+  BufferedOutput output_;
   bool ascii_;
   std::optional<GlobalIds> ids_;
 };

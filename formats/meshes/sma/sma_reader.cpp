@@ -43,7 +43,7 @@ double nearest_on_lattice(const Lattice& lattice, int axis, double world) {
 
 class SmaReader : public MeshStreamReader {
  public:
-  explicit SmaReader(std::unique_ptr<InputSource> source)
+  explicit SmaReader(std::unique_ptr<InputBytes> source)
       : source_(std::move(source)), lines_(*source_) {
     MeshHeader notes;
     while ((has_line_ = lines_.next(line_)) && !is_element(line_)) {
@@ -72,7 +72,7 @@ class SmaReader : public MeshStreamReader {
     }
     close(block);
     if (header_.lattice) {
-      check_lattice(source_->name(), *header_.lattice, box_around(block.vertices),
+      check_lattice({source_->name()}, *header_.lattice, box_around(block.vertices),
                     header_.dimension);
     }
     return true;
@@ -86,7 +86,7 @@ class SmaReader : public MeshStreamReader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: line {}: {}", source_->name(), lines_.number(), what));
+    throw BadInput::at(source_->name(), at_line(lines_.number()), what);
   }
 
   static bool is_element(std::string_view line) {
@@ -133,7 +133,7 @@ class SmaReader : public MeshStreamReader {
 
   void check_blank() const {
     if (!Fields(line_).at_end()) {
-      fail(fmt::format("{} is no line of a streaming mesh", quoted(line_)));
+      fail(fmt::format("{} is not a line of a streaming mesh", quoted(line_)));
     }
   }
 
@@ -156,7 +156,7 @@ class SmaReader : public MeshStreamReader {
   }
 
   void read_vertex(Fields& fields, MeshBlock& block) {
-    Point<3> vertex;
+    WorldPoint vertex;
     for (double& coordinate : vertex) {
       const std::optional<double> number = fields.number();
       if (!number || !std::isfinite(*number)) {
@@ -164,24 +164,25 @@ class SmaReader : public MeshStreamReader {
       }
       coordinate = *number;
     }
-    if (header_.lattice) move_to_lattice(vertex);
-    block.vertices.push_back(vertex);
+    block.vertices.push_back(header_.lattice ? on_lattice(vertex) : LatticePoint(vertex.numbers()));
     gone_.push_back(false);
     ++totals_.vertices;
   }
 
-  void move_to_lattice(Point<3>& vertex) const {
+  [[nodiscard]] LatticePoint on_lattice(const WorldPoint& vertex) const {
+    LatticePoint point;
     for (int axis = 0; axis < 3; ++axis) {
       const double world = vertex[axis];
       const std::optional<double> integer = header_.lattice->to_integer(axis, world);
       if (!integer && axis < 2) {
         fail(
-            fmt::format("coordinate {} is not on the lattice that the file's comment tells; remove "
+            fmt::format("coordinate {} is not on the lattice in the file's comment; remove "
                         "the comment",
                         world));
       }
-      vertex[axis] = integer ? *integer : nearest_on_lattice(*header_.lattice, axis, world);
+      point[axis] = integer ? *integer : nearest_on_lattice(*header_.lattice, axis, world);
     }
+    return point;
   }
 
   void read_triangle(Fields& fields, MeshBlock& block) {
@@ -201,7 +202,7 @@ class SmaReader : public MeshStreamReader {
 
   [[nodiscard]] std::int64_t read_number(Fields& fields) const {
     const std::optional<std::int64_t> number = fields.integer();
-    if (!number || *number == 0) fail("a number of a vertex is missing, or is none");
+    if (!number || *number == 0) fail("the number of a vertex is missing, or is not a number");
     return *number;
   }
 
@@ -252,12 +253,13 @@ class SmaReader : public MeshStreamReader {
     const auto check = [this](std::uint64_t came, const std::optional<std::uint64_t>& expected,
                               const char* what) {
       if (expected ? came == *expected : !by_spillway_) return;
-      throw Error(
-          fmt::format("{}: the mesh is cut short: {} {} came{}; get a complete copy or make "
-                      "it again",
-                      source_->name(), came, what,
+      throw BadInput(
+          source_->name(),
+          fmt::format("the mesh is cut short: {} {} came{}; get a complete copy or make it again",
+                      came, what,
                       expected ? fmt::format(", but there should be {}", *expected)
-                               : ", and no line that tells how many there should be"));
+                               : ", and no line says how many there should be"),
+          at_line(lines_.number()));
     };
     check(totals_.vertices, expected_vertices_, "vertices");
     check(totals_.simplices, expected_triangles_, "triangles");
@@ -270,7 +272,7 @@ class SmaReader : public MeshStreamReader {
     bool gone = false;
   };
 
-  std::unique_ptr<InputSource> source_;
+  std::unique_ptr<InputBytes> source_;
   LineReader lines_;
   std::string_view line_;  // read but not yet dealt with, if has_line_
   bool has_line_ = false;
@@ -300,7 +302,7 @@ bool looks_like_sma(std::string_view text) {
   return text.starts_with("v ") || text.starts_with("v\t");
 }
 
-std::unique_ptr<MeshStreamReader> open_sma_reader(std::unique_ptr<InputSource> source) {
+std::unique_ptr<MeshStreamReader> open_sma_reader(std::unique_ptr<InputBytes> source) {
   return std::make_unique<SmaReader>(std::move(source));
 }
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string_view>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh_stream.h"
 
 namespace spillway::detail {
@@ -17,6 +17,6 @@ bool looks_like_sma(std::string_view text);
 
 /// Reads the ASCII streaming mesh of Isenburg and Lindstrom, vertices before the triangles that use
 /// them. docs/formats-meshes.md ("SMA").
-std::unique_ptr<MeshStreamReader> open_sma_reader(std::unique_ptr<InputSource> source);
+std::unique_ptr<MeshStreamReader> open_sma_reader(std::unique_ptr<InputBytes> source);
 
 }  // namespace spillway::detail

@@ -69,15 +69,13 @@ class SmaWriter : public MeshStreamWriter {
   [[nodiscard]] std::uint64_t bytes_written() const override { return bytes_; }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("cannot write {}: {}", file_->name(), what));
-  }
+  [[noreturn]] void fail(const std::string& what) const { throw CannotWrite(file_->name(), what); }
 
   /// Of the block alone.
   void encode(MeshBlock& block) const {
-    move_to_world(header_, block);
     fmt::memory_buffer text;
-    for (const Point<3>& vertex : block.vertices) {
+    for (const LatticePoint& in_block : block.vertices) {
+      const WorldPoint vertex = in_world(header_.lattice, in_block);
       for (const double coordinate : vertex) {
         if (!std::isfinite(coordinate)) {
           fail(fmt::format("a vertex has a coordinate {}; repair the points", coordinate));

@@ -23,26 +23,30 @@ bool is_integer_axis(const MeshStreamHeader& header, int axis) {
 
 const char* demand(bool integer) { return integer ? "an integer up to 2^53" : "finite"; }
 
+[[noreturn]] void fail_to_write(const std::string& what) {
+  throw Error(what, ErrorCode::kInvalidArgument);
+}
+
 SpmCounts counts_of(const MeshStreamHeader& header, const MeshBlock& block) {
   const std::size_t corners = header.dimension + 1;
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
   if (block.vertices.size() > kMost || block.corners.size() / corners > kMost) {
-    throw Error("a block is too large to write");
+    throw Error("a block is too large to write", ErrorCode::kTooLarge);
   }
   if (block.corners.size() % corners != 0) {
-    throw Error(fmt::format("a block has {} corners, which make no whole number of simplices",
-                            block.corners.size()));
+    fail_to_write(fmt::format("a block has {} corners, which make no whole number of simplices",
+                              block.corners.size()));
   }
   if (block.input_index.size() != (header.has_input_index ? block.vertices.size() : 0)) {
-    throw Error(fmt::format("a block has {} vertices with {} input indices", block.vertices.size(),
-                            block.input_index.size()));
+    fail_to_write(fmt::format("a block has {} vertices with {} input indices",
+                              block.vertices.size(), block.input_index.size()));
   }
   std::uint32_t largest = 0;
   for (const std::uint32_t number : block.corners) largest = std::max(largest, number);
   for (const std::uint32_t number : block.finalized) largest = std::max(largest, number);
   if (largest > block.vertices.size() + block.corners.size() + block.imported.size() +
                     block.finalized.size()) {
-    throw Error(fmt::format("a block has a short number {} that stands for no vertex", largest));
+    fail_to_write(fmt::format("a block has a short number {} without a vertex", largest));
   }
   SpmCounts counts;
   counts.vertices = static_cast<std::uint32_t>(block.vertices.size());
@@ -53,22 +57,23 @@ SpmCounts counts_of(const MeshStreamHeader& header, const MeshBlock& block) {
 }
 
 void append_coordinates(std::vector<std::byte>& out, const MeshStreamHeader& header,
-                        std::span<const Point<3>> vertices) {
+                        std::span<const LatticePoint> vertices) {
   std::vector<double> column(vertices.size());
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < column.size(); ++i) column[i] = vertices[i][axis];
     const bool integer = is_integer_axis(header, axis);
     const std::size_t invalid = first_invalid_coordinate(column, integer);
     if (invalid < column.size()) {
-      throw Error(fmt::format("coordinate {} of vertex {} of a block is not {}; repair the points",
-                              column[invalid], invalid, demand(integer)));
+      fail_to_write(
+          fmt::format("coordinate {} of vertex {} of a block is not {}; repair the points",
+                      column[invalid], invalid, demand(integer)));
     }
     append_column(out, column);
   }
 }
 
 void read_coordinates(ColumnReader& columns, const MeshStreamHeader& header, std::size_t count,
-                      const std::string& where, std::vector<Point<3>>& vertices) {
+                      const FileSpot& where, std::vector<LatticePoint>& vertices) {
   std::vector<double> column;
   vertices.resize(count);
   for (int axis = 0; axis < 3; ++axis) {
@@ -76,10 +81,10 @@ void read_coordinates(ColumnReader& columns, const MeshStreamHeader& header, std
     const bool integer = is_integer_axis(header, axis);
     const std::size_t invalid = first_invalid_coordinate(column, integer);
     if (invalid < count) {
-      throw Error(
-          fmt::format("{}: coordinate {} of vertex {} of the block is not {}; the file is corrupt, "
-                      "make it again",
-                      where, column[invalid], invalid, demand(integer)));
+      throw BadInput(where,
+                     fmt::format("coordinate {} of vertex {} of the block is not {}; the file "
+                                 "is corrupt, make it again",
+                                 column[invalid], invalid, demand(integer)));
     }
     for (std::size_t i = 0; i < count; ++i) vertices[i][axis] = column[i];
   }
@@ -106,9 +111,9 @@ SpmCounts append_spm_content(std::vector<std::byte>& out, const MeshStreamHeader
 }
 
 SpmCounts read_spm_content(std::span<const std::byte> content, const MeshStreamHeader& header,
-                           const std::string& where, MeshBlock& block) {
+                           const FileSpot& where, MeshBlock& block) {
   const auto fail = [&where](const char* what) {
-    throw Error(fmt::format("{}: {}; the file is corrupt, make it again", where, what));
+    throw BadInput(where, fmt::format("{}; the file is corrupt, make it again", what));
   };
   if (content.size() < kCountsSize) fail("a block ends early");
   const SpmCounts counts{load<std::uint32_t>(content.data()),

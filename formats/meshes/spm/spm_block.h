@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/meshes/common/mesh_stream.h"
+#include "src/error.h"
 
 namespace spillway::detail {
 
@@ -27,6 +28,6 @@ SpmCounts append_spm_content(std::vector<std::byte>& out, const MeshStreamHeader
 /// `finalized` are sorted. Coordinates are checked, and short numbers against those that the block
 /// says it has. Throws Error, beginning with `where`.
 SpmCounts read_spm_content(std::span<const std::byte> content, const MeshStreamHeader& header,
-                           const std::string& where, MeshBlock& block);
+                           const FileSpot& where, MeshBlock& block);
 
 }  // namespace spillway::detail

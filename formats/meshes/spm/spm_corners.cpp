@@ -34,22 +34,22 @@ template <int D>
 using Rest = std::array<std::uint32_t, D>;  // the corners of a simplex but the first, less that
 
 // Which corner of a simplex is the smallest. Without a branch, as nobody can tell.
-unsigned smallest_place(const std::uint32_t* s, std::integral_constant<int, 2> /*dimension*/) {
+unsigned smallest_corner(const std::uint32_t* s, std::integral_constant<int, 2> /*dimension*/) {
   const unsigned second = static_cast<unsigned>(s[1] < s[0]) & static_cast<unsigned>(s[1] <= s[2]);
   const unsigned third = static_cast<unsigned>(s[2] < s[0]) & static_cast<unsigned>(s[2] < s[1]);
   return second + 2 * third;
 }
 
-unsigned smallest_place(const std::uint32_t* s, std::integral_constant<int, 3> /*dimension*/) {
+unsigned smallest_corner(const std::uint32_t* s, std::integral_constant<int, 3> /*dimension*/) {
   const unsigned low = static_cast<unsigned>(s[1] < s[0]);
   const unsigned high = 2 + static_cast<unsigned>(s[3] < s[2]);
   return s[high] < s[low] ? high : low;
 }
 
-/// The places of the other corners, by that of the smallest, so that the whole is an even
+/// The numbers of the other corners, by that of the smallest, so that the whole is an even
 /// permutation.
 template <int D>
-constexpr auto kOtherPlaces = [] {
+constexpr auto kOtherCorners = [] {
   std::array<std::array<std::uint8_t, D>, D + 1> others{};
   for (unsigned first = 0; first <= D; ++first) {
     for (unsigned k = 0; k < D; ++k) {
@@ -141,16 +141,16 @@ Sorted<D> sort_by_first(std::uint32_t numbers, std::span<const std::uint32_t> co
                    std::make_unique_for_overwrite<Rest<D>[]>(count)};
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t* const simplex = &corners[(D + 1) * i];
-    ++sorted.ends[simplex[smallest_place(simplex, kDimension)] + 1];
+    ++sorted.ends[simplex[smallest_corner(simplex, kDimension)] + 1];
   }
   std::partial_sum(sorted.ends.begin(), sorted.ends.end(), sorted.ends.begin());
   // Now these are the begins of the simplices, which putting them there makes ends.
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t* const simplex = &corners[(D + 1) * i];
-    const unsigned place = smallest_place(simplex, kDimension);
-    const std::uint32_t first = simplex[place];
+    const unsigned smallest = smallest_corner(simplex, kDimension);
+    const std::uint32_t first = simplex[smallest];
     Rest<D>& rest = sorted.rests[sorted.ends[first]++];
-    for (int k = 0; k < D; ++k) rest[k] = simplex[kOtherPlaces<D>[place][k]] - first;
+    for (int k = 0; k < D; ++k) rest[k] = simplex[kOtherCorners<D>[smallest][k]] - first;
   }
   return sorted;
 }
@@ -222,7 +222,7 @@ void order_in_one_fan(Rest<2>* group, std::uint8_t* continues) {
 std::vector<std::uint8_t> order_all_in_fans(std::span<const std::uint32_t> ends,
                                             std::span<Rest<2>> rests) {
   std::vector<std::uint8_t> continues(rests.size() + 7);
-  std::array<std::uint32_t, kUnusualFan + 1> places{};  // of groups, by size
+  std::array<std::uint32_t, kUnusualFan + 1> positions{};  // of groups, by size
   const auto for_each_group = [ends](const auto& visit) {
     std::uint32_t begin = 0;
     for (const std::uint32_t end : ends) {
@@ -230,19 +230,20 @@ std::vector<std::uint8_t> order_all_in_fans(std::span<const std::uint32_t> ends,
       begin = end;
     }
   };
-  for_each_group(
-      [&](std::uint32_t /*begin*/, std::uint32_t size) { ++places[std::min(size, kUnusualFan)]; });
-  std::exclusive_scan(places.begin(), places.end(), places.begin(), std::uint32_t{0});
+  for_each_group([&](std::uint32_t /*begin*/, std::uint32_t size) {
+    ++positions[std::min(size, kUnusualFan)];
+  });
+  std::exclusive_scan(positions.begin(), positions.end(), positions.begin(), std::uint32_t{0});
   const auto groups = std::make_unique_for_overwrite<std::uint32_t[]>(ends.size());
   for_each_group([&](std::uint32_t begin, std::uint32_t size) {
     if (size < kUnusualFan) {
-      groups[places[size]++] = begin;
+      groups[positions[size]++] = begin;
     } else if (size <= kLargestFan) {
       order_in_fans(rests.subspan(begin, size), &continues[begin]);
     }
   });
   const auto order = [&]<std::size_t kSize>(std::integral_constant<std::size_t, kSize>) {
-    for (std::uint32_t g = places[kSize - 1]; g < places[kSize]; ++g) {
+    for (std::uint32_t g = positions[kSize - 1]; g < positions[kSize]; ++g) {
       order_in_one_fan<kSize>(&rests[groups[g]], &continues[groups[g]]);
     }
   };
@@ -302,7 +303,7 @@ void append_simplices(std::vector<std::byte>& out, std::uint32_t numbers,
 class CornerReader {
  public:
   CornerReader(std::span<const std::byte> bytes, int dimension, std::uint32_t numbers,
-               std::uint32_t simplices, const std::string& where)
+               std::uint32_t simplices, const FileSpot& where)
       : left_(bytes),
         dimension_(dimension),
         numbers_(numbers),
@@ -314,7 +315,7 @@ class CornerReader {
     const std::span<const std::byte> bits =
         dimension_ == 2 ? take((std::size_t{simplices_} + 7) / 8) : std::span<const std::byte>();
     if (simplices_ % 8 != 0 && !bits.empty() && (bits.back() >> (simplices_ % 8)) != std::byte{0}) {
-      fail("a fan of triangles goes on behind the last one");
+      fail("a fan of triangles goes on after the last one");
     }
     std::size_t size = std::size_t{simplices_} * dimension_;
     for (const std::byte byte : bits) {
@@ -333,7 +334,7 @@ class CornerReader {
 
  private:
   [[noreturn]] void fail(const char* what) const {
-    throw Error(fmt::format("{}: {}; the file is corrupt, make it again", where_, what));
+    throw BadInput(where_, fmt::format("{}; the file is corrupt, make it again", what));
   }
 
   std::span<const std::byte> take(std::size_t size) {
@@ -399,7 +400,7 @@ class CornerReader {
   }
 
   void check_largest() const {
-    if (largest_ >= numbers_ && simplices_ > 0) fail("a simplex has a corner that is not there");
+    if (largest_ >= numbers_ && simplices_ > 0) fail("a simplex has a corner that does not exist");
   }
 
   void read_triangles(std::span<const std::byte> counts, std::span<const std::byte> bits,
@@ -409,7 +410,7 @@ class CornerReader {
       const std::size_t end = at + count_of(counts, first);
       for (bool begins = true; at < end; ++at, begins = false, out += 3) {
         const bool continues = ((bits[at / 8] >> (at % 8)) & std::byte{1}) != std::byte{0};
-        if (continues && begins) fail("a fan of triangles has no begin");
+        if (continues && begins) fail("a fan of triangles has no beginning");
         out[0] = first;
         out[1] = continues ? out[-1] : corner(first + next());
         out[2] = corner(first + next());
@@ -432,7 +433,7 @@ class CornerReader {
   int dimension_;
   std::uint32_t numbers_;
   std::uint32_t simplices_;
-  const std::string& where_;
+  const FileSpot& where_;
   std::span<const std::byte> low_;
   std::size_t low_at_ = 0;
   std::span<const std::byte> high_;
@@ -456,7 +457,7 @@ void append_corners(std::vector<std::byte>& out, int dimension, std::uint32_t nu
 std::span<const std::byte> read_corners(std::span<const std::byte> bytes, int dimension,
                                         std::uint32_t numbers, std::uint32_t simplices,
                                         std::vector<std::uint32_t>& corners,
-                                        const std::string& where) {
+                                        const FileSpot& where) {
   return CornerReader(bytes, dimension, numbers, simplices, where).read(corners);
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "src/error.h"
+
 namespace spillway::detail {
 
 /// Appends simplices of dimension+1 corners each, all of them below `numbers`. They come back
@@ -19,7 +21,6 @@ void append_corners(std::vector<std::byte>& out, int dimension, std::uint32_t nu
 /// below `numbers`; allocates nothing that the bytes do not back.
 std::span<const std::byte> read_corners(std::span<const std::byte> bytes, int dimension,
                                         std::uint32_t numbers, std::uint32_t simplices,
-                                        std::vector<std::uint32_t>& corners,
-                                        const std::string& where);
+                                        std::vector<std::uint32_t>& corners, const FileSpot& where);
 
 }  // namespace spillway::detail

@@ -18,11 +18,11 @@ namespace {
 
 class SpmReader : public MeshStreamReader {
  public:
-  explicit SpmReader(std::unique_ptr<InputSource> source)
+  explicit SpmReader(std::unique_ptr<InputBytes> source)
       : stream_(std::move(source), {"spm", kSpmMagic, kSpmVersion, "mesh"}, [this] {
           return fmt::format("{} vertices and {} simplices", vertices_, simplices_);
         }) {
-    if (stream_.next() != kSpmHeader) stream_.fail("the first block is no header");
+    if (stream_.next() != kSpmHeader) stream_.fail("the first block is not a header");
     parse_header();
   }
 
@@ -98,7 +98,7 @@ class SpmReader : public MeshStreamReader {
                     header_.dimension);
     }
     if (counts.numbers > counts.vertices + block.imported.size()) {
-      stream_.fail("a block has short numbers that stand for no vertex");
+      stream_.fail("a block has short numbers without a vertex");
     }
     imports_.settle(block);
     vertices_ += counts.vertices;
@@ -113,7 +113,7 @@ class SpmReader : public MeshStreamReader {
     }
     if (!stream_.left().empty()) stream_.fail("the last block is too long");
     if (totals_.vertices != vertices_ || totals_.simplices != simplices_) {
-      stream_.fail(fmt::format("{} vertices and {} simplices came, but the end tells of {} and {}",
+      stream_.fail(fmt::format("{} vertices and {} simplices came, but the end says {} and {}",
                                vertices_, simplices_, totals_.vertices, totals_.simplices));
     }
     stream_.expect_end();
@@ -130,7 +130,7 @@ class SpmReader : public MeshStreamReader {
 
 }  // namespace
 
-std::unique_ptr<MeshStreamReader> open_spm_reader(std::unique_ptr<InputSource> source) {
+std::unique_ptr<MeshStreamReader> open_spm_reader(std::unique_ptr<InputBytes> source) {
   return std::make_unique<SpmReader>(std::move(source));
 }
 

@@ -2,12 +2,12 @@
 
 #include <memory>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh_stream.h"
 
 namespace spillway::detail {
 
 /// Reads Spillway's own mesh stream.
-std::unique_ptr<MeshStreamReader> open_spm_reader(std::unique_ptr<InputSource> source);
+std::unique_ptr<MeshStreamReader> open_spm_reader(std::unique_ptr<InputBytes> source);
 
 }  // namespace spillway::detail

@@ -56,8 +56,9 @@ class SpmWriter : public MeshStreamWriter {
   [[nodiscard]] std::uint64_t bytes_written() const override { return bytes_; }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("cannot write {}: {}", file_->name(), what));
+  [[noreturn]] void fail(const std::string& what,
+                         ErrorCode code = ErrorCode::kInvalidArgument) const {
+    throw CannotWrite(file_->name(), what, code);
   }
 
   /// Of the block alone.
@@ -68,7 +69,7 @@ class SpmWriter : public MeshStreamWriter {
     try {
       counts = append_spm_content(content, header_, block);
     } catch (const Error& error) {
-      fail(error.what());
+      fail(error.what(), error.code());
     }
     block.prepared.resize(sizeof counts);
     store(block.prepared.data(), counts);

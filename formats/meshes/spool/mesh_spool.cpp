@@ -110,15 +110,14 @@ void MeshSpool::finish(const MeshTotals& totals) { encoder_->finish(totals); }
 std::uint64_t MeshSpool::bytes_written() const { return store_->size(); }
 
 std::unique_ptr<MeshStreamReader> MeshSpool::open() const {
-  return open_spm_reader(std::make_unique<InputSource>(std::make_unique<SpoolInput>(*store_)));
+  return open_spm_reader(std::make_unique<InputBytes>(std::make_unique<SpoolInput>(*store_)));
 }
 
 void MeshSpool::copy_to(MeshWriter& writer) const {
   MeshBlock block;
   const std::unique_ptr<MeshStreamReader> for_vertices = open();
   while (for_vertices->read(block)) {
-    move_to_world(header_, block);
-    writer.write_vertices(block.vertices, block.input_index);
+    writer.write_vertices(world_vertices(header_, block), block.input_index);
   }
   const std::unique_ptr<MeshStreamReader> for_simplices = open();
   std::vector<std::uint64_t> corners;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "formats/bytes/block_input.h"
+#include "formats/bytes/buffered_input.h"
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/fields.h"
 #include "formats/bytes/line_reader.h"
@@ -20,7 +20,7 @@ constexpr std::size_t kProbe = 1024;
 
 class BinaryStlReader {
  public:
-  explicit BinaryStlReader(InputSource& source) : size_(source.size()), input_(source) {}
+  explicit BinaryStlReader(InputBytes& source) : size_(source.size()), input_(source) {}
 
   Mesh read() {
     const std::byte* const header = input_.take(kStlHeader);
@@ -29,17 +29,16 @@ class BinaryStlReader {
     const auto count = load<std::uint32_t>(header + kStlText);
     const std::uint64_t bytes = kStlHeader + std::uint64_t{count} * kStlTriangle;
     if (size_ && bytes > *size_) {
-      throw Error(
-          fmt::format("{}: byte {}: the header says {} triangles, which take {} bytes, but the "
-                      "file has {}; get a complete copy",
-                      input_.name(), kStlText, count, bytes, *size_));
+      throw BadInput::at(input_.name(), at_byte(kStlText),
+                         fmt::format("the header says {} triangles, which take {} bytes, but the "
+                                     "file has {}; get a complete copy",
+                                     count, bytes, *size_));
     }
     for (std::uint32_t i = 0; i < count; ++i) read_triangle(i);
     if (input_.take(1) != nullptr) {
-      throw Error(
-          fmt::format("{}: byte {}: the file goes on after its {} triangles; its count is "
-                      "wrong",
-                      input_.name(), bytes, count));
+      throw BadInput::at(
+          input_.name(), at_byte(bytes),
+          fmt::format("the file goes on after its {} triangles; its count is wrong", count));
     }
     joiner_.finish();
     return std::move(mesh_);
@@ -54,8 +53,8 @@ class BinaryStlReader {
     for (double& coordinate : origin_) {
       const std::optional<double> number = fields.number();
       if (!number || !std::isfinite(*number)) {
-        throw Error(fmt::format("{}: byte {}: the header's origin must be three numbers",
-                                input_.name(), kStlOrigin.size()));
+        throw BadInput::at(input_.name(), at_byte(kStlOrigin.size()),
+                           "the header's origin must be three numbers");
       }
       coordinate = *number;
     }
@@ -70,12 +69,14 @@ class BinaryStlReader {
     if (record == nullptr) fail_at_end(fmt::format("triangle {}", number));
     for (int k = 0; k < 3; ++k) {
       const auto local = load<std::array<float, 3>>(record + (k + 1) * sizeof(float) * 3);
-      Point<3> corner;
+      WorldPoint corner;
       for (int axis = 0; axis < 3; ++axis) {
         corner[axis] = origin_[axis] + local[axis];
         if (!std::isfinite(corner[axis])) {
-          throw Error(fmt::format("{}: before byte {}: triangle {} is not finite", input_.name(),
-                                  input_.position(), number));
+          throw BadInput(
+              input_.name(),
+              fmt::format("before byte {}: triangle {} is not finite", input_.position(), number),
+              at_byte(input_.position()));
         }
       }
       joiner_.add(corner);
@@ -83,22 +84,24 @@ class BinaryStlReader {
   }
 
   [[noreturn]] void fail_at_end(const std::string& where) const {
-    throw Error(fmt::format("{}: the file ends at byte {}, within {}; get a complete copy",
-                            input_.name(), input_.end(), where));
+    throw BadInput(input_.name(),
+                   fmt::format("the file ends at byte {}, within {}; get a complete copy",
+                               input_.end(), where),
+                   at_byte(input_.end()));
   }
 
   std::optional<std::uint64_t> size_;
-  BlockInput input_;
+  BufferedInput input_;
   Mesh mesh_;
   VertexJoiner joiner_{mesh_};
-  Point<3> origin_{};
+  WorldPoint origin_{};
 };
 
 /// The grammar: "solid NAME", then per triangle "facet normal X Y Z", "outer loop", three times
 /// "vertex X Y Z", "endloop", "endfacet"; then "endsolid NAME". Several solids make one mesh.
 class AsciiStlReader {
  public:
-  explicit AsciiStlReader(InputSource& source) : source_(source), lines_(source) {}
+  explicit AsciiStlReader(InputBytes& source) : source_(source), lines_(source) {}
 
   Mesh read() {
     bool within_solid = false;
@@ -111,7 +114,7 @@ class AsciiStlReader {
       } else if (within_solid && word == "facet") {
         read_facet();
       } else {
-        fail(fmt::format("here stands {} instead of {}", quoted(word),
+        fail(fmt::format("found {} instead of {}", quoted(word),
                          within_solid ? "a facet or endsolid" : "solid"));
       }
     }
@@ -125,7 +128,7 @@ class AsciiStlReader {
     expect("outer");
     for (int k = 0; k < 3; ++k) {
       expect("vertex");
-      Point<3> corner;
+      WorldPoint corner;
       for (double& coordinate : corner) {
         const std::optional<double> number = fields_.number();
         if (!number || !std::isfinite(*number)) fail("a vertex needs three finite numbers");
@@ -152,14 +155,14 @@ class AsciiStlReader {
   void expect(std::string_view wanted) {
     std::string_view word;
     if (!next(word)) fail(fmt::format("the file ends before {}; get a complete copy", wanted));
-    if (word != wanted) fail(fmt::format("here stands {} instead of {}", quoted(word), wanted));
+    if (word != wanted) fail(fmt::format("found {} instead of {}", quoted(word), wanted));
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: line {}: {}", source_.name(), lines_.number(), what));
+    throw BadInput::at(source_.name(), at_line(lines_.number()), what);
   }
 
-  InputSource& source_;
+  InputBytes& source_;
   LineReader lines_;
   Fields fields_{""};
   Mesh mesh_;
@@ -176,12 +179,12 @@ bool looks_like_ascii_stl(std::string_view text) {
   return text.find("facet") != text.npos || text.find("endsolid") != text.npos;
 }
 
-Mesh read_stl(InputSource& source) {
+Mesh read_stl(InputBytes& source) {
   const std::string_view text = as_text(source.peek(kProbe));
   if (looks_like_ascii_stl(text)) return AsciiStlReader(source).read();
   // The count and the floats of a binary file are no text.
   if (text.size() == kProbe && looks_like_text(text)) {
-    throw Error(fmt::format("{}: this is text, and none of STL; name its format", source.name()));
+    throw BadInput(source.name(), "this is text, but not STL; name its format");
   }
   return BinaryStlReader(source).read();
 }

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh.h"
 
 namespace spillway::detail {
@@ -12,6 +12,6 @@ bool looks_like_ascii_stl(std::string_view text);
 
 /// Reads a binary or ASCII STL file; equal corners become one vertex. The origin that Spillway's
 /// header names is added. Normals and attributes are passed over.
-Mesh read_stl(InputSource& source);
+Mesh read_stl(InputBytes& source);
 
 }  // namespace spillway::detail

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "formats/bytes/block_output.h"
+#include "formats/bytes/buffered_output.h"
 #include "formats/bytes/bytes.h"
 #include "formats/meshes/common/local_origin.h"
 #include "formats/meshes/common/mesh_notes.h"
@@ -49,9 +49,10 @@ class StlWriter : public TriangleStreamWriter {
   }
 
  private:
-  void put_triangle(const std::array<Point<3>, 3>& corners) override {
+  void put_triangle(const std::array<WorldPoint, 3>& corners) override {
     if (triangles() == std::numeric_limits<std::uint32_t>::max()) {
-      fail(fmt::format("STL holds at most {} triangles; choose ply", triangles()));
+      fail(fmt::format("STL holds at most {} triangles; choose ply", triangles()),
+           ErrorCode::kTooLarge);
     }
     if (triangles() == 0) origin_ = local_origin(corners[0]);
     std::array<std::array<float, 3>, 3> local;
@@ -90,12 +91,12 @@ class StlWriter : public TriangleStreamWriter {
     } else if (!output_.rewrite(0, text)) {
       fail(
           "STL begins with the number of its triangles, and this file cannot go back to its "
-          "begin; name a regular file");
+          "beginning; name a regular file");
     }
   }
 
-  BlockOutput output_;
-  Point<3> origin_{};
+  BufferedOutput output_;
+  WorldPoint origin_{};
 };
 
 }  // namespace

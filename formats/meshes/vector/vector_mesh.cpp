@@ -37,7 +37,7 @@ class VectorMeshWriter : public TriangleStreamWriter {
   [[nodiscard]] std::uint64_t bytes_written() const override { return file_.bytes(); }
 
  private:
-  void put_triangle(const std::array<Point<3>, 3>& corners) override {
+  void put_triangle(const std::array<WorldPoint, 3>& corners) override {
     file_.layer().add_triangle(corners);
   }
   void complete() override { file_.finish(); }
@@ -58,15 +58,15 @@ Mesh read_vector_mesh(const std::string& path) {
   Mesh mesh;
   mesh.header.crs = layer->crs();
   if (!read_mesh_note(layer->metadata(kNote), mesh.header)) {
-    throw Error(
-        fmt::format("cannot read {}: the layer's metadata {} holds no lattice: three "
-                    "positive scales, three offsets",
-                    path, kNote));
+    throw Error(fmt::format("cannot read {}: the layer's metadata {} holds no lattice: three "
+                            "positive scales, three offsets",
+                            path, kNote),
+                ErrorCode::kBadInput, {.file = path});
   }
   VertexJoiner joiner(mesh);
-  std::array<Point<3>, 3> corners;
+  std::array<WorldPoint, 3> corners;
   while (layer->next(corners)) {
-    for (const Point<3>& corner : corners) joiner.add(corner);
+    for (const WorldPoint& corner : corners) joiner.add(corner);
   }
   joiner.finish();
   return mesh;

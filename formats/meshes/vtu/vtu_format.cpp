@@ -26,7 +26,7 @@ constinit const MeshFormat kVtuMesh = {
           return text.starts_with('<') && text.find("<VTKFile") != text.npos;
         },
     .read =
-        [](InputSource& source) {
+        [](InputBytes& source) {
           check_is_no_pvtu(source);
           return read_vtu(source);
         },

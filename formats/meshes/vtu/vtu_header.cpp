@@ -35,7 +35,7 @@ constexpr std::array kTypes = {
 
 /// The header's text, up to and with the underscore that precedes the appended data; all of a file
 /// that has none.
-std::string_view header_text(InputSource& source) {
+std::string_view header_text(InputBytes& source) {
   for (std::size_t wanted = kFirstPeek;; wanted *= 4) {
     const std::string_view text = as_text(source.peek(wanted));
     const std::size_t appended = text.find("<AppendedData");
@@ -43,19 +43,18 @@ std::string_view header_text(InputSource& source) {
     if (bracket != text.npos) {
       const std::size_t data = text.find_first_not_of(" \t\r\n", bracket + 1);
       if (data != text.npos && text[data] != '_') {
-        throw Error(
-            fmt::format("{}: byte {}: appended data begins without an underscore; the file "
-                        "is corrupt",
-                        source.name(), data));
+        throw BadInput::at(source.name(), at_byte(data),
+                           "appended data begins without an underscore; the file is corrupt");
       }
       if (data != text.npos) return text.substr(0, data + 1);
     }
     if (text.size() < wanted || wanted >= kLongestHeader) {
       if (bracket == text.npos) return text;
-      throw Error(
-          fmt::format("{}: the file ends at byte {}, before its appended data; get a "
-                      "complete copy",
-                      source.name(), text.size()));
+      throw BadInput(source.name(),
+                     fmt::format("the file ends at byte {}, before its appended data; get a "
+                                 "complete copy",
+                                 text.size()),
+                     at_byte(text.size()));
     }
   }
 }
@@ -69,7 +68,7 @@ class HeaderParser {
   VtuHeader parse() {
     for (XmlScanner::Result result = scanner_.next(tag_); result != XmlScanner::Result::kEnd;
          result = scanner_.next(tag_)) {
-      if (result == XmlScanner::Result::kMalformed) fail("here is no XML tag");
+      if (result == XmlScanner::Result::kMalformed) fail("an XML tag is expected here");
       if (tag_.closing) continue;
       read_tag();
       if (tag_.name == "AppendedData") return finish();
@@ -172,7 +171,7 @@ class HeaderParser {
     std::vector<double> numbers;
     while (!fields.at_end()) {
       const std::optional<double> number = fields.number();
-      if (!number) fail("the array holds something that is no number");
+      if (!number) fail("the array holds something that is not a number");
       numbers.push_back(*number);
     }
     return numbers;
@@ -214,7 +213,7 @@ class HeaderParser {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: byte {}: {}", file_, scanner_.position(), what));
+    throw BadInput::at(file_, at_byte(scanner_.position()), what);
   }
 
   const std::string& file_;
@@ -229,7 +228,7 @@ class HeaderParser {
 
 }  // namespace
 
-VtuHeader read_vtu_header(InputSource& source) {
+VtuHeader read_vtu_header(InputBytes& source) {
   const std::string_view text = header_text(source);
   VtuHeader header = HeaderParser(source.name(), text).parse();
   source.skip(text.size());

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/bytes/number_type.h"
 #include "formats/meshes/common/mesh.h"
 
@@ -30,6 +30,6 @@ struct VtuHeader {
 
 /// Reads a header, up to the first byte of the appended data. Throws Error that names the byte, for
 /// what is malformed and for kinds of VTU that are not read.
-VtuHeader read_vtu_header(InputSource& source);
+VtuHeader read_vtu_header(InputBytes& source);
 
 }  // namespace spillway::detail

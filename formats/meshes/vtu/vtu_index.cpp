@@ -39,12 +39,12 @@ std::string pvtu_text(std::span<const std::string> names, bool has_input_index) 
   return text + "  </PUnstructuredGrid>\n</VTKFile>\n";
 }
 
-void check_is_no_pvtu(InputSource& source) {
+void check_is_no_pvtu(InputBytes& source) {
   if (as_text(source.peek(kProbe)).find("\"PUnstructuredGrid\"") == std::string_view::npos) return;
-  throw Error(fmt::format("{}: this is the index of a mesh's parts, which is for viewers; name one "
-                          "of the parts, or, to check the whole, write it to one file",
-                          source.name()),
-              ErrorCode::kBadInput, {.file = source.name(), .remedy = Remedy::kOneFile});
+  throw BadInput(source.name(),
+                 "this is the index of a mesh's parts, which is for viewers; name one of the "
+                 "parts, or, to check the whole, write it to one file",
+                 {}, Remedy::kOneFile);
 }
 
 }  // namespace spillway::detail

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 
 namespace spillway::detail {
 
@@ -12,6 +12,6 @@ namespace spillway::detail {
 std::string pvtu_text(std::span<const std::string> names, bool has_input_index);
 
 /// Throws Error if this is such an index.
-void check_is_no_pvtu(InputSource& source);
+void check_is_no_pvtu(InputBytes& source);
 
 }  // namespace spillway::detail

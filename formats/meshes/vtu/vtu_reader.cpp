@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "formats/bytes/block_input.h"
+#include "formats/bytes/buffered_input.h"
 #include "formats/bytes/bytes.h"
 #include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/vtu/vtu_header.h"
@@ -18,7 +18,7 @@ namespace {
 
 class VtuReader {
  public:
-  explicit VtuReader(InputSource& source)
+  explicit VtuReader(InputBytes& source)
       : header_(read_vtu_header(source)),
         data_begin_(source.position()),
         size_(source.size()),
@@ -82,7 +82,7 @@ class VtuReader {
     if (may_reserve()) mesh_.vertices.reserve(mesh_.header.vertices);
     for (std::uint64_t i = 0; i < mesh_.header.vertices; ++i) {
       const std::byte* const bytes = take(each);
-      Point<3> point;
+      WorldPoint point;
       for (int axis = 0; axis < 3; ++axis) {
         point[axis] = load_number(type, bytes + axis * size_of(type), false);
         if (!std::isfinite(point[axis])) fail(fmt::format("vertex {} is not finite", i));
@@ -170,23 +170,26 @@ class VtuReader {
 
   std::uint64_t take_index(NumberType type, const char* array, std::uint64_t number) {
     const std::optional<std::uint64_t> index = load_index(type, take(size_of(type)), false);
-    if (!index) fail(fmt::format("{} {} is no index", array, number));
+    if (!index) fail(fmt::format("{} {} is not an index", array, number));
     return *index;
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: before byte {}: {}", input_.name(), input_.position(), what));
+    throw BadInput(input_.name(), fmt::format("before byte {}: {}", input_.position(), what),
+                   at_byte(input_.position()));
   }
 
   [[noreturn]] void fail_at_end() const {
-    throw Error(fmt::format("{}: the file ends at byte {}, within its arrays; get a complete copy",
-                            input_.name(), input_.end()));
+    throw BadInput(input_.name(),
+                   fmt::format("the file ends at byte {}, within its arrays; get a complete copy",
+                               input_.end()),
+                   at_byte(input_.end()));
   }
 
   VtuHeader header_;
   std::uint64_t data_begin_;  // byte where offset 0 is
   std::optional<std::uint64_t> size_;
-  BlockInput input_;
+  BufferedInput input_;
   Mesh mesh_;
   std::uint64_t length_ = 0;        // of the current array, in bytes
   std::uint64_t first_offset_ = 0;  // where the first cell ends
@@ -195,6 +198,6 @@ class VtuReader {
 
 }  // namespace
 
-Mesh read_vtu(InputSource& source) { return VtuReader(source).read(); }
+Mesh read_vtu(InputBytes& source) { return VtuReader(source).read(); }
 
 }  // namespace spillway::detail

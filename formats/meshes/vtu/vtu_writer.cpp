@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "formats/bytes/block_output.h"
+#include "formats/bytes/buffered_output.h"
 #include "formats/bytes/bytes.h"
 #include "formats/meshes/common/checked_mesh_writer.h"
 #include "formats/meshes/common/global_ids.h"
@@ -56,7 +56,9 @@ class VtuWriter : public CheckedMeshWriter {
   }
 
  private:
-  [[nodiscard]] std::uint64_t points_bytes() const { return header().vertices * sizeof(Point<3>); }
+  [[nodiscard]] std::uint64_t points_bytes() const {
+    return header().vertices * sizeof(WorldPoint);
+  }
   [[nodiscard]] std::uint64_t index_bytes() const {
     return header().vertices * sizeof(std::int64_t);
   }
@@ -132,7 +134,7 @@ class VtuWriter : public CheckedMeshWriter {
     return fmt::format("      <PointData{}>\n{}      </PointData>\n", ids, declared);
   }
 
-  void put_vertices(std::span<const Point<3>> vertices,
+  void put_vertices(std::span<const WorldPoint> vertices,
                     std::span<const std::uint64_t> input_index) override {
     if (vertices.empty()) return;
     output_.append(as_text(std::as_bytes(vertices)));
@@ -186,7 +188,7 @@ class VtuWriter : public CheckedMeshWriter {
     output_.advance_to(at + sizeof(T));
   }
 
-  BlockOutput output_;
+  BufferedOutput output_;
   std::uint64_t points_ = 0;
   std::vector<std::uint64_t> input_index_;
 };

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/bytes/not_copied.h"
 #include "formats/disk/file_system.h"
 #include "formats/points/common/point_reader.h"
@@ -20,7 +20,7 @@ struct LasVariant;
 
 /// An input whose format is known.
 struct PointInput {
-  std::unique_ptr<InputSource> source;
+  std::unique_ptr<InputBytes> source;
   std::string path;                    ///< as the user gave it
   std::unique_ptr<InputFile> content;  ///< what the source holds, decompressed, if it is compressed
 };

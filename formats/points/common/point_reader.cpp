@@ -14,7 +14,8 @@ void PointReader::begin_piece(std::uint64_t piece) {
   const std::uint64_t count = pieces().value_or(0);
   if (piece >= count) {
     throw Error(fmt::format("{}: there is no piece {} of {}; read it from front to back",
-                            header().name, piece, count));
+                            header().name, piece, count),
+                ErrorCode::kInvalidArgument, {.file = header().name});
   }
   go_to_piece(piece);
 }

@@ -9,8 +9,8 @@
 
 #include "formats/disk/file_system.h"
 #include "src/geometry/box.h"
+#include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
-#include "src/geometry/point.h"
 
 namespace spillway::detail {
 
@@ -32,7 +32,7 @@ struct PointAttributes {
 /// Points in input order. z is 0 where the input has none.
 struct PointBlock {
   /// Lattice integers if the source has a lattice, else output coordinates.
-  std::vector<Point<3>> points;
+  std::vector<LatticePoint> points;
   /// Each point's number in its source, counted from 0 over all records, dropped ones included; but
   /// see PointReader::begin_piece().
   std::vector<std::uint64_t> index;

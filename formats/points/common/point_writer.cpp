@@ -9,8 +9,8 @@ namespace spillway::detail {
 void check_written(const OutputFile& file, std::optional<std::uint64_t> promised,
                    std::uint64_t written) {
   if (promised && written != *promised) {
-    throw Error(fmt::format("cannot write {}: {} points were promised, but {} came", file.name(),
-                            *promised, written));
+    throw CannotWrite(file.name(),
+                      fmt::format("{} points were promised, but {} came", *promised, written));
   }
 }
 

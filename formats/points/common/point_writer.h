@@ -9,8 +9,8 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
+#include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
-#include "src/geometry/point.h"
 
 namespace spillway::detail {
 
@@ -40,7 +40,7 @@ class PointWriter {
 
   /// Appends points: integers if the options have a lattice, else output coordinates; with one
   /// value of `attributes` each, or none at all: single returns of no class.
-  virtual void write(std::span<const Point<3>> points,
+  virtual void write(std::span<const LatticePoint> points,
                      std::span<const PointAttributes> attributes) = 0;
 
   /// Completes the file. Throws Error if a number of points was promised and another came.

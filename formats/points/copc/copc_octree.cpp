@@ -50,7 +50,7 @@ struct Page {
 
 class Hierarchy {
  public:
-  Hierarchy(InputSource& source, const LasHeader& las, const CopcSelection& selection)
+  Hierarchy(InputBytes& source, const LasHeader& las, const CopcSelection& selection)
       : source_(source),
         las_(las),
         info_(*las.copc),
@@ -60,7 +60,7 @@ class Hierarchy {
                        std::isfinite(info_.spacing) && info_.spacing > 0 &&
                        std::all_of(info_.centre.begin(), info_.centre.end(),
                                    [](double c) { return std::isfinite(c); });
-    if (!sound) fail("the cube of its root or the spacing of its points is no positive number");
+    if (!sound) fail("the cube of its root or the spacing of its points is not a positive number");
     if (selection.resolution > 0) {
       const double finer = std::ceil(std::log2(info_.spacing / selection.resolution));
       deepest_ = static_cast<std::int32_t>(std::clamp<double>(finer, 0, kDeepestLevel));
@@ -84,7 +84,8 @@ class Hierarchy {
     const auto same_key = [](const Node& a, const Node& b) { return a.key == b.key; };
     const auto twice = std::adjacent_find(nodes_.begin(), nodes_.end(), same_key);
     if (twice != nodes_.end()) {
-      fail(fmt::format("the node {} is described twice", text_of(twice->key)));
+      fail(fmt::format("the node {} is described twice", text_of(twice->key)),
+           at_byte(twice->chunk.offset));
     }
     std::vector<LazChunk> chunks;
     chunks.reserve(nodes_.size());
@@ -95,13 +96,14 @@ class Hierarchy {
     std::uint64_t points = 0;
     for (const LazChunk& chunk : chunks) {
       if (chunk.offset < end) {
-        fail(fmt::format("two nodes share the byte {}", chunk.offset));
+        fail(fmt::format("two nodes share the byte {}", chunk.offset), at_byte(chunk.offset));
       }
       end = chunk.offset + chunk.bytes;
       points += chunk.count;
     }
     if (points > las_.count) {
-      fail(fmt::format("its nodes hold {} points, but the file has {}", points, las_.count));
+      fail(fmt::format("its nodes hold {} points, but the file has {}", points, las_.count),
+           at_byte(info_.root_offset));
     }
     return chunks;
   }
@@ -112,11 +114,12 @@ class Hierarchy {
     LazChunk chunk;
   };
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(
-        fmt::format("{}: the COPC octree is corrupt: {}; read all points of the file, or get "
-                    "another copy",
-                    source_.name(), what));
+  [[noreturn]] void fail(const std::string& what, FilePlace place = {}) const {
+    throw BadInput(source_.name(),
+                   fmt::format("the COPC octree is corrupt: {}; read all points of the file, or "
+                               "get another copy",
+                               what),
+                   place);
   }
 
   static std::string text_of(const NodeKey& key) {
@@ -128,7 +131,8 @@ class Hierarchy {
   void read_page(const Page& page) {
     if (page.size == 0 || page.size % kEntrySize != 0 || page.offset > size_ ||
         page.size > size_ - page.offset || page.size > size_ - bytes_read_) {
-      fail(fmt::format("a page of {} bytes at byte {} cannot be", page.size, page.offset));
+      fail(fmt::format("there can be no page of {} bytes at byte {}", page.size, page.offset),
+           at_byte(page.offset));
     }
     bytes_read_ += page.size;
     source_.seek(page.offset);
@@ -136,8 +140,10 @@ class Hierarchy {
     for (std::uint64_t left = page.size; left > 0; left -= bytes.size()) {
       bytes.resize(std::min<std::uint64_t>(left, kEntriesAtOnce * kEntrySize));
       if (source_.read(bytes) < bytes.size()) {
-        throw Error(fmt::format("{}: the file ends at byte {}; get a complete copy", source_.name(),
-                                source_.position()));
+        throw BadInput(
+            source_.name(),
+            fmt::format("the file ends at byte {}; get a complete copy", source_.position()),
+            at_byte(source_.position()));
       }
       for (std::size_t at = 0; at < bytes.size(); at += kEntrySize) {
         take(load_entry(&bytes[at]), page);
@@ -146,12 +152,13 @@ class Hierarchy {
   }
 
   void take(const Entry& entry, const Page& page) {
-    check(entry);
+    check(entry, page);
     if (!is_wanted(entry.key)) return;
     const auto bytes = static_cast<std::uint64_t>(entry.bytes);
     if (entry.count == kInOtherPage) {
       if (page.subtree == entry.key) {
-        fail(fmt::format("the page of node {} refers to another one", text_of(entry.key)));
+        fail(fmt::format("the page of node {} refers to another one", text_of(entry.key)),
+             at_byte(page.offset));
       }
       pages_.push_back({entry.offset, bytes, entry.key});
     } else if (entry.count > 0) {
@@ -159,7 +166,7 @@ class Hierarchy {
     }
   }
 
-  void check(const Entry& entry) const {
+  void check(const Entry& entry, const Page& page) const {
     const std::int32_t level = entry.key.level;
     const std::array<std::int32_t, 3>& cell = entry.key.cell;
     const bool exists = level >= 0 && level <= kDeepestLevel &&
@@ -167,7 +174,8 @@ class Hierarchy {
                           return c >= 0 && c < std::int64_t{1} << level;
                         });
     if (!exists || entry.count < kInOtherPage) {
-      fail(fmt::format("there can be no node {} of {} points", text_of(entry.key), entry.count));
+      fail(fmt::format("there can be no node {} of {} points", text_of(entry.key), entry.count),
+           at_byte(page.offset));
     }
     if (entry.count == 0) return;
     const std::uint64_t least = entry.count > 0 ? shortest_chunk(las_) : kEntrySize;
@@ -176,7 +184,8 @@ class Hierarchy {
         entry.offset < first || entry.offset > size_ ||
         static_cast<std::uint64_t>(entry.bytes) > size_ - entry.offset) {
       fail(fmt::format("node {} cannot be {} bytes at byte {}", text_of(entry.key), entry.bytes,
-                       entry.offset));
+                       entry.offset),
+           at_byte(page.offset));
     }
   }
 
@@ -196,7 +205,7 @@ class Hierarchy {
     return true;
   }
 
-  InputSource& source_;
+  InputBytes& source_;
   const LasHeader& las_;
   const CopcInfo& info_;
   const CopcSelection& selection_;
@@ -209,7 +218,7 @@ class Hierarchy {
 
 }  // namespace
 
-std::vector<LazChunk> select_copc_chunks(InputSource& source, const LasHeader& las,
+std::vector<LazChunk> select_copc_chunks(InputBytes& source, const LasHeader& las,
                                          const CopcSelection& selection) {
   Hierarchy hierarchy(source, las, selection);
   hierarchy.read();

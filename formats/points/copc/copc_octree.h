@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/points/laz/chunk_table.h"
 #include "src/geometry/box.h"
 
@@ -19,7 +19,7 @@ struct CopcSelection {
 /// The chunks of the nodes that are wanted, in file order, in a file that can be read from any byte
 /// on (`source` is left somewhere). Reads the pages of the hierarchy that it needs. Throws Error
 /// for an octree that cannot be.
-std::vector<LazChunk> select_copc_chunks(InputSource& source, const LasHeader& las,
+std::vector<LazChunk> select_copc_chunks(InputBytes& source, const LasHeader& las,
                                          const CopcSelection& selection);
 
 }  // namespace spillway::detail

@@ -9,12 +9,12 @@
 
 namespace spillway::detail {
 
-std::unique_ptr<PointReader> open_copc_reader(std::unique_ptr<InputSource> source,
+std::unique_ptr<PointReader> open_copc_reader(std::unique_ptr<InputBytes> source,
                                               const LasHeader& las, const std::string& path,
                                               const PointReaderOptions& options) {
   if (options.resolution > 0 && !source->seekable()) {
-    throw Error(source->name() +
-                ": levels of a COPC file cannot be chosen on a pipe; give the file by its name");
+    throw BadInput(source->name(),
+                   "levels of a COPC file cannot be chosen on a pipe; give the file by its name");
   }
   const bool select = options.bounds || options.resolution > 0;
   if (!select || !source->seekable() || las.count == 0) {

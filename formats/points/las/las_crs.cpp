@@ -102,9 +102,11 @@ std::optional<Code> code_of(const std::string& crs, const std::string& wkt) {
   const std::optional<CrsKind> kind = kind_of_epsg(*number);
   if (!kind || kind == CrsKind::kOther || kind == CrsKind::kUnknown) {
     throw Error(
-        fmt::format("whether {} is projected or geographic, which LAS has to say, GDAL does not "
-                    "tell: its module is not installed or does not know the code; write spp",
-                    crs));
+        fmt::format(
+            "GDAL cannot say whether {} is projected or geographic, which LAS has to tell: its "
+            "module is not installed or does not know the code; write spp",
+            crs),
+        ErrorCode::kInvalidArgument);
   }
   return Code{*number, *kind};
 }
@@ -112,7 +114,8 @@ std::optional<Code> code_of(const std::string& crs, const std::string& wkt) {
 void append_record(LasCrs& crs, std::uint16_t id, std::span<const std::byte> content) {
   if (content.size() > std::numeric_limits<std::uint16_t>::max()) {
     throw Error(fmt::format("the coordinate system takes {} bytes, and LAS holds 65535; write spp",
-                            content.size()));
+                            content.size()),
+                ErrorCode::kInvalidArgument);
   }
   std::array<std::byte, kLasVlrHeaderSize> header{};
   std::ranges::copy(as_bytes_of(kLasCrsUser), header.begin() + 2);
@@ -135,10 +138,10 @@ LasCrs las_crs(const std::string& crs, const std::string& wkt, bool version14) {
   const std::string& best_wkt = is_wkt(crs) ? crs : wkt;
   const std::optional<Code> code = code_of(crs, wkt);
   if (best_wkt.empty() && !code) {
-    throw Error(
-        fmt::format("LAS cannot hold the coordinate system \"{}\": it is neither WKT nor "
-                    "an EPSG code; write spp",
-                    crs));
+    throw Error(fmt::format("LAS cannot hold the coordinate system \"{}\": it is neither WKT nor "
+                            "an EPSG code; write spp",
+                            crs),
+                ErrorCode::kInvalidArgument);
   }
   const bool use_keys = code && (!version14 || best_wkt.empty());
   if (use_keys) {

@@ -31,8 +31,8 @@ struct Layout {
 constexpr unsigned kNotCompressed = 0;
 constexpr unsigned kBeforeLaz = 3;
 
-[[noreturn]] void fail(const InputSource& source, const std::string& what) {
-  throw Error(fmt::format("{}: {}", source.name(), what));
+[[noreturn]] void fail(const InputBytes& source, std::uint64_t byte, const std::string& what) {
+  throw BadInput(source.name(), what, at_byte(byte));
 }
 
 /// Text up to the first NUL, on one line, without blanks at its end.
@@ -45,38 +45,42 @@ std::string clean_text(std::string_view text) {
   return result;
 }
 
-std::vector<std::byte> read_public_header(InputSource& source) {
+std::vector<std::byte> read_public_header(InputBytes& source) {
   source.check_not_empty();
   std::vector<std::byte> bytes(kLasHeaderSize);
   const std::size_t got = source.read(bytes);
   if (!as_text(std::span(bytes).first(got)).starts_with("LASF")) {
-    fail(source, "this is no LAS file: it does not begin with LASF; name its format");
+    fail(source, 0, "this is not a LAS file: it does not begin with LASF; name its format");
   }
   if (got < kLasHeaderSize) {
-    fail(source, fmt::format("the file ends at byte {}, within the header of {} bytes; get a "
-                             "complete copy",
-                             got, kLasHeaderSize));
+    fail(source, got,
+         fmt::format("the file ends at byte {}, within the header of {} bytes; get a "
+                     "complete copy",
+                     got, kLasHeaderSize));
   }
   const auto header_size = load<std::uint16_t>(&bytes[las_field::kHeaderSize]);
   const auto major = std::to_integer<int>(bytes[las_field::kVersionMajor]);
   const auto minor = std::to_integer<int>(bytes[las_field::kVersionMinor]);
   if (major != 1 || minor > 5) {
-    fail(source, fmt::format("the header says LAS version {}.{}, but only 1.0 to 1.5 are read; "
-                             "convert the file",
-                             major, minor));
+    fail(source, las_field::kVersionMajor,
+         fmt::format("the header says LAS version {}.{}, but only 1.0 to 1.5 are read; "
+                     "convert the file",
+                     major, minor));
   }
   const std::size_t least = minor < 4 ? kLasHeaderSize : kLas14HeaderSize;
   if (header_size < least) {
-    fail(source, fmt::format("the header says it has {} bytes, but LAS 1.{} needs {}; the file is "
-                             "corrupt",
-                             header_size, minor, least));
+    fail(source, las_field::kHeaderSize,
+         fmt::format("the header says it has {} bytes, but LAS 1.{} needs {}; the file is "
+                     "corrupt",
+                     header_size, minor, least));
   }
   bytes.resize(header_size);
   const std::size_t rest = source.read(std::span(bytes).subspan(kLasHeaderSize));
   if (rest < header_size - kLasHeaderSize) {
-    fail(source, fmt::format("the file ends at byte {}, within the header of {} bytes; get a "
-                             "complete copy",
-                             source.position(), header_size));
+    fail(source, source.position(),
+         fmt::format("the file ends at byte {}, within the header of {} bytes; get a "
+                     "complete copy",
+                     source.position(), header_size));
   }
   return bytes;
 }
@@ -98,43 +102,47 @@ Layout read_layout(std::span<const std::byte> bytes) {
   return layout;
 }
 
-void check_point_format(const InputSource& source, unsigned format, std::size_t record_length) {
+void check_point_format(const InputBytes& source, unsigned format, std::size_t record_length) {
   if (format >= kLasRecordLengths.size()) {
-    fail(source, fmt::format("the header says point format {}, but only 0 to 10 exist; the file is "
-                             "corrupt",
-                             format));
+    fail(source, las_field::kPointFormat,
+         fmt::format("the header says point format {}, but only 0 to 10 exist; the file is "
+                     "corrupt",
+                     format));
   }
   if (record_length < kLasRecordLengths[format]) {
-    fail(source, fmt::format("the header says point records of {} bytes, but format {} needs {}; "
-                             "the file is corrupt",
-                             record_length, format, kLasRecordLengths[format]));
+    fail(source, las_field::kRecordLength,
+         fmt::format("the header says point records of {} bytes, but format {} needs {}; "
+                     "the file is corrupt",
+                     record_length, format, kLasRecordLengths[format]));
   }
 }
 
-std::uint64_t point_count(const InputSource& source, std::span<const std::byte> bytes,
+std::uint64_t point_count(const InputBytes& source, std::span<const std::byte> bytes,
                           int point_format) {
   const std::uint64_t legacy = load<std::uint32_t>(&bytes[las_field::kLegacyCount]);
   if (std::to_integer<int>(bytes[las_field::kVersionMinor]) < 4) return legacy;
   const auto count = load<std::uint64_t>(&bytes[las_field::kCount]);
   if (count == 0) return legacy;
   if (point_format < 6 && legacy != 0 && legacy != count) {
-    fail(source, fmt::format("the header gives two numbers of points, {} and {}; the file is "
-                             "corrupt",
-                             legacy, count));
+    fail(source, las_field::kCount,
+         fmt::format("the header gives two numbers of points, {} and {}; the file is "
+                     "corrupt",
+                     legacy, count));
   }
   return count;
 }
 
-Lattice read_lattice(const InputSource& source, std::span<const std::byte> bytes) {
+Lattice read_lattice(const InputBytes& source, std::span<const std::byte> bytes) {
   constexpr double kLargest = 2147483648.0;
   Lattice lattice;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto scale = load<double>(&bytes[las_field::kScale + axis * sizeof(double)]);
     const auto offset = load<double>(&bytes[las_field::kOffset + axis * sizeof(double)]);
     if (!(scale > 0) || !std::isfinite(kLargest * scale + std::abs(offset))) {
-      fail(source, fmt::format("the header has scale {} and offset {} for {}, but a scale is a "
-                               "positive number and an offset a finite one; the file is corrupt",
-                               scale, offset, "xyz"[axis]));
+      fail(source, las_field::kScale + axis * sizeof(double),
+           fmt::format("the header has scale {} and offset {} for {}, but a scale is a "
+                       "positive number and an offset a finite one; the file is corrupt",
+                       scale, offset, "xyz"[axis]));
     }
     lattice.scale[axis] = scale;
     lattice.offset[axis] = offset;
@@ -184,7 +192,7 @@ class CrsRecords {
 };
 
 /// Reads the variable length records up to the points into `header`.
-void read_vlrs(InputSource& source, const Layout& layout, LasHeader& header) {
+void read_vlrs(InputBytes& source, const Layout& layout, LasHeader& header) {
   CrsRecords records;
   std::array<std::byte, kLasVlrHeaderSize> start_of_record;
   std::vector<std::byte> content;
@@ -193,9 +201,10 @@ void read_vlrs(InputSource& source, const Layout& layout, LasHeader& header) {
     const auto read_part = [&](std::span<std::byte> part) {
       if (source.position() + part.size() > layout.offset_to_points ||
           source.read(part) < part.size()) {
-        fail(source, fmt::format("variable length record {} at byte {} does not end before the "
-                                 "points; the file is corrupt",
-                                 i, start));
+        fail(source, start,
+             fmt::format("variable length record {} at byte {} does not end before the "
+                         "points; the file is corrupt",
+                         i, start));
       }
     };
     read_part(start_of_record);
@@ -208,9 +217,9 @@ void read_vlrs(InputSource& source, const Layout& layout, LasHeader& header) {
       header.copc = parse_copc_info(content);
     }
     if (user == kLazUser && record == kLazRecordId) {
-      if (header.laz) fail(source, "there are two LAZ records; the file is corrupt");
-      header.laz =
-          parse_laz_record(content, header.point_format, header.record_length, source.name());
+      if (header.laz) fail(source, start, "there are two LAZ records; the file is corrupt");
+      header.laz = parse_laz_record(content, header.point_format, header.record_length,
+                                    {source.name(), at_byte(start)});
     }
   }
   records.tell(header);
@@ -218,7 +227,7 @@ void read_vlrs(InputSource& source, const Layout& layout, LasHeader& header) {
 
 /// Puts the coordinate system that the records after the points tell into the header. What is
 /// damaged there ends the search, as the points can be read without.
-void read_crs_of_evlrs(InputSource& source, const Layout& layout, LasHeader& las) {
+void read_crs_of_evlrs(InputBytes& source, const Layout& layout, LasHeader& las) {
   constexpr std::uint32_t kMostRecords = 1000;
   constexpr std::uint64_t kLongest = std::uint64_t{1} << 20;
   const std::optional<std::uint64_t> size = source.size();
@@ -258,35 +267,38 @@ std::optional<std::uint64_t> offset_behind_points(const Layout& layout, int poin
 }
 
 /// Checks that the file can hold the records before any of them is read.
-void check_layout(const InputSource& source, const Layout& layout) {
+void check_layout(const InputBytes& source, const Layout& layout) {
   if (layout.offset_to_points < layout.header_size) {
-    fail(source, fmt::format("the header says the points begin at byte {}, within the header of {} "
-                             "bytes; the file is corrupt",
-                             layout.offset_to_points, layout.header_size));
+    fail(source, las_field::kOffsetToPoints,
+         fmt::format("the header says the points begin at byte {}, within the header of {} "
+                     "bytes; the file is corrupt",
+                     layout.offset_to_points, layout.header_size));
   }
   const std::uint64_t space = layout.offset_to_points - layout.header_size;
   if (layout.vlr_count > space / kLasVlrHeaderSize) {
-    fail(source, fmt::format("the header says {} variable length records, but the {} bytes before "
-                             "the points cannot hold them; the file is corrupt",
-                             layout.vlr_count, space));
+    fail(source, las_field::kVlrCount,
+         fmt::format("the header says {} variable length records, but the {} bytes before "
+                     "the points cannot hold them; the file is corrupt",
+                     layout.vlr_count, space));
   }
   const std::optional<std::uint64_t> size = source.size();
   if (size && layout.offset_to_points > *size) {
-    fail(source, fmt::format("the header says the points begin at byte {}, but the file ends at "
-                             "byte {}; get a complete copy",
-                             layout.offset_to_points, *size));
+    fail(source, las_field::kOffsetToPoints,
+         fmt::format("the header says the points begin at byte {}, but the file ends at "
+                     "byte {}; get a complete copy",
+                     layout.offset_to_points, *size));
   }
 }
 
 /// Makes the flag bits of the point format and the LAZ record agree.
-void check_compression(const InputSource& source, const Layout& layout, LasHeader& header) {
+void check_compression(const InputBytes& source, const Layout& layout, LasHeader& header) {
   if (layout.compression == kBeforeLaz) {
-    fail(source,
+    fail(source, las_field::kPointFormat,
          "the points are compressed in the way before LAZ, which is not read; convert the "
          "file with the program that wrote it");
   }
   if (layout.compression != kNotCompressed && !header.laz) {
-    fail(source,
+    fail(source, las_field::kPointFormat,
          "the points are said to be compressed (LAZ), but there is no record that says how; "
          "the file is corrupt");
   }
@@ -295,7 +307,7 @@ void check_compression(const InputSource& source, const Layout& layout, LasHeade
 }
 
 /// Goes to the first uncompressed point and checks that the file can hold all of them.
-void find_points(InputSource& source, LasHeader& header) {
+void find_points(InputBytes& source, LasHeader& header) {
   constexpr std::uint16_t kStart = 0xCCDD;
   constexpr std::uint16_t kStartSwapped = 0xDDCC;
   const std::optional<std::uint64_t> size = source.size();
@@ -305,7 +317,7 @@ void find_points(InputSource& source, LasHeader& header) {
     const auto value = begin.size() < sizeof(kStart) ? 0 : load<std::uint16_t>(begin.data());
     if (value == kStart || value == kStartSwapped) {
       if (!size) {
-        fail(source,
+        fail(source, header.offset_to_points,
              "without the size of the file it is not clear where the points of this LAS 1.0 "
              "file begin; give it by its name instead of on a pipe");
       }
@@ -318,15 +330,16 @@ void find_points(InputSource& source, LasHeader& header) {
     }
   }
   if (size && header.count > room()) {
-    fail(source, fmt::format("the header says {} points of {} bytes, but the file ends at byte {}, "
-                             "after {} of them; get a complete copy",
-                             header.count, header.record_length, *size, room()));
+    fail(source, *size,
+         fmt::format("the header says {} points of {} bytes, but the file ends at byte {}, "
+                     "after {} of them; get a complete copy",
+                     header.count, header.record_length, *size, room()));
   }
 }
 
 }  // namespace
 
-LasHeader read_las_header(InputSource& source) {
+LasHeader read_las_header(InputBytes& source) {
   constexpr unsigned kFormatBits = 0x3f;
   const std::vector<std::byte> bytes = read_public_header(source);
   const Layout layout = read_layout(bytes);
@@ -348,8 +361,9 @@ LasHeader read_las_header(InputSource& source) {
   check_compression(source, layout, header);
   if (header.crs.empty() && layout.evlr_count > 0) read_crs_of_evlrs(source, layout, header);
   if (!source.skip(layout.offset_to_points - source.position())) {
-    fail(source, fmt::format("the file ends at byte {}, before the points; get a complete copy",
-                             source.position()));
+    fail(source, source.position(),
+         fmt::format("the file ends at byte {}, before the points; get a complete copy",
+                     source.position()));
   }
   if (!header.laz) find_points(source, header);
   return header;

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/points/common/point_reader.h"
 #include "formats/points/las/copc_info.h"
 #include "formats/points/las/laz_record.h"
@@ -87,7 +87,7 @@ struct LasHeader {
 /// Reads everything before the first point, and after the points where the coordinate system is
 /// not told before and the source can go there. Throws Error, before anything is allocated, if a
 /// field contradicts another one or the size of the file.
-LasHeader read_las_header(InputSource& source);
+LasHeader read_las_header(InputBytes& source);
 
 /// The same as any point source has it, for a source of that name.
 PointHeader las_point_header(const LasHeader& las, const std::string& path);

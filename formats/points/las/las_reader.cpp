@@ -35,7 +35,7 @@ PointAttributes record_attributes(const std::byte* record, bool extended) {
 
 class LasReader : public PointReader {
  public:
-  LasReader(std::unique_ptr<InputSource> source, const LasHeader& las, const std::string& path,
+  LasReader(std::unique_ptr<InputBytes> source, const LasHeader& las, const std::string& path,
             const PointReaderOptions& options)
       : source_(std::move(source)),
         las_(las),
@@ -56,10 +56,11 @@ class LasReader : public PointReader {
     raw.bytes.resize(raw.count * las_.record_length);
     const std::size_t got = source_->read(raw.bytes);
     if (got < raw.bytes.size()) {
-      throw Error(fmt::format(
-          "{}: the file ends at byte {}, within point {} of {}; get a complete "
-          "copy",
-          source_->name(), source_->position(), next_ + got / las_.record_length, las_.count));
+      throw BadInput(source_->name(),
+                     fmt::format("the file ends at byte {}, within point {} of {}; get a complete "
+                                 "copy",
+                                 source_->position(), next_ + got / las_.record_length, las_.count),
+                     at_byte(source_->position()));
     }
     next_ += raw.count;
     return raw.count > 0;
@@ -103,7 +104,7 @@ class LasReader : public PointReader {
     source_->seek(begin_ + next_ * las_.record_length);
   }
 
-  std::unique_ptr<InputSource> source_;
+  std::unique_ptr<InputBytes> source_;
   LasHeader las_;
   PointHeader header_;
   bool attributes_;
@@ -117,7 +118,7 @@ class LasReader : public PointReader {
 
 }  // namespace
 
-std::unique_ptr<PointReader> open_las_reader(std::unique_ptr<InputSource> source,
+std::unique_ptr<PointReader> open_las_reader(std::unique_ptr<InputBytes> source,
                                              const LasHeader& las, const std::string& path,
                                              const PointReaderOptions& options) {
   return std::make_unique<LasReader>(std::move(source), las, path, options);

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/points/common/point_reader.h"
 #include "formats/points/las/las_header.h"
 
@@ -11,7 +11,7 @@ namespace spillway::detail {
 
 /// Reads the points of a LAS file that are not compressed, of which `source` has been read up to
 /// them. `path` is the source's name as the user gave it.
-std::unique_ptr<PointReader> open_las_reader(std::unique_ptr<InputSource> source,
+std::unique_ptr<PointReader> open_las_reader(std::unique_ptr<InputBytes> source,
                                              const LasHeader& las, const std::string& path,
                                              const PointReaderOptions& options);
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/points/common/point_reader.h"
 #include "formats/points/las/las_header.h"
 
@@ -15,7 +15,7 @@ struct LasVariant {
   /// Whether a file with this header is one of these.
   bool (*is_told)(const LasHeader& las);
   /// `source` has been read up to the points.
-  std::unique_ptr<PointReader> (*open)(std::unique_ptr<InputSource> source, const LasHeader& las,
+  std::unique_ptr<PointReader> (*open)(std::unique_ptr<InputBytes> source, const LasHeader& las,
                                        const std::string& path, const PointReaderOptions& options);
 };
 

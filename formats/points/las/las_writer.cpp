@@ -37,13 +37,15 @@ bool is_version14(const OutputFile& file, const PointWriterOptions& options) {
   if (options.version.empty()) return large;
   if (options.version != "1.2" && options.version != "1.4") {
     throw InvalidArgument(fmt::format("cannot write {}: LAS {} is not written; choose 1.2 or 1.4",
-                                      file.name(), options.version));
+                                      file.name(), options.version),
+                          {.file = file.name()});
   }
   if (options.version == "1.2" && large) {
     throw InvalidArgument(
         fmt::format("cannot write {}: {} points are more than LAS 1.2 counts; choose "
                     "1.4",
-                    file.name(), *options.count));
+                    file.name(), *options.count),
+        {.file = file.name()});
   }
   return options.version == "1.4";
 }
@@ -56,22 +58,18 @@ class LasWriter : public PointWriter {
         version14_(is_version14(*file_, options)),
         record_length_(kLasRecordLengths[version14_ ? 6 : 0]) {
     if (!options.lattice) {
-      throw Error(
-          fmt::format("cannot write {}: LAS holds integers with a scale, and these points "
-                      "have none; write spp, npy or text, or round them with convert",
-                      file_->name()));
+      throw CannotWrite(file_->name(),
+                        "LAS holds integers with a scale, and these points have none; write spp, "
+                        "npy or text, or round them with convert");
     }
     if (options.coordinates != 3) {
-      throw Error(
-          fmt::format("cannot write {}: LAS points have three coordinates; write text or "
-                      "npy",
-                      file_->name()));
+      throw CannotWrite(file_->name(), "LAS points have three coordinates; write text or npy");
     }
     lattice_ = *options.lattice;
     try {
       crs_ = las_crs(options.crs, options.crs_wkt, version14_);
     } catch (const Error& error) {
-      throw Error(fmt::format("cannot write {}: {}", file_->name(), error.what()));
+      throw CannotWrite(file_->name(), error.what(), error.code());
     }
     records_.resize(kBlockPoints * record_length_);
     // Right, if wide, wherever finish() cannot come back to write the tight ones.
@@ -83,7 +81,7 @@ class LasWriter : public PointWriter {
     file_->write(head);
   }
 
-  void write(std::span<const Point<3>> points,
+  void write(std::span<const LatticePoint> points,
              std::span<const PointAttributes> attributes) override {
     while (!points.empty()) {
       const std::size_t size = std::min(points.size(), kBlockPoints);
@@ -103,12 +101,13 @@ class LasWriter : public PointWriter {
   }
 
  private:
-  void write_block(std::span<const Point<3>> points, std::span<const PointAttributes> attributes) {
+  void write_block(std::span<const LatticePoint> points,
+                   std::span<const PointAttributes> attributes) {
     if (!version14_ && written_ + points.size() > kMostLegacyPoints) {
-      throw Error(
-          fmt::format("cannot write {}: more than {} points come, and LAS 1.2 counts no further",
-                      file_->name(), kMostLegacyPoints),
-          ErrorCode::kTooLarge, {.file = file_->name(), .remedy = Remedy::kLas14});
+      throw CannotWrite(
+          file_->name(),
+          fmt::format("more than {} points come, and LAS 1.2 counts no further", kMostLegacyPoints),
+          ErrorCode::kTooLarge, at_record(kMostLegacyPoints), Remedy::kLas14);
     }
     std::byte* record = records_.data();
     for (std::size_t i = 0; i < points.size(); ++i, record += record_length_) {
@@ -155,28 +154,31 @@ class LasWriter : public PointWriter {
     invalid_ |= !holds(a);
   }
 
-  [[noreturn]] void fail_at_first_invalid(std::span<const Point<3>> points,
+  [[noreturn]] void fail_at_first_invalid(std::span<const LatticePoint> points,
                                           std::span<const PointAttributes> attributes) const {
     const auto valid = [](double v) { return v >= kLeast && v <= kMost && v == std::floor(v); };
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Point<3>& p = points[i];
+      const LatticePoint& p = points[i];
       if (!valid(p[0]) || !valid(p[1]) || !valid(p[2])) {
-        throw Error(
-            fmt::format("cannot write {}: point {} ({}, {}, {}) is not on the 32-bit integers "
-                        "that LAS holds; choose another scale or offset, or write spp",
-                        file_->name(), written_ + i, p[0], p[1], p[2]));
+        throw CannotWrite(
+            file_->name(),
+            fmt::format(
+                "point {} ({}, {}, {}) is not on the 32-bit integers that LAS holds; choose "
+                "another scale or offset, or write spp",
+                written_ + i, p[0], p[1], p[2]),
+            ErrorCode::kInvalidArgument, at_record(written_ + i));
       }
       if (!attributes.empty() && !holds(attributes[i])) {
         const PointAttributes& a = attributes[i];
-        throw Error(
-            fmt::format("cannot write {}: point {} (class {}, return {} of {}{}) is more than a "
-                        "LAS {} record holds{}",
-                        file_->name(), written_ + i, a.classification, a.return_number,
-                        a.return_count,
-                        (a.flags & PointAttributes::kOverlap) != 0 ? ", overlap" : "",
-                        version14_ ? "1.4" : "1.2", version14_ ? "; the input is corrupt" : ""),
-            ErrorCode::kBadInput,
-            {.file = file_->name(), .remedy = version14_ ? Remedy::kNone : Remedy::kLas14});
+        throw CannotWrite(
+            file_->name(),
+            fmt::format(
+                "point {} (class {}, return {} of {}{}) is more than a LAS {} record holds{}",
+                written_ + i, a.classification, a.return_number, a.return_count,
+                (a.flags & PointAttributes::kOverlap) != 0 ? ", overlap" : "",
+                version14_ ? "1.4" : "1.2", version14_ ? "; the input is corrupt" : ""),
+            version14_ ? ErrorCode::kBadInput : ErrorCode::kInvalidArgument,
+            at_record(written_ + i), version14_ ? Remedy::kNone : Remedy::kLas14);
       }
     }
     throw std::logic_error("a block without invalid points was called invalid");

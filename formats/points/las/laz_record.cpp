@@ -62,9 +62,9 @@ std::vector<LazItemType> items_of(int point_format, bool extra_bytes) {
 }  // namespace
 
 LazRecord parse_laz_record(std::span<const std::byte> content, int point_format,
-                           std::size_t record_length, const std::string& file) {
+                           std::size_t record_length, const FileSpot& where) {
   const auto fail = [&](const std::string& what) {
-    throw Error(fmt::format("{}: the LAZ record {}", file, what));
+    throw BadInput(where.file, fmt::format("the LAZ record {}", what), where.place);
   };
   if (content.size() < kRecordSize) {
     fail(fmt::format("has {} bytes, but {} are needed; the file is corrupt", content.size(),

@@ -6,8 +6,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
+
+#include "src/error.h"
 
 namespace spillway::detail {
 
@@ -51,10 +52,10 @@ struct LazRecord {
   LazChunkFormat format;  ///< of no use if nothing is compressed
 };
 
-/// Reads the record's content, in a file of points of that format and length. Throws Error that
-/// begins with the name of the file if it is none that can be decoded.
+/// Reads the record's content, in a file of points of that format and length. Throws BadInput
+/// of `where` if it is none that can be decoded.
 LazRecord parse_laz_record(std::span<const std::byte> content, int point_format,
-                           std::size_t record_length, const std::string& file);
+                           std::size_t record_length, const FileSpot& where);
 
 /// Layers of a chunk of that format.
 std::size_t laz_layers(const LazChunkFormat& format);

@@ -29,7 +29,8 @@ void LazChunkDecoder::begin(LazBytes& bytes, std::uint64_t count) {
   std::visit([&](auto& chunk) { chunk.begin(bytes, count); }, impl_->chunk);
 }
 
-void LazChunkDecoder::decode(std::span<Point<3>> points, std::span<PointAttributes> attributes) {
+void LazChunkDecoder::decode(std::span<LatticePoint> points,
+                             std::span<PointAttributes> attributes) {
   std::visit([&](auto& chunk) { chunk.decode(points, attributes); }, impl_->chunk);
 }
 

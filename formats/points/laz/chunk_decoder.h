@@ -29,10 +29,10 @@ class LazChunkDecoder {
 
   /// The next points of the chunk, as integers; `attributes` has as many entries, or is empty if
   /// the decoder was made without.
-  void decode(std::span<Point<3>> points, std::span<PointAttributes> attributes);
+  void decode(std::span<LatticePoint> points, std::span<PointAttributes> attributes);
 
   /// After the chunk's last point: checks that the stream ended as encoders end it, and returns how
-  /// many bytes of the last piece of `bytes` lie after the chunk.
+  /// many bytes of the last span of `bytes` lie after the chunk.
   std::size_t end();
 
  private:

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/points/las/las_header.h"
 
 namespace spillway::detail {
@@ -23,11 +23,11 @@ inline constexpr std::size_t kChunkTablePointer = 8;
 /// The chunks that the table lists, up to the header's number of points, in a file that can be
 /// read from any byte on (`source` is left somewhere). Nothing if the table was never written.
 /// Throws Error for a table that is not that of a complete file.
-std::optional<std::vector<LazChunk>> read_chunk_table(InputSource& source, const LasHeader& las);
+std::optional<std::vector<LazChunk>> read_chunk_table(InputBytes& source, const LasHeader& las);
 
 /// Reads the pointer at the beginning of the points of a source that cannot go back, and returns
 /// what it says of where the chunks end; nothing where the table tells that or is missing.
-std::optional<std::uint64_t> read_end_of_chunks(InputSource& source, const LasHeader& las);
+std::optional<std::uint64_t> read_end_of_chunks(InputBytes& source, const LasHeader& las);
 
 /// Bytes of the shortest chunk: its first record and what every chunk has besides.
 std::size_t shortest_chunk(const LasHeader& las);

@@ -13,7 +13,7 @@ LayeredChunk::LayeredChunk(const LazChunkFormat& format, bool attributes)
 }
 
 void LayeredChunk::begin(LazBytes& bytes, std::uint64_t count) {
-  input_ = PieceInput(bytes);
+  input_ = ChunkInput(bytes);
   const std::size_t sizes_at = record_length_ + 4;
   const std::span<const std::byte> head = input_.take(sizes_at + 4 * layer_count_, head_);
   const Point14 first = Point14::of_record(head.data());
@@ -36,7 +36,7 @@ void LayeredChunk::begin(LazBytes& bytes, std::uint64_t count) {
   at_first_ = true;
 }
 
-void LayeredChunk::decode(std::span<Point<3>> points, std::span<PointAttributes> attributes) {
+void LayeredChunk::decode(std::span<LatticePoint> points, std::span<PointAttributes> attributes) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!at_first_) points_.decode();
     at_first_ = false;

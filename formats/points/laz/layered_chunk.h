@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "formats/points/laz/chunk_decoder.h"
+#include "formats/points/laz/chunk_input.h"
 #include "formats/points/laz/coding/point14_layers.h"
-#include "formats/points/laz/piece_input.h"
 
 namespace spillway::detail::laz {
 
@@ -18,14 +18,14 @@ class LayeredChunk {
   LayeredChunk(const LazChunkFormat& format, bool attributes);
 
   void begin(LazBytes& bytes, std::uint64_t count);
-  void decode(std::span<Point<3>> points, std::span<PointAttributes> attributes);
+  void decode(std::span<LatticePoint> points, std::span<PointAttributes> attributes);
   std::size_t end();
 
  private:
   std::size_t record_length_ = 0;
   std::size_t layer_count_;
   std::size_t wanted_layers_;
-  PieceInput input_;
+  ChunkInput input_;
   std::vector<std::byte> head_;
   std::vector<std::byte> layers_;
   std::uint64_t skipped_ = 0;  // bytes after the wanted layers

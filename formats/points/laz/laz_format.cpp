@@ -13,7 +13,7 @@ constexpr std::string_view kExtensions[] = {"laz"};
 constexpr LasVariant kVariant = {
     .is_told = [](const LasHeader& las) { return las.laz && !las.copc; },
     .open =
-        [](std::unique_ptr<InputSource> source, const LasHeader& las, const std::string& path,
+        [](std::unique_ptr<InputBytes> source, const LasHeader& las, const std::string& path,
            const PointReaderOptions& options) {
           return open_laz_reader(std::move(source), las, path, options);
         }};

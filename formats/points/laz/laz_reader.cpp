@@ -11,7 +11,7 @@
 #include "formats/points/laz/chunk_decoder.h"
 #include "formats/points/laz/chunk_table.h"
 #include "formats/points/laz/coding/point14_layers.h"
-#include "formats/points/laz/source_bytes.h"
+#include "formats/points/laz/file_bytes.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -40,7 +40,7 @@ class MemoryBytes : public LazBytes {
 /// told before they are decoded; else fetch() decodes them.
 class LazReader : public PointReader {
  public:
-  LazReader(std::unique_ptr<InputSource> source, const LasHeader& las, const std::string& path,
+  LazReader(std::unique_ptr<InputBytes> source, const LasHeader& las, const std::string& path,
             const PointReaderOptions& options, std::optional<std::vector<LazChunk>> chosen)
       : source_(std::move(source)),
         las_(las),
@@ -111,17 +111,19 @@ class LazReader : public PointReader {
     left_ = 0;
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: {}", source_->name(), what));
+  [[noreturn]] void fail(const std::string& what, FilePlace place = {}) const {
+    throw BadInput(source_->name(), what, place);
   }
 
   [[noreturn]] void fail_at(std::uint64_t offset, const Error& error) const {
-    fail(fmt::format("the chunk at byte {}: {}; get a complete copy", offset, error.what()));
+    fail(fmt::format("the chunk at byte {}: {}; get a complete copy", offset, error.what()),
+         at_byte(offset));
   }
 
   [[noreturn]] void fail_truncated() const {
     fail(fmt::format("the file ends at byte {}, after {} of {} points; get a complete copy",
-                     source_->position(), next_, count_));
+                     source_->position(), next_, count_),
+         at_byte(source_->position()));
   }
 
   static void check_end(bool at_end) {
@@ -151,10 +153,12 @@ class LazReader : public PointReader {
       chunks_end_ = read_end_of_chunks(*source_, las_).value_or(kUnlimited);
     }
     if (!chunks_ && !las_.laz->chunk_points && !las_.laz->format.layered) {
-      fail(seekable ? "the table of the compressed chunks is missing, and they have different "
-                      "sizes; write the file anew"
-                    : "its compressed chunks have different sizes, which a table at its end tells; "
-                      "give the file by its name instead of on a pipe");
+      fail(seekable
+               ? "the table of the compressed chunks is missing, and they have different "
+                 "sizes; write the file again"
+               : "its compressed chunks have different sizes, which are in a table at its end; "
+                 "give the file by its name instead of on a pipe",
+           at_byte(las_.offset_to_points));
     }
   }
 
@@ -243,10 +247,11 @@ class LazReader : public PointReader {
     const auto count = load<std::uint32_t>(&raw.bytes[count_at]);
     const bool exact = chunks_ || las_.laz->chunk_points;
     if (exact ? count != chunk.count : count == 0 || count > chunk.count) {
-      fail(
-          fmt::format("the chunk at byte {} says it has {} points, but {} are to come; the file is "
-                      "corrupt",
-                      chunk.offset, count, chunk.count));
+      fail(fmt::format(
+               "the chunk at byte {} says it has {} points, but {} are expected; the file is "
+               "corrupt",
+               chunk.offset, count, chunk.count),
+           at_byte(chunk.offset));
     }
     chunk.count = count;
     std::uint64_t wanted = 0;
@@ -275,10 +280,10 @@ class LazReader : public PointReader {
   }
 
   [[noreturn]] void fail_layers(const LazChunk& chunk, std::uint64_t bytes) const {
-    fail(
-        fmt::format("the chunk at byte {} and its layers take {} bytes, but the chunk table "
-                    "leaves it {}; the file is corrupt",
-                    chunk.offset, bytes, chunk.bytes));
+    fail(fmt::format("the chunk at byte {} and its layers take {} bytes, but the chunk table "
+                     "leaves it {}; the file is corrupt",
+                     chunk.offset, bytes, chunk.bytes),
+         at_byte(chunk.offset));
   }
 
   /// Reads `count` more bytes; memory grows only with what is there.
@@ -376,7 +381,7 @@ class LazReader : public PointReader {
     idle_.push_back(std::move(decoder));
   }
 
-  std::unique_ptr<InputSource> source_;
+  std::unique_ptr<InputBytes> source_;
   LasHeader las_;
   PointHeader header_;
   bool attributes_;
@@ -394,7 +399,7 @@ class LazReader : public PointReader {
   std::unique_ptr<LazChunkDecoder> in_order_;
   std::uint64_t in_order_at_ = 0;
   std::uint64_t left_ = 0;  // points still to come
-  SourceBytes stream_;      // its bytes if it is pointwise
+  FileBytes stream_;        // its bytes if it is pointwise
   std::vector<std::byte> held_;
   MemoryBytes held_bytes_{{}};  // if it is layered
 
@@ -404,7 +409,7 @@ class LazReader : public PointReader {
 
 }  // namespace
 
-std::unique_ptr<PointReader> open_laz_reader(std::unique_ptr<InputSource> source,
+std::unique_ptr<PointReader> open_laz_reader(std::unique_ptr<InputBytes> source,
                                              const LasHeader& las, const std::string& path,
                                              const PointReaderOptions& options,
                                              std::optional<std::vector<LazChunk>> chosen) {

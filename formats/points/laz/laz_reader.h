@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/points/common/point_reader.h"
 #include "formats/points/las/las_header.h"
 #include "formats/points/laz/chunk_table.h"
@@ -15,7 +15,7 @@ namespace spillway::detail {
 /// Reads the compressed points of a LAZ file, of which `source` has been read up to them: those of
 /// `chosen` chunks, of options.bounds if that is set, or all of them. `path` is the source's name
 /// as the user gave it. Throws Error for a pipe that cannot be read in order.
-std::unique_ptr<PointReader> open_laz_reader(std::unique_ptr<InputSource> source,
+std::unique_ptr<PointReader> open_laz_reader(std::unique_ptr<InputBytes> source,
                                              const LasHeader& las, const std::string& path,
                                              const PointReaderOptions& options,
                                              std::optional<std::vector<LazChunk>> chosen = {});

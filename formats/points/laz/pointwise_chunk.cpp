@@ -1,9 +1,9 @@
 #include "formats/points/laz/pointwise_chunk.h"
 
 #include "formats/bytes/bytes.h"
+#include "formats/points/laz/chunk_input.h"
 #include "formats/points/laz/coding/items_v1.h"
 #include "formats/points/laz/coding/items_v2.h"
-#include "formats/points/laz/piece_input.h"
 #include "src/error.h"
 
 namespace spillway::detail::laz {
@@ -56,7 +56,7 @@ PointwiseChunk::PointwiseChunk(const LazChunkFormat& format)
 }
 
 void PointwiseChunk::begin(LazBytes& bytes, std::uint64_t /*count*/) {
-  PieceInput input(bytes);
+  ChunkInput input(bytes);
   point_->reset();
   point_->point = Point10::of_record(input.take(record_length_, first_record_).data());
   for (const auto& item : others_) item->reset();
@@ -64,7 +64,7 @@ void PointwiseChunk::begin(LazBytes& bytes, std::uint64_t /*count*/) {
   stream_ = ArithmeticDecoder(input.rest(), &bytes);
 }
 
-void PointwiseChunk::decode(std::span<Point<3>> points, std::span<PointAttributes> attributes) {
+void PointwiseChunk::decode(std::span<LatticePoint> points, std::span<PointAttributes> attributes) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!at_first_) {
       point_->decode(stream_);

@@ -17,7 +17,7 @@ class PointwiseChunk {
   explicit PointwiseChunk(const LazChunkFormat& format);
 
   void begin(LazBytes& bytes, std::uint64_t count);
-  void decode(std::span<Point<3>> points, std::span<PointAttributes> attributes);
+  void decode(std::span<LatticePoint> points, std::span<PointAttributes> attributes);
   std::size_t end() { return stream_.rest().size(); }
 
  private:

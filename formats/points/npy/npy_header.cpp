@@ -15,8 +15,8 @@ constexpr std::size_t kLongestDictionary = 65536;
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kMostDimensions = 32;
 
-[[noreturn]] void fail(const InputSource& source, const std::string& what) {
-  throw Error(fmt::format("{}: {}", source.name(), what));
+[[noreturn]] void fail(const InputBytes& source, std::uint64_t byte, const std::string& what) {
+  throw BadInput(source.name(), what, at_byte(byte));
 }
 
 /// Parses the Python dictionary that describes the array; `ok` turns false at what it cannot be.
@@ -97,45 +97,49 @@ class DictionaryParser {
 
 }  // namespace
 
-NpyHeader read_npy_header(InputSource& source) {
+NpyHeader read_npy_header(InputBytes& source) {
   source.check_not_empty();
   std::array<std::byte, 12> start;
   const std::span<std::byte> prefix = std::span(start).first(kNpyMagic.size() + 2);
   const std::size_t got = source.read(prefix);
   if (!as_text(prefix.first(got)).starts_with(kNpyMagic)) {
-    fail(source, "this is no npy file: it does not begin with \\x93NUMPY; name its format");
+    fail(source, 0, "this is not an npy file: it does not begin with \\x93NUMPY; name its format");
   }
   const auto major = got < prefix.size() ? 0 : std::to_integer<int>(prefix[kNpyMagic.size()]);
   const auto minor = got < prefix.size() ? 0 : std::to_integer<int>(prefix[kNpyMagic.size() + 1]);
   const std::span<std::byte> length_bytes =
       std::span(start).subspan(prefix.size(), major == 1 ? 2 : 4);
   if (got == prefix.size() && (major < 1 || major > 3)) {
-    fail(source, fmt::format("the file says npy version {}.{}, but only 1.0 to 3.0 are read; save "
-                             "the array anew",
-                             major, minor));
+    fail(source, kNpyMagic.size(),
+         fmt::format("the file says npy version {}.{}, but only 1.0 to 3.0 are read; save "
+                     "the array again",
+                     major, minor));
   }
   if (got < prefix.size() || source.read(length_bytes) < length_bytes.size()) {
-    fail(source, fmt::format("the file ends at byte {}, within its header; get a complete copy",
-                             source.position()));
+    fail(source, source.position(),
+         fmt::format("the file ends at byte {}, within its header; get a complete copy",
+                     source.position()));
   }
   const std::size_t length = major == 1 ? load<std::uint16_t>(length_bytes.data())
                                         : load<std::uint32_t>(length_bytes.data());
   if (length > kLongestDictionary) {
-    fail(source,
+    fail(source, prefix.size(),
          fmt::format("the header says it has {} bytes, but {} is the most that is read; the "
                      "file is corrupt",
                      length, kLongestDictionary));
   }
   std::vector<std::byte> dictionary(length);
   if (source.read(dictionary) < length) {
-    fail(source, fmt::format("the file ends at byte {}, within its header; get a complete copy",
-                             source.position()));
+    fail(source, source.position(),
+         fmt::format("the file ends at byte {}, within its header; get a complete copy",
+                     source.position()));
   }
   std::optional<NpyHeader> header = DictionaryParser(as_text(dictionary)).parse();
   if (!header) {
-    fail(source, fmt::format("the header at byte {} does not describe one plain array (descr, "
-                             "fortran_order, shape); save the points as an n x 2 or n x 3 array",
-                             source.position() - length));
+    fail(source, source.position() - length,
+         fmt::format("the header at byte {} does not describe one plain array (descr, "
+                     "fortran_order, shape); save the points as an n x 2 or n x 3 array",
+                     source.position() - length));
   }
   header->version = fmt::format("{}.{}", major, minor);
   return *header;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 
 namespace spillway::detail {
 
@@ -24,7 +24,7 @@ struct NpyHeader {
 
 /// Reads a header of version 1.0, 2.0 or 3.0, up to the first element. Throws Error that says what
 /// is wrong and at which byte.
-NpyHeader read_npy_header(InputSource& source);
+NpyHeader read_npy_header(InputBytes& source);
 
 /// A header of version 1.0, padded as NumPy does, so that elements begin at a multiple of 64 bytes.
 std::string npy_header_bytes(const NpyHeader& header);

@@ -20,7 +20,7 @@ constexpr std::int64_t kLargestExact = std::int64_t{1} << 53;
 
 class NpyReader : public PointReader {
  public:
-  NpyReader(std::unique_ptr<InputSource> source, const std::string& path)
+  NpyReader(std::unique_ptr<InputBytes> source, const std::string& path)
       : source_(std::move(source)) {
     const NpyHeader npy = read_npy_header(*source_);
     choose_type(npy.type);
@@ -35,6 +35,7 @@ class NpyReader : public PointReader {
     }
     count_ = npy.shape[0];
     columns_ = static_cast<int>(npy.shape[1]);
+    begin_ = source_->position();
     check_size();
     header_.name = path;
     header_.format = "npy";
@@ -42,7 +43,6 @@ class NpyReader : public PointReader {
     header_.coordinates = columns_;
     header_.count = count_;
     in_pieces_ = path != "-" && source_->seekable();
-    begin_ = source_->position();
     end_ = count_;
     rows_.resize(std::min<std::uint64_t>(kBlockPoints, count_) * row_size());
   }
@@ -65,7 +65,8 @@ class NpyReader : public PointReader {
     const std::size_t got = source_->read(wanted);
     if (got < wanted.size()) {
       fail(fmt::format("the file ends at byte {}, within point {} of {}; get a complete copy",
-                       source_->position(), next_ + got / row_size(), count_));
+                       source_->position(), next_ + got / row_size(), count_),
+           at_byte(source_->position()));
     }
     (this->*decode_)(block);
     next_ += count;
@@ -91,8 +92,8 @@ class NpyReader : public PointReader {
 
   [[nodiscard]] std::size_t row_size() const { return element_size_ * columns_; }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: {}", source_->name(), what));
+  [[noreturn]] void fail(const std::string& what, FilePlace place = at_byte(0)) const {
+    throw BadInput(source_->name(), what, place);
   }
 
   void choose_type(const std::string& type) {
@@ -123,19 +124,19 @@ class NpyReader : public PointReader {
     if (!size) return;
     const std::uint64_t room = *size - std::min(*size, source_->position());
     if (count_ > room / row_size()) {
-      fail(
-          fmt::format("the header says {} points of {} bytes, but the file ends at byte {}, after "
-                      "{} of them; get a complete copy",
-                      count_, row_size(), *size, room / row_size()));
+      fail(fmt::format("the header says {} points of {} bytes, but the file ends at byte {}, after "
+                       "{} of them; get a complete copy",
+                       count_, row_size(), *size, room / row_size()),
+           at_byte(*size));
     }
     if (room > count_ * row_size()) fail_for_excess();
   }
 
   [[noreturn]] void fail_for_excess() const {
-    fail(
-        fmt::format("the file goes on after the {} points of {} bytes that its header says; the "
-                    "shape is wrong or there is more than one array",
-                    count_, row_size()));
+    fail(fmt::format("the file goes on after the {} points of {} bytes that its header says; the "
+                     "shape is wrong or there is more than one array",
+                     count_, row_size()),
+         at_byte(begin_ + count_ * row_size()));
   }
 
   template <typename T>
@@ -143,7 +144,7 @@ class NpyReader : public PointReader {
     const std::byte* at = rows_.data();
     bool valid = true;
     for (std::size_t i = 0; i < block.points.size(); ++i) {
-      Point<3> p{};
+      LatticePoint p{};
       for (int axis = 0; axis < columns_; ++axis, at += sizeof(T)) {
         const T value = load<T>(at);
         valid &= representable(value);
@@ -168,12 +169,14 @@ class NpyReader : public PointReader {
   [[noreturn]] void fail_at_first_invalid() const {
     std::size_t place = 0;
     while (representable(load<T>(rows_.data() + place * sizeof(T)))) ++place;
+    const std::uint64_t point = next_ + place / columns_;
     fail(fmt::format("point {} has the coordinate {}, which is {}; correct or remove the point",
-                     next_ + place / columns_, load<T>(rows_.data() + place * sizeof(T)),
-                     std::is_floating_point_v<T> ? "not finite" : "beyond 2^53, not exact"));
+                     point, load<T>(rows_.data() + place * sizeof(T)),
+                     std::is_floating_point_v<T> ? "not finite" : "beyond 2^53, not exact"),
+         at_record(point));
   }
 
-  std::unique_ptr<InputSource> source_;
+  std::unique_ptr<InputBytes> source_;
   PointHeader header_;
   void (NpyReader::*decode_)(PointBlock&) const = nullptr;
   std::size_t element_size_ = 0;
@@ -188,7 +191,7 @@ class NpyReader : public PointReader {
 
 }  // namespace
 
-std::unique_ptr<PointReader> open_npy_reader(std::unique_ptr<InputSource> source,
+std::unique_ptr<PointReader> open_npy_reader(std::unique_ptr<InputBytes> source,
                                              const std::string& path) {
   return std::make_unique<NpyReader>(std::move(source), path);
 }

@@ -3,14 +3,14 @@
 #include <memory>
 #include <string>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/points/common/point_reader.h"
 
 namespace spillway::detail {
 
 /// Opens an npy array of n x 2 or n x 3 elements of float64, float32, int32 or int64,
 /// little-endian, rows one after another. `path` is the source's name as the user gave it.
-std::unique_ptr<PointReader> open_npy_reader(std::unique_ptr<InputSource> source,
+std::unique_ptr<PointReader> open_npy_reader(std::unique_ptr<InputBytes> source,
                                              const std::string& path);
 
 }  // namespace spillway::detail

@@ -21,14 +21,15 @@ class NpyWriter : public PointWriter {
     file_->write(as_bytes_of(header(count_.value_or(0))));
   }
 
-  void write(std::span<const Point<3>> points,
+  void write(std::span<const LatticePoint> points,
              std::span<const PointAttributes> /*attributes*/) override {
     constexpr std::size_t kBlockPoints = 8192;
     while (!points.empty()) {
-      const std::span<const Point<3>> block = points.first(std::min(points.size(), kBlockPoints));
+      const std::span<const LatticePoint> block =
+          points.first(std::min(points.size(), kBlockPoints));
       values_.clear();
-      for (const Point<3>& p : block) {
-        const Point<3> world = lattice_ ? lattice_->to_world(p) : p;
+      for (const LatticePoint& p : block) {
+        const WorldPoint world = in_world(lattice_, p);
         values_.insert(values_.end(), world.begin(), world.begin() + columns_);
       }
       file_->write(std::as_bytes(std::span(values_)));

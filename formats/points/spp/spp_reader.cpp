@@ -23,12 +23,12 @@ bool all_finite(const Values& values) {
 
 class SppReader : public PointReader {
  public:
-  SppReader(std::unique_ptr<InputSource> source, const std::string& path)
+  SppReader(std::unique_ptr<InputBytes> source, const std::string& path)
       : stream_(std::move(source), {"spp", kSppMagic, kSppVersion, "stream", kSppLargestBlock},
                 [this] { return fmt::format("{} points", points_); }) {
     header_.name = path;
     header_.format = "spp";
-    if (stream_.next() != kSppHeader) stream_.fail("the first block is no header");
+    if (stream_.next() != kSppHeader) stream_.fail("the first block is not a header");
     parse_header();
   }
 
@@ -60,7 +60,7 @@ class SppReader : public PointReader {
     stream_.take_version();
     header_.version = fmt::format("{}", kSppVersion);
     const auto coordinates = stream_.take<std::uint32_t>();
-    if (coordinates != 2 && coordinates != 3) stream_.fail("points are to have 2 or 3 coordinates");
+    if (coordinates != 2 && coordinates != 3) stream_.fail("points must have 2 or 3 coordinates");
     header_.coordinates = static_cast<int>(coordinates);
     const auto flags = stream_.take<std::uint32_t>();
     if (flags > (kSppHasLattice | kSppHasCount | kSppHasExtent))
@@ -71,7 +71,7 @@ class SppReader : public PointReader {
       lattice.offset = stream_.take<std::array<double, 3>>();
       if (!all_finite(lattice.scale) || !all_finite(lattice.offset) ||
           std::ranges::count(lattice.scale, 0) > 0) {
-        stream_.fail("the lattice has scales or offsets that make no sense");
+        stream_.fail("the lattice has invalid scales or offsets");
       }
     }
     if ((flags & kSppHasCount) != 0) header_.count = stream_.take<std::uint64_t>();
@@ -81,8 +81,7 @@ class SppReader : public PointReader {
 
   void parse_points(PointBlock& block) {
     const auto size = stream_.take<std::uint32_t>();
-    if (size == 0 || size > kSppBlockPoints)
-      stream_.fail("a block's number of points makes no sense");
+    if (size == 0 || size > kSppBlockPoints) stream_.fail("a block's number of points is invalid");
     ColumnReader columns(stream_.left(), stream_.where());
     block.points.resize(size);
     for (int axis = 0; axis < header_.coordinates; ++axis) {
@@ -104,7 +103,7 @@ class SppReader : public PointReader {
   void parse_trailer() {
     const auto total = stream_.take<std::uint64_t>();
     if (!stream_.left().empty() || total != points_ || (header_.count && *header_.count != total)) {
-      stream_.fail(fmt::format("the numbers of points do not fit: {} came, and the end tells of {}",
+      stream_.fail(fmt::format("the numbers of points do not agree: {} came, but the end says {}",
                                points_, total));
     }
     stream_.expect_end();
@@ -119,7 +118,7 @@ class SppReader : public PointReader {
 
 }  // namespace
 
-std::unique_ptr<PointReader> open_spp_reader(std::unique_ptr<InputSource> source,
+std::unique_ptr<PointReader> open_spp_reader(std::unique_ptr<InputBytes> source,
                                              const std::string& path) {
   return std::make_unique<SppReader>(std::move(source), path);
 }

@@ -3,14 +3,14 @@
 #include <memory>
 #include <string>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/points/common/point_reader.h"
 
 namespace spillway::detail {
 
 /// Reads Spillway's own point stream from `source`; `path` is its name as the user gave it. Points
 /// are numbered as they come.
-std::unique_ptr<PointReader> open_spp_reader(std::unique_ptr<InputSource> source,
+std::unique_ptr<PointReader> open_spp_reader(std::unique_ptr<InputBytes> source,
                                              const std::string& path);
 
 }  // namespace spillway::detail

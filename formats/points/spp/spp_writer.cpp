@@ -35,13 +35,13 @@ class SppWriter : public PointWriter {
     write_header(options);
   }
 
-  void write(std::span<const Point<3>> points,
+  void write(std::span<const LatticePoint> points,
              std::span<const PointAttributes> /*attributes*/) override {
     while (!points.empty()) {
       const std::size_t room = kSppBlockPoints - columns_[0].size();
-      const std::span<const Point<3>> block = points.first(std::min(points.size(), room));
+      const std::span<const LatticePoint> block = points.first(std::min(points.size(), room));
       for (std::size_t axis = 0; axis < columns_.size(); ++axis) {
-        for (const Point<3>& p : block) columns_[axis].push_back(p[axis]);
+        for (const LatticePoint& p : block) columns_[axis].push_back(p[axis]);
       }
       if (block.size() == room) flush();
       points = points.subspan(block.size());
@@ -85,11 +85,11 @@ class SppWriter : public PointWriter {
     for (const std::vector<double>& column : columns_) {
       const std::size_t invalid = first_invalid_coordinate(column, on_lattice_);
       if (invalid < size) {
-        throw Error(
-            fmt::format("cannot write {}: coordinate {} of point {} is not {}; repair the "
-                        "points",
-                        file_->name(), column[invalid], written_ + invalid,
-                        on_lattice_ ? "an integer up to 2^53" : "finite"));
+        throw CannotWrite(
+            file_->name(),
+            fmt::format("coordinate {} of point {} is not {}; repair the points", column[invalid],
+                        written_ + invalid, on_lattice_ ? "an integer up to 2^53" : "finite"),
+            ErrorCode::kInvalidArgument, at_record(written_ + invalid));
       }
       append_column(content_, column);
     }
@@ -101,10 +101,10 @@ class SppWriter : public PointWriter {
   /// Writes what is in content_ and empties it.
   void write_block(std::uint32_t kind) {
     if (content_.size() > kSppLargestBlock) {
-      throw Error(
-          fmt::format("cannot write {}: the description of the coordinate system takes "
-                      "more than {} bytes; shorten it",
-                      file_->name(), kSppLargestBlock));
+      throw CannotWrite(file_->name(),
+                        fmt::format("the description of the coordinate system takes more than {} "
+                                    "bytes; shorten it",
+                                    kSppLargestBlock));
     }
     append_block(block_, kind, content_);
     file_->write(block_);

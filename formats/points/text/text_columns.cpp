@@ -246,7 +246,7 @@ TextColumns::TextColumns(Separator separator, bool decimal_commas, const std::ar
   for (int axis = 0; axis < coordinates_; ++axis) axes_[column[axis]] = axis;
 }
 
-bool TextColumns::parse(std::string_view line, Point<3>& point) const {
+bool TextColumns::parse(std::string_view line, LatticePoint& point) const {
   switch (separator_) {
     case Separator::kTab:
       return parse_as<Separator::kTab>(line, point);
@@ -261,7 +261,7 @@ bool TextColumns::parse(std::string_view line, Point<3>& point) const {
 }
 
 template <Separator S>
-bool TextColumns::parse_as(std::string_view line, Point<3>& point) const {
+bool TextColumns::parse_as(std::string_view line, LatticePoint& point) const {
   point[2] = 0;
   Fields<S> fields(line);
   for (const int axis : axes_) {
@@ -326,7 +326,7 @@ std::string TextColumns::fault(std::string_view line) const {
         count_, quoted(line));
   }
   return fmt::format(
-      "what stands there does not go with columns separated by {}: {}; correct or "
+      "it does not fit columns separated by {}: {}; correct or "
       "remove it",
       name_of(separator_), quoted(line));
 }
@@ -343,7 +343,7 @@ std::string TextColumns::fault_of_field(std::string_view field) const {
         has, quoted(field), others);
   }
   return fmt::format(
-      " is no number: {}, where columns are separated by {} and decimals by {}; "
+      " is not a number: {}, where columns are separated by {} and decimals by {}; "
       "correct or remove it",
       quoted(field), name_of(separator_), decimal_commas_ ? "commas" : "points");
 }

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "src/geometry/point.h"
+#include "src/geometry/framed_point.h"
 
 namespace spillway::detail {
 
@@ -47,14 +47,14 @@ class TextColumns {
 
   /// Reads the coordinates; false if one of the columns is missing or no number, and if what
   /// follows does not go with the file's separator and decimal sign.
-  [[nodiscard]] bool parse(std::string_view line, Point<3>& point) const;
+  [[nodiscard]] bool parse(std::string_view line, LatticePoint& point) const;
 
   /// Why parse() does not take this line, beginning with the column, and what to do.
   [[nodiscard]] std::string fault(std::string_view line) const;
 
  private:
   template <Separator S>
-  [[nodiscard]] bool parse_as(std::string_view line, Point<3>& point) const;
+  [[nodiscard]] bool parse_as(std::string_view line, LatticePoint& point) const;
 
   /// Whether what stands after the columns that are read may stand there.
   [[nodiscard]] bool rest_fits(std::string_view rest) const;

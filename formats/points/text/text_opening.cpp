@@ -244,7 +244,7 @@ class Opening {
     if (!names.choice.fault.empty()) {
       fail(fmt::format(
           "is a header whose columns are {}: {}; name columns x, y and z, or put # before a line "
-          "that is no header",
+          "that is not a header",
           listed(names.names), names.choice.fault));
     }
     if (!names.choice.notice.empty()) notices_.push_back(names.choice.notice);
@@ -322,10 +322,11 @@ class Opening {
         names.choice.fault.empty()
             ? fmt::format("the first row, {}, has {} columns", lines_.line_name(), columns)
             : names.choice.fault;
-    throw Error(fmt::format(
-        "{}: line {} is a comment that names the columns {}, but {}; name each column once, or "
-        "remove that line",
-        name_, comment.line(), listed(names.names), fault));
+    throw BadInput(name_,
+                   fmt::format("line {} is a comment that names the columns {}, but {}; name each "
+                               "column once, or remove that line",
+                               comment.line(), listed(names.names), fault),
+                   at_line(comment.line()));
   }
 
   static TextColumns first_columns(const RowLayout& layout) {
@@ -437,15 +438,16 @@ class Opening {
   }
 
   TextOpening with_row(TextColumns columns) {
-    Point<3> point;
+    LatticePoint point;
     if (scan_points_ && columns.coordinates() < 3) {
       fail(
           fmt::format("has no third column, but line {} is a count of points, as in PTS, where "
-                      "rows have three or more; remove that line if it is none",
+                      "rows have three or more; remove that line if it is not a count",
                       scan_line_));
     }
     if (!columns.parse(line_, point)) {
-      throw Error(fmt::format("{}: {}, {}", name_, lines_.line_name(), columns.fault(line_)));
+      throw BadInput(name_, fmt::format("{}, {}", lines_.line_name(), columns.fault(line_)),
+                     lines_.place());
     }
     TextOpening opening = without_rows(std::move(columns));
     opening.first_row = line_;
@@ -457,7 +459,7 @@ class Opening {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: {} {}", name_, lines_.line_name(), what));
+    throw BadInput(name_, fmt::format("{} {}", lines_.line_name(), what), lines_.place());
   }
 
   LineReader& lines_;

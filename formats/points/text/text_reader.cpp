@@ -20,7 +20,7 @@ constexpr std::size_t kBlockPoints = 65536;
 
 class TextReader : public PointReader {
  public:
-  TextReader(std::unique_ptr<InputSource> source, const std::string& path,
+  TextReader(std::unique_ptr<InputBytes> source, const std::string& path,
              std::unique_ptr<InputFile> content, std::uint64_t piece_bytes)
       : source_(std::move(source)),
         content_(std::move(content)),
@@ -44,7 +44,7 @@ class TextReader : public PointReader {
   bool fetch(RawPoints& raw) override {
     PointBlock& block = raw.decoded;
     block.clear();
-    Point<3> point;
+    LatticePoint point;
     if (has_first_ && columns_.parse(line_, point)) append(point, block);
     has_first_ = false;
     while (block.size() < kBlockPoints && lines_.position() < end_ && lines_.next(line_)) {
@@ -84,7 +84,8 @@ class TextReader : public PointReader {
   void begin_scan() {
     const std::optional<std::uint64_t> count =
         opening_.scan_points ? point_count_of_line(line_) : std::nullopt;
-    if (!count) fail(fmt::format("{}, {}", lines_.line_name(), columns_.fault(line_)));
+    if (!count)
+      fail(fmt::format("{}, {}", lines_.line_name(), columns_.fault(line_)), lines_.place());
     check_scan();
     opening_.scan_points = count;
     opening_.scan_line = lines_.number();
@@ -95,31 +96,32 @@ class TextReader : public PointReader {
   void check_scan() const {
     const std::uint64_t came = next_ - scan_begin_;
     if (!opening_.scan_points || *opening_.scan_points == came) return;
-    fail(
-        fmt::format("line {} says {} points, but {} follow; get a complete copy, or correct the "
-                    "line",
-                    opening_.scan_line, *opening_.scan_points, came));
+    fail(fmt::format("line {} says {} points, but {} follow; get a complete copy, or correct the "
+                     "line",
+                     opening_.scan_line, *opening_.scan_points, came),
+         at_line(opening_.scan_line));
   }
 
-  void append(const Point<3>& point, PointBlock& block) {
+  void append(const LatticePoint& point, PointBlock& block) {
     if (!std::isfinite(point[0] + point[1] + point[2]) && !all_finite(point)) {
       fail(fmt::format("{} in {} is not finite: {}; correct or remove it",
                        lines_.numbered() ? fmt::format("point {}", next_) : "the point",
-                       lines_.line_name(), quoted(line_)));
+                       lines_.line_name(), quoted(line_)),
+           lines_.place());
     }
     block.points.push_back(point);
     block.index.push_back(next_++);
   }
 
-  static bool all_finite(const Point<3>& p) {
+  static bool all_finite(const LatticePoint& p) {
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: {}", source_->name(), what));
+  [[noreturn]] void fail(const std::string& what, FilePlace place) const {
+    throw BadInput(source_->name(), what, place);
   }
 
-  std::unique_ptr<InputSource> source_;
+  std::unique_ptr<InputBytes> source_;
   std::unique_ptr<InputFile> content_;  // decompressed, or nothing
   LineReader lines_;
   TextOpening opening_;  // of a PTS: what the last count line says
@@ -138,7 +140,7 @@ class TextReader : public PointReader {
 
 }  // namespace
 
-std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputSource> source,
+std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputBytes> source,
                                               const std::string& path,
                                               std::unique_ptr<InputFile> content,
                                               std::uint64_t piece_bytes) {

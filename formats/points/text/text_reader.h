@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/points/common/point_reader.h"
 
 namespace spillway::detail {
@@ -16,7 +16,7 @@ inline constexpr std::uint64_t kTextPiece = std::uint64_t{2} << 20;
 /// name as the user gave it; `content` is what the source holds, decompressed, or null if it is no
 /// compressed text. A line belongs to the piece in which it begins; the first piece begins with the
 /// first point.
-std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputSource> source,
+std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputBytes> source,
                                               const std::string& path,
                                               std::unique_ptr<InputFile> content = nullptr,
                                               std::uint64_t piece_bytes = kTextPiece);

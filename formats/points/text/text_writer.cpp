@@ -51,9 +51,9 @@ class TextWriter : public PointWriter {
     }
   }
 
-  void write(std::span<const Point<3>> points,
+  void write(std::span<const LatticePoint> points,
              std::span<const PointAttributes> /*attributes*/) override {
-    for (const Point<3>& p : points) {
+    for (const LatticePoint& p : points) {
       for (int axis = 0; axis < coordinates_; ++axis) {
         if (axis > 0) text_.push_back(separator_);
         append(axis, p[axis]);

@@ -8,14 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "src/delaunay/common/block_array.h"
+#include "src/delaunay/common/slab_array.h"
 #include "src/geometry/point.h"
 
 namespace spillway::detail {
 
-/// Number of a simplex: its block and its place there.
+/// Number of a simplex: its list and its index there.
 struct SimplexId {
-  std::uint32_t block;
+  std::uint32_t list;
   std::uint32_t index;
   // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
   auto operator<=>(const SimplexId&) const = default;
@@ -30,40 +30,40 @@ template <int D>
 requires SupportedDimension<D>
 struct Simplex {
   std::array<VertexId, D + 1> vertices;
-  /// Across the facet opposite vertices[i]: an index in the same block, or, from kLink on, kLink
-  /// plus an index into the block's links.
+  /// Across the facet opposite vertices[i]: an index in the same list, or, from kLink on, kLink
+  /// plus an index into the list's links.
   std::array<std::uint32_t, D + 1> neighbours;
 
   static constexpr std::uint32_t kLink = std::uint32_t{1} << 31;
 
   [[nodiscard]] bool removed() const { return vertices[0] == kNoVertex; }
   /// The place of the infinite vertex, or -1.
-  [[nodiscard]] int infinite_place() const {
+  [[nodiscard]] int infinite_corner() const {
     for (int i = 0; i <= D; ++i) {
       if (vertices[i] == kInfiniteVertex) return i;
     }
     return -1;
   }
-  [[nodiscard]] bool infinite() const { return infinite_place() >= 0; }
+  [[nodiscard]] bool infinite() const { return infinite_corner() >= 0; }
 };
 
-/// The simplices that one base case or one merge made. Neighbours in the same block cost four
-/// bytes; the few in other blocks are kept aside, so merging never renumbers or copies what is
+/// The simplices that one base case or one merge made. Neighbours in the same list cost four
+/// bytes; the few in other lists are kept aside, so merging never renumbers or copies what is
 /// already there.
 template <int D>
-struct SimplexBlock {
-  BlockArray<Simplex<D>> simplices;  ///< some of them removed
-  std::vector<SimplexId> links;      ///< neighbours in other blocks
+struct SimplexList {
+  SlabArray<Simplex<D>> simplices;  ///< some of them removed
+  std::vector<SimplexId> links;     ///< neighbours in other lists
 
   [[nodiscard]] SimplexId neighbour(SimplexId simplex, int i) const {
     const std::uint32_t n = simplices[simplex.index].neighbours[i];
-    return n < Simplex<D>::kLink ? SimplexId{simplex.block, n} : links[n - Simplex<D>::kLink];
+    return n < Simplex<D>::kLink ? SimplexId{simplex.list, n} : links[n - Simplex<D>::kLink];
   }
 
-  /// Makes `other` the neighbour of `simplex` (one of this block's) opposite its i-th vertex.
+  /// Makes `other` the neighbour of `simplex` (one of this list's) opposite its i-th vertex.
   void set_neighbour(SimplexId simplex, int i, SimplexId other) {
     std::uint32_t& n = simplices[simplex.index].neighbours[i];
-    if (other.block == simplex.block) {
+    if (other.list == simplex.list) {
       n = other.index;
     } else if (n >= Simplex<D>::kLink) {
       links[n - Simplex<D>::kLink] = other;
@@ -93,19 +93,19 @@ struct Duplicate {
 /// If the points do not span D dimensions there are no simplices.
 template <int D>
 struct Triangulation {
-  BlockArray<Point<D>> points;          ///< by vertex number, equal points included
-  BlockArray<VertexId> input_index;     ///< by vertex number
-  std::vector<SimplexBlock<D>> blocks;  ///< in the order of the tree of merges, children first
-  std::vector<SimplexId> hull;          ///< the infinite simplices, one for each facet of the hull
-  std::vector<Duplicate> duplicates;    ///< sorted by the dropped point's vertex number
+  SlabArray<Point<D>> points;         ///< by vertex number, equal points included
+  SlabArray<VertexId> input_index;    ///< by vertex number
+  std::vector<SimplexList<D>> lists;  ///< in the order of the tree of merges, children first
+  std::vector<SimplexId> hull;        ///< the infinite simplices, one for each facet of the hull
+  std::vector<Duplicate> duplicates;  ///< sorted by the dropped point's vertex number
   /// Dimension of the points' affine hull: D, or less if there are no simplices; -1 without points.
   int dimension = -1;
 
   [[nodiscard]] const Simplex<D>& simplex(SimplexId id) const {
-    return blocks[id.block].simplices[id.index];
+    return lists[id.list].simplices[id.index];
   }
   [[nodiscard]] SimplexId neighbour(SimplexId id, int i) const {
-    return blocks[id.block].neighbour(id, i);
+    return lists[id.list].neighbour(id, i);
   }
 
   /// Number of distinct points.
@@ -113,12 +113,12 @@ struct Triangulation {
   /// Number of finite simplices.
   [[nodiscard]] std::size_t finite_count() const;
 
-  /// Calls f(id, simplex) for every simplex, finite and infinite, in the order of blocks.
+  /// Calls f(id, simplex) for every simplex, finite and infinite, in the order of lists.
   template <typename F>
   void for_each_simplex(F&& f) const {
-    for (std::uint32_t b = 0; b < blocks.size(); ++b) {
-      for (std::uint32_t i = 0; i < blocks[b].simplices.size(); ++i) {
-        const Simplex<D>& s = blocks[b].simplices[i];
+    for (std::uint32_t b = 0; b < lists.size(); ++b) {
+      for (std::uint32_t i = 0; i < lists[b].simplices.size(); ++i) {
+        const Simplex<D>& s = lists[b].simplices[i];
         if (!s.removed()) f(SimplexId{b, i}, s);
       }
     }

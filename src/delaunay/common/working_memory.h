@@ -11,12 +11,12 @@ namespace spillway::detail {
 /// Asks for huge pages where the memory spans some: a wish, without it everything is only slower.
 void ask_for_huge_pages(void* memory, std::size_t bytes);
 
-/// A block of memory that only grows. It asks for the huge pages that lie in what it was made for;
+/// A slab of memory that only grows. It asks for the huge pages that lie in what it was made for;
 /// one that would be used in part would be taken as a whole.
-class Block {
+class Slab {
  public:
-  /// A block of this size, aligned for cache lines. Throws std::bad_alloc.
-  static Block of(std::size_t bytes);
+  /// A slab of this size, aligned for cache lines. Throws std::bad_alloc.
+  static Slab of(std::size_t bytes);
 
   /// Memory for at least `bytes` bytes; what it held before may be lost. Some room is added if it
   /// has to be larger than it was. Throws std::bad_alloc.
@@ -39,40 +39,40 @@ class Block {
     std::size_t bytes;
   };
 
-  static Block without_huge_pages(std::size_t bytes);
+  static Slab without_huge_pages(std::size_t bytes);
 
   std::unique_ptr<std::byte, Free> memory_;
 };
 
-/// What base cases keep a block for, so that the next one gets a block of fitting size.
-enum class BlockUse : std::uint8_t { kPoints, kSimplices };
+/// What base cases keep a slab for, so that the next one gets a slab of fitting size.
+enum class SlabUse : std::uint8_t { kPoints, kSimplices };
 
-/// A block on loan: the smallest that an earlier base case left and that has `bytes` bytes, or else
+/// A slab on loan: the smallest that an earlier base case left and that has `bytes` bytes, or else
 /// the largest, which is to be made larger, if there is any. Gives it back at the end of its life,
 /// for a later one of any thread.
-class BorrowedBlock {
+class BorrowedSlab {
  public:
-  BorrowedBlock(BlockUse use, std::size_t bytes);
-  ~BorrowedBlock();
-  BorrowedBlock(const BorrowedBlock&) = delete;
-  BorrowedBlock& operator=(const BorrowedBlock&) = delete;
+  BorrowedSlab(SlabUse use, std::size_t bytes);
+  ~BorrowedSlab();
+  BorrowedSlab(const BorrowedSlab&) = delete;
+  BorrowedSlab& operator=(const BorrowedSlab&) = delete;
 
-  Block& operator*() { return block_; }
-  Block* operator->() { return &block_; }
+  Slab& operator*() { return slab_; }
+  Slab* operator->() { return &slab_; }
 
  private:
-  BlockUse use_;
-  Block block_;
+  SlabUse use_;
+  Slab slab_;
 };
 
-/// A block of at least this size: the smallest one kept for that use if it is not much larger, or
+/// A slab of at least this size: the smallest one kept for that use if it is not much larger, or
 /// else a new one. Throws std::bad_alloc.
-Block kept_or_new_block(BlockUse use, std::size_t bytes);
+Slab kept_or_new_slab(SlabUse use, std::size_t bytes);
 
-/// Keeps a block for coming base cases.
-void keep_block(BlockUse use, Block block);
+/// Keeps a slab for coming base cases.
+void keep_slab(SlabUse use, Slab slab);
 
-/// Gives the system all blocks that are kept for coming base cases.
-void release_kept_blocks();
+/// Gives the system all slabs that are kept for coming base cases.
+void release_kept_slabs();
 
 }  // namespace spillway::detail

@@ -68,8 +68,8 @@ inline double largest_square(const Corner& a, const Corner& b, const Corner& c) 
 /// kExactInCircle.
 inline bool tie_conflicts(const Corner& from, const Corner& to, const Corner& apex) {
   // Coordinates are below 2^13, so one number orders them as the pair does.
-  const auto rank = [](const Corner& c) { return c.at[0] * 0x1p14 + c.at[1]; };
-  return std::max(rank(from), rank(to)) > std::max(rank(apex), 0.0);
+  const auto order_key = [](const Corner& c) { return c.at[0] * 0x1p14 + c.at[1]; };
+  return std::max(order_key(from), order_key(to)) > std::max(order_key(apex), 0.0);
 }
 
 }  // namespace spillway::detail::kernel_2d

@@ -8,10 +8,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/kernel_2d/filters.h"
 #include "src/delaunay/kernel_2d/triangles.h"
 #include "src/delaunay/kernel_2d/working_points.h"
+#include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/kernel_common/lanes.h"
 
 namespace spillway::detail::kernel_2d {
@@ -21,7 +21,7 @@ template <bool kLattice>
 class Insertion {
  public:
   /// Starts with a triangle that is not flat. The array has room for 2 n + 2 triangles. `lanes` is
-  /// what vector_width() says.
+  /// what lane_width() says.
   Insertion(const WorkingPoints& points, TriangleArray triangles,
             const std::array<VertexId, 3>& first, int lanes);
 
@@ -47,7 +47,7 @@ class Insertion {
     std::size_t open;
   };
 
-  /// The same, for each width of vectors.
+  /// The same, for each number of lanes.
   void insert_by_2(VertexId point, VertexId next);
   SPILLWAY_TARGET("avx2,bmi,bmi2") void insert_by_4(VertexId point, VertexId next);
   template <int kLanes>

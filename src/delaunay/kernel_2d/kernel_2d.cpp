@@ -10,11 +10,11 @@
 #include <optional>
 #include <vector>
 
+#include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_2d/insertion.h"
 #include "src/delaunay/kernel_2d/working_points.h"
+#include "src/delaunay/kernel_common/lane_width.h"
 #include "src/delaunay/kernel_common/simplex_listing.h"
-#include "src/delaunay/kernel_common/vectors.h"
-#include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -39,7 +39,7 @@ static_assert(sizeof(Triangle) >= 2 * sizeof(Simplex<2>), "simplices are listed 
 /// The simplices may lie where the triangles are: see kernel::list_simplices.
 template <typename Number>
 void list_range(const TriangleArray& triangles, std::uint32_t begin, std::uint32_t end,
-                const Number& number, const std::optional<Box<2>>& region, Simplex<2>* simplices,
+                const Number& number, const std::optional<Box<2>>& clear_box, Simplex<2>* simplices,
                 ListingNotes& notes) {
   for (std::uint32_t i = begin; i < end; ++i) {
     Triangle triangle;
@@ -55,17 +55,18 @@ void list_range(const TriangleArray& triangles, std::uint32_t begin, std::uint32
                     {neighbours[0], neighbours[1], neighbours[2]}};
     const bool finite = mask_of(infinite) == 0;
     if (!finite) notes.hull.push_back(i);
-    if (region && !(finite && certainly_inside(triangle, *region))) notes.not_inside.push_back(i);
+    if (clear_box && !(finite && certainly_inside(triangle, *clear_box)))
+      notes.not_inside.push_back(i);
   }
 }
 
 template <bool kLattice>
 BaseCase<2> triangulate(const BaseCaseInput<2>& input, std::span<const VertexId> basis,
-                        const WorkingPoints& points, Block& memory) {
+                        const WorkingPoints& points, Slab& memory) {
   const TriangleArray triangles(memory.data());
   Insertion<kLattice> insertion(
       points, triangles, {basis[0] + kFirstPoint, basis[1] + kFirstPoint, basis[2] + kFirstPoint},
-      vector_width());
+      lane_width());
   kernel::insert_in_rounds(insertion, input.points.size(), basis, kRounds);
   BaseCase<2> result;
   result.dimension = 2;
@@ -73,9 +74,9 @@ BaseCase<2> triangulate(const BaseCaseInput<2>& input, std::span<const VertexId>
   const std::uint32_t count = insertion.triangle_count();
   result.simplices = make_list<2>(input, memory, count);
   const auto list = [&](const auto& number) {
-    list_simplices<2>(result, points.region.has_value(),
+    list_simplices<2>(result, points.clear_box.has_value(),
                       [&](std::uint32_t begin, std::uint32_t end, ListingNotes& notes) {
-                        list_range(triangles, begin, end, number, points.region,
+                        list_range(triangles, begin, end, number, points.clear_box,
                                    result.simplices.data(), notes);
                       });
   };
@@ -98,15 +99,15 @@ BaseCase<2> kernel_2d_base_case(const BaseCaseInput<2>& input, std::span<const V
   using namespace kernel_2d;
   const std::size_t triangle_count = 2 * input.points.size() + 2;
   if (triangle_count > TriangleArray::kMaxTriangles) {
-    throw Error(
-        fmt::format("a base case of {} points has more triangles than can be numbered; "
-                    "choose base cases of at most {} points",
-                    input.points.size(), TriangleArray::kMaxTriangles / 2 - 1));
+    throw Error(fmt::format("a base case of {} points has more triangles than can be numbered; "
+                            "choose base cases of at most {} points",
+                            input.points.size(), TriangleArray::kMaxTriangles / 2 - 1),
+                ErrorCode::kTooLarge);
   }
-  BorrowedBlock point_memory(BlockUse::kPoints, input.points.size_bytes());
-  const WorkingPoints points = make_working_points(input.points, *point_memory, input.region);
+  BorrowedSlab point_memory(SlabUse::kPoints, input.points.size_bytes());
+  const WorkingPoints points = make_working_points(input.points, *point_memory, input.clear_box);
   const std::size_t triangle_bytes = triangle_count * sizeof(Triangle);
-  BorrowedBlock triangles(BlockUse::kSimplices, triangle_bytes);
+  BorrowedSlab triangles(SlabUse::kSimplices, triangle_bytes);
   triangles->reserve(triangle_bytes);
   return points.lattice ? triangulate<true>(input, basis, points, *triangles)
                         : triangulate<false>(input, basis, points, *triangles);

@@ -8,8 +8,8 @@
 
 namespace spillway::detail::kernel_2d {
 
-WorkingPoints make_working_points(std::span<const Point<2>> points, Block& memory,
-                                  const std::optional<Box<2>>& region) {
+WorkingPoints make_working_points(std::span<const Point<2>> points, Slab& memory,
+                                  const std::optional<Box<2>>& clear_box) {
   auto* const scaled =
       static_cast<Point<2>*>(memory.reserve((points.size() + kFirstPoint) * sizeof(Point<2>)));
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -22,7 +22,7 @@ WorkingPoints make_working_points(std::span<const Point<2>> points, Block& memor
     scaled[i + kFirstPoint] = p;
     result.largest = std::max({result.largest, std::abs(p[0]), std::abs(p[1])});
   }
-  if (region) result.region = scaling.inner_box(*region);
+  if (clear_box) result.clear_box = scaling.inner_box(*clear_box);
   return result;
 }
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <span>
 
-#include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/common/working_memory.h"
+#include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
@@ -24,16 +24,16 @@ struct WorkingPoints {
   const Point<2>* scaled = nullptr;
   const Point<2>* originals = nullptr;  ///< those the caller gave, from kFirstPoint on
   bool lattice = false;
-  double largest = 0;              ///< magnitude of a scaled coordinate
-  std::optional<Box<2>> region{};  ///< scaled
+  double largest = 0;                 ///< magnitude of a scaled coordinate
+  std::optional<Box<2>> clear_box{};  ///< scaled
 
   [[nodiscard]] const Point<2>& original(VertexId v) const { return originals[v - kFirstPoint]; }
 };
 
 /// Scales points that are not all collinear. A lattice is any set of points that all are integers
 /// below 2^53 times one power of two: LiDAR's integers as well as quarters of a metre. Scales
-/// BaseCaseInput::region with them.
-WorkingPoints make_working_points(std::span<const Point<2>> points, Block& memory,
-                                  const std::optional<Box<2>>& region = std::nullopt);
+/// BaseCaseInput::clear_box with them.
+WorkingPoints make_working_points(std::span<const Point<2>> points, Slab& memory,
+                                  const std::optional<Box<2>>& clear_box = std::nullopt);
 
 }  // namespace spillway::detail::kernel_2d

@@ -359,8 +359,8 @@ int orientation(const WorkingPoints& points, const std::array<VertexRef, 4>& p) 
 
 bool tie_conflicts(const WorkingPoints& points, const Five& five) {
   const auto larger = [&points](VertexRef v, VertexRef w) {
-    return points.ranked ? points.at(v)[3] > points.at(w)[3]
-                         : points.original(v) > points.original(w);
+    return points.has_order_keys ? points.at(v)[3] > points.at(w)[3]
+                                 : points.original(v) > points.original(w);
   };
   std::array<int, 4> largest_first{0, 1, 2, 3};
   std::sort(largest_first.begin(), largest_first.end(),

@@ -42,9 +42,10 @@ SPILLWAY_INLINE void list_boundary(Handle cell, const Words& neighbours, std::ui
 
 /// Marks the cells of the star that are known to be in conflict with the next point, and tests
 /// their neighbours beyond the star.
-template <bool kRanked>
+template <bool kHasOrderKeys>
 template <int kLanes>
-SPILLWAY_INLINE void Insertion<kRanked>::look_beyond_star(const double* next, std::size_t known) {
+SPILLWAY_INLINE void Insertion<kHasOrderKeys>::look_beyond_star(const double* next,
+                                                                std::size_t known) {
   const PointCopy q(next);
   const CellArray cells = cells_;
   Handle* const conflicts = conflicts_.data();
@@ -72,9 +73,9 @@ SPILLWAY_INLINE void Insertion<kRanked>::look_beyond_star(const double* next, st
 
 /// Examines the known cells of the newest star, where all is certain: which of their neighbours in
 /// the star are in conflict is known, too, and those beyond it have been tested.
-template <bool kRanked>
+template <bool kHasOrderKeys>
 template <int kLanes>
-SPILLWAY_INLINE void Insertion<kRanked>::leave_star(std::size_t known, HoleLists& hole) {
+SPILLWAY_INLINE void Insertion<kHasOrderKeys>::leave_star(std::size_t known, HoleLists& hole) {
   const CellArray cells = cells_;
   const std::uint64_t outer_in_conflict = outer_in_conflict_;
   for (std::size_t i = 0; i < known; ++i) {
@@ -97,9 +98,9 @@ SPILLWAY_INLINE void Insertion<kRanked>::leave_star(std::size_t known, HoleLists
 
 /// Finds all cells in conflict with the query; the first ones are known, listed and marked. Marks
 /// them.
-template <bool kRanked>
+template <bool kHasOrderKeys>
 template <int kLanes>
-SPILLWAY_INLINE auto Insertion<kRanked>::find_hole(VertexRef query, std::size_t known)
+SPILLWAY_INLINE auto Insertion<kHasOrderKeys>::find_hole(VertexRef query, std::size_t known)
     -> HoleLists {
   const PointCopy q(points_.at(query));
   const CellArray cells = cells_;

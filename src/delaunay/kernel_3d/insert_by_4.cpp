@@ -1,4 +1,4 @@
-// Insertion with vectors of four doubles, for processors that have AVX2, and for those that have
+// Insertion with four lanes of doubles, for processors that have AVX2, and for those that have
 // twice as many registers for them.
 
 // What is not compiled for such processors only comes first.
@@ -31,14 +31,14 @@
 
 namespace spillway::detail::kernel_3d {
 
-template <bool kRanked>
-void Insertion<kRanked>::insert_by_4(VertexRef query, VertexRef next) {
+template <bool kHasOrderKeys>
+void Insertion<kHasOrderKeys>::insert_by_4(VertexRef query, VertexRef next) {
   insert_by<4>(query, next);
 }
 
 /// The same text, inlined, takes the instruction set that this function is declared with.
-template <bool kRanked>
-SPILLWAY_TARGET_32_REGISTERS void Insertion<kRanked>::insert_by_4_with_32_registers(
+template <bool kHasOrderKeys>
+SPILLWAY_TARGET_32_REGISTERS void Insertion<kHasOrderKeys>::insert_by_4_with_32_registers(
     VertexRef query, VertexRef next) {
   insert_by<4>(query, next);
 }

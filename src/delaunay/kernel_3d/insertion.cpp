@@ -25,9 +25,9 @@ SPILLWAY_INLINE double power(const Cell& cell, const double* query) {
 
 }  // namespace
 
-template <bool kRanked>
-Insertion<kRanked>::Insertion(const WorkingPoints& points, Block& memory,
-                              const std::array<VertexId, 4>& first, int width)
+template <bool kHasOrderKeys>
+Insertion<kHasOrderKeys>::Insertion(const WorkingPoints& points, Slab& memory,
+                                    const std::array<VertexId, 4>& first, int width)
     : points_(points),
       memory_(memory),
       cells_(memory.reserve(kFirstListSize * sizeof(Cell))),
@@ -63,8 +63,8 @@ Insertion<kRanked>::Insertion(const WorkingPoints& points, Block& memory,
   known_conflicts_ = 0;
 }
 
-template <bool kRanked>
-void Insertion<kRanked>::resize_lists(std::size_t size) {
+template <bool kHasOrderKeys>
+void Insertion<kHasOrderKeys>::resize_lists(std::size_t size) {
   conflicts_.resize(size);
   boundary_.resize(size);
   outer_.resize(size);
@@ -73,8 +73,8 @@ void Insertion<kRanked>::resize_lists(std::size_t size) {
 
 /// Finds a cell in conflict with the query, or kNone if it equals a vertex; that is remembered.
 /// From cell to cell the power of the query falls, so it comes to the cell that contains it.
-template <bool kRanked>
-Handle Insertion<kRanked>::locate(VertexRef query) {
+template <bool kHasOrderKeys>
+Handle Insertion<kHasOrderKeys>::locate(VertexRef query) {
   const double* q = points_.at(query);
   Handle here = hint_;
   const Cell* cell = &cells_.at_cell(here);
@@ -99,9 +99,9 @@ Handle Insertion<kRanked>::locate(VertexRef query) {
 }
 
 /// The same with exact predicates.
-template <bool kRanked>
-[[gnu::noinline, gnu::cold]] Handle Insertion<kRanked>::locate_exactly(VertexRef query,
-                                                                       Handle first) {
+template <bool kHasOrderKeys>
+[[gnu::noinline, gnu::cold]] Handle Insertion<kHasOrderKeys>::locate_exactly(VertexRef query,
+                                                                             Handle first) {
   std::array<VertexRef, 4> start = vertices_of(cells_.at_cell(first));
   if (const std::size_t k = infinite_slot(start); k < 4) {
     start[k] = query;
@@ -132,8 +132,8 @@ template <bool kRanked>
 }
 
 /// Whether the query is in conflict with a cell of which no tie is noted, by the upper stages.
-template <bool kRanked>
-bool Insertion<kRanked>::conflicts(Handle first, VertexRef query) const {
+template <bool kHasOrderKeys>
+bool Insertion<kHasOrderKeys>::conflicts(Handle first, VertexRef query) const {
   const Cell* cell = &cells_.at_cell(first);
   std::array<VertexRef, 4> vertices = vertices_of(*cell);
   if (const std::size_t k = infinite_slot(vertices); k < 4) {
@@ -154,13 +154,14 @@ bool Insertion<kRanked>::conflicts(Handle first, VertexRef query) const {
   return side != 0 ? side > 0 : tie_conflicts(points_, five);
 }
 
-template <bool kRanked>
-[[gnu::noinline, gnu::cold]] void Insertion<kRanked>::grow_cells(std::size_t count) {
+template <bool kHasOrderKeys>
+[[gnu::noinline, gnu::cold]] void Insertion<kHasOrderKeys>::grow_cells(std::size_t count) {
   if (count > CellArray::kMaxCells) {
     throw Error(
         fmt::format("a base case of {} points has more than {} cells, more than can be numbered; "
                     "choose smaller base cases",
-                    points_.count - 1, CellArray::kMaxCells));
+                    points_.count - 1, CellArray::kMaxCells),
+        ErrorCode::kTooLarge);
   }
   cells_ = CellArray(memory_.grow(count * sizeof(Cell), cell_count_ * sizeof(Cell)));
   capacity_ = std::min(memory_.capacity() / sizeof(Cell), CellArray::kMaxCells);
@@ -168,10 +169,10 @@ template <bool kRanked>
 
 /// The half-spaces of the star's infinite cells. Those in conflict with the next point join the
 /// `known` ones; returns how many there are then.
-template <bool kRanked>
-[[gnu::noinline]] std::size_t Insertion<kRanked>::make_half_spaces(VertexRef next,
-                                                                   std::size_t count,
-                                                                   std::size_t known) {
+template <bool kHasOrderKeys>
+[[gnu::noinline]] std::size_t Insertion<kHasOrderKeys>::make_half_spaces(VertexRef next,
+                                                                         std::size_t count,
+                                                                         std::size_t known) {
   for (std::size_t i = 0; i < count; ++i) {
     Cell& cell = cells_.at_cell(star_[i]);
     if (infinite_slot(vertices_of(cell)) == 4) continue;
@@ -182,8 +183,8 @@ template <bool kRanked>
   return known;
 }
 
-template <bool kRanked>
-void Insertion<kRanked>::make_half_space(Cell& cell) const {
+template <bool kHasOrderKeys>
+void Insertion<kHasOrderKeys>::make_half_space(Cell& cell) const {
   const std::size_t k = infinite_slot(vertices_of(cell));
   const double* anchor = points_.at(cell.vertices[0]);
   const auto edge = [&](std::size_t slot) {
@@ -216,8 +217,9 @@ void Insertion<kRanked>::make_half_space(Cell& cell) const {
 }
 
 /// The search for the next point begins at the cell of the star in which its power is smallest.
-template <bool kRanked>
-[[gnu::noinline]] void Insertion<kRanked>::choose_hint(const double* next, std::size_t count) {
+template <bool kHasOrderKeys>
+[[gnu::noinline]] void Insertion<kHasOrderKeys>::choose_hint(const double* next,
+                                                             std::size_t count) {
   double best = std::numeric_limits<double>::infinity();
   hint_ = star_[0];
   for (std::size_t i = 0; i < count; ++i) {
@@ -229,13 +231,13 @@ template <bool kRanked>
   }
 }
 
-template <bool kRanked>
-void Insertion<kRanked>::insert_by_2(VertexRef query, VertexRef next) {
+template <bool kHasOrderKeys>
+void Insertion<kHasOrderKeys>::insert_by_2(VertexRef query, VertexRef next) {
   insert_by<2>(query, next);
 }
 
-template <bool kRanked>
-void Insertion<kRanked>::insert(VertexId point, VertexId next) {
+template <bool kHasOrderKeys>
+void Insertion<kHasOrderKeys>::insert(VertexId point, VertexId next) {
   if (width_ == 8) {
     insert_by_4_with_32_registers(ref(point), ref(next));
   } else if (width_ == 4) {
@@ -245,8 +247,8 @@ void Insertion<kRanked>::insert(VertexId point, VertexId next) {
   }
 }
 
-template <bool kRanked>
-void Insertion<kRanked>::close_gaps() {
+template <bool kHasOrderKeys>
+void Insertion<kHasOrderKeys>::close_gaps() {
   // The last cells that are in use go to the lowest free places.
   std::sort(free_.data(), free_.data() + free_count_);
   std::size_t next_free = 0;

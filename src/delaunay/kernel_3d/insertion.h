@@ -9,13 +9,13 @@
 #include <memory>
 #include <vector>
 
-#include "src/delaunay/kernel_common/insertion_rounds.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_3d/cells.h"
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_3d/star_maker.h"
 #include "src/delaunay/kernel_3d/working_points.h"
+#include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/kernel_common/lanes.h"
-#include "src/delaunay/common/working_memory.h"
 
 /// For functions that use the 32 vector registers of AVX-512.
 #define SPILLWAY_TARGET_32_REGISTERS SPILLWAY_TARGET("avx2,bmi,bmi2,avx512f,avx512vl,avx512dq")
@@ -31,13 +31,14 @@ struct HoleLists {
   std::size_t facet_count;
 };
 
-/// Builds the triangulation point by point. kRanked says what WorkingPoints::ranked does.
-template <bool kRanked>
+/// Builds the triangulation point by point. kHasOrderKeys says what WorkingPoints::has_order_keys
+/// does.
+template <bool kHasOrderKeys>
 class Insertion {
  public:
   /// Starts with the cell of four points that are not coplanar. `width` is what
-  /// vector_width() says.
-  Insertion(const WorkingPoints& points, Block& memory, const std::array<VertexId, 4>& first,
+  /// lane_width() says.
+  Insertion(const WorkingPoints& points, Slab& memory, const std::array<VertexId, 4>& first,
             int width);
 
   /// Inserts a point. `next` is the one that will come next.
@@ -76,7 +77,9 @@ class Insertion {
   std::uint32_t decide(const Cell& cell, std::uint32_t doubtful, VertexRef query) const;
   bool conflicts(Handle first, VertexRef query) const;
   /// Whether it is certain that a query within the tolerance is on the cell's sphere.
-  static bool tie_is_noted(const Cell& cell) { return kRanked && notes_tie(cell.squared_radius); }
+  static bool tie_is_noted(const Cell& cell) {
+    return kHasOrderKeys && notes_tie(cell.squared_radius);
+  }
   template <int kLanes>
   bool noted_tie_conflicts(const Cell& cell, VertexRef query) const;
 
@@ -97,7 +100,7 @@ class Insertion {
   void grow_cells(std::size_t count);
 
   const WorkingPoints points_;
-  Block& memory_;
+  Slab& memory_;
   CellArray cells_;
   std::size_t capacity_;
   const int width_;

@@ -1,5 +1,5 @@
 #pragma once
-// The inner loop of insertion, for vectors of any width. All of it is inlined into the function
+// The inner loop of insertion, for any number of lanes. All of it is inlined into the function
 // that uses it, and takes that function's instruction set.
 
 #include <cstddef>
@@ -15,9 +15,9 @@ namespace spillway::detail::kernel_3d {
 inline constexpr Handle kNone = ~Handle{0};
 
 /// Chooses cells for the star: those of the hole, then free ones, then new ones.
-template <bool kRanked>
+template <bool kHasOrderKeys>
 template <int kLanes>
-SPILLWAY_INLINE void Insertion<kRanked>::take_cells(const HoleLists& hole) {
+SPILLWAY_INLINE void Insertion<kHasOrderKeys>::take_cells(const HoleLists& hole) {
   std::swap(conflicts_, star_);
   Handle* const star = star_.data();
   std::size_t count = hole.cell_count;
@@ -39,10 +39,10 @@ SPILLWAY_INLINE void Insertion<kRanked>::take_cells(const HoleLists& hole) {
 
 /// Makes the spheres of the star and finds those of its cells that are certainly in conflict with
 /// the next point.
-template <bool kRanked>
+template <bool kHasOrderKeys>
 template <int kLanes>
-SPILLWAY_INLINE void Insertion<kRanked>::make_star_spheres(VertexRef query, VertexRef next,
-                                                           std::size_t count, bool on_hull) {
+SPILLWAY_INLINE void Insertion<kHasOrderKeys>::make_star_spheres(VertexRef query, VertexRef next,
+                                                                 std::size_t count, bool on_hull) {
   constexpr std::size_t kRepeated = 2 * std::size_t{kLanes} - 1;
   static_assert(kRepeated <= kAhead);
   for (std::size_t i = count; i < count + kRepeated; ++i) star_[i] = star_[count - 1];
@@ -59,7 +59,7 @@ SPILLWAY_INLINE void Insertion<kRanked>::make_star_spheres(VertexRef query, Vert
   Corners<kLanes> corners;
   gather_corners<kLanes>(star, 0, corners);
   for (std::size_t i = 0; i < count; i += kLanes) {
-    in_conflict = make_spheres<kLanes, kRanked>(star, i, corners, certain);
+    in_conflict = make_spheres<kLanes, kHasOrderKeys>(star, i, corners, certain);
     if constexpr (kLanes == 2) {
       conflicts[known] = star.handles[i];
       known += in_conflict & 1;
@@ -87,9 +87,9 @@ SPILLWAY_INLINE void Insertion<kRanked>::make_star_spheres(VertexRef query, Vert
   }
 }
 
-template <bool kRanked>
+template <bool kHasOrderKeys>
 template <int kLanes>
-SPILLWAY_INLINE void Insertion<kRanked>::insert_by(VertexRef query, VertexRef next) {
+SPILLWAY_INLINE void Insertion<kHasOrderKeys>::insert_by(VertexRef query, VertexRef next) {
   std::size_t known = known_conflicts_;
   if (known == 0) {
     const Handle found = locate(query);

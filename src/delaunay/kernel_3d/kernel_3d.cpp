@@ -7,14 +7,14 @@
 #include <optional>
 #include <vector>
 
-#include "src/delaunay/kernel_common/insertion_rounds.h"
+#include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_3d/insertion.h"
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_3d/working_points.h"
+#include "src/delaunay/kernel_common/insertion_rounds.h"
+#include "src/delaunay/kernel_common/lane_width.h"
 #include "src/delaunay/kernel_common/lanes.h"
 #include "src/delaunay/kernel_common/simplex_listing.h"
-#include "src/delaunay/kernel_common/vectors.h"
-#include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -47,7 +47,7 @@ static_assert(sizeof(Cell) >= 2 * sizeof(Simplex<3>), "simplices are listed over
 /// ones. The simplices may lie where the cells are: see kernel::list_simplices.
 template <typename Number>
 void list_range(const CellArray& cells, std::uint32_t begin, std::uint32_t end,
-                const Number& number, const std::optional<Box<3>>& region, Simplex<3>* simplices,
+                const Number& number, const std::optional<Box<3>>& clear_box, Simplex<3>* simplices,
                 ListingNotes& notes) {
   const auto list = [&](std::uint32_t c, std::uint32_t inside) {
     const Cell& cell = cells.at_cell(CellArray::cell(c));
@@ -60,29 +60,29 @@ void list_range(const CellArray& cells, std::uint32_t begin, std::uint32_t end,
     store(neighbours >> CellArray::kNumberShift, simplices[c].neighbours.data());
     const bool finite = mask_of(infinite) == 0;
     if (!finite) notes.hull.push_back(c);
-    if (region && !(finite && inside != 0)) notes.not_inside.push_back(c);
+    if (clear_box && !(finite && inside != 0)) notes.not_inside.push_back(c);
   };
   for (std::uint32_t c = begin; c < end; c += 2) {
     const std::uint32_t last = std::min(c + 1, end - 1);
     std::uint32_t inside = 0;
-    if (region) {
+    if (clear_box) {
       inside = certainly_inside(gather<2>([&](std::uint32_t i) -> const double* {
                                   return cells.at_cell(CellArray::cell(i == 0 ? c : last)).centre;
                                 }),
-                                *region);
+                                *clear_box);
     }
     list(c, inside & 1);
     if (last != c) list(last, inside >> 1);
   }
 }
 
-template <bool kRanked>
+template <bool kHasOrderKeys>
 BaseCase<3> triangulate(const BaseCaseInput<3>& input, std::span<const VertexId> basis,
-                        const WorkingPoints& points, Block& memory) {
-  Insertion<kRanked> insertion(points, memory,
-                               {basis[0] + kFirstPoint, basis[1] + kFirstPoint,
-                                basis[2] + kFirstPoint, basis[3] + kFirstPoint},
-                               vector_width());
+                        const WorkingPoints& points, Slab& memory) {
+  Insertion<kHasOrderKeys> insertion(points, memory,
+                                     {basis[0] + kFirstPoint, basis[1] + kFirstPoint,
+                                      basis[2] + kFirstPoint, basis[3] + kFirstPoint},
+                                     lane_width());
   kernel::insert_in_rounds(insertion, input.points.size(), basis, kRounds);
   insertion.close_gaps();
   BaseCase<3> result;
@@ -90,9 +90,9 @@ BaseCase<3> triangulate(const BaseCaseInput<3>& input, std::span<const VertexId>
   const VertexId shift = input.first_vertex - kFirstPoint;
   result.simplices = make_list<3>(input, memory, insertion.cell_count());
   const auto list = [&](const auto& number) {
-    list_simplices<3>(result, points.region.has_value(),
+    list_simplices<3>(result, points.clear_box.has_value(),
                       [&](std::uint32_t begin, std::uint32_t end, ListingNotes& notes) {
-                        list_range(insertion.cells(), begin, end, number, points.region,
+                        list_range(insertion.cells(), begin, end, number, points.clear_box,
                                    result.simplices.data(), notes);
                       });
   };
@@ -114,18 +114,19 @@ BaseCase<3> triangulate(const BaseCaseInput<3>& input, std::span<const VertexId>
 BaseCase<3> kernel_3d_base_case(const BaseCaseInput<3>& input, std::span<const VertexId> basis) {
   using namespace kernel_3d;
   if (input.points.size() > kMostPoints) {
-    throw Error(fmt::format(
-        "a base case of {} points is more than can be numbered; choose base cases of at most {} "
-        "points",
-        input.points.size(), kMostPoints));
+    throw Error(fmt::format("a base case of {} points is more than can be numbered; choose base "
+                            "cases of at most {} "
+                            "points",
+                            input.points.size(), kMostPoints),
+                ErrorCode::kTooLarge);
   }
-  BorrowedBlock point_memory(BlockUse::kPoints, input.points.size_bytes());
-  const WorkingPoints points = make_working_points(input.points, *point_memory, input.region);
+  BorrowedSlab point_memory(SlabUse::kPoints, input.points.size_bytes());
+  const WorkingPoints points = make_working_points(input.points, *point_memory, input.clear_box);
   const std::size_t cell_bytes = kUsualCells * input.points.size() * sizeof(Cell);
-  BorrowedBlock cells(BlockUse::kSimplices, cell_bytes);
+  BorrowedSlab cells(SlabUse::kSimplices, cell_bytes);
   cells->reserve(cell_bytes);
-  return points.ranked ? triangulate<true>(input, basis, points, *cells)
-                       : triangulate<false>(input, basis, points, *cells);
+  return points.has_order_keys ? triangulate<true>(input, basis, points, *cells)
+                               : triangulate<false>(input, basis, points, *cells);
 }
 
 }  // namespace spillway::detail

@@ -27,7 +27,7 @@ inline constexpr double kCertainTie = 0.4;
 
 /// What the spheres of a star are made of.
 struct StarView {
-  const double* coordinates;  ///< four for each point: x, y, z, rank
+  const double* coordinates;  ///< four for each point: x, y, z, order key
   double largest;             ///< of their magnitudes
   CellArray cells;
   /// The new cells, whose first vertex is the query. After them the last one again, 2 kLanes - 1
@@ -73,7 +73,7 @@ SPILLWAY_INLINE void gather_corners(const StarView& star, std::size_t begin,
 /// and leaves in `certain` only lanes where that, or the opposite, is certain. Half-way, so that
 /// there is something to do while quotients take their time, it gathers the corners of the cells
 /// from begin + kLanes on.
-template <int kLanes, bool kRanked>
+template <int kLanes, bool kHasOrderKeys>
 SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t begin,
                                            Corners<kLanes>& corners, Integers<kLanes>& certain) {
   using R = Reals<kLanes>;
@@ -106,12 +106,12 @@ SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t beg
                       radius * (star.largest * kToleranceOfPlace);
   // The next power of two: its exponent.
   I carried = (I)((Bits<kLanes>)tolerance >> kMantissaBits) + 1;
-  if constexpr (kRanked) {
+  if constexpr (kHasOrderKeys) {
     carried |= ((R)(carried << kMantissaBits) * determinant < kCertainTie) & kTieNote;
     R largest = R{} + star.query[3];
-    const auto compare = [&](const R& rank, std::int64_t slot) {
-      const I larger = rank > largest;
-      largest = larger ? rank : largest;
+    const auto compare = [&](const R& order_key, std::int64_t slot) {
+      const I larger = order_key > largest;
+      largest = larger ? order_key : largest;
       carried = larger ? (carried & (kCarriedMask >> 2)) | slot << kLargestShift : carried;
     };
     compare(a.w, 1);

@@ -1,6 +1,6 @@
 #pragma once
 // Decisions on what the cached spheres leave in doubt, the tie rule of tiny lattices among them,
-// for vectors of any width: as in insertion_by_lanes.h.
+// for any number of lanes: as in insertion_by_lanes.h.
 
 #include <algorithm>
 #include <bit>
@@ -33,10 +33,10 @@ SPILLWAY_INLINE double volume(const double* query, const double* a, const double
 
 /// On a lattice, for a query that is on a cell's sphere: the tie rule. The largest vertex, which
 /// mostly decides, has been noted.
-template <bool kRanked>
+template <bool kHasOrderKeys>
 template <int kLanes>
-SPILLWAY_INLINE bool Insertion<kRanked>::noted_tie_conflicts(const Cell& cell,
-                                                             VertexRef query) const {
+SPILLWAY_INLINE bool Insertion<kHasOrderKeys>::noted_tie_conflicts(const Cell& cell,
+                                                                   VertexRef query) const {
   if (!points_.tiny) return tie_conflicts(points_, {vertices_of(cell), query});
   const double* q = points_.at(query);
   std::uint32_t largest = largest_slot(cell.squared_radius);
@@ -45,15 +45,15 @@ SPILLWAY_INLINE bool Insertion<kRanked>::noted_tie_conflicts(const Cell& cell,
     load_from_slot<kLanes>(cell, largest, v);
     v &= ~kMark;
     const double coefficient = volume(q, points_.at(v[1]), points_.at(v[2]), points_.at(v[3]));
-    const double rank = points_.at(v[0])[3];
+    const double order_key = points_.at(v[0])[3];
     // What the coefficient says holds only if the vertex is larger than the query. That is hard to
     // foresee, so it is no condition.
-    const double decisive = std::min(rank - q[3], coefficient);
+    const double decisive = std::min(order_key - q[3], coefficient);
     if (decisive != 0) return decisive > 0;
     double next = q[3];
     for (std::uint32_t slot = 0; slot < 4; ++slot) {
       const double other = points_.at(cell.vertices[slot] & ~kMark)[3];
-      if (other < rank && other > next) {
+      if (other < order_key && other > next) {
         next = other;
         largest = slot;
       }
@@ -63,10 +63,11 @@ SPILLWAY_INLINE bool Insertion<kRanked>::noted_tie_conflicts(const Cell& cell,
 }
 
 /// Of the doubtful neighbours of a cell, those in conflict.
-template <bool kRanked>
+template <bool kHasOrderKeys>
 template <int kLanes>
-[[gnu::noinline]] std::uint32_t Insertion<kRanked>::decide(const Cell& cell, std::uint32_t doubtful,
-                                                           VertexRef query) const {
+[[gnu::noinline]] std::uint32_t Insertion<kHasOrderKeys>::decide(const Cell& cell,
+                                                                 std::uint32_t doubtful,
+                                                                 VertexRef query) const {
   std::uint32_t result = 0;
   for (; doubtful != 0; doubtful &= doubtful - 1) {
     const int k = std::countr_zero(doubtful);

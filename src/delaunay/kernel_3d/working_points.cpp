@@ -8,11 +8,11 @@
 
 namespace spillway::detail::kernel_3d {
 
-WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memory,
-                                  const std::optional<Box<3>>& region) {
+WorkingPoints make_working_points(std::span<const Point<3>> points, Slab& memory,
+                                  const std::optional<Box<3>>& clear_box) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kMostRanks = 0x1p53;
-  constexpr double kLongestRanked = 0x1p40;
+  constexpr double kMostOrderKeys = 0x1p53;
+  constexpr double kLongestWithOrderKeys = 0x1p40;
   constexpr double kTiny = 100'000;
   auto* const records =
       static_cast<double*>(memory.reserve((points.size() + kFirstPoint) * 4 * sizeof(double)));
@@ -26,12 +26,12 @@ WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memor
   result.coordinates = records;
   result.originals = points.data();
   result.lattice = scaling.lattice();
-  result.ranked =
-      result.lattice && longest <= kLongestRanked && (extent[0] + 1) * rows * columns <= kMostRanks;
+  result.has_order_keys = result.lattice && longest <= kLongestWithOrderKeys &&
+                          (extent[0] + 1) * rows * columns <= kMostOrderKeys;
   result.tiny = result.lattice && longest <= kTiny;
   result.extent = std::exp2(std::ilogb(extent[0] + extent[1] + extent[2]) + 1);
   result.count = points.size() + kFirstPoint;
-  if (region) result.region = scaling.inner_box(*region);
+  if (clear_box) result.clear_box = scaling.inner_box(*clear_box);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point<3> p = scaling(points[i]);
     double* const record = records + 4 * (i + kFirstPoint);
@@ -39,7 +39,7 @@ WorkingPoints make_working_points(std::span<const Point<3>> points, Block& memor
       record[k] = p[k];
       result.largest = std::max(result.largest, std::abs(p[k]));
     }
-    record[3] = result.ranked ? (p[0] * rows + p[1]) * columns + p[2] : 0;
+    record[3] = result.has_order_keys ? (p[0] * rows + p[1]) * columns + p[2] : 0;
   }
   return result;
 }

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "src/delaunay/kernel_common/lanes.h"
 #include "src/delaunay/common/working_memory.h"
+#include "src/delaunay/kernel_common/lanes.h"
 
 namespace spillway::detail {
 namespace {
@@ -18,11 +18,11 @@ namespace {
 /// One coordinate of the cells of eight points, or a bit of each level for them.
 using Lanes [[gnu::vector_size(16)]] = std::uint16_t;
 using SignedLanes [[gnu::vector_size(16)]] = std::int16_t;
-/// Their places along the curve.
+/// Their positions along the curve.
 using Keys [[gnu::vector_size(32)]] = std::uint32_t;
 constexpr std::size_t kLanes = sizeof(Lanes) / sizeof(std::uint16_t);
 
-/// Adds bits, in space of 8 levels at most, to keys: D places apart, the lowest one at `shift`.
+/// Adds bits, in space of 8 levels at most, to keys: D positions apart, the lowest one at `shift`.
 template <int D>
 SPILLWAY_INLINE void add_spread(const Lanes& bits, int shift, Keys& keys) {
   Keys x = __builtin_convertvector(bits, Keys);
@@ -90,15 +90,15 @@ SPILLWAY_INLINE void hilbert_keys(std::array<Lanes, 3> cells, int levels, Keys& 
   for (int k = 0; k < 3; ++k) add_spread<3>(cells[k] ^ turned, 2 - k, keys);
 }
 
-/// Sorts places of points by their keys, stably.
+/// Sorts positions of points by their keys, stably.
 template <int D>
 class Sorter {
  public:
   explicit Sorter(std::span<const Point<D>> points)
       : points_(points),
         count_(points.size()),
-        place_bits_(std::bit_width(count_)),
-        memory_(BlockUse::kSimplices, 2 * count_ * sizeof(std::uint32_t)),
+        position_bits_(std::bit_width(count_)),
+        memory_(SlabUse::kSimplices, 2 * count_ * sizeof(std::uint32_t)),
         keys_(static_cast<std::uint32_t*>(memory_->reserve(2 * count_ * sizeof(std::uint32_t)))),
         items_(keys_ + count_),
         order_(count_) {}
@@ -129,30 +129,31 @@ class Sorter {
   };
 
   /// Of each digit, how many there are below, and then where the next one goes.
-  using Places = std::array<std::uint32_t, std::size_t{1} << kWidestDigit>;
+  using Positions = std::array<std::uint32_t, std::size_t{1} << kWidestDigit>;
 
-  /// Sorts a range, which has the points at place_at(begin), ..., and then what is crowded in it.
-  template <typename PlaceAt>
-  void sort_range(const Range& range, const Box<D>& box, const PlaceAt& place_at) {
+  /// Sorts a range, which has the points at position_at(begin), ..., and then what is crowded in
+  /// it.
+  template <typename PositionAt>
+  void sort_range(const Range& range, const Box<D>& box, const PositionAt& position_at) {
     const int digit = std::min<int>(kWidestDigit, std::bit_width(range.size()) + 2);
-    const int most_levels = (digit + std::min(digit, 32 - place_bits_)) / D;
+    const int most_levels = (digit + std::min(digit, 32 - position_bits_)) / D;
     int levels = 1;
     while (levels < most_levels && std::size_t{1} << (D * levels) < kCellsOfPoint * range.size()) {
       ++levels;
     }
     const double extent = box.extent(box.longest_axis());
     if (!(extent > kSmallestExtent && extent <= std::numeric_limits<double>::max())) {
-      for (std::size_t i = range.begin; i < range.end; ++i) order_[i] = place_at(i);
+      for (std::size_t i = range.begin; i < range.end; ++i) order_[i] = position_at(i);
       return;
     }
-    int low_bits = set_keys(range, box.lo, extent, levels, place_at);
+    int low_bits = set_keys(range, box.lo, extent, levels, position_at);
     if (levels < most_levels && concentrated(D * levels - low_bits)) {
       levels = most_levels;
-      low_bits = set_keys(range, box.lo, extent, levels, place_at);
+      low_bits = set_keys(range, box.lo, extent, levels, position_at);
     }
-    make_places(range, low_, low_bits);
-    make_places(range, high_, D * levels - low_bits);
-    sort_by_key(range, low_bits, place_at);
+    make_positions(range, low_, low_bits);
+    make_positions(range, high_, D * levels - low_bits);
+    sort_by_key(range, low_bits, position_at);
     sort_crowded_cells(range);
   }
 
@@ -163,23 +164,23 @@ class Sorter {
   }
 
   /// Sets keys, and counts their digits. Returns how many bits the low one has.
-  template <typename PlaceAt>
+  template <typename PositionAt>
   int set_keys(const Range& range, const Point<D>& lo, double extent, int levels,
-               const PlaceAt& place_at) {
-    const int high_bits = std::min((D * levels + 1) / 2, 32 - place_bits_);
+               const PositionAt& position_at) {
+    const int high_bits = std::min((D * levels + 1) / 2, 32 - position_bits_);
     const int low_bits = D * levels - high_bits;
     std::fill_n(low_.begin(), std::size_t{1} << low_bits, 0);
     std::fill_n(high_.begin(), std::size_t{1} << high_bits, 0);
     // The largest coordinate is still in the last cell.
     const double scale = std::ldexp(1 - 0x1p-50, levels) / extent;
-    constexpr std::size_t kBlock = 8 * kLanes;
-    std::array<std::array<std::uint16_t, kBlock>, D> cells{};
-    std::array<std::uint32_t, kBlock> keys;
+    constexpr std::size_t kBatch = 8 * kLanes;
+    std::array<std::array<std::uint16_t, kBatch>, D> cells{};
+    std::array<std::uint32_t, kBatch> keys;
     const std::uint32_t mask = (1U << low_bits) - 1;
-    for (std::size_t begin = range.begin; begin < range.end; begin += kBlock) {
-      const std::size_t size = std::min(kBlock, range.end - begin);
+    for (std::size_t begin = range.begin; begin < range.end; begin += kBatch) {
+      const std::size_t size = std::min(kBatch, range.end - begin);
       for (std::size_t j = 0; j < size; ++j) {
-        const Point<D>& p = points_[place_at(begin + j)];
+        const Point<D>& p = points_[position_at(begin + j)];
         for (int k = 0; k < D; ++k) {
           cells[k][j] =
               static_cast<std::uint16_t>(static_cast<std::int32_t>((p[k] - lo[k]) * scale));
@@ -193,7 +194,7 @@ class Sorter {
         std::memcpy(&keys[j], &keys_of_lanes, sizeof(Keys));
       }
       for (std::size_t j = 0; j < size; ++j) {
-        keys_[place_at(begin + j)] = keys[j];
+        keys_[position_at(begin + j)] = keys[j];
         ++low_[keys[j] & mask];
         ++high_[keys[j] >> low_bits];
       }
@@ -201,35 +202,36 @@ class Sorter {
     return low_bits;
   }
 
-  /// Turns counts into places in the range.
-  static void make_places(const Range& range, Places& places, int bits) {
+  /// Turns counts into positions in the range.
+  static void make_positions(const Range& range, Positions& positions, int bits) {
     auto next = static_cast<std::uint32_t>(range.begin);
     for (std::size_t digit = 0; digit >> bits == 0; ++digit) {
-      next += std::exchange(places[digit], next);
+      next += std::exchange(positions[digit], next);
     }
   }
 
-  /// Sorts by the low digits into items, which have the high digit above the place, and these by
+  /// Sorts by the low digits into items, which have the high digit above the position, and these by
   /// the high ones.
-  template <typename PlaceAt>
-  void sort_by_key(const Range& range, int low_bits, const PlaceAt& place_at) {
+  template <typename PositionAt>
+  void sort_by_key(const Range& range, int low_bits, const PositionAt& position_at) {
     const std::size_t prefetched = range.size() > kManyPoints ? range.end - kAhead : range.begin;
     const std::uint32_t mask = (1U << low_bits) - 1;
     for (std::size_t i = range.begin; i < range.end; ++i) {
       if (i < prefetched) {
-        __builtin_prefetch(&items_[low_[keys_[place_at(i + kAhead)] & mask]], 1);
+        __builtin_prefetch(&items_[low_[keys_[position_at(i + kAhead)] & mask]], 1);
       }
-      const VertexId place = place_at(i);
-      const std::uint64_t high = keys_[place] >> low_bits;
-      items_[low_[keys_[place] & mask]++] = static_cast<std::uint32_t>(high << place_bits_ | place);
+      const VertexId position = position_at(i);
+      const std::uint64_t high = keys_[position] >> low_bits;
+      items_[low_[keys_[position] & mask]++] =
+          static_cast<std::uint32_t>(high << position_bits_ | position);
     }
     for (std::size_t i = range.begin; i < range.end; ++i) {
       if (i < prefetched) {
-        __builtin_prefetch(&order_[high_[std::uint64_t{items_[i + kAhead]} >> place_bits_]], 1);
+        __builtin_prefetch(&order_[high_[std::uint64_t{items_[i + kAhead]} >> position_bits_]], 1);
       }
       const std::uint64_t item = items_[i];
-      const std::uint64_t high = item >> place_bits_;
-      order_[high_[high]++] = static_cast<VertexId>(item ^ high << place_bits_);
+      const std::uint64_t high = item >> position_bits_;
+      order_[high_[high]++] = static_cast<VertexId>(item ^ high << position_bits_);
     }
   }
 
@@ -255,12 +257,12 @@ class Sorter {
 
   std::span<const Point<D>> points_;
   std::size_t count_;
-  int place_bits_;
-  BorrowedBlock memory_;  ///< a base case is likely to follow
-  std::uint32_t* keys_;   ///< by place
+  int position_bits_;
+  BorrowedSlab memory_;  ///< a base case is likely to follow
+  std::uint32_t* keys_;  ///< by position
   std::uint32_t* items_;
   std::vector<VertexId> order_;
-  Places low_, high_;
+  Positions low_, high_;
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 namespace spillway::detail {
 
-/// Places of the points in the order in which a Hilbert curve over `box`, which holds them all,
+/// Positions of the points in the order in which a Hilbert curve over `box`, which holds them all,
 /// visits them. A cell of it with many points has a curve of its own; the few of one cell keep
 /// their order, and so do points within 1e-300 of each other. Neighbours on the curve are
 /// neighbours in space.

@@ -38,9 +38,9 @@ void for_each_in_rounds(std::size_t count, const Rounds& rounds, const Visit& vi
   for (std::size_t i = 0; i < count; i += stride) visit(i);
   for (; stride > 1; stride /= rounds.factor) {
     const std::size_t step = stride / rounds.factor;
-    for (std::size_t block = 0; block < count; block += stride) {
-      const std::size_t end = std::min(count, block + stride);
-      for (std::size_t i = block + step; i < end; i += step) visit(i);
+    for (std::size_t group = 0; group < count; group += stride) {
+      const std::size_t end = std::min(count, group + stride);
+      for (std::size_t i = group + step; i < end; i += step) visit(i);
     }
   }
 }

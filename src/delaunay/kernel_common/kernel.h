@@ -1,6 +1,8 @@
 #pragma once
 // What a kernel is given, and what it makes of it.
 
+#include <spillway/choices.h>
+
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,12 +15,6 @@
 
 namespace spillway::detail {
 
-/// What triangulates base cases.
-enum class BaseCaseKernel : std::uint8_t {
-  kOwn,   ///< kernel_2d and kernel_3d
-  kCgal,  ///< CGAL's incremental triangulation: same result, several times the time
-};
-
 /// The points of one base case, neighbours near each other in the list (a Hilbert curve's order, as
 /// divide() leaves them; any order is correct, but slower): point i is vertex first_vertex + i, and
 /// of equal points the one of the lowest input index is kept.
@@ -27,41 +23,41 @@ struct BaseCaseInput {
   std::span<const Point<D>> points;
   std::span<const VertexId> input_index;
   VertexId first_vertex = 0;
-  std::optional<Box<D>> region{};  ///< asks for BaseCase::not_inside; its sides may be infinite
+  std::optional<Box<D>> clear_box{};  ///< asks for BaseCase::not_inside; its sides may be infinite
   /// Leaves the simplices in the kernel's working memory, of which they use at most half:
   /// nothing is copied, and at the peak less memory is used. For results that are soon recycled,
   /// or few.
   bool in_place = false;
-  BaseCaseKernel kernel = BaseCaseKernel::kOwn;
+  Kernel kernel = Kernel::kSpillway;
 };
 
-/// The triangulation of one base case: a single block, its neighbours all inside it.
+/// The triangulation of one base case: a single simplex list, its neighbours all inside it.
 template <int D>
 struct BaseCase {
-  BlockArray<Simplex<D>> simplices;   ///< finite and infinite; none if dimension < D
+  SlabArray<Simplex<D>> simplices;    ///< finite and infinite; none if dimension < D
   std::vector<std::uint32_t> hull;    ///< indices of the infinite simplices
   std::vector<Duplicate> duplicates;  ///< sorted
   int dimension = -1;                 ///< of the points' affine hull
-  /// If there was a region to ask about and the kernel can tell without much work: the indices,
+  /// If there was a clear box to ask about and the kernel can tell without much work: the indices,
   /// ascending, of all simplices but those that are finite and whose closed circumsphere certainly
-  /// lies inside the region and touches no side.
+  /// lies inside the box and touches no side.
   std::optional<std::vector<std::uint32_t>> not_inside;
 };
 
-/// For kernels: a list of simplices to be filled, at the beginning of a block that the kernel is
+/// For kernels: a list of simplices to be filled, at the beginning of a slab that the kernel is
 /// done with if they are to be made in place, or else in memory of its own.
 template <int D>
-BlockArray<Simplex<D>> make_list(const BaseCaseInput<D>& input, Block& memory, std::size_t count) {
+SlabArray<Simplex<D>> make_list(const BaseCaseInput<D>& input, Slab& memory, std::size_t count) {
   const std::size_t bytes = count * sizeof(Simplex<D>);
-  if (!input.in_place) return {kept_or_new_block(BlockUse::kSimplices, bytes), count};
+  if (!input.in_place) return {kept_or_new_slab(SlabUse::kSimplices, bytes), count};
   memory.reserve(bytes);
   return {std::move(memory), count};
 }
 
 /// Keeps the memory of a list of simplices, which has been used, for base cases to come.
 template <int D>
-void recycle(BlockArray<Simplex<D>> used) {
-  keep_block(BlockUse::kSimplices, used.take_block());
+void recycle(SlabArray<Simplex<D>> used) {
+  keep_slab(SlabUse::kSimplices, used.take_slab());
 }
 
 }  // namespace spillway::detail

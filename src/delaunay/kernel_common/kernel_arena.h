@@ -1,5 +1,5 @@
 #pragma once
-// Memory for one base case. CGAL's containers ask for blocks that grow, and give them all back at
+// Memory for one base case. CGAL's containers ask for slabs that grow, and give them all back at
 // the end. An arena takes huge pages for them, gives nothing back before the end, and then keeps
 // the pages for the next base case: fresh memory costs more than the triangulation of a small part
 // of it.

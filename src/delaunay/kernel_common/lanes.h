@@ -1,5 +1,5 @@
 #pragma once
-// Vectors of doubles of several widths, in the compiler's own notation, so that one text serves
+// Doubles in lanes, two or four at a time, in the compiler's own notation, so that one text serves
 // every processor. Everything here is inlined into the function that uses it and takes that
 // function's instruction set. Sources for processors with AVX2 only define SPILLWAY_AVX2.
 
@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstring>
 
-// Inlined even where the caller has wider vectors than the rest of the program.
+// Inlined even where the caller has more lanes than the rest of the program.
 #define SPILLWAY_INLINE [[gnu::always_inline]] inline
 
 /// Compiles a function for processors that have more than the others.
@@ -21,26 +21,26 @@
 namespace spillway::detail::kernel {
 
 template <int kLanes>
-struct Vectors;
+struct LaneTypes;
 template <>
-struct Vectors<2> {
+struct LaneTypes<2> {
   using Reals [[gnu::vector_size(16)]] = double;
   using Integers [[gnu::vector_size(16)]] = std::int64_t;
   using Bits [[gnu::vector_size(16)]] = std::uint64_t;
 };
 template <>
-struct Vectors<4> {
+struct LaneTypes<4> {
   using Reals [[gnu::vector_size(32)]] = double;
   using Integers [[gnu::vector_size(32)]] = std::int64_t;
   using Bits [[gnu::vector_size(32)]] = std::uint64_t;
 };
 template <int kLanes>
-using Reals = typename Vectors<kLanes>::Reals;
+using Reals = typename LaneTypes<kLanes>::Reals;
 template <int kLanes>
-using Integers = typename Vectors<kLanes>::Integers;
+using Integers = typename LaneTypes<kLanes>::Integers;
 
 template <int kLanes>
-using Bits = typename Vectors<kLanes>::Bits;
+using Bits = typename LaneTypes<kLanes>::Bits;
 
 template <typename V>
 SPILLWAY_INLINE void load(const void* from, V& vector) {
@@ -57,32 +57,32 @@ using Words [[gnu::vector_size(16)]] = std::uint32_t;
 /// The same bits, for instructions that exist for floating-point numbers only.
 using Floats [[gnu::vector_size(16)]] = float;
 
-/// Whether words can be shuffled by a mask that is not a constant, on processors that have vectors
-/// of kLanes doubles; others would do it one by one.
+/// Whether words can be shuffled by a mask that is not a constant, on processors that have
+/// kLanes lanes of doubles; others would do it one by one.
 template <int kLanes>
 inline constexpr bool kShufflesWords = kLanes > 2;
 
-/// The words at these places, on such processors.
-SPILLWAY_INLINE void shuffle(Words& words, const std::uint32_t* places) {
+/// The words at these positions, on such processors.
+SPILLWAY_INLINE void shuffle(Words& words, const std::uint32_t* positions) {
 #ifdef SPILLWAY_AVX2
-  using Places [[gnu::vector_size(16)]] = int;
-  Places mask;
-  load(places, mask);
+  using Indices [[gnu::vector_size(16)]] = int;
+  Indices mask;
+  load(positions, mask);
   words = (Words)__builtin_ia32_vpermilvarps((Floats)words, mask);
 #else
-  words = Words{words[places[0]], words[places[1]], words[places[2]], words[places[3]]};
+  words = Words{words[positions[0]], words[positions[1]], words[positions[2]], words[positions[3]]};
 #endif
 }
 
 /// Of four words, those whose bit is set, one after the other.
 struct WordPacker {
-  alignas(16) std::array<std::array<std::uint32_t, 4>, 16> places{};
+  alignas(16) std::array<std::array<std::uint32_t, 4>, 16> positions{};
   std::array<std::uint8_t, 16> counts{};
 
   constexpr WordPacker() {
     for (std::uint32_t bits = 0; bits < 16; ++bits) {
       for (std::uint32_t k = 0; k < 4; ++k) {
-        if ((bits >> k & 1) != 0) places[bits][counts[bits]++] = k;
+        if ((bits >> k & 1) != 0) positions[bits][counts[bits]++] = k;
       }
     }
   }
@@ -95,7 +95,7 @@ template <int kLanes>
 SPILLWAY_INLINE std::size_t append(Words words, std::uint32_t bits, std::uint32_t* list,
                                    std::size_t size) {
   if constexpr (kShufflesWords<kLanes>) {
-    shuffle(words, kWordPacker.places[bits].data());
+    shuffle(words, kWordPacker.positions[bits].data());
     store(words, list + size);
     return size + kWordPacker.counts[bits];
   } else {
@@ -107,7 +107,7 @@ SPILLWAY_INLINE std::size_t append(Words words, std::uint32_t bits, std::uint32_
   }
 }
 
-/// Four numbers for each lane: a point and its rank, or a sphere.
+/// Four numbers for each lane: a point and its order key, or a sphere.
 template <int kLanes>
 struct Records {
   Reals<kLanes> x, y, z, w;

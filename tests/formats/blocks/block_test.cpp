@@ -31,8 +31,8 @@ Bytes runs(std::size_t count) {
 std::uint32_t decode(const Bytes& block, Bytes& content) {
   if (block.size() < kBlockHeadSize) throw Error("block: ends within the head");
   const BlockHead head =
-      decode_block_head(std::span(block).first<kBlockHeadSize>(), "a.spp, byte 8");
-  decode_block(head, std::span(block).subspan(kBlockHeadSize), content, "a.spp, byte 8");
+      decode_block_head(std::span(block).first<kBlockHeadSize>(), {"a.spp", at_byte(8)});
+  decode_block(head, std::span(block).subspan(kBlockHeadSize), content, {"a.spp", at_byte(8)});
   return head.kind;
 }
 
@@ -98,7 +98,7 @@ TEST(Block, ASizeThatNoCompressionReachesIsNotAllocated) {
   append_block(block, 3, runs(500));
   store(block.data() + 4, std::uint32_t{200U << 20U});
   Bytes back;
-  EXPECT_THAT(error_of([&] { decode(block, back); }), HasSubstr("makes no sense"));
+  EXPECT_THAT(error_of([&] { decode(block, back); }), HasSubstr("the head of a block is invalid"));
   EXPECT_EQ(back.capacity(), 0U);
 }
 

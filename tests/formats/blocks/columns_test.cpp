@@ -31,7 +31,7 @@ Bytes column_of(const std::vector<T>& values) {
 
 template <typename T>
 std::vector<T> values_of(const Bytes& bytes, std::size_t count) {
-  ColumnReader reader(bytes, "a.spp, byte 8");
+  ColumnReader reader(bytes, {"a.spp", at_byte(8)});
   std::vector<T> values = {T{1}, T{2}};
   reader.read(count, values);
   reader.expect_end();
@@ -152,7 +152,7 @@ TEST(Columns, SeveralOneAfterAnother) {
   append_column(bytes, std::vector<std::uint32_t>{});
   append_column(bytes, std::vector<std::uint32_t>{9, 1});
   append_column(bytes, std::vector<double>{0.5});
-  ColumnReader reader(bytes, "x");
+  ColumnReader reader(bytes, {"x"});
   std::vector<double> doubles;
   std::vector<std::uint32_t> integers;
   reader.read(3, doubles);

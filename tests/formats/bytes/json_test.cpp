@@ -46,7 +46,7 @@ TEST(Json, WhatIsReadIsWhatWasWritten) {
 TEST(Json, WrongTextIsToldWithItsPlace) {
   try {
     static_cast<void>(parse_json("{\"a\": x}"));
-    ADD_FAILURE() << "this is no JSON";
+    ADD_FAILURE() << "this is not JSON";
   } catch (const JsonError& error) {
     EXPECT_EQ(error.byte(), 7U);
     EXPECT_THAT(error.what(), testing::HasSubstr("invalid literal"));

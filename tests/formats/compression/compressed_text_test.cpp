@@ -58,7 +58,7 @@ class CompressedText : public ::testing::TestWithParam<std::string> {
 TEST_P(CompressedText, GivesTheSamePointsByExtension) {
   const AllPoints all = read_content(name_, compressed(numbered_lines(150000), extension_));
   ASSERT_EQ(all.points.size(), 150000U);
-  EXPECT_EQ(all.points[149999], (Point<3>{149999, 149999LL * 7919 % 10007, 149999 % 13}));
+  EXPECT_EQ(all.points[149999], (LatticePoint{149999, 149999LL * 7919 % 10007, 149999 % 13}));
 }
 
 TEST_P(CompressedText, IsRecognisedByItsFirstBytes) {
@@ -135,7 +135,7 @@ TEST_P(CompressedText, ContentThatIsNoTextOfPoints) {
   EXPECT_THAT(error_of_content(name_, compressed("OFF\n1 2 3\n", extension_)),
               HasSubstr("this is a mesh (OFF)"));
   EXPECT_THAT(error_of_content(name_, compressed(std::string("a\0b", 3), extension_)),
-              HasSubstr("this is no text"));
+              HasSubstr("this is not text"));
 }
 
 TEST_P(CompressedText, OtherFormatsCompressed) {

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "formats/bytes/bytes.h"
-#include "formats/bytes/input_source.h"
+#include "formats/bytes/input_bytes.h"
 #include "tests/formats/point_test_helpers.h"
 
 namespace spillway::detail::testing {
@@ -189,7 +189,7 @@ TEST_F(Disk, ReadsToTheEnd) {
 
 TEST_F(Disk, ReadsOnFromAnyByteOfAFile) {
   put_content(path("a"), "0123456789");
-  InputSource source(disk().open(path("a")));
+  InputBytes source(disk().open(path("a")));
   EXPECT_EQ(as_text(source.peek(4)), "0123");
   std::string buffer(3, ' ');
   const std::span<std::byte> bytes = std::as_writable_bytes(std::span(buffer));

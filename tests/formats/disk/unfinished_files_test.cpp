@@ -17,7 +17,7 @@
 
 #include "formats/bytes/bytes.h"
 #include "formats/disk/file_system.h"
-#include "formats/disk/naming_turn.h"
+#include "formats/disk/folder_lock.h"
 #include "formats/disk/scratch_folder.h"
 #include "tests/formats/point_test_helpers.h"
 
@@ -244,9 +244,9 @@ TEST_F(Unfinished, OneRunAfterTheOtherGivesNamesInAFolder) {
   std::atomic<bool> second = false;
   std::thread other;
   {
-    const NamingTurn turn(path("a"));
+    const FolderLock lock(path("a"));
     other = std::thread([&] {
-      const NamingTurn next(path("b"));
+      const FolderLock next(path("b"));
       second = true;
     });
     std::this_thread::sleep_for(kAWhile);
@@ -255,7 +255,7 @@ TEST_F(Unfinished, OneRunAfterTheOtherGivesNamesInAFolder) {
   other.join();
   EXPECT_TRUE(second);
   EXPECT_TRUE(names().empty());
-  const NamingTurn nowhere(path("none/a"));
+  const FolderLock nowhere(path("none/a"));
 }
 
 }  // namespace

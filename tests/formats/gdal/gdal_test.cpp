@@ -78,11 +78,11 @@ TEST(GdalCrs, NonsenseIsAnErrorInOneLine) {
   for (const char* const text :
        {"", "nonsense", "EPSG:999999", "PROJCS[\"a\"]", "/etc/passwd", "EPSG:2927+"}) {
     const std::string message = error_of([&] { static_cast<void>(gdal().crs_to_wkt(text)); });
-    EXPECT_THAT(message, HasSubstr("is no coordinate system")) << text;
+    EXPECT_THAT(message, HasSubstr("is not a coordinate system")) << text;
     EXPECT_THAT(message, Not(HasSubstr("\n")));
   }
   EXPECT_THAT(error_of([&] { static_cast<void>(gdal().same_crs(kUtm, "nonsense")); }),
-              HasSubstr("\"nonsense\" is no coordinate system"));
+              HasSubstr("\"nonsense\" is not a coordinate system"));
 }
 
 }  // namespace

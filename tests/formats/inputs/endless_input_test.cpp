@@ -153,7 +153,7 @@ TEST(EndlessInput, XmlSaysWhatIsWrong) {
     return "";
   };
   EXPECT_THAT(error_of(std::string(1, '\0')),
-              HasSubstr("line 1: behind here is a control character"));
+              HasSubstr("line 1: after this line comes a control character"));
   EXPECT_THAT(error_of("x"), HasSubstr("line 1: no XML tag begins and ends within 16777216 bytes"));
 }
 

@@ -51,14 +51,14 @@ class WrittenFiles {
     options.count = 2;
     options.lattice = Lattice{{0.01, 0.01, 0.01}, {0, 0, 0}};
     const auto writer = open_point_writer(disk(), path, options);
-    writer->write(std::vector<Point<3>>{{1, 2, 3}, {4, 5, 6}}, {});
+    writer->write(std::vector<LatticePoint>{{1, 2, 3}, {4, 5, 6}}, {});
     writer->finish();
     look("points " + std::string(format.name), path);
     EXPECT_EQ(open_point_reader(disk(), path, {})->header().format, format.name);
   }
 
   void look(const std::string& name, const std::string& path) {
-    InputSource source(disk().open(path));
+    InputBytes source(disk().open(path));
     first_bytes[name] = as_text(source.peek(1024));
   }
 

@@ -59,7 +59,7 @@ inline std::string bytes_as(const std::string& path, const StreamedMesh& mesh) {
   return files.files.at(path);
 }
 
-using Triangle = std::array<Point<3>, 3>;
+using Triangle = std::array<WorldPoint, 3>;
 
 inline Triangle turned(Triangle triangle) {
   std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
@@ -68,12 +68,12 @@ inline Triangle turned(Triangle triangle) {
 
 /// The triangles of a stream in output coordinates, in order, each turned to its smallest corner.
 inline std::vector<Triangle> triangles_of(const StreamedMesh& mesh) {
-  std::vector<Point<3>> vertices;
+  std::vector<WorldPoint> vertices;
   std::vector<Triangle> result;
   for (const MeshBlock& block : mesh.blocks) {
     const StreamNumbers numbers(vertices.size(), block);
-    for (const Point<3>& vertex : block.vertices) {
-      vertices.push_back(mesh.header.lattice ? mesh.header.lattice->to_world(vertex) : vertex);
+    for (const LatticePoint& vertex : block.vertices) {
+      vertices.push_back(in_world(mesh.header.lattice, vertex));
     }
     for (std::size_t i = 0; i < block.corners.size(); i += 3) {
       Triangle triangle;

@@ -49,7 +49,7 @@ std::string error_of_ply(const std::string& from, const std::string& to) {
 std::string binary_ply() { return mesh_bytes(kPlyMesh, square()); }
 
 TEST(PlyCorruption, BadHeader) {
-  EXPECT_THAT(error_of_ply("ply\n", "plx\n"), HasSubstr("this is no PLY file"));
+  EXPECT_THAT(error_of_ply("ply\n", "plx\n"), HasSubstr("this is not a PLY file"));
   EXPECT_THAT(error_of_ply("ascii 1.0", "ascii 2.0"), HasSubstr("line 2: PLY \"2.0\""));
   EXPECT_THAT(error_of_ply("ascii", "utf8"), HasSubstr("no PLY format \"utf8\""));
   EXPECT_THAT(error_of_ply("format ascii 1.0\n", ""), HasSubstr("format"));
@@ -256,7 +256,8 @@ TEST(VtuCorruption, BadHeader) {
               HasSubstr("NumberOfPoints"));
   EXPECT_THAT(error_of_change("a.vtu", good, "NumberOfPoints=\"4\"", "NumberOfPoints=\"x\""),
               HasSubstr("NumberOfPoints"));
-  EXPECT_THAT(error_of_change("a.vtu", good, "<Cells>", "<Cells"), HasSubstr("no XML tag"));
+  EXPECT_THAT(error_of_change("a.vtu", good, "<Cells>", "<Cells"),
+              HasSubstr("an XML tag is expected here"));
   EXPECT_THAT(error_of_change("a.vtu", good, "\"types\"", "\"kinds\""), HasSubstr("types"));
   EXPECT_THAT(error_of_change("a.vtu", good, "\"types\"", "\"offsets\""), HasSubstr("second"));
   EXPECT_THAT(error_of_change("a.vtu", good, "Int64\" Name=\"connectivity",
@@ -279,7 +280,7 @@ TEST(VtuCorruption, BadFieldData) {
   mesh.header.lattice = Lattice{{1, 1, 1}, {10, 20, 30}};
   const std::string good = mesh_bytes(kVtuMesh, mesh);
   EXPECT_THAT(error_of_change("a.vtu", good, "10 20 30", "10 20"), HasSubstr("six numbers"));
-  EXPECT_THAT(error_of_change("a.vtu", good, "10 20 30", "10 20 x"), HasSubstr("no number"));
+  EXPECT_THAT(error_of_change("a.vtu", good, "10 20 30", "10 20 x"), HasSubstr("not a number"));
   EXPECT_THAT(error_of_change("a.vtu", good, ">2<", ">4<"), HasSubstr("must be 2 or 3"));
 }
 

@@ -106,7 +106,7 @@ TEST(Glb, MeshesWithoutTrianglesAreValid) {
   mesh.blocks.emplace_back().vertices = {{1, 2, 3}, {4, 5, 6.5}};
   mesh.totals.vertices = 2;
   const Mesh read = read_bytes("a.glb", bytes_as("a.glb", mesh));
-  EXPECT_EQ(read.vertices, mesh.blocks[0].vertices);
+  EXPECT_THAT(read.vertices, ElementsAre(WorldPoint{1, 2, 3}, WorldPoint{4, 5, 6.5}));
 }
 
 TEST(Glb, FilesOfOtherProgramsAreRead) {
@@ -123,7 +123,7 @@ TEST(Glb, FilesOfOtherProgramsAreRead) {
   const Mesh read = read_bytes("a.glb", other);
   ASSERT_EQ(read.vertices.size(), 4U);
   // (1, 0, 0.5), turned by 180 degrees: (-1, 0, 0.5); doubled and moved: (8, 20, 31), y up.
-  EXPECT_EQ(read.vertices[1], (Point<3>{8, -31, 20}));
+  EXPECT_EQ(read.vertices[1], (WorldPoint{8, -31, 20}));
   EXPECT_THAT(read.corners, ElementsAre(0, 1, 2));
 }
 
@@ -138,7 +138,7 @@ TEST(Glb, CorruptFilesAreErrors) {
   EXPECT_THAT(error([](Json& j) { j["accessors"][0]["byteOffset"] = 1U << 30U; }),
               HasSubstr("bytes 1073741824 to"));
   EXPECT_THAT(error([](Json& j) { j["bufferViews"][0]["byteLength"] = ~0ULL; }),
-              HasSubstr("are spoken of"));
+              HasSubstr("are referred to"));
   EXPECT_THAT(error([](Json& j) { j["bufferViews"][0]["byteStride"] = 0; }),
               HasSubstr("reaches beyond"));
   EXPECT_THAT(error([](Json& j) { j["accessors"][0]["count"] = 2; }),
@@ -160,7 +160,7 @@ TEST(Glb, CorruptFilesAreErrors) {
   EXPECT_THAT(error_of_bytes("a.glb", std::string(good).replace(4, 1, "\1")),
               HasSubstr("glTF 1 is not read"));
   EXPECT_THAT(error_of_bytes("a.glb", std::string(good).replace(12, 4, bytes_of(~0U))),
-              HasSubstr("its JSON shall have 4294967295 bytes"));
+              HasSubstr("the header of its JSON says 4294967295 bytes"));
 }
 
 TEST(Stl, KilometreOfUtmIsWithinAMillimetre) {
@@ -193,13 +193,13 @@ TEST(Stl, TextFormIsReadWithSeveralSolids) {
       "solid b\n facet normal 0 0 1\n  outer loop\n   vertex 1 0 0.5\n   vertex 1 1 1\n"
       "   vertex 0 1 -2\n  endloop\n endfacet\nendsolid\n";
   const Mesh read = read_bytes("a.stl", text);
-  EXPECT_THAT(read.vertices, ElementsAre(Point<3>{0, 0, 0}, Point<3>{1, 0, 0.5}, Point<3>{0, 1, -2},
-                                         Point<3>{1, 1, 1}));
+  EXPECT_THAT(read.vertices, ElementsAre(WorldPoint{0, 0, 0}, WorldPoint{1, 0, 0.5},
+                                         WorldPoint{0, 1, -2}, WorldPoint{1, 1, 1}));
   EXPECT_THAT(read.corners, ElementsAre(0, 1, 2, 1, 3, 2));
   EXPECT_THAT(error_of_bytes("a.stl", replaced(text, "1 0 0.5\n   vertex 0", "1 0\n   vertex 0")),
               HasSubstr("line 5: a vertex needs three finite numbers"));
   EXPECT_THAT(error_of_bytes("a.stl", replaced(text, "endloop", "vertex 1 2 3")),
-              HasSubstr("line 7: here stands \"vertex\" instead of endloop"));
+              HasSubstr("line 7: found \"vertex\" instead of endloop"));
   EXPECT_THAT(error_of_bytes("a.stl", text.substr(0, text.find("endloop"))),
               HasSubstr("get a complete copy"));
 }
@@ -244,7 +244,7 @@ TEST(LandXml, TextIsAsTheSchemaHasIt) {
   EXPECT_THAT(mesh_bytes(kLandXmlMesh, mesh), HasSubstr("linearUnit=\"meter\""));
   mesh.header.crs = "<nonsense>";
   EXPECT_THAT(error_of([&] { mesh_bytes(kLandXmlMesh, mesh); }),
-              HasSubstr("is no coordinate system"));
+              HasSubstr("is not a coordinate system"));
 }
 
 TEST(LandXml, CorruptFilesAreErrors) {
@@ -256,12 +256,12 @@ TEST(LandXml, CorruptFilesAreErrors) {
               AllOf(HasSubstr("line 10:"), HasSubstr("three finite numbers")));
   EXPECT_THAT(error("0 1 0.5", "0 1 inf"), HasSubstr("three finite numbers"));
   EXPECT_THAT(error("id=\"2\"", "id=\"1\""), HasSubstr("a second point 1"));
-  EXPECT_THAT(error("id=\"2\"", "id=\"x\""), HasSubstr("is no number"));
+  EXPECT_THAT(error("id=\"2\"", "id=\"x\""), HasSubstr("is not a number"));
   EXPECT_THAT(error("<F>1 2 3", "<F>1 2 9"), HasSubstr("ids of three points"));
   EXPECT_THAT(error("<F>1 2 3", "<F>1 2 3 4"), HasSubstr("more than three points"));
   EXPECT_THAT(error("\"TIN\"", "\"grid\""), HasSubstr("no surface of surfType TIN"));
   EXPECT_THAT(error("</LandXML>", ""), HasSubstr("get a complete copy"));
-  EXPECT_THAT(error("id=\"2\">", "id=\"2>"), HasSubstr("here is no XML tag"));
+  EXPECT_THAT(error("id=\"2\">", "id=\"2>"), HasSubstr("an XML tag is expected here"));
   const std::string hidden = replaced(good, "<F>1 2 3", "<F i=\"1\">1 2 3");
   EXPECT_THAT(read_bytes("a.xml", hidden).corners, ElementsAre(2, 1, 3));
 }
@@ -326,7 +326,7 @@ TEST(ExportFormats, WhatFloatCannotHoldIsAnError) {
 TEST(ExportFormats, LargestOriginFitsTheHeaderOfStl) {
   StreamedMesh mesh = strip(2, 3, 3);
   leave_lattice(mesh);
-  for (Point<3>& vertex : mesh.blocks[0].vertices) {
+  for (LatticePoint& vertex : mesh.blocks[0].vertices) {
     vertex = {-1.2345678901e300 * (1 + vertex[0] * 0), -123456789012345.6 - vertex[1], vertex[2]};
   }
   // Their distance from an origin of few digits is beyond float32, which is said, not cut.

@@ -26,7 +26,7 @@ std::ostream& operator<<(std::ostream& out, const FaultCase& c) { return out << 
 const Mesh& large_mesh() {
   static const Mesh mesh = [] {
     Mesh large;
-    large.vertices.assign(100000, Point<3>{500000.125, 4500000.25, 3});
+    large.vertices.assign(100000, WorldPoint{500000.125, 4500000.25, 3});
     large.header.vertices = large.vertices.size();
     for (std::uint64_t i = 0; i < 600000; ++i) large.corners.push_back(i % 100000);
     large.header.simplices = large.corners.size() / 3;

@@ -81,9 +81,9 @@ class ToyWriter : public CheckedMeshWriter {
 
  private:
   void put(const std::string& text) { file_->write(as_bytes_of(text)); }
-  void put_vertices(std::span<const Point<3>> vertices,
+  void put_vertices(std::span<const WorldPoint> vertices,
                     std::span<const std::uint64_t> /*input_index*/) override {
-    for (const Point<3>& v : vertices) put(fmt::format("{} {} {}\n", v[0], v[1], v[2]));
+    for (const WorldPoint& v : vertices) put(fmt::format("{} {} {}\n", v[0], v[1], v[2]));
   }
   void put_simplices(std::span<const std::uint64_t> corners) override {
     for (const std::uint64_t corner : corners) put(fmt::format("{}\n", corner));
@@ -93,13 +93,13 @@ class ToyWriter : public CheckedMeshWriter {
   std::unique_ptr<OutputFile> file_;
 };
 
-Mesh read_toy(InputSource& source) {
+Mesh read_toy(InputBytes& source) {
   std::istringstream text{std::string(as_text(read_whole(source)))};
   std::string word;
   Mesh mesh;
   text >> word >> mesh.header.vertices >> mesh.header.simplices;
   mesh.vertices.resize(mesh.header.vertices);
-  for (Point<3>& v : mesh.vertices) text >> v[0] >> v[1] >> v[2];
+  for (WorldPoint& v : mesh.vertices) text >> v[0] >> v[1] >> v[2];
   mesh.corners.resize(3 * mesh.header.simplices);
   for (std::uint64_t& corner : mesh.corners) text >> corner;
   return mesh;

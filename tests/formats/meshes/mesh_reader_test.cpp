@@ -22,8 +22,8 @@ void expect_square(const Mesh& mesh) {
   EXPECT_EQ(mesh.header.dimension, 2);
   EXPECT_EQ(mesh.header.vertices, 4U);
   EXPECT_EQ(mesh.header.simplices, 2U);
-  EXPECT_THAT(mesh.vertices, ElementsAre(Point<3>{0, 0, 0}, Point<3>{1, 0, 0.5}, Point<3>{0, 1, -2},
-                                         Point<3>{1, 1, 3}));
+  EXPECT_THAT(mesh.vertices, ElementsAre(WorldPoint{0, 0, 0}, WorldPoint{1, 0, 0.5},
+                                         WorldPoint{0, 1, -2}, WorldPoint{1, 1, 3}));
   EXPECT_THAT(mesh.corners, ElementsAre(0, 1, 2, 2, 1, 3));
 }
 
@@ -113,7 +113,7 @@ TEST(PlyReader, OtherElementsAndPropertiesArePassedOverInAnyOrder) {
 
 TEST(PlyReader, VerticesWithoutZLieAtHeightZero) {
   const std::string text = replaced(ascii_ply(), "property double z", "property double height");
-  EXPECT_EQ(read_both("a.ply", text).vertices[3], (Point<3>{1, 1, 0}));
+  EXPECT_EQ(read_both("a.ply", text).vertices[3], (WorldPoint{1, 1, 0}));
 }
 
 TEST(PlyReader, FloatsInTextAreFloats) {
@@ -297,7 +297,8 @@ TEST(NpyMeshReader, VerticesOfTwoCoordinates) {
   files.files["a_simplices.npy"] = npy_array<std::int64_t>("<i8", "1, 3", {0, 1, 2});
   files.files["a_input_index.npy"] = npy_array<std::int64_t>("<i8", "3,", {9, 8, 7});
   const Mesh mesh = read_mesh(files, "a.npy");
-  EXPECT_THAT(mesh.vertices, ElementsAre(Point<3>{0, 1, 0}, Point<3>{2, 3, 0}, Point<3>{4, 5, 0}));
+  EXPECT_THAT(mesh.vertices,
+              ElementsAre(WorldPoint{0, 1, 0}, WorldPoint{2, 3, 0}, WorldPoint{4, 5, 0}));
   EXPECT_THAT(mesh.input_index, ElementsAre(9, 8, 7));
 }
 

@@ -178,7 +178,7 @@ TEST_P(EveryFormat, RefusesInputIndicesThatAreNotOneAVertex) {
   MeshHeader header;
   header.vertices = 2;
   const auto writer = open_mesh_writer(files, GetParam().path, *GetParam().format, header);
-  const std::vector<Point<3>> vertices(2);
+  const std::vector<WorldPoint> vertices(2);
   const std::vector<std::uint64_t> index(2);
   error_of([&] { writer->write_vertices(vertices, index); });
 }
@@ -223,7 +223,8 @@ TEST(MeshFormats, MeshesAreToldFromPoints) {
 }
 
 TEST(MeshFormats, WhatIsNoMeshIsRefused) {
-  EXPECT_THAT(error_of_bytes("points.txt", "1 2 3\n"), HasSubstr("no mesh that is known"));
+  EXPECT_THAT(error_of_bytes("points.txt", "1 2 3\n"),
+              HasSubstr("not a mesh format that Spillway knows"));
 }
 
 TEST(MeshFormats, FirstBytesCountMoreThanTheName) {

@@ -58,7 +58,7 @@ inline Lattice awkward_lattice() {
 inline void write_mesh(FileSystem& files, const std::string& path, const MeshFormat& format,
                        const Mesh& mesh, std::size_t block = 3) {
   const auto writer = open_mesh_writer(files, path, format, mesh.header);
-  const std::span<const Point<3>> vertices(mesh.vertices);
+  const std::span<const WorldPoint> vertices(mesh.vertices);
   const std::span<const std::uint64_t> index(mesh.input_index);
   for (std::size_t at = 0; at < vertices.size(); at += block) {
     const std::size_t count = std::min(block, vertices.size() - at);

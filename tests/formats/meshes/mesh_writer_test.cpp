@@ -139,7 +139,7 @@ TEST(PlyWriter, BinaryTetrahedraWithInputIndex) {
 }
 
 TEST(PlyWriter, VertexNumbersBeyondIntAreUnsigned) {
-  const std::vector<Point<3>> enough_to_be_written_out(1000000);
+  const std::vector<WorldPoint> enough_to_be_written_out(1000000);
   for (const bool beyond : {false, true}) {
     MeshHeader header;
     header.vertices = (std::uint64_t{1} << 31) + (beyond ? 1 : 0);

@@ -74,7 +74,9 @@ inline void add_input_index(StreamedMesh& mesh) {
 /// Takes the lattice away, so that any doubles may come.
 inline void leave_lattice(StreamedMesh& mesh) {
   for (MeshBlock& block : mesh.blocks) {
-    for (Point<3>& vertex : block.vertices) vertex = mesh.header.lattice->to_world(vertex);
+    for (LatticePoint& vertex : block.vertices) {
+      vertex = LatticePoint(in_world(mesh.header.lattice, vertex).numbers());
+    }
   }
   mesh.header.lattice.reset();
 }
@@ -127,7 +129,7 @@ inline std::string error_of_stream(const std::string& path, const std::string& b
 /// A mesh without blocks: its vertices, its simplices turned and sorted, and after how many
 /// simplices at the least each vertex is finalized.
 struct FlatMesh {
-  std::vector<Point<3>> vertices;
+  std::vector<LatticePoint> vertices;
   std::vector<std::uint64_t> input_index;
   std::vector<std::vector<std::uint64_t>> simplices;
   std::map<std::uint64_t, std::size_t> finalized;

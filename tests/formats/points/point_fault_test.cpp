@@ -21,8 +21,8 @@ void write_points(FaultyFileSystem& files, const std::string& path) {
   options.lattice = Lattice{};
   const auto writer = open_point_writer(files, path, options);
   std::mt19937 random(1);
-  std::vector<Point<3>> points(kPoints);
-  for (Point<3>& p : points) p = {double(random() >> 1U), double(random() >> 1U), 3};
+  std::vector<LatticePoint> points(kPoints);
+  for (LatticePoint& p : points) p = {double(random() >> 1U), double(random() >> 1U), 3};
   writer->write(points, {});
   writer->finish();
 }
@@ -155,7 +155,7 @@ TEST(AnyCorruption, NpyGivesPointsOrAnError) {
   PointWriterOptions options;
   options.count = 2;
   const auto writer = open_point_writer(files, "a.npy", options);
-  writer->write(std::vector<Point<3>>(2, Point<3>{1, 2, 3}), {});
+  writer->write(std::vector<LatticePoint>(2, LatticePoint{1, 2, 3}), {});
   writer->finish();
   read_every_corruption("a.npy", files.files.at("a.npy"));
 }

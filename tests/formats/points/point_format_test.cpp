@@ -42,7 +42,7 @@ TEST(PointFormatChoice, FirstBytesBeforeExtension) {
     PointWriterOptions options;
     options.count = 1;
     const auto writer = open_point_writer(files, name, options);
-    writer->write(std::vector<Point<3>>(1), {});
+    writer->write(std::vector<LatticePoint>(1), {});
     writer->finish();
   }
   const std::string laz = make_laz_file({}, RandomRecords{0, 0, 5, 3}.make()).bytes();
@@ -55,8 +55,8 @@ TEST(PointFormatChoice, FirstBytesBeforeExtension) {
 }
 
 TEST(PointFormatChoice, ExtensionWhereTheFirstBytesSayNothing) {
-  EXPECT_THAT(error_of_content("a.npy", "1 2 3\n"), HasSubstr("no npy file"));
-  EXPECT_THAT(error_of_content("a.las", "1 2 3\n"), HasSubstr("no LAS file"));
+  EXPECT_THAT(error_of_content("a.npy", "1 2 3\n"), HasSubstr("not an npy file"));
+  EXPECT_THAT(error_of_content("a.las", "1 2 3\n"), HasSubstr("not a LAS file"));
 }
 
 TEST(PointFormatChoice, TextInAnotherEncoding) {
@@ -135,7 +135,7 @@ TEST(PointFormatChoice, PipeThatNeedsTheCountBeforehand) {
   }
   for (const char* name : {"a.txt", "a.spp"}) {
     const auto writer = open_point_writer(files, name, options);
-    writer->write(std::vector<Point<3>>(2), {});
+    writer->write(std::vector<LatticePoint>(2), {});
     writer->finish();
     EXPECT_EQ(read_all_points(files, name).points.size(), 2U);
   }

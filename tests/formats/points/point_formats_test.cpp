@@ -68,7 +68,7 @@ class ToyReader : public PointReader {
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
   bool fetch(RawPoints& raw) override {
-    for (Point<3> p; text_ >> p[0] >> p[1] >> p[2];) {
+    for (LatticePoint p; text_ >> p[0] >> p[1] >> p[2];) {
       raw.decoded.index.push_back(raw.decoded.points.size());
       raw.decoded.points.push_back(p);
     }
@@ -85,9 +85,9 @@ class ToyWriter : public PointWriter {
  public:
   explicit ToyWriter(std::unique_ptr<OutputFile> file) : file_(std::move(file)) { put("TOY\n"); }
 
-  void write(std::span<const Point<3>> points,
+  void write(std::span<const LatticePoint> points,
              std::span<const PointAttributes> /*attributes*/) override {
-    for (const Point<3>& p : points) put(fmt::format("{} {} {}\n", p[0], p[1], p[2]));
+    for (const LatticePoint& p : points) put(fmt::format("{} {} {}\n", p[0], p[1], p[2]));
   }
   void finish() override { file_->commit(); }
 
@@ -116,7 +116,7 @@ constexpr const PointFormat* kTable[] = {&kLasPoints, &kTextPoints, &kToyPoints}
 
 TEST(AnotherPointFormat, IsWrittenByItsExtensionAndReadByItsFirstBytes) {
   FaultyFileSystem files;
-  const std::vector<Point<3>> points = {{1, 2, 3}, {4.5, -6, 1e300}};
+  const std::vector<LatticePoint> points = {{1, 2, 3}, {4.5, -6, 1e300}};
   const auto writer = open_point_writer(files, "a.toy", {}, kTable);
   writer->write(points, {});
   writer->finish();

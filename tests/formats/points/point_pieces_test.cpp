@@ -121,7 +121,7 @@ std::string npy_file(std::size_t count) {
   FaultyFileSystem files;
   const auto writer =
       open_point_writer(files, "a.npy", {.format = "npy", .coordinates = 2, .count = count});
-  std::vector<Point<3>> points(count);
+  std::vector<LatticePoint> points(count);
   for (std::size_t i = 0; i < count; ++i) points[i] = {double(i), -0.5 * double(i), 0};
   writer->write(points, {});
   writer->finish();
@@ -221,7 +221,7 @@ TEST(PointPieces, SharedFiles) {
 /// Text in pieces of that many bytes.
 Open open_text(FaultyFileSystem& files, std::uint64_t piece_bytes) {
   return [&files, piece_bytes] {
-    return open_text_reader(std::make_unique<InputSource>(files.open("a.txt")), "a.txt", nullptr,
+    return open_text_reader(std::make_unique<InputBytes>(files.open("a.txt")), "a.txt", nullptr,
                             piece_bytes);
   };
 }
@@ -286,7 +286,7 @@ TEST(PointPieces, TellHowFarTheyAre) {
 std::string spp_file() {
   FaultyFileSystem files;
   const auto writer = open_point_writer(files, "a.spp", {});
-  writer->write(std::vector<Point<3>>{{1, 2, 3}}, {});
+  writer->write(std::vector<LatticePoint>{{1, 2, 3}}, {});
   writer->finish();
   return files.files.at("a.spp");
 }
@@ -343,7 +343,7 @@ TEST(PointPieceErrors, TextNamesTheByteWhereTheLineBegins) {
   FaultyFileSystem files;
   files.files["a.txt"] = "# c\n1 2 3\n4 x 6\n7 8 nan\n9 9 9\n";
   EXPECT_THAT(error_of_piece(open_text(files, 7), 0),
-              HasSubstr("a.txt: the line at byte 10, column 2 is no number: \"x\""));
+              HasSubstr("a.txt: the line at byte 10, column 2 is not a number: \"x\""));
   EXPECT_THAT(error_of_piece(open_text(files, 7), 1),
               HasSubstr("a.txt: the point in the line at byte 16 is not finite: \"7 8 nan\""));
   EXPECT_THAT(error_of_piece(open_text(files, 100), 0), HasSubstr("line at byte 10"));

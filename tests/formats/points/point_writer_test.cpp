@@ -21,13 +21,13 @@ using ::testing::HasSubstr;
 constexpr Lattice kCentimetres{{0.01, 0.01, 0.01}, {500000, 4000000, -10}};
 
 /// What a writer makes of the points, written in two pieces, with attributes if there are any.
-std::string written_as_is(const std::string& path, const std::vector<Point<3>>& points,
+std::string written_as_is(const std::string& path, const std::vector<LatticePoint>& points,
                           const std::vector<PointAttributes>& attributes,
                           const PointWriterOptions& options, bool seekable = true) {
   FaultyFileSystem files;
   files.seekable = seekable;
   const auto writer = open_point_writer(files, path, options);
-  const std::span<const Point<3>> all = points;
+  const std::span<const LatticePoint> all = points;
   const std::span<const PointAttributes> all_attributes = attributes;
   writer->write(all.first(all.size() / 3), all_attributes.first(attributes.size() / 3));
   writer->write(all.subspan(all.size() / 3), all_attributes.subspan(attributes.size() / 3));
@@ -38,14 +38,14 @@ std::string written_as_is(const std::string& path, const std::vector<Point<3>>& 
 }
 
 /// The same with their number promised.
-std::string written(const std::string& path, const std::vector<Point<3>>& points,
+std::string written(const std::string& path, const std::vector<LatticePoint>& points,
                     PointWriterOptions options, bool seekable = true) {
   options.count = points.size();
   return written_as_is(path, points, {}, options, seekable);
 }
 
 /// The same with attributes and without a promise.
-std::string written(const std::vector<Point<3>>& points,
+std::string written(const std::vector<LatticePoint>& points,
                     const std::vector<PointAttributes>& attributes, PointWriterOptions options) {
   options.attributes = true;
   return written_as_is("a.las", points, attributes, options);
@@ -71,11 +71,12 @@ PointWriterOptions with_lattice(const Lattice& lattice) {
   return options;
 }
 
-std::vector<Point<3>> random_integers(std::size_t count) {
+std::vector<LatticePoint> random_integers(std::size_t count) {
   std::mt19937 random(1);
   std::uniform_int_distribution<std::int32_t> any;
-  std::vector<Point<3>> points(count);
-  for (Point<3>& p : points) p = {double(any(random)), double(any(random)), double(any(random))};
+  std::vector<LatticePoint> points(count);
+  for (LatticePoint& p : points)
+    p = {double(any(random)), double(any(random)), double(any(random))};
   points[0] = {std::numeric_limits<std::int32_t>::min(), 0, 0};
   points[1] = {0, std::numeric_limits<std::int32_t>::max(), -1};
   return points;
@@ -94,19 +95,19 @@ std::vector<PointAttributes> random_attributes(std::size_t count, bool version14
   return attributes;
 }
 
-std::vector<Point<3>> random_doubles(std::size_t count) {
+std::vector<LatticePoint> random_doubles(std::size_t count) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> mantissa(-1, 1);
   std::uniform_int_distribution<int> exponent(-300, 300);
-  std::vector<Point<3>> points(count);
-  for (Point<3>& p : points) {
+  std::vector<LatticePoint> points(count);
+  for (LatticePoint& p : points) {
     for (double& c : p) c = mantissa(random) * std::pow(10.0, exponent(random));
   }
   return points;
 }
 
 TEST(LasWriter, RoundTrip) {
-  const std::vector<Point<3>> points = random_integers(20000);
+  const std::vector<LatticePoint> points = random_integers(20000);
   const AllPoints back =
       read_content("a.las", written("a.las", points, with_lattice(kCentimetres)));
   EXPECT_THAT(back.points, ElementsAreArray(points));
@@ -166,7 +167,7 @@ TEST(LasWriter, NeedsALatticeAndThreeCoordinates) {
 }
 
 TEST(LasWriter, KeepsAttributes) {
-  const std::vector<Point<3>> points = random_integers(20000);
+  const std::vector<LatticePoint> points = random_integers(20000);
   for (const std::string version : {"1.2", "1.4"}) {
     PointWriterOptions options = with_lattice(kCentimetres);
     options.version = version;
@@ -180,7 +181,7 @@ TEST(LasWriter, KeepsAttributes) {
 }
 
 TEST(LasWriter, GivesVersion12AttributesToVersion14AndBack) {
-  const std::vector<Point<3>> points = random_integers(1000);
+  const std::vector<LatticePoint> points = random_integers(1000);
   const auto attributes = random_attributes(points.size(), false);
   PointWriterOptions options = with_lattice({});
   options.version = "1.4";
@@ -216,7 +217,7 @@ TEST(LasWriter, CountsReturnsInTheHeader) {
   for (std::size_t i = 0; i < attributes.size(); ++i) {
     attributes[i].return_number = static_cast<std::uint8_t>(i < 5 ? 1 : i < 8 ? 4 : i < 9 ? 7 : 0);
   }
-  const std::vector<Point<3>> points(attributes.size());
+  const std::vector<LatticePoint> points(attributes.size());
   PointWriterOptions options = with_lattice({});
   const std::string old = written(points, attributes, options);
   EXPECT_EQ(field<std::uint32_t>(old, 107), 10U);
@@ -231,7 +232,7 @@ TEST(LasWriter, CountsReturnsInTheHeader) {
 }
 
 TEST(LasWriter, RefusesAttributesThatTheRecordCannotHold) {
-  const std::vector<Point<3>> points(3);
+  const std::vector<LatticePoint> points(3);
   for (const PointAttributes& bad :
        {PointAttributes{.classification = 32}, PointAttributes{.return_number = 8},
         PointAttributes{.return_count = 8}, PointAttributes{.flags = PointAttributes::kOverlap}}) {
@@ -252,7 +253,7 @@ TEST(LasWriter, RefusesVersionsThatItDoesNotWrite) {
 }
 
 TEST(LasWriter, LearnsTheCountOnTheWay) {
-  const std::vector<Point<3>> points = random_integers(20000);
+  const std::vector<LatticePoint> points = random_integers(20000);
   for (const std::string version : {"1.2", "1.4"}) {
     PointWriterOptions options = with_lattice(kCentimetres);
     options.version = version;
@@ -284,7 +285,7 @@ TEST(LasCoordinateSystem, CodeBecomesAKeyInVersion12) {
   const std::string las = las_with_crs("EPSG:32617");
   const AllPoints back = read_content("a.las", las);
   EXPECT_EQ(back.header.crs, "EPSG:32617");
-  EXPECT_EQ(back.points[0], (Point<3>{1, 2, 3}));
+  EXPECT_EQ(back.points[0], (LatticePoint{1, 2, 3}));
   EXPECT_EQ(geotiff_keys(las),
             (std::array<std::uint16_t, 12>{1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 32617}));
   EXPECT_EQ(geotiff_keys(las_with_crs("EPSG:4326")),
@@ -318,7 +319,7 @@ TEST(LasCoordinateSystem, CodeOfACompoundSystemHasItsWktBesideTheHorizontalKeys)
 
 TEST(LasCoordinateSystem, CodesThatNobodyKnowsAreNotWritten) {
   EXPECT_THAT(error_of([] { las_with_crs("EPSG:19999"); }),
-              HasSubstr("whether EPSG:19999 is projected or geographic"));
+              HasSubstr("whether EPSG:19999 is projected or geographic, which LAS has to tell"));
 }
 
 TEST(LasCoordinateSystem, WktStaysInBothVersions) {
@@ -326,7 +327,7 @@ TEST(LasCoordinateSystem, WktStaysInBothVersions) {
     for (const char* crs : {kProjectedWkt, "LOCAL_CS[\"mine\"]"}) {
       const AllPoints back = read_content("a.las", las_with_crs(crs, "", version));
       EXPECT_EQ(back.header.crs, crs) << version;
-      EXPECT_EQ(back.points[0], (Point<3>{1, 2, 3}));
+      EXPECT_EQ(back.points[0], (LatticePoint{1, 2, 3}));
     }
   }
   EXPECT_EQ(field<std::uint16_t>(las_with_crs(kProjectedWkt, "", "1.4"), 6), 0x10);
@@ -359,7 +360,7 @@ TEST(LasCoordinateSystem, RefusesWhatLasCannotHold) {
 }
 
 /// What reaches a pipe through a scratch folder.
-std::string piped(const std::string& path, const std::vector<Point<3>>& points,
+std::string piped(const std::string& path, const std::vector<LatticePoint>& points,
                   const std::vector<PointAttributes>& attributes, PointWriterOptions options) {
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   options.scratch = scratch.get();
@@ -367,7 +368,7 @@ std::string piped(const std::string& path, const std::vector<Point<3>>& points,
 }
 
 TEST(SpooledOutput, GivesAPipeWhatAFileWouldHold) {
-  const std::vector<Point<3>> points = random_integers(200000);
+  const std::vector<LatticePoint> points = random_integers(200000);
   const auto attributes = random_attributes(points.size(), false);
   PointWriterOptions options = with_lattice(kCentimetres);
   EXPECT_EQ(piped("a.npy", points, {}, options), written_as_is("a.npy", points, {}, options));
@@ -410,7 +411,7 @@ TEST(SpooledOutput, ReportsAFullPipe) {
 }
 
 TEST(TextWriter, RoundTripOfDoubles) {
-  const std::vector<Point<3>> points = random_doubles(20000);
+  const std::vector<LatticePoint> points = random_doubles(20000);
   EXPECT_THAT(read_content("a.xyz", written("a.xyz", points, {})).points, ElementsAreArray(points));
 }
 
@@ -435,14 +436,14 @@ TEST(TextWriter, WorldCoordinatesWhereTheLatticeIsNotDecimal) {
 }
 
 TEST(NpyWriter, RoundTrip) {
-  const std::vector<Point<3>> points = random_doubles(20000);
+  const std::vector<LatticePoint> points = random_doubles(20000);
   const std::string bytes = written("a.npy", points, {});
   EXPECT_EQ((bytes.size() - points.size() * 24) % 64, 0U);
   EXPECT_THAT(read_content("a.npy", bytes).points, ElementsAreArray(points));
 }
 
 TEST(NpyWriter, LearnsTheCountOnTheWay) {
-  const std::vector<Point<3>> points = random_doubles(20000);
+  const std::vector<LatticePoint> points = random_doubles(20000);
   EXPECT_EQ(written_as_is("a.npy", points, {}, {}), written("a.npy", points, {}));
 }
 
@@ -451,13 +452,13 @@ TEST(NpyWriter, TwoColumns) {
   flat.coordinates = 2;
   const AllPoints back = read_content("a.npy", written("a.npy", {{1, 2.5, 0}, {-3, 4, 0}}, flat));
   EXPECT_EQ(back.header.coordinates, 2);
-  EXPECT_EQ(back.points[1], (Point<3>{-3, 4, 0}));
+  EXPECT_EQ(back.points[1], (LatticePoint{-3, 4, 0}));
 }
 
 TEST(NpyWriter, WorldCoordinatesOfLatticePoints) {
   const AllPoints back =
       read_content("a.npy", written("a.npy", {{100, 200, 300}}, with_lattice(kCentimetres)));
-  EXPECT_EQ(back.points[0], (Point<3>{500001, 4000002, -7}));
+  EXPECT_EQ(back.points[0], (LatticePoint{500001, 4000002, -7}));
 }
 
 TEST(PointWriter, RefusesAnotherNumberOfPoints) {
@@ -466,7 +467,7 @@ TEST(PointWriter, RefusesAnotherNumberOfPoints) {
     PointWriterOptions options = with_lattice({});
     options.count = 3;
     auto writer = open_point_writer(files, path, options);
-    writer->write(std::vector<Point<3>>(2), {});
+    writer->write(std::vector<LatticePoint>(2), {});
     EXPECT_THAT(error_of([&] { writer->finish(); }),
                 HasSubstr("3 points were promised, but 2 came"));
     writer.reset();

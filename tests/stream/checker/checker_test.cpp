@@ -36,7 +36,7 @@ Mesh cgal_mesh(const std::vector<Point<D>>& points, const std::optional<Lattice>
   mesh.header.vertices = points.size();
   mesh.header.lattice = lattice;
   for (const auto& p : points) {
-    Point<3> output{};
+    WorldPoint output{};
     for (int k = 0; k < D; ++k) output[k] = lattice ? lattice->to_world(k, p[k]) : p[k];
     mesh.vertices.push_back(output);
   }

@@ -67,7 +67,7 @@ inline StreamInMemory stream_of(const Mesh& mesh, std::size_t simplices_in_block
     for (const std::uint64_t v : old) block.imported.push_back(number[v]);
     for (const std::uint64_t v : fresh) {
       number[v] = announced++;
-      block.vertices.push_back(mesh.vertices[v]);
+      block.vertices.emplace_back(mesh.vertices[v].numbers());
     }
     std::vector<std::uint64_t> all = fresh;
     all.insert(all.end(), old.begin(), old.end());
@@ -93,7 +93,7 @@ inline StreamInMemory stream_of(const Mesh& mesh, std::size_t simplices_in_block
   std::for_each(last.finalized.begin(), last.finalized.end(), shift);
   for (const std::uint64_t v : unused) {
     last.finalized.push_back(static_cast<std::uint32_t>(last.vertices.size()));
-    last.vertices.push_back(mesh.vertices[v]);
+    last.vertices.emplace_back(mesh.vertices[v].numbers());
   }
   return stream;
 }

@@ -12,7 +12,6 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "stream/checker/checker.h"
-#include "stream/checker/open_vertices.h"
 #include "tests/stream/checker/mesh_streaming.h"
 #include "tests/stream/checker/mesh_surgery.h"
 
@@ -53,8 +52,8 @@ Mesh triangulated(const GeneratorOptions& options) {
 
 // The same with output coordinates, as the proof of whole meshes takes it.
 Mesh in_output_coordinates(Mesh mesh) {
-  for (Point<3>& vertex : mesh.vertices) {
-    if (mesh.header.lattice) vertex = mesh.header.lattice->to_world(vertex);
+  for (WorldPoint& vertex : mesh.vertices) {
+    vertex = in_world(mesh.header.lattice, LatticePoint(vertex.numbers()));
   }
   return mesh;
 }
@@ -294,7 +293,9 @@ TYPED_TEST(StreamProofTest, TakesTheInputsLatticeIfTheStreamHasNone) {
   StreamInMemory plain = stream_of(mesh, 9);
   plain.stream_header.lattice.reset();
   for (MeshBlock& block : plain.blocks) {
-    for (Point<3>& vertex : block.vertices) vertex = centimetres.to_world(vertex);
+    for (LatticePoint& vertex : block.vertices) {
+      vertex = LatticePoint(centimetres.to_world(vertex).numbers());
+    }
   }
   CheckOptions options;
   options.input_lattice = centimetres;
@@ -307,56 +308,19 @@ TYPED_TEST(StreamProofTest, GivesOutVerticesInOutputCoordinatesAndProgress) {
   constexpr int D = TypeParam::value;
   Mesh mesh =
       triangulated<D>(GeneratorOptions{.family = Family::kTerrain, .count = 400, .dimension = D});
-  std::vector<Point<3>> vertices;
+  std::vector<WorldPoint> vertices;
   double last_fraction = 0;
   CheckOptions options;
-  options.vertex = [&](const Point<3>& vertex) { vertices.push_back(vertex); };
+  options.vertex = [&](const WorldPoint& vertex) { vertices.push_back(vertex); };
   options.progress = [&](std::uint64_t, std::optional<double> fraction) {
     last_fraction = *fraction;
   };
   check(stream_of(mesh, 9), options);
-  std::vector<Point<3>> expected = in_output_coordinates(mesh).vertices;
+  std::vector<WorldPoint> expected = in_output_coordinates(mesh).vertices;
   std::sort(vertices.begin(), vertices.end());
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(vertices, expected);
   EXPECT_EQ(last_fraction, 1);
-}
-
-TEST(OpenVerticesTest, RefusesVerticesThatComeNoMore) {
-  OpenVertices<2> live;
-  MeshBlock block;
-  block.vertices.resize(3);
-  std::vector<Point<2>> points = {{0, 0}, {1, 0}, {0, 1}};
-  std::vector<std::uint32_t> slots;
-  block.finalized = {1};
-  live.enter(block, points, slots);
-  live.finalize(slots[1]);
-  EXPECT_THROW(live.finalize(slots[1]), Error);
-  block.clear();
-  for (const std::uint64_t imported : {1, 3}) {
-    block.imported = {imported};
-    points.clear();
-    EXPECT_THROW(live.enter(block, points, slots), Error);
-  }
-}
-
-TEST(OpenVerticesTest, SlotsOfHeldVerticesAreNotUsedAgainBeforeRelease) {
-  OpenVertices<2> live;
-  MeshBlock block;
-  block.vertices.resize(1);
-  block.finalized = {0};
-  std::vector<std::uint32_t> slots;
-  const auto add = [&] {
-    std::vector<Point<2>> points = {{3, 4}};
-    live.enter(block, points, slots);
-    return slots[0];
-  };
-  const std::uint32_t first = add();
-  live.hold(first);
-  live.finalize(first);
-  EXPECT_NE(add(), first);
-  live.release(first);
-  EXPECT_EQ(add(), first);
 }
 
 }  // namespace

@@ -6,8 +6,10 @@
 #include <spillway/triangulate.h>
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <set>
@@ -157,6 +159,25 @@ TEST_F(Streams, BesideEachOtherWithDifferentOptionsGiveTheRightResultEach) {
   EXPECT_THAT(hashes, testing::Each(hashes.front()));
 }
 
+/// Threads of this process.
+std::ptrdiff_t thread_count() {
+  return std::distance(fs::directory_iterator("/proc/self/task"), fs::directory_iterator());
+}
+
+TEST_F(Streams, LeaveNoThreadsWhenTheContextIsGone) {
+  const std::ptrdiff_t before = thread_count();
+  {
+    const Context context(options("64M", 4));
+    Blocks source(random_points(20'000), 5000);
+    MeshInMemory mesh;
+    triangulate(source, mesh, {}, context);
+  }
+  for (int wait = 0; wait < 200 && thread_count() > before; ++wait) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));  // what has ended may still be seen
+  }
+  EXPECT_LE(thread_count(), before);
+}
+
 TEST_F(Streams, ThatStopLeaveNothingAndSayInterrupted) {
   for (const std::string phase : {"read", "triangulate", "write"}) {
     std::stop_source stop;
@@ -169,7 +190,7 @@ TEST_F(Streams, ThatStopLeaveNothingAndSayInterrupted) {
     Blocks source(random_points(100'000), 5000);
     const std::string path = folder_ + "/mesh.ply";
     {
-      const auto sink = open_mesh(path, {}, context);
+      const auto sink = create_mesh(path, {}, context);
       EXPECT_EQ(code_of([&] { triangulate(source, *sink, {.tile_points = 20'000}, context); }),
                 ErrorCode::kInterrupted)
           << phase;
@@ -223,7 +244,7 @@ TEST_F(Streams, RefuseWhatCannotBe) {
 TEST_F(Streams, WriteBlocksOfAProgramToFiles) {
   const Context context(options());
   const std::string path = folder_ + "/square.sma";
-  const auto sink = open_mesh(path, {}, context);
+  const auto sink = create_mesh(path, {}, context);
   sink->begin({});
   sink->write({.first_vertex = 0,
                .vertices = {{0, 0, 1}, {1, 0, 2}, {0, 1, 3}},
@@ -236,7 +257,7 @@ TEST_F(Streams, WriteBlocksOfAProgramToFiles) {
   totals.simplices = 2;
   sink->finish(totals);
   EXPECT_TRUE(fs::exists(path));
-  const auto other = open_mesh(folder_ + "/other.spm", {}, context);
+  const auto other = create_mesh(folder_ + "/other.spm", {}, context);
   EXPECT_EQ(code_of([&] { other->write({}); }), ErrorCode::kInvalidArgument) << "not begun";
   EXPECT_EQ(code_of([&] { sink->finish({}); }), ErrorCode::kInvalidArgument) << "finished";
   other->begin({});

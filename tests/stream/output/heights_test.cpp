@@ -23,27 +23,27 @@ Stack stacked() {
 TEST(Heights, LowestAndHighestTakeThePointThatHasIt) {
   std::vector<double> heights = {9, 0, 5, 0, 1, 0, 0, 8};
   auto lowest = stacked();
-  choose_heights(lowest.duplicates, HeightChoice::kLowest, lowest.input_index, heights);
+  choose_heights(lowest.duplicates, Heights::kLowest, lowest.input_index, heights);
   EXPECT_EQ(lowest.input_index[1], 4U);
   auto highest = stacked();
-  choose_heights(highest.duplicates, HeightChoice::kHighest, highest.input_index, heights);
+  choose_heights(highest.duplicates, Heights::kHighest, highest.input_index, heights);
   EXPECT_EQ(highest.input_index[1], 7U);
   auto first = stacked();
-  choose_heights(first.duplicates, HeightChoice::kFirst, first.input_index, heights);
+  choose_heights(first.duplicates, Heights::kFirst, first.input_index, heights);
   EXPECT_EQ(first.input_index[1], 2U);
 }
 
 TEST(Heights, OfEqualHeightsTheFirstPointOfTheInputIsTaken) {
   std::vector<double> heights(8, 3.0);
   auto t = stacked();
-  choose_heights(t.duplicates, HeightChoice::kHighest, t.input_index, heights);
+  choose_heights(t.duplicates, Heights::kHighest, t.input_index, heights);
   EXPECT_EQ(t.input_index[1], 2U);
 }
 
 TEST(Heights, MeanCountsEveryPointOnce) {
   std::vector<double> heights = {9, 0, 6, 0, 1, 0, 0, 8};
   auto t = stacked();
-  choose_heights(t.duplicates, HeightChoice::kMean, t.input_index, heights);
+  choose_heights(t.duplicates, Heights::kMean, t.input_index, heights);
   EXPECT_EQ(heights[t.input_index[1]], 5);
   EXPECT_EQ(heights[t.input_index[2]], 9);
 }

@@ -12,7 +12,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-class KeptBlocks : public BlockSink {
+class KeptSlabs : public BlockSink {
  public:
   void absorb(MeshBlock&) override { ++absorbed; }
   void write(MeshBlock&& block) override { blocks.push_back(std::move(block)); }
@@ -24,7 +24,7 @@ class KeptBlocks : public BlockSink {
 
 MeshBlock block_of(std::size_t vertices, double x, std::vector<std::uint32_t> corners = {}) {
   MeshBlock block;
-  block.vertices.assign(vertices, Point<3>{x, 0, 0});
+  block.vertices.assign(vertices, LatticePoint{x, 0, 0});
   block.corners = std::move(corners);
   return block;
 }
@@ -37,7 +37,7 @@ class SequencerTest : public testing::Test {
     return order;
   }
 
-  KeptBlocks sink_;
+  KeptSlabs sink_;
   StageTimes times_;
 };
 

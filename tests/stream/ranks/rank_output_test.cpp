@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -18,7 +17,7 @@
 #include "formats/inputs/open_mesh_stream.h"
 #include "formats/meshes/common/mesh_block.h"
 #include "formats/meshes/mesh_formats.h"
-#include "formats/meshes/mesh_parts.h"
+#include "formats/meshes/part_file_names.h"
 #include "formats/meshes/ply/ply_format.h"
 #include "formats/meshes/spm/spm_format.h"
 #include "formats/meshes/vtu/vtu_format.h"
@@ -30,6 +29,7 @@
 #include "stream/ranks/mesh_output.h"
 #include "tests/distributed/world.h"
 #include "tests/faulty_file_system.h"
+#include "tests/stream/ranks/shared_folder.h"
 
 namespace spillway::detail::testing {
 namespace {
@@ -39,40 +39,7 @@ using distributed::world;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A folder that all ranks know, for one test.
-class SharedFolder {
- public:
-  SharedFolder() {
-    std::vector<std::byte> name;
-    if (world().rank() == 0) {
-      path_ = ::testing::TempDir() + "rank-output" + std::to_string(::getpid());
-      fs::create_directory(path_);
-      const auto bytes = as_bytes_of(path_);
-      name.assign(bytes.begin(), bytes.end());
-    }
-    world().broadcast(name, 0);
-    path_ = as_text(name);
-  }
-  ~SharedFolder() {
-    world().barrier();
-    if (world().rank() == 0) fs::remove_all(path_);
-  }
-  SharedFolder(const SharedFolder&) = delete;
-  SharedFolder& operator=(const SharedFolder&) = delete;
-
-  [[nodiscard]] std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-
-  [[nodiscard]] std::set<std::string> names() const {
-    std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(path_)) names.insert(entry.path().filename());
-    return names;
-  }
-
- private:
-  std::string path_;
-};
-
-class KeptBlocks : public BlockSink {
+class KeptSlabs : public BlockSink {
  public:
   void write(MeshBlock&& block) override { blocks.push_back(std::move(block)); }
   void finish(const MeshTotals&) override {}
@@ -95,11 +62,11 @@ struct MeshCase {
 };
 
 /// Random points, integers up to 100000 if they are on a lattice.
-std::vector<Point<3>> random_points(const MeshCase& made) {
+std::vector<LatticePoint> random_points(const MeshCase& made) {
   std::mt19937_64 random(made.points + made.dimension);
   std::uniform_real_distribution<double> coordinate(0, 100'000);
-  std::vector<Point<3>> points(made.points);
-  for (Point<3>& point : points) {
+  std::vector<LatticePoint> points(made.points);
+  for (LatticePoint& point : points) {
     for (double& x : point) x = made.lattice ? std::floor(coordinate(random)) : coordinate(random);
   }
   if (made.points > 10) points[7] = points[3];
@@ -119,7 +86,7 @@ MadeMesh make(const MeshCase& made, const SharedFolder& folder) {
   }
   world().barrier();
   MadeMesh result;
-  KeptBlocks kept;
+  KeptSlabs kept;
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   const auto source =
       open_shared_source(disk(), {path}, {.dimension = D, .index = made.index}, world());
@@ -178,9 +145,9 @@ void expect_whole(const Mesh& mesh, const MeshCase& made, const MadeMesh& all) {
   EXPECT_EQ(mesh.vertices.size(), totals.vertices);
   EXPECT_EQ(mesh.header.simplices, totals.simplices);
   EXPECT_EQ(hash_of(mesh), totals.canonical_hash);
-  std::vector<Point<3>> points = random_points(made);
-  if (made.lattice) {
-    for (Point<3>& point : points) point = all.header.lattice->to_world(point);
+  std::vector<WorldPoint> points;
+  for (const LatticePoint& point : random_points(made)) {
+    points.push_back(in_world(all.header.lattice, point));
   }
   for (std::size_t i = 0; i < mesh.input_index.size(); ++i) {
     ASSERT_EQ(mesh.vertices[i], points.at(mesh.input_index[i]));
@@ -305,7 +272,7 @@ void expect_parts(const std::vector<std::string>& paths, const MeshFormat& forma
                   const Mesh& whole, const MeshTotals& totals) {
   std::uint64_t hash = 0;
   std::uint64_t simplices = 0;
-  std::set<Point<3>> vertices;
+  std::set<WorldPoint> vertices;
   std::set<std::uint64_t> named;
   for (const std::string& path : paths) {
     const Mesh part = read_mesh(disk(), path);
@@ -348,7 +315,7 @@ TEST(RankOutput, PartsTogetherAreTheMeshOfAll) {
       std::vector<std::string> paths;
       std::uint64_t size = 0;
       for (int part = 0; part < ranks; ++part) {
-        paths.push_back(mesh_part_name(path, format, part, ranks));
+        paths.push_back(part_file_name(path, format, part, ranks));
         size += fs::file_size(paths.back());
       }
       if (format == kVtuMesh) size += fs::file_size(folder / "a.pvtu");
@@ -379,7 +346,7 @@ TEST(RankOutput, APartOfAStreamIsAStreamThatTellsOfItself) {
     write(made, disk(), folder / "a.spm", "", true);
     if (world().rank() != 0) continue;
     for (int part = 0; part < world().size(); ++part) {
-      const std::string path = mesh_part_name(folder / "a.spm", kSpmMesh, part, world().size());
+      const std::string path = part_file_name(folder / "a.spm", kSpmMesh, part, world().size());
       const auto stream = open_mesh_stream_reader(disk(), path);
       MeshBlock block;
       while (stream->read(block)) {

@@ -53,7 +53,7 @@ void expect_one_mesh(const GeneratorOptions& generate, std::size_t files,
       std::filesystem::remove(path);
       return one;
     }();
-    EXPECT_EQ(run.mesh.totals, alone.figures.totals);
+    EXPECT_EQ(run.mesh.totals, alone.figures.mesh);
     for (const std::string& path : paths) std::filesystem::remove(path);
   }
 }
@@ -95,7 +95,7 @@ TEST(RanksInThePipeline, GetAboutAsManyPointsEachAlsoOfSkewedSets) {
     world().barrier();
     const RankRunResult run = run_over_ranks<2>(paths, {.threads = 1});
     const double even = 40'000.0 / world().size();
-    EXPECT_NEAR(static_cast<double>(run.mesh.figures.totals.points), even, 0.1 * even);
+    EXPECT_NEAR(static_cast<double>(run.mesh.figures.mesh.points), even, 0.1 * even);
     for (const std::string& path : paths) std::filesystem::remove(path);
   }
 }
@@ -113,7 +113,7 @@ TEST(RanksInThePipeline, CountOpenFacetsOfAllTogetherWhereLongEdgesAreLeftOut) {
   std::filesystem::remove(path);
   EXPECT_GT(run.mesh.left_out, 0U);
   EXPECT_EQ(run.mesh.left_out, alone.figures.left_out);
-  EXPECT_EQ(run.mesh.totals, alone.figures.totals);
+  EXPECT_EQ(run.mesh.totals, alone.figures.mesh);
   for (const std::string& p : paths) std::filesystem::remove(p);
 }
 
@@ -126,7 +126,7 @@ TEST(RanksInThePipeline, SayWhatTheySentAndMerged) {
   std::vector<std::uint64_t> sums = {run.mesh.exchanged_points, run.mesh.border_simplices_sent,
                                      run.mesh.merges.size()};
   std::uint64_t received = 0;
-  for (const MergeFigures& merge : run.mesh.merges) received += merge.received_simplices;
+  for (const RankMerge& merge : run.mesh.merges) received += merge.received_simplices;
   sums.push_back(received);
   world().reduce(sums, distributed::Reduction::kSum);
   const auto others = static_cast<std::uint64_t>(world().size() - 1);

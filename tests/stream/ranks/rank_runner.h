@@ -63,13 +63,14 @@ namespace rank_runner_internal {
 
 /// Appends the simplices of a block as input indices.
 template <int D>
-void append_simplices(const MergedPart& part, std::vector<std::array<VertexId, D + 1>>& simplices) {
-  std::vector<std::uint64_t> index = part.mesh.input_index;
-  index.insert(index.end(), part.imported_index.begin(), part.imported_index.end());
-  for (std::size_t i = 0; i < part.mesh.corners.size(); i += D + 1) {
+void append_simplices(const MergedSection& section,
+                      std::vector<std::array<VertexId, D + 1>>& simplices) {
+  std::vector<std::uint64_t> index = section.mesh.input_index;
+  index.insert(index.end(), section.imported_index.begin(), section.imported_index.end());
+  for (std::size_t i = 0; i < section.mesh.corners.size(); i += D + 1) {
     auto& simplex = simplices.emplace_back();
     for (int k = 0; k <= D; ++k) {
-      simplex[k] = static_cast<VertexId>(index.at(part.mesh.corners[i + k]));
+      simplex[k] = static_cast<VertexId>(index.at(section.mesh.corners[i + k]));
     }
     std::sort(simplex.begin(), simplex.end());
   }
@@ -84,20 +85,20 @@ WholeMesh<D> gather_mesh(const RankRunResult& run) {
   auto simplices = simplices_of<D>(run.own);
   std::vector<std::array<std::uint64_t, 2>> named;     // number in the whole stream, input index
   std::vector<std::array<std::uint64_t, 2>> imported;  // likewise, where it is used again
-  if (run.mesh.own_part) {
-    const std::uint64_t first = run.mesh.parts[*run.mesh.own_part].first_vertex;
+  if (run.mesh.own_section) {
+    const std::uint64_t first = run.mesh.sections[*run.mesh.own_section].first_vertex;
     for (std::size_t v = 0; v < run.own.index.size(); ++v) {
       named.push_back({first + v, run.own.index[v]});
     }
   }
-  for (const MergedPart& part : run.mesh.merged) {
-    rank_runner_internal::append_simplices<D>(part, simplices);
-    const std::uint64_t first = run.mesh.parts[part.part].first_vertex;
-    for (std::size_t v = 0; v < part.mesh.input_index.size(); ++v) {
-      named.push_back({first + v, part.mesh.input_index[v]});
+  for (const MergedSection& section : run.mesh.merged) {
+    rank_runner_internal::append_simplices<D>(section, simplices);
+    const std::uint64_t first = run.mesh.sections[section.section].first_vertex;
+    for (std::size_t v = 0; v < section.mesh.input_index.size(); ++v) {
+      named.push_back({first + v, section.mesh.input_index[v]});
     }
-    for (std::size_t v = 0; v < part.imported_index.size(); ++v) {
-      imported.push_back({part.mesh.imported.at(v), part.imported_index[v]});
+    for (std::size_t v = 0; v < section.imported_index.size(); ++v) {
+      imported.push_back({section.mesh.imported.at(v), section.imported_index[v]});
     }
   }
   distributed::Packer packer;

@@ -25,30 +25,30 @@ using testing::raster_of;
 using testing::Rastered;
 using testing::triangles_of;
 
-/// A place in steps of 1 / kSteps, so that vertices and centres are whole numbers.
+/// x and y in steps of 1 / kSteps, so that vertices and centres are whole numbers.
 constexpr int kSteps = 8;
-using Place = std::array<std::int64_t, 2>;
+using Steps = std::array<std::int64_t, 2>;
 
-Place steps_of(double x, double y) { return {std::llround(x * kSteps), std::llround(y * kSteps)}; }
+Steps steps_of(double x, double y) { return {std::llround(x * kSteps), std::llround(y * kSteps)}; }
 
-Place steps_of(const Point<3>& p) { return steps_of(p[0], p[1]); }
+Steps steps_of(const Point<3>& p) { return steps_of(p[0], p[1]); }
 
 /// Twice the area of a, b, c, exactly.
-__int128 turn(const Place& a, const Place& b, const Place& c) {
+__int128 turn(const Steps& a, const Steps& b, const Steps& c) {
   return static_cast<__int128>(b[0] - a[0]) * (c[1] - a[1]) -
          static_cast<__int128>(b[1] - a[1]) * (c[0] - a[0]);
 }
 
 /// Whether a counter-clockwise triangle holds a place, its border included.
-bool holds(const std::array<Place, 3>& t, const Place& p) {
+bool holds(const std::array<Steps, 3>& t, const Steps& p) {
   return turn(t[0], t[1], p) >= 0 && turn(t[1], t[2], p) >= 0 && turn(t[2], t[0], p) >= 0;
 }
 
 /// Whether it does after a small step east and one as much smaller north. The steps are so small,
 /// compared with whole numbers up to some thousands, that smaller ones would decide alike.
-bool owns(const std::array<Place, 3>& t, const Place& p) {
+bool owns(const std::array<Steps, 3>& t, const Steps& p) {
   constexpr std::int64_t kFine = std::int64_t{1} << 20;
-  std::array<Place, 3> fine{};
+  std::array<Steps, 3> fine{};
   for (int i = 0; i < 3; ++i) fine[i] = {t[i][0] * kFine * kFine, t[i][1] * kFine * kFine};
   return holds(fine, {p[0] * kFine * kFine + kFine, p[1] * kFine * kFine + 1});
 }
@@ -67,7 +67,7 @@ struct Facet {
     north = to[0][0] * to[1][2] - to[1][0] * to[0][2];
   }
 
-  [[nodiscard]] long double height(const Place& p) const {
+  [[nodiscard]] long double height(const Steps& p) const {
     const std::int64_t dx = p[0] - std::llround(origin[0] * kSteps);
     const std::int64_t dy = p[1] - std::llround(origin[1] * kSteps);
     return origin[2] + static_cast<long double>(east * dx + north * dy) /
@@ -96,7 +96,7 @@ struct Facet {
     return 255 * std::clamp<long double>(cosine, 0, 1);
   }
 
-  std::array<Place, 3> places{};
+  std::array<Steps, 3> places{};
   Point<3> origin{};
   std::int64_t area = 0;   ///< twice it
   std::int64_t east = 0;   ///< how the height grows to the east, times the area
@@ -190,7 +190,7 @@ void expect_close(float pixel, long double value) {
 }
 
 /// What the pixel at a place must hold, product by product.
-void expect_pixel(const std::vector<Facet>& facets, const Place& place, const DemOptions& options,
+void expect_pixel(const std::vector<Facet>& facets, const Steps& place, const DemOptions& options,
                   const std::array<float, 4>& pixel) {
   std::vector<const Facet*> around;
   const Facet* owner = nullptr;

@@ -88,7 +88,7 @@ inline Rastered raster_of(const std::vector<Triangle>& triangles, const PixelGri
       for (std::size_t t = begin; t < std::min(triangles.size(), begin + at_a_time); ++t) {
         for (const Point<3>& corner : triangles[t]) {
           corners.push_back(static_cast<std::uint32_t>(vertices.size()));
-          vertices.push_back({corner});
+          vertices.emplace_back(corner);
         }
       }
       dem.paint(vertices, corners);

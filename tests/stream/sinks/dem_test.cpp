@@ -2,6 +2,8 @@
 
 #include "stream/sinks/dem.h"
 
+#include <spillway/dem.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -288,7 +290,7 @@ TEST(RasterStore, ZerosOfEitherSignAreZerosPreferredOrNot) {
   }
 }
 
-TEST(RasterStore, SumsStopAtTheSamePlaceInOnePartAndInMany) {
+TEST(RasterStore, SumsStopAtTheSameValueInOneStoreAndInMany) {
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   RasterStore store({PixelRule::kSum}, std::uint64_t{8} << 20, *scratch);
   RasterStore other({PixelRule::kSum}, std::uint64_t{8} << 20, *scratch);
@@ -297,8 +299,8 @@ TEST(RasterStore, SumsStopAtTheSamePlaceInOnePartAndInMany) {
     for (int i = 0; i < 3; ++i) put_pixel(hand.tile(0)[0], 0x1.8p23F, PixelRule::kSum, true);
   }
   std::vector<float> pixels;
-  const std::vector<std::vector<std::byte>> parts = {other.take_part(0)};
-  store.take(0, pixels, parts);
+  const std::vector<std::vector<std::byte>> others = {other.take_tile(0)};
+  store.take(0, pixels, others);
   EXPECT_EQ(pixels[0], 0x1p24F);
 }
 

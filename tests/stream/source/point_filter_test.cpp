@@ -74,7 +74,7 @@ TEST(PointFilter, EachPointIsCountedWhereItIsDroppedFirst) {
   filter.bounds = Box<3>{{4, 0, 0}, {8, 0, 1000}};   // without 2, 10
   PointBlock block = twelve_points();
   const PointCounts counts = apply(filter, block);
-  EXPECT_EQ(counts, (PointCounts{.read = 12, .every = 6, .classes = 1, .bounds = 2}));
+  EXPECT_EQ(counts, (PointCounts{.read = 12, .skipped = 6, .classes = 1, .bounds = 2}));
   EXPECT_EQ(block.index, (std::vector<std::uint64_t>{104, 106, 108}));
   EXPECT_EQ(block.attributes[1].classification, 6);
   EXPECT_EQ(describe(counts),

@@ -19,7 +19,7 @@ std::vector<std::uint64_t> order_of_all(PointRuns& runs, std::size_t most) {
   while (runs.next(points, most)) {
     EXPECT_LE(points.size(), most);
     for (const RunPoint& p : points) {
-      EXPECT_EQ(p.point, (Point<3>{1.0 * static_cast<double>(p.order), 2, 3}));
+      EXPECT_EQ(p.point, (LatticePoint{1.0 * static_cast<double>(p.order), 2, 3}));
       EXPECT_EQ(p.key, p.order + 5);
       keys.push_back(p.order);
     }

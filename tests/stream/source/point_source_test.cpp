@@ -27,7 +27,7 @@ using testing::LasFile;
 using ::testing::Not;
 
 struct Everything {
-  std::vector<Point<3>> points;  ///< output coordinates
+  std::vector<WorldPoint> points;
   std::vector<std::uint64_t> index;
   PointCounts counts;
   bool on_lattice = false;
@@ -39,11 +39,11 @@ class PointSourceTest : public ::testing::Test {
     options.index = true;
     options.warn = [this](std::string_view text) { warnings_ += std::string(text) + "\n"; };
     options.detail = [this](std::string_view text) { details_ += std::string(text) + "\n"; };
-    PointSource source(files_, paths, std::move(options));
+    PointSource source(files_, paths, options);
     Everything all;
     for (PointBlock block; source.read(block);) {
-      for (const Point<3>& point : block.points) {
-        all.points.push_back(source.lattice() ? source.lattice()->to_world(point) : point);
+      for (const LatticePoint& point : block.points) {
+        all.points.push_back(in_world(source.lattice(), point));
       }
       all.index.insert(all.index.end(), block.index.begin(), block.index.end());
     }
@@ -100,7 +100,7 @@ TEST_F(PointSourceTest, FiltersAndCountsThroughAllInputs) {
   const Everything all = read({"a.las", "b.las"}, options);
   EXPECT_EQ(all.counts.read, 200U);
   EXPECT_EQ(all.counts.withheld, 20U);
-  EXPECT_EQ(all.counts.every, 80U);  // withheld ones are all odd
+  EXPECT_EQ(all.counts.skipped, 80U);  // withheld ones are all odd
   EXPECT_EQ(all.counts.classes, 0U);
   EXPECT_EQ(all.counts.kept(), 2U * 17);
   for (const std::uint64_t index : all.index) EXPECT_EQ(index % 100 % 6, 2U) << index;
@@ -141,17 +141,6 @@ TEST_F(PointSourceTest, TextHasNoClassesAndIsNamed) {
   options.filter = {};
   options.filter.every = 2;
   EXPECT_EQ(read({"b.txt"}, options).points.size(), 1U);
-}
-
-TEST_F(PointSourceTest, AllInputsThatCannotBeReadAreNamedAtOnce) {
-  files_.files["a.las"] = diagonal(10).bytes();
-  files_.files["broken.las"] = "LASF nothing more";
-  EXPECT_EQ(error_of({"a.las", "broken.las", "gone.las"})
-                .find("2 of 3 inputs cannot be read:\n  "
-                      "broken.las: "),
-            0U);
-  EXPECT_THAT(error_of({"a.las", "broken.las", "gone.las"}), HasSubstr("\n  cannot open gone.las"));
-  EXPECT_THAT(error_of({"a.las", "gone.las"}), Not(HasSubstr("\n")));
 }
 
 TEST_F(PointSourceTest, FineAndCoarseInputsComeOnOneLattice) {
@@ -210,23 +199,13 @@ TEST_F(PointSourceTest, OneCoordinateSystemIsTheSameHoweverItIsWritten) {
   EXPECT_EQ(error_of({"code.las", "text.las"}), "no error");
 }
 
-TEST_F(PointSourceTest, AnInputWithoutCoordinateSystemIsAWarning) {
-  LasFile known = diagonal(10);
-  known.vlrs = {epsg(32632)};
-  files_.files["known.las"] = known.bytes();
-  files_.files["unknown.las"] = diagonal(10).bytes();
-  read({"unknown.las", "known.las"});
-  EXPECT_THAT(warnings_, HasSubstr("unknown.las names no coordinate system; taken to be that of "
-                                   "known.las"));
-}
-
 TEST_F(PointSourceTest, PiecesThatAreUsedAgainKeepNothingOfTheInputBefore) {
   files_.files["a.las"] = diagonal(5).bytes();
   files_.files["b.xyz"] = "100 0 0\n101 0 0\n";
   PointWriterOptions one_point;
   one_point.count = 1;
   const auto npy = open_point_writer(files_, "c.npy", one_point);
-  npy->write(std::vector<Point<3>>{{200, 0, 0}}, {});
+  npy->write(std::vector<LatticePoint>{{200, 0, 0}}, {});
   npy->finish();
   files_.files["d.las"] = diagonal(2).bytes();
   PointSourceOptions options;
@@ -250,7 +229,7 @@ TEST_F(PointSourceTest, IntegersThatALatticeDoesNotKeepApartAreFoundInTheirBlock
     PointWriterOptions options;
     options.lattice = Lattice{{0.01, 0.01, 0.01}, {0.25, 0, 0}};
     const auto writer = open_point_writer(files_, "a.spp", options);
-    const std::vector<Point<3>> points = {{0, 0, 0}, {5, 7, 0}, {last, 0, 0}};
+    const std::vector<LatticePoint> points = {{0, 0, 0}, {5, 7, 0}, {last, 0, 0}};
     writer->write(points, {});
     writer->finish();
   };

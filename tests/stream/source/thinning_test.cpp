@@ -15,19 +15,23 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway {
 
 /// For the names of tests.
 static void PrintTo(ThinChoice choice, std::ostream* out) {
   constexpr std::array kNames = {"First", "Lowest", "Highest", "Center"};
   *out << kNames.at(static_cast<std::size_t>(choice));
 }
+
+}  // namespace spillway
+
+namespace spillway::detail {
 namespace {
 
 using testing::HasSubstr;
 
 struct Indexed {
-  Point<3> point;
+  LatticePoint point;
   std::uint64_t index;
 
   bool operator==(const Indexed&) const = default;
@@ -60,7 +64,7 @@ Cloud expected(const Cloud& points, const ThinningOptions& options) {
   };
   std::map<std::array<double, 3>, Best> best;
   for (const Indexed& p : points) {
-    const Point<3> world = options.lattice ? options.lattice->to_world(p.point) : p.point;
+    const WorldPoint world = in_world(options.lattice, p.point);
     std::array<double, 3> cell{};
     double away = 0;
     for (int k = 0; k < dimension; ++k) {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-#include "stream/tiles/deal.h"
+#include "stream/tiles/dealt_points.h"
 
 namespace spillway::detail {
 namespace {
@@ -14,17 +14,17 @@ namespace {
 using ::testing::Each;
 using ::testing::ElementsAre;
 
-std::vector<std::uint32_t> tiles_of(const CutTree& cuts, const std::vector<Point<3>>& points) {
+std::vector<std::uint32_t> tiles_of(const CutTree& cuts, const std::vector<LatticePoint>& points) {
   std::vector<std::uint32_t> tiles(points.size());
   cuts.find_tiles(points, tiles);
   return tiles;
 }
 
-std::vector<Point<3>> random_points(std::size_t count, unsigned seed) {
+std::vector<LatticePoint> random_points(std::size_t count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> coordinate(0, 1);
-  std::vector<Point<3>> points(count);
-  for (Point<3>& point : points) {
+  std::vector<LatticePoint> points(count);
+  for (LatticePoint& point : points) {
     for (double& x : point) x = coordinate(random);
   }
   return points;
@@ -53,8 +53,8 @@ TEST(CutTree, PointsOnACutGoUp) {
 
 TEST(CutTree, SplitsASampleIntoEqualShares) {
   CutTree cuts(3);
-  const std::vector<Point<3>> points = random_points(7000, 2);
-  std::vector<Point<3>> sample = points;
+  const std::vector<LatticePoint> points = random_points(7000, 2);
+  std::vector<LatticePoint> sample = points;
   cuts.split(0, sample, 7);
   EXPECT_EQ(cuts.tiles(), 7U);
   std::vector<int> share(7);
@@ -64,10 +64,10 @@ TEST(CutTree, SplitsASampleIntoEqualShares) {
 
 TEST(CutTree, CutsOnlyTheFirstAxes) {
   CutTree cuts(2);
-  std::vector<Point<3>> sample = random_points(100, 3);
-  for (Point<3>& point : sample) point[2] *= 1000;
+  std::vector<LatticePoint> sample = random_points(100, 3);
+  for (LatticePoint& point : sample) point[2] *= 1000;
   cuts.split(0, sample, 8);
-  for (Point<3> point : sample) {
+  for (LatticePoint point : sample) {
     const std::uint32_t tile = tiles_of(cuts, {point})[0];
     point[2] = -point[2];
     EXPECT_EQ(tiles_of(cuts, {point})[0], tile);
@@ -76,10 +76,10 @@ TEST(CutTree, CutsOnlyTheFirstAxes) {
 
 TEST(CutTree, EqualPointsStayTogether) {
   CutTree cuts(2);
-  std::vector<Point<3>> equal(50, Point<3>{1, 2, 3});
+  std::vector<LatticePoint> equal(50, LatticePoint{1, 2, 3});
   cuts.split(0, equal, 4);
   EXPECT_EQ(cuts.tiles(), 1U);
-  std::vector<Point<3>> two(50, Point<3>{1, 2, 3});
+  std::vector<LatticePoint> two(50, LatticePoint{1, 2, 3});
   two.push_back({1, 7, 3});
   cuts.split(0, two, 4);
   EXPECT_EQ(cuts.tiles(), 2U);
@@ -102,8 +102,8 @@ TEST(DealtPoints, AreGroupedByTileInTheOrderInWhichTheyCame) {
     EXPECT_EQ(dealt.runs[0].tile, 1U);
     EXPECT_EQ(dealt.runs[0].begin, 0U);
     EXPECT_EQ(dealt.runs[0].end, 3U);
-    EXPECT_EQ(dealt.runs[0].box.lo, (Point<3>{2, 0, 0}));
-    EXPECT_EQ(dealt.runs[0].box.hi, (Point<3>{3, 4, 0}));
+    EXPECT_EQ(dealt.runs[0].box.lo, (LatticePoint{2, 0, 0}));
+    EXPECT_EQ(dealt.runs[0].box.hi, (LatticePoint{3, 4, 0}));
     EXPECT_EQ(dealt.runs[1].tile, 2U);
     EXPECT_EQ(dealt.runs[1].end, 5U);
   }

@@ -29,8 +29,8 @@ std::string refusal(const PointSpan<D>& span, std::uint64_t points) {
 }
 
 /// Points on a line, or in a plane, of an oblique direction, shuffled.
-std::vector<Point<3>> flat_points(int dimension, int count) {
-  std::vector<Point<3>> points;
+std::vector<LatticePoint> flat_points(int dimension, int count) {
+  std::vector<LatticePoint> points;
   for (int i = 0; i < count; ++i) {
     const double s = i;
     const double t = dimension == 2 ? (i * 7919) % 101 : 0;
@@ -41,7 +41,7 @@ std::vector<Point<3>> flat_points(int dimension, int count) {
 }
 
 TEST(PointSpan, OfALineAndAPlaneIsToldAndOnePointBesideChangesIt) {
-  std::vector<Point<3>> line = flat_points(1, 5000);
+  std::vector<LatticePoint> line = flat_points(1, 5000);
   PointSpan<2> on_line;
   on_line.add(line);
   EXPECT_THAT(refusal(on_line, 5000), HasSubstr("all 5000 points lie on one line"));
@@ -51,7 +51,7 @@ TEST(PointSpan, OfALineAndAPlaneIsToldAndOnePointBesideChangesIt) {
   PointSpan<3> plane;
   plane.add(flat_points(2, 5000));
   EXPECT_THAT(refusal(plane, 5000), HasSubstr("in one plane"));
-  const std::vector<Point<3>> beside = {{0, 1e-9, 0}};
+  const std::vector<LatticePoint> beside = {{0, 1e-9, 0}};
   on_line.add(beside);
   plane.add(beside);
   EXPECT_TRUE(on_line.full());
@@ -60,19 +60,19 @@ TEST(PointSpan, OfALineAndAPlaneIsToldAndOnePointBesideChangesIt) {
 }
 
 TEST(PointSpan, OfFewDistinctPointsNamesTheirNumber) {
-  const std::vector<Point<3>> two = {{1, 2, 3}, {4, 5, 6}, {1, 2, 3}, {4, 5, 6}};
+  const std::vector<LatticePoint> two = {{1, 2, 3}, {4, 5, 6}, {1, 2, 3}, {4, 5, 6}};
   PointSpan<2> span;
   span.add(std::span(two).first(1));
   EXPECT_THAT(refusal(span, 1), HasSubstr("only 1 distinct point:"));
   span.add(two);
   EXPECT_THAT(refusal(span, 4), HasSubstr("only 2 distinct points"));
-  const std::vector<Point<3>> third = {{7, 8, 0}};
+  const std::vector<LatticePoint> third = {{7, 8, 0}};
   span.add(third);
   EXPECT_THAT(refusal(span, 5), HasSubstr("all 5 points lie on one line"));
 }
 
 TEST(PointSpan, DoesNotDependOnHowManyThreadsAddWhatFirst) {
-  const std::vector<Point<3>> points = flat_points(2, 60000);
+  const std::vector<LatticePoint> points = flat_points(2, 60000);
   for (const unsigned threads : {1U, 2U, 7U}) {
     PointSpan<3> span;
     with_threads(threads, [&] {
@@ -85,7 +85,7 @@ TEST(PointSpan, DoesNotDependOnHowManyThreadsAddWhatFirst) {
 }
 
 TEST(PointSpan, OfPartsIsThatOfTheWhole) {
-  const std::vector<Point<3>> points = flat_points(2, 3000);
+  const std::vector<LatticePoint> points = flat_points(2, 3000);
   PointSpan<3> all;
   for (std::size_t begin = 0; begin < points.size(); begin += 7) {
     PointSpan<3> part;
@@ -94,7 +94,7 @@ TEST(PointSpan, OfPartsIsThatOfTheWhole) {
   }
   EXPECT_THAT(refusal(all, 3000), HasSubstr("in one plane"));
   PointSpan<3> other;
-  const std::vector<Point<3>> beside = {{0.5, 0.25, 0}};
+  const std::vector<LatticePoint> beside = {{0.5, 0.25, 0}};
   other.add(beside);
   all.add(other.facts());
   EXPECT_TRUE(all.full());

@@ -16,9 +16,9 @@ namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kCapacity = 1000;
-constexpr std::size_t kBuffered = 40 * PointBuffer::kPiece;
+constexpr std::size_t kBuffered = 40 * PointBuffer::kChunk;
 
-using Points = std::vector<Point<3>>;
+using Points = std::vector<LatticePoint>;
 
 enum class Order { kRandom, kSorted, kFlightLines, kSkewed, kEqual };
 
@@ -31,7 +31,7 @@ Points make_points(Order order, std::size_t count) {
   std::mt19937_64 random(17);
   std::uniform_real_distribution<double> unit(0, 1);
   Points points(count);
-  for (Point<3>& p : points) p = {unit(random), unit(random), 100 * unit(random)};
+  for (LatticePoint& p : points) p = {unit(random), unit(random), 100 * unit(random)};
   switch (order) {
     case Order::kRandom:
       break;
@@ -39,7 +39,7 @@ Points make_points(Order order, std::size_t count) {
       std::sort(points.begin(), points.end());
       break;
     case Order::kFlightLines:
-      std::sort(points.begin(), points.end(), [](const Point<3>& a, const Point<3>& b) {
+      std::sort(points.begin(), points.end(), [](const LatticePoint& a, const LatticePoint& b) {
         return std::floor(20 * a[0]) != std::floor(20 * b[0]) ? a[0] < b[0] : a[1] < b[1];
       });
       break;
@@ -78,7 +78,7 @@ Filled fill(const Points& points, Knowledge known, unsigned threads = 2) {
   if (known.count) options.expected = points.size();
   if (known.extent) {
     options.extent = Box<3>();
-    for (const Point<3>& p : points) options.extent->expand(p);
+    for (const LatticePoint& p : points) options.extent->expand(p);
   }
   Filled filled;
   with_threads(threads, [&] {
@@ -166,7 +166,7 @@ TEST(TileTree, WritesNothingIfEverythingFits) {
 }
 
 TEST(TileTree, TakesEqualPointsAsOneTileWhateverTheirNumber) {
-  const Filled filled = fill(Points(200'000, Point<3>{1, 2, 3}), {});
+  const Filled filled = fill(Points(200'000, LatticePoint{1, 2, 3}), {});
   EXPECT_EQ(filled.tiles, 1U);
   EXPECT_EQ(filled.points.size(), 200'000U);
 }
@@ -178,7 +178,7 @@ TEST(TileTree, SurvivesAHeaderThatLies) {
   TileTreeOptions options{.dimension = 2, .capacity = kCapacity, .buffered_points = kBuffered};
   options.expected = 10;
   options.extent = Box<3>{};
-  options.extent->expand(Point<3>{1000, 1000, 0});
+  options.extent->expand(LatticePoint{1000, 1000, 0});
   with_threads(2, [&] {
     TileTree tree(options, *scratch, times);
     bool given = false;

@@ -35,7 +35,7 @@ TEST(Settle, FinalSimplicesAnnounceTheirVerticesAndOthersStay) {
   const Settled<2> result =
       settled(merged, {Fate::kFinal, Fate::kKept, Fate::kKept}, {.input_index = true});
   EXPECT_THAT(result.mesh.vertices,
-              ElementsAre(Point<3>{0, 0, 0}, Point<3>{0, 1, 10}, Point<3>{1, 0, 20}));
+              ElementsAre(LatticePoint{0, 0, 0}, LatticePoint{0, 1, 10}, LatticePoint{1, 0, 20}));
   EXPECT_THAT(result.mesh.input_index, ElementsAre(100, 101, 102));
   EXPECT_THAT(result.mesh.corners, ElementsAre(0, 1, 2));
   EXPECT_THAT(result.mesh.finalized, ElementsAre(0));
@@ -60,7 +60,8 @@ TEST(Settle, VerticesThatAreInTheStreamAreImported) {
   EXPECT_EQ(result.imported[0].block, (BlockPlace{2, 0}));
   EXPECT_EQ(result.imported[0].vertex, 40U);
   EXPECT_EQ(result.imported[1].vertex, 60U);
-  EXPECT_THAT(result.imported_vertices, ElementsAre(Point<3>{0, 1, 10}, Point<3>{1, 1, 30}));
+  EXPECT_THAT(result.imported_vertices,
+              ElementsAre(LatticePoint{0, 1, 10}, LatticePoint{1, 1, 30}));
   EXPECT_THAT(result.mesh.corners, ElementsAre(0, 2, 1, 2, 1, 3));
   EXPECT_THAT(result.mesh.finalized, ElementsAre(0, 2, 1, 3));
   EXPECT_THAT(result.border.vertices, IsEmpty());
@@ -91,7 +92,7 @@ TEST(Settle, EdgesAreMeasuredInOutputUnits) {
   const Lattice lattice{{0.01, 0.01, 0.01}, {5, 5, 5}};
   const Settled<2> result = settled(merged, {Fate::kFinal}, {.lattice = lattice, .max_edge = 1.2});
   EXPECT_EQ(result.left_out, 0U);
-  EXPECT_EQ(result.mesh.vertices[2], (Point<3>{1, 0, 20})) << "vertices stay on the lattice";
+  EXPECT_EQ(result.mesh.vertices[2], (LatticePoint{1, 0, 20})) << "vertices stay on the lattice";
 }
 
 }  // namespace

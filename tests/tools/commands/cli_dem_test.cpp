@@ -486,7 +486,7 @@ TEST(Dem, ManyPixelsForManyPointsAreANotice) {
     const std::string dem = "spillway dem -o out.tif --resolution 1 " + input;
     EXPECT_THAT(work.run(dem).err,
                 HasSubstr("the raster has 198 x 60000 pixels, for 10001 vertices; some of them may "
-                          "lie far away (--bounds says what to cover)"));
+                          "lie far away: bounds say what to cover"));
     EXPECT_THAT(work.run(dem + " --bounds 0,0,198,198").err, Not(HasSubstr("far away")));
   }
 }

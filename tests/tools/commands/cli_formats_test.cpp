@@ -181,6 +181,7 @@ TEST(PlyPoints, AreNoMesh) {
 
 /// The layer is called after the file, whose name may be anything.
 TEST(VectorNames, MayBeginWithAnySign) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   const Workspace work;
   work.succeed("spillway generate -q terrain -n 200 -o in.las");
   for (const char* const name :

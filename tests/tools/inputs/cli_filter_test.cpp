@@ -198,13 +198,13 @@ TEST_F(Filters, ABoxTheWrongWayRoundIsSaidToBe) {
 
 TEST_F(Filters, ResolutionIsForCopcAndLeavesOtherFilesWhole) {
   EXPECT_THAT(work_.run("spillway info in.las --resolution 2").err,
-              HasSubstr("in.las is no COPC file"));
+              HasSubstr("in.las is not a COPC file"));
   const std::string copc = shared_file("1.2-with-color.copc.laz").string();
   if (copc.empty()) GTEST_SKIP() << "no COPC file in " SPILLWAY_SHARED_DATA;
   const Result result = work_.run("spillway triangulate --force-crs --resolution 100 in.las '" +
                                   copc + "' -o mesh.ply --stats stats.json");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("1 of 2 inputs are no COPC files"));
+  EXPECT_THAT(result.err, HasSubstr("1 of 2 inputs are not COPC files"));
   EXPECT_GT(nlohmann::json::parse(work_.read("stats.json"))["points"], kPoints);
 }
 

@@ -65,6 +65,7 @@ void expect_error(const Workspace& work, const std::string& command,
 }
 
 TEST(Lattices, WhoseOffsetSwampsTheirScaleAreRefusedWithTheirNumbers) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   const Workspace work;
   work.write("a.las", las_at({.01, .01, .01}, {1e15, 4000000, 0}));
   work.write("b.las", las_at({.001, .001, .001}, {500000, 1e13, 0}));
@@ -190,6 +191,7 @@ TEST(Lattices, ThatConvertIsToWriteAreChecked) {
 }
 
 TEST(Lattices, OfMeshesAreChecked) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   const Workspace work;
   const std::string notes =
       "# spillway dimension 2\n# spillway lattice 0.01 0.01 0.01 1000000000000000 0 0\n";

@@ -34,6 +34,7 @@ TEST(ClosedDescriptors, GetIntoNoOutput) {
 }
 
 TEST(ClosedDescriptors, GetIntoNoOutputOfOtherSubcommands) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   const Workspace work;
   work.succeed("spillway generate -q terrain -n 3000 -o in.las");
   const std::string commands =

@@ -56,6 +56,7 @@ class Limits : public testing::Test {
 };
 
 TEST_F(Limits, OfMemory) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   if (kSanitized) GTEST_SKIP() << "not with a sanitizer";
   const std::string command = SPILLWAY_COMMAND;
   for (const std::string arguments :
@@ -75,6 +76,7 @@ TEST_F(Limits, OfMemory) {
 }
 
 TEST_F(Limits, OfThreads) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   if (kSanitized) GTEST_SKIP() << "not with a sanitizer";
   // The superuser has no such limit; a user that nothing else runs as has it for this alone.
   const std::string other = "setpriv --reuid 54321 --regid 54321 --clear-groups ";

@@ -57,6 +57,7 @@ TEST_F(SameOutput, IsAWholeMesh) {
 }
 
 TEST_F(SameOutput, IsAWholeSetOfFilesOfGdal) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   for (const std::string name : {"m.shp", "m.gpkg"}) {
     for (int round = 0; round < 2; ++round) {
       run_all("spillway triangulate -q IN -o out/" + name);

@@ -104,6 +104,7 @@ TEST(Signals, WhileScratchFilesComeAndGoLeaveNothing) {
 }
 
 TEST(Signals, WhileGdalWritesLeaveNothing) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   const Workspace work;
   work.succeed("spillway generate -q terrain -n 1e5 -o in.las; mkdir tmp");
   const auto before = work.names();

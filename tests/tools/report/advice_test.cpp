@@ -42,7 +42,8 @@ TEST(Advice, IsAnotherForEachRemedy) {
   for (const Remedy remedy :
        {Remedy::kNone, Remedy::kMemory, Remedy::kScratchFolder, Remedy::kScratchLimit,
         Remedy::kRasterSize, Remedy::kRasterMemory, Remedy::kPlane, Remedy::kFilters,
-        Remedy::kForeignCrs, Remedy::kOneFile, Remedy::kLas14}) {
+        Remedy::kForeignCrs, Remedy::kOneFile, Remedy::kLas14, Remedy::kRanks,
+        Remedy::kRasterExtent, Remedy::kPointLattice}) {
     EXPECT_TRUE(texts.insert(advice({.remedy = remedy})).second);
   }
 }

@@ -100,6 +100,7 @@ TEST_F(ProgressOfTheCommand, ThinningOutOfCoreIsAPhaseWithinTheOneThatReads) {
 }
 
 TEST_F(ProgressOfTheCommand, TerrainIsReadAndDrawnInPhases) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   work_.succeed(
       "spillway generate -q terrain -n 5000 -o in.las\n"
       "spillway triangulate -q in.las -o in.spm\n"
@@ -214,6 +215,7 @@ TEST_F(ProgressOfTheCommand, GenerateAndBatchCountTheirWork) {
 }
 
 TEST_F(ProgressOfTheCommand, GrowsWhileAPipeIsRead) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   work_.succeed(
       "spillway generate -q terrain -n 200000 -o in.las\n"
       "spillway convert -q in.las -o in.txt\n"

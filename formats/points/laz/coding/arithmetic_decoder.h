@@ -102,7 +102,7 @@ class ArithmeticDecoder {
     }
   }
 
-  /// Appends `count` bytes to the value, from the next piece where the span ends.
+  /// Appends `count` bytes to the value, from the next span where this one ends.
   static Bytes take(Bytes bytes, unsigned count, LazBytes* source);
   [[noreturn]] static void throw_corrupt();
 

@@ -5,7 +5,7 @@
 
 namespace spillway::detail {
 
-/// The bytes of chunks, piece by piece.
+/// The bytes of chunks, span by span.
 class LazBytes {
  public:
   virtual ~LazBytes() = default;

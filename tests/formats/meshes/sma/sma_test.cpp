@@ -90,7 +90,7 @@ std::string error_of_lines(const std::string& lines) {
 
 TEST(Sma, BadLines) {
   EXPECT_THAT(error_of_lines("f 1 2\n"),
-              HasSubstr("a.sma: line 4: a number of a vertex is missing"));
+              HasSubstr("a.sma: line 4: the number of a vertex is missing"));
   EXPECT_THAT(error_of_lines("f 1 2 3 1\n"), HasSubstr("only triangles"));
   EXPECT_THAT(error_of_lines("f 1 2 0\n"), HasSubstr("line 4"));
   EXPECT_THAT(error_of_lines("f 1 2 4\nv 1 1 1\n"),
@@ -103,7 +103,7 @@ TEST(Sma, BadLines) {
   EXPECT_THAT(error_of_lines("f -1 -1 1\n"), HasSubstr("line 4: vertex 3"));
   EXPECT_THAT(error_of_lines("v 1 2\n"), HasSubstr("vertex 4 needs three finite"));
   EXPECT_THAT(error_of_lines("v 1 2 inf\n"), HasSubstr("vertex 4 needs three finite"));
-  EXPECT_THAT(error_of_lines("y 1\n"), HasSubstr("no line of a streaming mesh"));
+  EXPECT_THAT(error_of_lines("y 1\n"), HasSubstr("not a line of a streaming mesh"));
   EXPECT_THAT(error_of_lines(""), HasSubstr("cloud of points"));
   EXPECT_THAT(error_of_stream("a.sma", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"),
               HasSubstr("line 1: vertex 1 is used, but only 0 came"));

@@ -7,6 +7,7 @@
 #include "formats/blocks/block.h"
 #include "formats/bytes/bytes.h"
 #include "formats/inputs/open_mesh_stream.h"
+#include "formats/meshes/common/mesh_block.h"
 #include "formats/meshes/spm/spm_block.h"
 #include "formats/meshes/spm/spm_corners.h"
 #include "formats/meshes/spm/spm_format.h"
@@ -69,7 +70,7 @@ TEST(Spm, LatticeThatDoesNotKeepVerticesApart) {
 TEST(Spm, RoundTripOfDoublesToTheBit) {
   StreamedMesh mesh;
   mesh.blocks.resize(1);
-  mesh.blocks[0].vertices = awkward_mesh(2).vertices;
+  mesh.blocks[0].vertices = vertices_without_lattice(awkward_mesh(2));
   mesh.totals.vertices = mesh.blocks[0].vertices.size();
   const StreamedMesh read = read_stream("-", stream_bytes(mesh, kSpmMesh));
   ASSERT_EQ(read.blocks.size(), 1U);
@@ -136,7 +137,7 @@ StreamedMesh terrain_block(std::size_t count) {
   StreamedMesh mesh;
   mesh.header.lattice = Lattice{{0.01, 0.01, 0.01}, {500000, 4100000, 0}};
   MeshBlock& block = mesh.blocks.emplace_back();
-  for (const VertexId index : triangulation.input_index) block.vertices.push_back(points[index]);
+  for (const VertexId index : triangulation.input_index) block.vertices.emplace_back(points[index]);
   triangulation.for_each_simplex([&](SimplexId, const Simplex<2>& simplex) {
     if (simplex.infinite()) return;
     block.corners.insert(block.corners.end(), simplex.vertices.begin(), simplex.vertices.end());
@@ -185,7 +186,7 @@ TEST(Spm, TrianglesAroundACornerComeBackWhateverTheyAre) {
     append_corners(bytes, 2, kNumbers, corners);
     std::vector<std::uint32_t> read;
     const auto count = static_cast<std::uint32_t>(corners.size() / 3);
-    ASSERT_TRUE(read_corners(bytes, 2, kNumbers, count, read, "here").empty());
+    ASSERT_TRUE(read_corners(bytes, 2, kNumbers, count, read, {"here"}).empty());
     ASSERT_EQ(known_by(read), known_by(corners));
   }
 }
@@ -307,10 +308,11 @@ TEST(Spm, BadHeader) {
   EXPECT_THAT(error(header_content(1, 2, kSpmHasLattice)), HasSubstr("ends early"));
   EXPECT_THAT(error(header_content(1, 2, kSpmHasLattice) + std::string(48, '\0')),
               HasSubstr("lattice"));
-  EXPECT_THAT(error(header_content(1, 2, kSpmHasExtent) + bytes_of(Point<3>{1, 1, 1}) +
-                    bytes_of(Point<3>{1, 0, 1})),
+  EXPECT_THAT(error(header_content(1, 2, kSpmHasExtent) + bytes_of(WorldPoint{1, 1, 1}) +
+                    bytes_of(WorldPoint{1, 0, 1})),
               HasSubstr("extent"));
-  EXPECT_THAT(error_of_stream("a.spm", stream_of({{kSpmMeshBlock, ""}})), HasSubstr("no header"));
+  EXPECT_THAT(error_of_stream("a.spm", stream_of({{kSpmMeshBlock, ""}})),
+              HasSubstr("not a header"));
 }
 
 /// The error of a mesh block with this content, whose checksum fits.
@@ -328,13 +330,13 @@ TEST(Spm, BadContent) {
   EXPECT_THAT(error_of_content(counts(2, 1, 0)), HasSubstr("do not fit"));
   EXPECT_THAT(error_of_content(counts(0, 0xFFFFFFFF, 0)), HasSubstr("do not fit"));
   EXPECT_THAT(error_of_content(counts(0, 0, 0xFFFFFFFF)), HasSubstr("end early"));
-  EXPECT_THAT(error_of_content(counts(0, 2, 0) + none + none), HasSubstr("stand for no vertex"));
+  EXPECT_THAT(error_of_content(counts(0, 2, 0) + none + none), HasSubstr("without a vertex"));
   EXPECT_THAT(error_of_content(counts(0, 1, 1) + none + none + none + "\1\1"),
               HasSubstr("do not add up"));
   EXPECT_THAT(error_of_content(counts(0, 1, 1) + none + "\1" + none + "\1\1"),
-              HasSubstr("corner that is not there"));
+              HasSubstr("corner that does not exist"));
   EXPECT_THAT(error_of_content(counts(0, 1, 1) + none + "\1" + "\2" + "\1\1"),
-              HasSubstr("goes on behind the last one"));
+              HasSubstr("goes on after the last one"));
   EXPECT_THAT(error_of_content(counts(0, 1, 1) + none + "\1" + "\1" + "\1\1"),
               HasSubstr("fan of triangles has no begin"));
   EXPECT_THAT(error_of_content(counts(0, 0, 0) + "x"), HasSubstr("left over"));
@@ -397,7 +399,8 @@ TEST(Spm, IsKnownByItsMagicAndReadAsAWholeMesh) {
   files.files["empty.spm"] = "";
   EXPECT_TRUE(is_mesh(files, "empty.spm"));
   EXPECT_THAT(error_of_stream("a", "nonsense"), HasSubstr("neither as spm nor as sma"));
-  EXPECT_THAT(error_of([&] { read_stream("mesh", "", "ply"); }), HasSubstr("no format of streams"));
+  EXPECT_THAT(error_of([&] { read_stream("mesh", "", "ply"); }),
+              HasSubstr("not a format of streams"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "formats/disk/unfinished_files.h"
 #include "formats/gdal/gdal.h"
 #include "formats/meshes/vector/vector_format.h"
+#include "tests/error_facts.h"
 #include "tests/formats/meshes/export_test_helpers.h"
 
 namespace spillway::detail::testing {
@@ -123,12 +124,26 @@ TEST(VectorMesh, FailuresLeaveNothing) {
                 AllOf(HasSubstr(name), HasSubstr("7 triangles were promised")));
     mesh.header.crs = "nonsense";
     EXPECT_THAT(error_of([&] { write_stream(disk(), folder.file(name), mesh); }),
-                HasSubstr("is no coordinate system"));
+                HasSubstr("is not a coordinate system"));
     EXPECT_THAT(
         error_of([&] { write_stream(disk(), folder.file(std::string("no/") + name), mesh); }),
         HasSubstr("no first"));
   }
   EXPECT_THAT(folder.names(), ElementsAre());
+}
+
+TEST(VectorMesh, ADamagedFileIsNamed) {
+  TestFolder folder;
+  for (const char* const name : {"tin.gpkg", "tin.shp"}) {
+    const std::string path = folder.file(name);
+    write_stream(disk(), path, strip(2, 20, 8));
+    fs::resize_file(path, 50);
+    const auto error =
+        thrown_by([&] { read_mesh(disk(), path, fs::path(name).extension().string().substr(1)); });
+    ASSERT_TRUE(error) << name;
+    EXPECT_EQ(error->code(), ErrorCode::kBadInput) << error->what();
+    EXPECT_EQ(error->facts().file, path) << error->what();
+  }
 }
 
 TEST(VectorMesh, UnfinishedFoldersAreRemovedAfterASignal) {
@@ -192,7 +207,7 @@ TEST(VectorMesh, OnlyTrianglesAreRead) {
   options.layer = "contours";
   options.lines = true;
   const auto layer = gdal().create_layer(options);
-  layer->add_line(std::vector<Point<3>>{{0, 0, 5}, {1, 0, 5}, {1, 1, 5}}, 5);
+  layer->add_line(std::vector<WorldPoint>{{0, 0, 5}, {1, 0, 5}, {1, 1, 5}}, 5);
   layer->finish();
   EXPECT_THAT(error_of([&] { read_mesh(disk(), options.path); }),
               HasSubstr("feature 1: it is a LINESTRING, and only triangles are read"));
@@ -207,7 +222,7 @@ TEST(VectorMesh, ContoursAsGeoJsonHaveTheirElevation) {
   options.lines = true;
   options.crs = "EPSG:32632";
   const auto layer = gdal().create_layer(options);
-  layer->add_line(std::vector<Point<3>>{{0, 0, 2.5}, {1, 0, 2.5}}, 2.5);
+  layer->add_line(std::vector<WorldPoint>{{0, 0, 2.5}, {1, 0, 2.5}}, 2.5);
   layer->finish();
   const nlohmann::json json = nlohmann::json::parse(content_of(options.path));
   EXPECT_EQ(json["features"][0]["properties"]["elevation"], 2.5);

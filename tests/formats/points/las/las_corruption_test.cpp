@@ -38,7 +38,7 @@ TEST(LasCorruption, Empty) {
 }
 
 TEST(LasCorruption, WrongSignature) {
-  EXPECT_THAT(error_with(0, 'l'), HasSubstr("a.las: this is no LAS file"));
+  EXPECT_THAT(error_with(0, 'l'), HasSubstr("a.las: this is not a LAS file"));
 }
 
 TEST(LasCorruption, TruncatedHeader) {

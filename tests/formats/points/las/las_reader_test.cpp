@@ -26,21 +26,22 @@ class LasFormats : public ::testing::TestWithParam<std::tuple<int, int>> {
 
 TEST_P(LasFormats, GivesIntegersAndDropsWithheldPoints) {
   const AllPoints all = read_content("a.las", file_.bytes());
-  EXPECT_THAT(all.points, ElementsAre(Point<3>{1, 2, 3}, Point<3>{7, -8, 9}));
+  EXPECT_THAT(all.points, ElementsAre(LatticePoint{1, 2, 3}, LatticePoint{7, -8, 9}));
   EXPECT_THAT(all.index, ElementsAre(0, 2));
   EXPECT_EQ(all.withheld, 1U);
 }
 
 TEST_P(LasFormats, KeepsWithheldPointsOnDemand) {
   const AllPoints all = read_content("a.las", file_.bytes(), {"", true});
-  EXPECT_THAT(all.points, ElementsAre(Point<3>{1, 2, 3}, Point<3>{-4, 5, -6}, Point<3>{7, -8, 9}));
+  EXPECT_THAT(all.points,
+              ElementsAre(LatticePoint{1, 2, 3}, LatticePoint{-4, 5, -6}, LatticePoint{7, -8, 9}));
   EXPECT_EQ(all.withheld, 0U);
 }
 
 TEST_P(LasFormats, StepsOverExtraBytes) {
   file_.extra_bytes = 5;
   EXPECT_THAT(read_content("a.las", file_.bytes()).points,
-              ElementsAre(Point<3>{1, 2, 3}, Point<3>{7, -8, 9}));
+              ElementsAre(LatticePoint{1, 2, 3}, LatticePoint{7, -8, 9}));
 }
 
 TEST_P(LasFormats, TellsWhatTheHeaderSays) {
@@ -86,7 +87,7 @@ TEST(LasReader, ReadsSeveralBlocks) {
   ASSERT_EQ(all.points.size(), 100000U);
   EXPECT_EQ(all.withheld, 50000U);
   EXPECT_EQ(all.index[99999], 149999U);
-  EXPECT_EQ(all.points[99999], (Point<3>{149999, 299998, -149999}));
+  EXPECT_EQ(all.points[99999], (LatticePoint{149999, 299998, -149999}));
 }
 
 TEST(LasReader, PassesOverBlocksThatAreWithheldAltogether) {
@@ -94,7 +95,7 @@ TEST(LasReader, PassesOverBlocksThatAreWithheldAltogether) {
   file.records.assign(70000, {1, 1, 1, true});
   file.records.push_back({2, 2, 2});
   const AllPoints all = read_content("a.las", file.bytes());
-  EXPECT_THAT(all.points, ElementsAre(Point<3>{2, 2, 2}));
+  EXPECT_THAT(all.points, ElementsAre(LatticePoint{2, 2, 2}));
   EXPECT_THAT(all.index, ElementsAre(70000));
 }
 

@@ -42,14 +42,14 @@ Bytes bytes_of(std::string_view hex) {
   return bytes;
 }
 
-/// Gives bytes in pieces of one size.
-class Pieces : public LazBytes {
+/// Gives bytes in spans of one size.
+class SplitBytes : public LazBytes {
  public:
-  explicit Pieces(std::span<const std::byte> bytes, std::size_t piece = SIZE_MAX)
-      : left_(bytes), piece_(piece) {}
+  explicit SplitBytes(std::span<const std::byte> bytes, std::size_t span_size = SIZE_MAX)
+      : left_(bytes), span_size_(span_size) {}
 
   std::span<const std::byte> more() override {
-    const auto given = left_.first(std::min(piece_, left_.size()));
+    const auto given = left_.first(std::min(span_size_, left_.size()));
     left_ = left_.subspan(given.size());
     return given;
   }
@@ -58,7 +58,7 @@ class Pieces : public LazBytes {
 
  private:
   std::span<const std::byte> left_;
-  std::size_t piece_;
+  std::size_t span_size_;
 };
 
 template <unsigned N>
@@ -157,11 +157,11 @@ TEST(LazReturnTables, AreSymmetricWhereTheyShouldBe) {
   EXPECT_EQ(laz::return_level(1, 3), 2);
 }
 
-TEST(LazArithmeticDecoder, DecodesAReferenceStreamFromPiecesOfAnySize) {
+TEST(LazArithmeticDecoder, DecodesAReferenceStreamFromSpansOfAnySize) {
   const Bytes stream = bytes_of("A3D0DF38921A486504D3DC9CBA72E43C000000");
-  for (std::size_t piece = 1; piece <= stream.size(); ++piece) {
-    Pieces pieces(stream, piece);
-    ArithmeticDecoder decoder({}, &pieces);
+  for (std::size_t span_size = 1; span_size <= stream.size(); ++span_size) {
+    SplitBytes split(stream, span_size);
+    ArithmeticDecoder decoder({}, &split);
     SymbolModel<4> four(4);
     SymbolModel<100> hundred(100);
     BitModel bit;
@@ -178,7 +178,7 @@ TEST(LazArithmeticDecoder, DecodesAReferenceStreamFromPiecesOfAnySize) {
     EXPECT_EQ(decoder.raw(32), 0xDEADBEEF);
     EXPECT_EQ(decoder.symbol(four), 1);
     EXPECT_TRUE(decoder.rest().empty());
-    EXPECT_EQ(pieces.left(), 0);
+    EXPECT_EQ(split.left(), 0);
   }
 }
 
@@ -324,7 +324,7 @@ PointAttributes attributes_of(const Bytes& record, bool layered) {
 }
 
 /// Decodes the chunk in calls for two points at a time.
-void decode_chunk(LazChunkDecoder& decoder, std::vector<Point<3>>& points,
+void decode_chunk(LazChunkDecoder& decoder, std::vector<LatticePoint>& points,
                   std::vector<PointAttributes>& attributes) {
   for (std::size_t done = 0; done < points.size(); done += 2) {
     const std::size_t count = std::min<std::size_t>(2, points.size() - done);
@@ -334,20 +334,21 @@ void decode_chunk(LazChunkDecoder& decoder, std::vector<Point<3>>& points,
   }
 }
 
-TEST(LazChunk, ReferenceChunksGiveTheirRecordsFromPiecesOfAnySize) {
+TEST(LazChunk, ReferenceChunksGiveTheirRecordsFromSpansOfAnySize) {
   for (const ChunkCase& c : reference_chunks()) {
     const Bytes chunk = bytes_of(c.chunk);
     for (const bool wants_attributes : {false, true}) {
       LazChunkDecoder decoder(c.format, wants_attributes);
-      for (const std::size_t piece : {std::size_t{1}, std::size_t{3}, std::size_t{40}, SIZE_MAX}) {
-        SCOPED_TRACE(c.name + ", pieces of " + std::to_string(piece));
-        Pieces pieces(chunk, piece);
-        std::vector<Point<3>> points(c.records.size());
+      for (const std::size_t span_size :
+           {std::size_t{1}, std::size_t{3}, std::size_t{40}, SIZE_MAX}) {
+        SCOPED_TRACE(c.name + ", pieces of " + std::to_string(span_size));
+        SplitBytes split(chunk, span_size);
+        std::vector<LatticePoint> points(c.records.size());
         std::vector<PointAttributes> attributes(wants_attributes ? c.records.size() : 0);
-        decoder.begin(pieces, c.records.size());
+        decoder.begin(split, c.records.size());
         decode_chunk(decoder, points, attributes);
         EXPECT_EQ(decoder.end(), 0);
-        EXPECT_EQ(pieces.left(), 0);
+        EXPECT_EQ(split.left(), 0);
         for (std::size_t i = 0; i < points.size(); ++i) {
           const Bytes record = bytes_of(c.records[i]);
           for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -367,11 +368,11 @@ TEST(LazChunk, TellsHowManyBytesLieBehindIt) {
     SCOPED_TRACE(c.name);
     Bytes chunk = bytes_of(c.chunk);
     chunk.resize(chunk.size() + 5);
-    Pieces pieces(chunk);
+    SplitBytes split(chunk);
     LazChunkDecoder decoder(c.format, true);
-    std::vector<Point<3>> points(c.records.size());
+    std::vector<LatticePoint> points(c.records.size());
     std::vector<PointAttributes> attributes(points.size());
-    decoder.begin(pieces, points.size());
+    decoder.begin(split, points.size());
     decode_chunk(decoder, points, attributes);
     EXPECT_EQ(decoder.end(), 5);
   }
@@ -379,11 +380,11 @@ TEST(LazChunk, TellsHowManyBytesLieBehindIt) {
 
 /// Decodes `chunk`, whatever it is: points or an Error. The message is returned.
 std::string outcome(LazChunkDecoder& decoder, std::span<const std::byte> chunk, std::size_t count) {
-  Pieces pieces(chunk, 16);
-  std::vector<Point<3>> points(count);
+  SplitBytes split(chunk, 16);
+  std::vector<LatticePoint> points(count);
   std::vector<PointAttributes> attributes(count);
   try {
-    decoder.begin(pieces, count);
+    decoder.begin(split, count);
     decode_chunk(decoder, points, attributes);
     decoder.end();
   } catch (const Error& error) {

@@ -30,8 +30,8 @@ std::string file_of(const LazFormat& format, std::size_t count) {
   return make_laz_file(format, records_of(format, count)).bytes();
 }
 
-std::vector<Point<3>> points_of(const std::vector<std::string>& records) {
-  std::vector<Point<3>> points;
+std::vector<LatticePoint> points_of(const std::vector<std::string>& records) {
+  std::vector<LatticePoint> points;
   points.reserve(records.size());
   for (const std::string& record : records) points.push_back(point_of_record(record));
   return points;
@@ -86,7 +86,7 @@ TEST(LazReader, PiecesAreChunksThatAnyThreadDecodes) {
         });
       }
     }
-    std::vector<Point<3>> points;
+    std::vector<LatticePoint> points;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       EXPECT_EQ(blocks[i].index.front(), 100 * i);
       points.insert(points.end(), blocks[i].points.begin(), blocks[i].points.end());
@@ -104,7 +104,7 @@ TEST(LazReader, LargeChunksComeInBlocksThatAreDecodedInOrder) {
     for (const bool seekable : {true, false}) {
       OneFile file(bytes, seekable);
       const auto reader = open_point_reader(file.files, "a.laz", all_points());
-      std::vector<Point<3>> points;
+      std::vector<LatticePoint> points;
       RawPoints raw;
       PointBlock block;
       while (reader->fetch(raw)) {
@@ -278,13 +278,13 @@ std::string file_with_start_signature(const std::string& signature) {
 TEST(LasVersions, TheTwoBytesBeforeThePointsOfVersion0AreSteppedOver) {
   for (const char* signature : {"\xDD\xCC", "\xCC\xDD"}) {
     std::string bytes = file_with_start_signature(signature);
-    EXPECT_EQ(read_content("a.las", bytes, all_points()).points[0], (Point<3>{1, 2, 3}));
+    EXPECT_EQ(read_content("a.las", bytes, all_points()).points[0], (LatticePoint{1, 2, 3}));
     FaultyFileSystem pipe;
     pipe.seekable = false;
     pipe.files["-"] = bytes;
     EXPECT_THAT(error_of([&] { read_all_points(pipe, "-"); }), HasSubstr("give it by its name"));
     put(bytes, 25, std::uint8_t{1});  // other versions have no such bytes
-    EXPECT_NE(read_content("a.las", bytes, all_points()).points[0], (Point<3>{1, 2, 3}));
+    EXPECT_NE(read_content("a.las", bytes, all_points()).points[0], (LatticePoint{1, 2, 3}));
   }
 }
 
@@ -292,7 +292,7 @@ TEST(LasVersions, TheyArePartOfThePointsWhereThereIsNoRoomForThem) {
   LasFile file;
   file.minor = 0;
   file.records = {{0xCCDD, 2, 3}};
-  EXPECT_THAT(read_content("a.las", file.bytes()).points, ElementsAre(Point<3>{0xCCDD, 2, 3}));
+  EXPECT_THAT(read_content("a.las", file.bytes()).points, ElementsAre(LatticePoint{0xCCDD, 2, 3}));
 }
 
 }  // namespace

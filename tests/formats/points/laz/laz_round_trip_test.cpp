@@ -271,7 +271,7 @@ TEST(LazRoundTripOthers, CoordinatesAloneAndWithheldPointsLeftOut) {
     format.chunk_size = 64;
     const std::string bytes = make_laz_file(format, all).bytes();
     for (const bool keep : {true, false}) {
-      std::vector<Point<3>> points;
+      std::vector<LatticePoint> points;
       std::vector<std::uint64_t> index;
       for (std::size_t i = 0; i < all.size(); ++i) {
         const unsigned flags = attributes_of_record(point_format, all[i]).flags;

@@ -35,13 +35,13 @@ template <typename T>
 void expect_points_of_type(const std::string& type) {
   const AllPoints flat = read_content("a.npy", npy<T>(dictionary(type, "(2, 2)"), {1, 2, -3, 4}));
   EXPECT_EQ(flat.header.coordinates, 2);
-  EXPECT_THAT(flat.points, ElementsAre(Point<3>{1, 2, 0}, Point<3>{-3, 4, 0}));
+  EXPECT_THAT(flat.points, ElementsAre(LatticePoint{1, 2, 0}, LatticePoint{-3, 4, 0}));
   const AllPoints solid =
       read_content("a.npy", npy<T>(dictionary(type, "(2, 3)"), {1, 2, -3, 4, 5, 6}));
   EXPECT_EQ(solid.header.coordinates, 3);
   EXPECT_EQ(solid.header.count, 2U);
   EXPECT_FALSE(solid.header.lattice);
-  EXPECT_THAT(solid.points, ElementsAre(Point<3>{1, 2, -3}, Point<3>{4, 5, 6}));
+  EXPECT_THAT(solid.points, ElementsAre(LatticePoint{1, 2, -3}, LatticePoint{4, 5, 6}));
   EXPECT_THAT(solid.index, ElementsAre(0, 1));
 }
 
@@ -62,7 +62,7 @@ TEST(NpyReader, AllHeaderVersions) {
 TEST(NpyReader, DictionaryInAnyOrderAndQuotes) {
   const std::string text = "{\"shape\":(1,2),\"fortran_order\":False,\"descr\":\"<f8\"}";
   EXPECT_THAT(read_content("a.npy", npy<double>(text, {1, 2})).points,
-              ElementsAre(Point<3>{1, 2, 0}));
+              ElementsAre(LatticePoint{1, 2, 0}));
 }
 
 TEST(NpyReader, NoPoints) {
@@ -77,7 +77,7 @@ TEST(NpyReader, SeveralBlocksThroughAPipe) {
   files.files["-"] = npy(dictionary("<i4", "(100000, 3)"), values);
   const AllPoints all = read_all_points(files, "-");
   ASSERT_EQ(all.points.size(), 100000U);
-  EXPECT_EQ(all.points[99999], (Point<3>{299997, 299998, 299999}));
+  EXPECT_EQ(all.points[99999], (LatticePoint{299997, 299998, 299999}));
   EXPECT_EQ(all.index[99999], 99999U);
 }
 
@@ -86,7 +86,7 @@ std::string error_of_dictionary(const std::string& text) {
 }
 
 TEST(NpyCorruption, WrongMagic) {
-  EXPECT_THAT(error_of_content("a.npy", "\x93NUMPI"), HasSubstr("a.npy: this is no npy file"));
+  EXPECT_THAT(error_of_content("a.npy", "\x93NUMPI"), HasSubstr("a.npy: this is not an npy file"));
 }
 
 TEST(NpyCorruption, TruncatedHeader) {

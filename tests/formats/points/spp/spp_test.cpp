@@ -22,8 +22,8 @@ using ::testing::HasSubstr;
 constexpr Lattice kCentimetres{{0.01, 0.01, 0.01}, {500000, 4000000, -10}};
 
 /// The points as a stream, written in pieces of `piece`.
-std::string stream_of(const std::vector<Point<3>>& points, const PointWriterOptions& options = {},
-                      std::size_t piece = 7777) {
+std::string stream_of(const std::vector<LatticePoint>& points,
+                      const PointWriterOptions& options = {}, std::size_t piece = 7777) {
   FaultyFileSystem files;
   files.seekable = false;
   const auto writer = open_point_writer(files, "a.spp", options);
@@ -34,10 +34,10 @@ std::string stream_of(const std::vector<Point<3>>& points, const PointWriterOpti
   return files.files.at("a.spp");
 }
 
-std::vector<Point<3>> random_integers(std::size_t count) {
+std::vector<LatticePoint> random_integers(std::size_t count) {
   std::mt19937 random(1);
-  std::vector<Point<3>> points(count);
-  for (Point<3>& p : points) {
+  std::vector<LatticePoint> points(count);
+  for (LatticePoint& p : points) {
     p = {double(random() % 10000), double(random() % 10000), double(random() % 100) - 50};
   }
   return points;
@@ -71,7 +71,7 @@ TEST(Spp, CoordinatesOfALatticeAreIntegersUpTo2To53) {
 }
 
 TEST(Spp, RoundTripOnALattice) {
-  const std::vector<Point<3>> points = random_integers(200000);
+  const std::vector<LatticePoint> points = random_integers(200000);
   PointWriterOptions options;
   options.lattice = kCentimetres;
   options.count = points.size();
@@ -92,8 +92,8 @@ TEST(Spp, RoundTripOnALattice) {
 
 TEST(Spp, RoundTripOfDoublesToTheBit) {
   std::mt19937_64 random(2);
-  std::vector<Point<3>> points(10000);
-  for (Point<3>& p : points) {
+  std::vector<LatticePoint> points(10000);
+  for (LatticePoint& p : points) {
     for (double& c : p) {
       do {
         c = std::bit_cast<double>(random());
@@ -119,13 +119,13 @@ TEST(Spp, ThePlaneHasNoZ) {
   options.coordinates = 2;
   const AllPoints back = read_content("a.spp", stream_of({{1.5, 2, 7}, {3, 4, 8}}, options));
   EXPECT_EQ(back.header.coordinates, 2);
-  EXPECT_EQ(back.points, (std::vector<Point<3>>{{1.5, 2, 0}, {3, 4, 0}}));
+  EXPECT_EQ(back.points, (std::vector<LatticePoint>{{1.5, 2, 0}, {3, 4, 0}}));
 }
 
 TEST(Spp, Empty) { EXPECT_TRUE(read_content("a.spp", stream_of({})).points.empty()); }
 
 TEST(Spp, BytesDoNotDependOnThePieces) {
-  const std::vector<Point<3>> points = random_integers(150000);
+  const std::vector<LatticePoint> points = random_integers(150000);
   EXPECT_EQ(stream_of(points, {}, 1000), stream_of(points, {}, 150000));
 }
 
@@ -139,7 +139,7 @@ TEST(Spp, IsRecognisedOnAPipe) {
 }
 
 TEST(Spp, NeighbouringLatticePointsTakeFewBytes) {
-  std::vector<Point<3>> points(100000);
+  std::vector<LatticePoint> points(100000);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::size_t line = i / 1000;
     points[i] = {double(i % 1000 * 50 + i * 7 % 20), double(line * 50 + i * 11 % 20),
@@ -194,9 +194,9 @@ TEST(Spp, ABlockMissing) {
             2U);
   EXPECT_THAT(
       error_of_content("a.spp", stream_of_blocks({header, {kSppPointBlock, points}, trailer})),
-      HasSubstr("1 came, and the end tells of 2"));
+      HasSubstr("1 came, but the end says 2"));
   EXPECT_THAT(error_of_content("a.spp", stream_of_blocks({{kSppPointBlock, points}, trailer})),
-              HasSubstr("no header"));
+              HasSubstr("not a header"));
 }
 
 TEST(Spp, BlocksThatMakeNoSense) {
@@ -215,9 +215,8 @@ TEST(Spp, BlocksThatMakeNoSense) {
               HasSubstr("the extent"));
   EXPECT_THAT(error(good, 9, ""), HasSubstr("unknown kind"));
   EXPECT_THAT(error(good, kSppTrailer, "123"), HasSubstr("ends early"));
-  EXPECT_THAT(error(good, kSppPointBlock, bytes_of(std::uint32_t{0})), HasSubstr("makes no sense"));
-  EXPECT_THAT(error(good, kSppPointBlock, bytes_of(std::uint32_t{65537})),
-              HasSubstr("makes no sense"));
+  EXPECT_THAT(error(good, kSppPointBlock, bytes_of(std::uint32_t{0})), HasSubstr("is invalid"));
+  EXPECT_THAT(error(good, kSppPointBlock, bytes_of(std::uint32_t{65537})), HasSubstr("is invalid"));
   EXPECT_THAT(error(good, kSppPointBlock, bytes_of(std::uint32_t{5})), HasSubstr("ends early"));
   EXPECT_THAT(error(good, kSppPointBlock, std::string(kSppLargestBlock + 1, 'x')),
               HasSubstr("larger than any is"));

@@ -9,10 +9,10 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr Point<3> kFirst{1.5, -2, 300};
-constexpr Point<3> kSecond{4, 5, 6};
+constexpr LatticePoint kFirst{1.5, -2, 300};
+constexpr LatticePoint kSecond{4, 5, 6};
 
-std::vector<Point<3>> points_of(const std::string& content) {
+std::vector<LatticePoint> points_of(const std::string& content) {
   return read_content("a.pts", content).points;
 }
 

@@ -19,9 +19,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr Point<3> kPoint{10, 20, 30};
+constexpr LatticePoint kPoint{10, 20, 30};
 
-std::vector<Point<3>> points_of(const std::string& content) {
+std::vector<LatticePoint> points_of(const std::string& content) {
   return read_content("a.txt", content).points;
 }
 
@@ -38,7 +38,7 @@ TEST(TextHeader, BlanksInNames) {
   EXPECT_THAT(points_of("X [m],Y [m],Z [m]\n10,20,30\n"), ElementsAre(kPoint));
   EXPECT_THAT(points_of("\"Point ID\",\"X\",\"Y\",\"Z\"\n\"a, 1\",10,20,30\n"),
               ElementsAre(kPoint));
-  EXPECT_THAT(points_of("\"Height; m\",X,Y\n30,10,20\n"), ElementsAre(Point<3>{10, 20, 30}));
+  EXPECT_THAT(points_of("\"Height; m\",X,Y\n30,10,20\n"), ElementsAre(LatticePoint{10, 20, 30}));
 }
 
 TEST(TextHeader, BlanksAroundSeparators) {
@@ -95,7 +95,8 @@ TEST(TextHeader, InACommentRightBeforeThePoints) {
               ElementsAre(HasSubstr("the comment in line 1 is a header: column 3 (\"x\") is taken "
                                     "for x, column 2 (\"y\") is taken for y")));
   EXPECT_THAT(points_of("//pid,N,E,Elev_m\n7,20,10,30\n"), ElementsAre(kPoint));
-  EXPECT_THAT(text_error("//id,y,x,z\n7,20,10,bad\n"), HasSubstr("line 2, column 4 is no number"));
+  EXPECT_THAT(text_error("//id,y,x,z\n7,20,10,bad\n"),
+              HasSubstr("line 2, column 4 is not a number"));
 }
 
 TEST(TextHeader, ProseInACommentIsNone) {
@@ -108,7 +109,7 @@ TEST(TextHeader, ProseInACommentIsNone) {
   EXPECT_THAT(points_of("# y and x of the survey in metres\n10 20 30 4 5 6 7 8\n"),
               ElementsAre(kPoint));
   EXPECT_THAT(points_of("# N: 5400000, E: 500000\n10 20 30\n"), ElementsAre(kPoint));
-  EXPECT_THAT(points_of("# N=5400000, E=500000\n10,20\n"), ElementsAre(Point<3>{10, 20, 0}));
+  EXPECT_THAT(points_of("# N=5400000, E=500000\n10,20\n"), ElementsAre(LatticePoint{10, 20, 0}));
 }
 
 TEST(TextHeader, InACommentBeforeOtherComments) {
@@ -129,10 +130,10 @@ TEST(TextHeader, InACommentBeforeOtherComments) {
 TEST(TextHeader, InACommentOverTwoColumnsNeedsNoZ) {
   for (const char* const names : {"lat lon", "N,E", "Hoch Rechts", "y x"}) {
     const std::string text = fmt::format("# {}\n20 10\n", names);
-    EXPECT_THAT(points_of(text), ElementsAre(Point<3>{10, 20, 0})) << names;
+    EXPECT_THAT(points_of(text), ElementsAre(LatticePoint{10, 20, 0})) << names;
     EXPECT_THAT(notices_of(text), ElementsAre(HasSubstr("is taken for y"))) << names;
   }
-  EXPECT_THAT(points_of("# id lat lon\n7 20 10\n"), ElementsAre(Point<3>{10, 20, 0}));
+  EXPECT_THAT(points_of("# id lat lon\n7 20 10\n"), ElementsAre(LatticePoint{10, 20, 0}));
 }
 
 TEST(TextHeader, InACommentWithUnitsOrALabel) {
@@ -180,12 +181,15 @@ TEST(TextHeader, WhereBlanksSeparateEveryRowHasAsManyColumns) {
 }
 
 TEST(TextHeader, FixesTheSeparator) {
-  EXPECT_THAT(points_of("x;y;z\n1,5;2,5;3,5\n"), ElementsAre(Point<3>{1.5, 2.5, 3.5}));
-  EXPECT_THAT(text_error("x;y;z\n1,2,3\n"), HasSubstr("line 2, column 1 is no number: \"1,2,3\""));
-  EXPECT_THAT(text_error("x,y,z\n1;2;3\n"), HasSubstr("line 2, column 1 is no number: \"1;2;3\""));
+  EXPECT_THAT(points_of("x;y;z\n1,5;2,5;3,5\n"), ElementsAre(LatticePoint{1.5, 2.5, 3.5}));
+  EXPECT_THAT(text_error("x;y;z\n1,2,3\n"),
+              HasSubstr("line 2, column 1 is not a number: \"1,2,3\""));
+  EXPECT_THAT(text_error("x,y,z\n1;2;3\n"),
+              HasSubstr("line 2, column 1 is not a number: \"1;2;3\""));
   EXPECT_THAT(text_error("x\ty\tz\n1 2 3\n"),
-              HasSubstr("line 2, column 1 is no number: \"1 2 3\""));
-  EXPECT_THAT(text_error("x y z\n1,2,3\n"), HasSubstr("line 2, column 1 is no number: \"1,2,3\""));
+              HasSubstr("line 2, column 1 is not a number: \"1 2 3\""));
+  EXPECT_THAT(text_error("x y z\n1,2,3\n"),
+              HasSubstr("line 2, column 1 is not a number: \"1,2,3\""));
 }
 
 TEST(TextTabs, EmptyColumnsCount) {
@@ -195,26 +199,27 @@ TEST(TextTabs, EmptyColumnsCount) {
 }
 
 TEST(DecimalCommas, WhereTheSeparatorIsAnotherSign) {
-  const Point<3> half{1.5, 2.5, 3.5};
+  const LatticePoint half{1.5, 2.5, 3.5};
   EXPECT_THAT(points_of("1,5;2,5;3,5\n"), ElementsAre(half));
   EXPECT_THAT(points_of("1,5\t2,5\t3,5\n"), ElementsAre(half));
   EXPECT_THAT(points_of("1,5 2,5 3,5\n"), ElementsAre(half));
-  EXPECT_THAT(points_of("10,5 20,5 30,1\n"), ElementsAre(Point<3>{10.5, 20.5, 30.1}));
-  EXPECT_THAT(points_of("500000;4000000;1,5\n"), ElementsAre(Point<3>{500000, 4000000, 1.5}));
-  EXPECT_THAT(points_of("10 20 2,5\n"), ElementsAre(Point<3>{10, 20, 2.5}));
-  EXPECT_THAT(points_of("-1,5e1;+2,5;\"3,5\"\n"), ElementsAre(Point<3>{-15, 2.5, 3.5}));
+  EXPECT_THAT(points_of("10,5 20,5 30,1\n"), ElementsAre(LatticePoint{10.5, 20.5, 30.1}));
+  EXPECT_THAT(points_of("500000;4000000;1,5\n"), ElementsAre(LatticePoint{500000, 4000000, 1.5}));
+  EXPECT_THAT(points_of("10 20 2,5\n"), ElementsAre(LatticePoint{10, 20, 2.5}));
+  EXPECT_THAT(points_of("-1,5e1;+2,5;\"3,5\"\n"), ElementsAre(LatticePoint{-15, 2.5, 3.5}));
   EXPECT_THAT(notices_of("10,5 20,5 30,1\n"), ElementsAre(HasSubstr("decimal commas")));
 }
 
 TEST(DecimalCommas, InLaterRowsOnly) {
-  EXPECT_THAT(points_of("1;2;10\n1;2;2,5\n"), ElementsAre(Point<3>{1, 2, 10}, Point<3>{1, 2, 2.5}));
+  EXPECT_THAT(points_of("1;2;10\n1;2;2,5\n"),
+              ElementsAre(LatticePoint{1, 2, 10}, LatticePoint{1, 2, 2.5}));
   EXPECT_THAT(points_of("x y z\n1 2 10\n# 1.5\n1 2 2,5\n"),
-              ElementsAre(Point<3>{1, 2, 10}, Point<3>{1, 2, 2.5}));
+              ElementsAre(LatticePoint{1, 2, 10}, LatticePoint{1, 2, 2.5}));
 }
 
 TEST(DecimalCommas, InTheLastColumnOfLinesThatEndAsInWindows) {
   EXPECT_THAT(points_of("x;y;z\r\n1;2;10\r\n1;2;2,5\r\n"),
-              ElementsAre(Point<3>{1, 2, 10}, Point<3>{1, 2, 2.5}));
+              ElementsAre(LatticePoint{1, 2, 10}, LatticePoint{1, 2, 2.5}));
 }
 
 TEST(DecimalCommas, FarBehindOnlyAreAnError) {
@@ -276,24 +281,30 @@ TEST(TextSeparators, OfTheFirstRow) {
   EXPECT_THAT(points_of("10,\t20,\t30\n"), ElementsAre(kPoint));
   EXPECT_THAT(points_of("10 20 30 a note; with, signs\n"), ElementsAre(kPoint));
   EXPECT_THAT(points_of("10.5 20 30 trees, old\n10 20 30 a,b\n"),
-              ElementsAre(Point<3>{10.5, 20, 30}, kPoint));
+              ElementsAre(LatticePoint{10.5, 20, 30}, kPoint));
 }
 
 TEST(TextSeparators, ArePropertiesOfTheWholeFile) {
-  EXPECT_THAT(text_error("1 2 3\n1;2;3\n"), HasSubstr("line 2, column 1 is no number: \"1;2;3\""));
-  EXPECT_THAT(text_error("1;2;3\n1 2 3\n"), HasSubstr("line 2, column 1 is no number: \"1 2 3\""));
-  EXPECT_THAT(text_error("1,2,3\n1 2 3\n"), HasSubstr("line 2, column 1 is no number: \"1 2 3\""));
-  EXPECT_THAT(text_error("1,2,3\n1,2 3\n"), HasSubstr("line 2, column 2 is no number: \"2 3\""));
-  EXPECT_THAT(text_error("1 2 3\n1, 2, 3\n"), HasSubstr("line 2, column 1 is no number: \"1,\""));
-  EXPECT_THAT(text_error("1.5,2.5 3.5\n"), HasSubstr("line 1, column 2 is no number: \"2.5 3.5\""));
+  EXPECT_THAT(text_error("1 2 3\n1;2;3\n"),
+              HasSubstr("line 2, column 1 is not a number: \"1;2;3\""));
+  EXPECT_THAT(text_error("1;2;3\n1 2 3\n"),
+              HasSubstr("line 2, column 1 is not a number: \"1 2 3\""));
+  EXPECT_THAT(text_error("1,2,3\n1 2 3\n"),
+              HasSubstr("line 2, column 1 is not a number: \"1 2 3\""));
+  EXPECT_THAT(text_error("1,2,3\n1,2 3\n"), HasSubstr("line 2, column 2 is not a number: \"2 3\""));
+  EXPECT_THAT(text_error("1 2 3\n1, 2, 3\n"),
+              HasSubstr("line 2, column 1 is not a number: \"1,\""));
+  EXPECT_THAT(text_error("1.5,2.5 3.5\n"),
+              HasSubstr("line 1, column 2 is not a number: \"2.5 3.5\""));
 }
 
 TEST(TextSeparators, AFieldIsReadWhole) {
-  EXPECT_THAT(text_error("1;2;3\n1;2;3x\n"), HasSubstr("line 2, column 3 is no number: \"3x\""));
-  EXPECT_THAT(text_error("1;2;3\n1;2;3 4\n"), HasSubstr("line 2, column 3 is no number: \"3 4\""));
-  EXPECT_THAT(text_error("1;2;3\n1;\"2\"5;3\n"), HasSubstr("line 2, column 2 is no number"));
-  EXPECT_THAT(text_error("1 2 3\n1 2 3,\n"), HasSubstr("line 2, column 3 is no number: \"3,\""));
-  EXPECT_THAT(points_of("1;2;3\n10;20;30 # c\n"), ElementsAre(Point<3>{1, 2, 3}, kPoint));
+  EXPECT_THAT(text_error("1;2;3\n1;2;3x\n"), HasSubstr("line 2, column 3 is not a number: \"3x\""));
+  EXPECT_THAT(text_error("1;2;3\n1;2;3 4\n"),
+              HasSubstr("line 2, column 3 is not a number: \"3 4\""));
+  EXPECT_THAT(text_error("1;2;3\n1;\"2\"5;3\n"), HasSubstr("line 2, column 2 is not a number"));
+  EXPECT_THAT(text_error("1 2 3\n1 2 3,\n"), HasSubstr("line 2, column 3 is not a number: \"3,\""));
+  EXPECT_THAT(points_of("1;2;3\n10;20;30 # c\n"), ElementsAre(LatticePoint{1, 2, 3}, kPoint));
 }
 
 /// Numbers of every length, with and without decimals and exponents, against the standard library.
@@ -330,7 +341,7 @@ TEST(TextSeparators, HoldFromFrontToBackOfPipes) {
   const AllPoints all = read_all_points(files, "-");
   ASSERT_EQ(all.points.size(), 200000U);
   for (int i = 1; i < 200000; ++i) {
-    ASSERT_EQ(all.points[i], (Point<3>{i + 0.5, double(i), -i - 0.25}));
+    ASSERT_EQ(all.points[i], (LatticePoint{i + 0.5, double(i), -i - 0.25}));
   }
 }
 

@@ -10,11 +10,11 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr Point<3> kFirst{1.5, -2, 3e2};
-constexpr Point<3> kSecond{4, 5, 6};
+constexpr LatticePoint kFirst{1.5, -2, 3e2};
+constexpr LatticePoint kSecond{4, 5, 6};
 
 /// The points of a text of that content.
-std::vector<Point<3>> points_of(const std::string& content) {
+std::vector<LatticePoint> points_of(const std::string& content) {
   return read_content("a.txt", content).points;
 }
 
@@ -45,7 +45,8 @@ TEST(TextReader, ByteOrderMark) {
 TEST(TextReader, TwoColumns) {
   const AllPoints all = read_content("a.txt", "1 2\n3 4 # comment\n5 6 7\n");
   EXPECT_EQ(all.header.coordinates, 2);
-  EXPECT_THAT(all.points, ElementsAre(Point<3>{1, 2, 0}, Point<3>{3, 4, 0}, Point<3>{5, 6, 0}));
+  EXPECT_THAT(all.points,
+              ElementsAre(LatticePoint{1, 2, 0}, LatticePoint{3, 4, 0}, LatticePoint{5, 6, 0}));
 }
 
 TEST(TextReader, ExtraColumnsAreIgnored) {
@@ -65,12 +66,12 @@ TEST(TextReader, HeaderNamesColumns) {
 TEST(TextReader, HeaderNamesTwoColumns) {
   const AllPoints all = read_content("a.csv", "x,y,intensity\n1,2,3\n");
   EXPECT_EQ(all.header.coordinates, 2);
-  EXPECT_THAT(all.points, ElementsAre(Point<3>{1, 2, 0}));
+  EXPECT_THAT(all.points, ElementsAre(LatticePoint{1, 2, 0}));
 }
 
 TEST(TextReader, NumbersAreTheNearestDoubles) {
   EXPECT_THAT(points_of("+0.1 1e-310 123456789012345678901234567890\n"),
-              ElementsAre(Point<3>{0.1, 1e-310, 123456789012345678901234567890.0}));
+              ElementsAre(LatticePoint{0.1, 1e-310, 123456789012345678901234567890.0}));
 }
 
 TEST(TextReader, NoPoints) {
@@ -80,7 +81,7 @@ TEST(TextReader, NoPoints) {
 }
 
 TEST(TextReader, HugeCoordinatesAreFinite) {
-  EXPECT_THAT(points_of("1e308 1e308 1e308\n"), ElementsAre(Point<3>{1e308, 1e308, 1e308}));
+  EXPECT_THAT(points_of("1e308 1e308 1e308\n"), ElementsAre(LatticePoint{1e308, 1e308, 1e308}));
 }
 
 TEST(TextReader, SeveralBlocksAndChunks) {
@@ -92,7 +93,7 @@ TEST(TextReader, SeveralBlocksAndChunks) {
   const AllPoints all = read_all_points(files, "-");
   ASSERT_EQ(all.points.size(), 200000U);
   for (int i = 0; i < 200000; ++i) {
-    ASSERT_EQ(all.points[i], (Point<3>{double(i), i + 0.25, double(-i)}));
+    ASSERT_EQ(all.points[i], (LatticePoint{double(i), i + 0.25, double(-i)}));
     ASSERT_EQ(all.index[i], static_cast<std::uint64_t>(i));
   }
 }
@@ -112,7 +113,7 @@ std::string text_error(const std::string& content) { return error_of_content("a.
 
 TEST(TextCorruption, NotANumber) {
   EXPECT_THAT(text_error("1 2 3\n# c\n4 x 6\n"),
-              HasSubstr("a.txt: line 3, column 2 is no number: \"x\""));
+              HasSubstr("a.txt: line 3, column 2 is not a number: \"x\""));
   EXPECT_THAT(text_error("1 2 3\n4 5 6m\n"), HasSubstr("line 2"));
   EXPECT_THAT(text_error("1 2 3\n4 5 0x6\n"), HasSubstr("line 2"));
   EXPECT_THAT(text_error("1 2 3\n4 5 \"6\n"), HasSubstr("line 2"));
@@ -167,7 +168,7 @@ TEST(TextCorruption, EndlessLine) {
 }
 
 TEST(TextCorruption, BinaryData) {
-  EXPECT_THAT(text_error(std::string("\0\1\2\3\n\0\1\2\3\n", 10)), HasSubstr("this is no text"));
+  EXPECT_THAT(text_error(std::string("\0\1\2\3\n\0\1\2\3\n", 10)), HasSubstr("this is not text"));
   EXPECT_THAT(text_error(std::string(600, '\n') + "1 2 3\n\1\2 3\n"),
               AllOf(HasSubstr("line 602"), HasSubstr("\"??\"")));
 }

@@ -11,7 +11,7 @@
 namespace spillway::detail::testing {
 namespace {
 
-/// One layer behind POINT14: a part of the record, with four contexts.
+/// One layer behind POINT14: a coder of the record, with four contexts.
 class LayerEncoder {
  public:
   using Make = std::function<std::unique_ptr<ItemEncoder>()>;
@@ -28,7 +28,7 @@ class LayerEncoder {
   /// Versions below 4 predict from the context before a switch, and store the value there, if the
   /// one after it has been used before.
   void encode(std::string_view record, unsigned context) {
-    const std::string_view part = record.substr(at_, size_);
+    const std::string_view coder = record.substr(at_, size_);
     unsigned source = own_;
     if (context != own_) {
       own_ = context;
@@ -40,9 +40,9 @@ class LayerEncoder {
       }
     }
     std::string& last = contexts_[source].last;
-    stream_.changes |= part != last;
-    contexts_[own_].models->encode(stream_.encoder, part, last);
-    last = part;
+    stream_.changes |= coder != last;
+    contexts_[own_].models->encode(stream_.encoder, coder, last);
+    last = coder;
   }
 
   LayerStream& stream() { return stream_; }
@@ -91,23 +91,23 @@ void add_layers(std::vector<LayerEncoder>& layers, const LazItem& item, std::siz
 
 std::string encode_pointwise(const std::vector<LazItem>& items,
                              std::span<const std::string> records) {
-  struct Part {
+  struct ItemCoder {
     std::size_t at;
     std::size_t size;
     std::unique_ptr<ItemEncoder> models;
   };
-  std::vector<Part> parts;
+  std::vector<ItemCoder> coders;
   std::size_t at = 0;
   for (const LazItem& item : items) {
     const std::string_view first = std::string_view(records.front()).substr(at, item.size);
-    parts.push_back({at, item.size, make_item_encoder(item, first)});
+    coders.push_back({at, item.size, make_item_encoder(item, first)});
     at += item.size;
   }
   ArithmeticEncoder encoder;
   for (std::size_t i = 1; i < records.size(); ++i) {
-    for (const Part& part : parts) {
-      part.models->encode(encoder, std::string_view(records[i]).substr(part.at, part.size),
-                          std::string_view(records[i - 1]).substr(part.at, part.size));
+    for (const ItemCoder& coder : coders) {
+      coder.models->encode(encoder, std::string_view(records[i]).substr(coder.at, coder.size),
+                           std::string_view(records[i - 1]).substr(coder.at, coder.size));
     }
   }
   return records.front() + encoder.finish();

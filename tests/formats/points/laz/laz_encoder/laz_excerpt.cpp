@@ -10,7 +10,7 @@ namespace spillway::detail::testing {
 LazExcerpts::LazExcerpts(std::string bytes) : bytes_(std::move(bytes)) {
   FaultyFileSystem files;
   files.files["whole.laz"] = bytes_;
-  InputSource source(files.open("whole.laz"));
+  InputBytes source(files.open("whole.laz"));
   las_ = read_las_header(source);
   if (las_.laz && las_.laz->compressor != LazCompressor::kPointwise) {
     chunks_ = read_chunk_table(source, las_).value_or(std::vector<LazChunk>());

@@ -12,8 +12,8 @@
 namespace spillway::detail::testing {
 namespace {
 
-/// What lies in a record behind the core: the places of its parts, 0 if it has none.
-struct Places {
+/// What lies in a record behind the core: the offsets of its fields, 0 if it has none.
+struct FieldOffsets {
   std::size_t gps_time = 0;
   std::size_t rgb = 0;
   std::size_t nir = 0;
@@ -21,8 +21,8 @@ struct Places {
   std::size_t extra = 0;
 };
 
-Places places_of(int point_format) {
-  constexpr std::array<Places, 11> kPlaces = {{
+FieldOffsets offsets_of(int point_format) {
+  constexpr std::array<FieldOffsets, 11> kOffsets = {{
       {0, 0, 0, 0, 20},
       {20, 0, 0, 0, 28},
       {0, 20, 0, 0, 26},
@@ -35,13 +35,13 @@ Places places_of(int point_format) {
       {22, 0, 0, 30, 59},
       {22, 30, 36, 38, 67},
   }};
-  return kPlaces.at(static_cast<std::size_t>(point_format));
+  return kOffsets.at(static_cast<std::size_t>(point_format));
 }
 
 class Scanner {
  public:
   explicit Scanner(const RandomRecords& wanted)
-      : wanted_(wanted), places_(places_of(wanted.point_format)), random_(wanted.seed) {
+      : wanted_(wanted), offsets_(offsets_of(wanted.point_format)), random_(wanted.seed) {
     LasFile las;
     las.point_format = wanted.point_format;
     las.extra_bytes = wanted.extra_bytes;
@@ -66,12 +66,12 @@ class Scanner {
     } else {
       put_core10();
     }
-    if (places_.gps_time > 0) put(record_, places_.gps_time, times_[sequence_]);
-    if (places_.rgb > 0) put_rgb();
-    if (places_.nir > 0 && chance(2)) change(places_.nir, 2);
-    if (places_.wave > 0) put_wave();
+    if (offsets_.gps_time > 0) put(record_, offsets_.gps_time, times_[sequence_]);
+    if (offsets_.rgb > 0) put_rgb();
+    if (offsets_.nir > 0 && chance(2)) change(offsets_.nir, 2);
+    if (offsets_.wave > 0) put_wave();
     for (std::size_t i = 0; i < wanted_.extra_bytes; ++i) {
-      if (i != 1 && chance(3)) change(places_.extra + i, 1);  // byte 1 stays as it is
+      if (i != 1 && chance(3)) change(offsets_.extra + i, 1);  // byte 1 stays as it is
     }
     return record_;
   }
@@ -168,14 +168,14 @@ class Scanner {
     if (chance(3)) return;
     if (chance(3)) {  // grey
       const auto grey = static_cast<std::uint16_t>(below(65536));
-      put(record_, places_.rgb, std::array<std::uint16_t, 3>{grey, grey, grey});
+      put(record_, offsets_.rgb, std::array<std::uint16_t, 3>{grey, grey, grey});
       return;
     }
-    change(places_.rgb, 6);
+    change(offsets_.rgb, 6);
   }
 
   void put_wave() {
-    const std::size_t at = places_.wave;
+    const std::size_t at = offsets_.wave;
     if (chance(8)) put_byte(at, below(256));
     std::uint64_t offset = field<std::uint64_t>(record_, at + 1);
     switch (below(6)) {
@@ -198,7 +198,7 @@ class Scanner {
   }
 
   RandomRecords wanted_;
-  Places places_;
+  FieldOffsets offsets_;
   std::mt19937 random_;
   std::string record_;
   std::array<std::uint64_t, 6> times_{};
@@ -217,7 +217,7 @@ std::vector<std::string> RandomRecords::make() const {
   return records;
 }
 
-Point<3> point_of_record(const std::string& record) {
+LatticePoint point_of_record(const std::string& record) {
   return {static_cast<double>(field<std::int32_t>(record, kX)),
           static_cast<double>(field<std::int32_t>(record, kY)),
           static_cast<double>(field<std::int32_t>(record, kZ))};

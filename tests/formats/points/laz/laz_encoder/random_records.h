@@ -22,7 +22,7 @@ struct RandomRecords {
 };
 
 /// The coordinates and attributes that a record means, from the specification of LAS.
-Point<3> point_of_record(const std::string& record);
+LatticePoint point_of_record(const std::string& record);
 PointAttributes attributes_of_record(int point_format, const std::string& record);
 
 }  // namespace spillway::detail::testing

@@ -1,0 +1,22 @@
+#include "formats/points/laz/file_bytes.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace spillway::detail {
+
+std::span<const std::byte> FileBytes::more() {
+  if (put_back_ > 0) {
+    const std::size_t again = std::exchange(put_back_, 0);
+    left_ -= again;
+    return std::span<const std::byte>(buffer_).last(again);
+  }
+  buffer_.resize(std::min<std::uint64_t>(kBufferSize, left_));
+  reading_ = true;
+  buffer_.resize(source_.read(buffer_));
+  reading_ = false;
+  left_ -= buffer_.size();
+  return buffer_;
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,49 @@
+#pragma once
+// Lines of equal height of a triangulated terrain.
+
+#include <spillway/context.h>
+#include <spillway/export.h>
+#include <spillway/mesh.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace spillway {
+
+/// Which lines are drawn. Either `interval` is above 0, or there are levels.
+struct ContourOptions {
+  double interval = 0;               ///< height between two lines
+  double base = 0;                   ///< a height that intervals are counted from
+  std::vector<double> levels{};      ///< heights of lines
+  std::optional<double> max_edge{};  ///< of a mesh, leave out triangles with a longer edge
+};
+
+/// What became of the lines.
+struct ContourReport {
+  std::uint64_t lines = 0;
+  std::uint64_t points = 0;  ///< of lines
+  /// Least and greatest height of the terrain; in reverse order if there is none.
+  double lowest = 0;
+  double highest = 0;
+  std::uint64_t spilled_bytes = 0;
+};
+
+/// A file of contours in the making: a sink of triangulate() and convert().
+class SPILLWAY_API ContourSink : public MeshSink {
+ public:
+  /// After finish().
+  [[nodiscard]] virtual const ContourReport& report() const = 0;
+};
+
+/// Contours as a vector file (gpkg, shp, geojson, ...: by the extension), lines with higher ground
+/// to their left. It gets its name when it is complete. A quarter of the context's memory is for
+/// lines that are not complete. Throws Error: kInvalidArgument for options that cannot be,
+/// kInputOutput.
+SPILLWAY_API std::unique_ptr<ContourSink> create_contours(const std::string& path,
+                                                          const ContourOptions& options,
+                                                          const Context& context);
+
+}  // namespace spillway

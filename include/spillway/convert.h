@@ -1,0 +1,39 @@
+#pragma once
+// From a source to a sink without triangulating.
+
+#include <spillway/context.h>
+#include <spillway/export.h>
+#include <spillway/figures.h>
+#include <spillway/mesh.h>
+#include <spillway/points.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace spillway {
+
+/// What became of points on their way.
+struct PointConversion {
+  PointCounts points;
+  std::uint64_t written = 0;
+  /// The lattice that coordinates were rounded to, and how far one has moved at most.
+  bool rounded = false;
+  std::array<double, 3> scale{};
+  std::array<double, 3> offset{};
+  double farthest = 0;
+  bool adds_heights = false;        ///< z is 0, since the points have none and the format wants one
+  std::vector<std::string> lost{};  ///< what the source has and the format does not hold, in words
+};
+
+/// Gives all points of the source to the sink, which it begins and finishes. Throws what source and
+/// sink throw, and Error(kInvalidArgument) for a point that the lattice of the output cannot hold.
+SPILLWAY_API PointConversion convert(PointSource& source, PointSink& sink, const Context& context);
+
+/// Passes a mesh on, to a file of another format, a raster, contours, a picture, block by block
+/// where the source streams. The report has the totals, and what the sink says. Throws what source
+/// and sink throw, and Error(kDegenerateInput) for a raster, contours or a picture of no simplex.
+SPILLWAY_API Report convert(MeshSource& source, MeshSink& sink, const Context& context);
+
+}  // namespace spillway

@@ -1,0 +1,68 @@
+#pragma once
+// Rasters of a triangulated terrain.
+
+#include <spillway/choices.h>
+#include <spillway/context.h>
+#include <spillway/export.h>
+#include <spillway/mesh.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace spillway {
+
+/// "height", "slope", ...: in the order of DemProduct.
+SPILLWAY_API const std::vector<std::string>& dem_product_names();
+
+/// What a raster is like. Lengths are in units of x and y.
+struct DemOptions {
+  std::vector<DemProduct> products{DemProduct::kHeight};  ///< the bands
+  double resolution = 0;                                  ///< side of a pixel
+  /// What to cover, as xmin, ymin, xmax, ymax; empty: all vertices.
+  std::optional<std::array<double, 4>> bounds{};
+  bool align = false;        ///< edges of pixels lie on multiples of the resolution
+  bool many_pixels = false;  ///< cover all vertices, though some may lie far away
+  /// A raster whose pixels are taken over, instead of the four members above.
+  std::string like{};
+  bool foreign_crs = false;          ///< though it has another coordinate system
+  double azimuth = 315;              ///< of a hillshade's light, in degrees from north
+  double altitude = 45;              ///< its height above the horizon, in degrees
+  std::optional<double> max_edge{};  ///< of a mesh, leave out triangles with a longer edge
+  float nodata = -9999;
+  std::string compression = "deflate";  ///< or "zstd", "none"
+  bool cloud_optimized = false;         ///< with overviews
+};
+
+/// What became of a raster.
+struct DemReport {
+  std::uint32_t columns = 0;
+  std::uint32_t rows = 0;
+  double resolution = 0;
+  double west = 0;
+  double north = 0;
+  std::vector<std::string> bands{};
+  std::uint64_t pixels_with_data = 0;  ///< of the first band
+  std::uint64_t spilled_bytes = 0;
+};
+
+/// A GeoTIFF in the making: a sink of triangulate() and convert(). A program that calls it itself
+/// must tell the extent in the header, unless the options tell what to cover.
+class SPILLWAY_API DemSink : public MeshSink {
+ public:
+  /// After finish().
+  [[nodiscard]] virtual const DemReport& report() const = 0;
+};
+
+/// A GeoTIFF of float32 bands, interpolated linearly within the triangles. It gets its name when it
+/// is complete. A quarter of the context's memory is for pixels. Throws Error: kInvalidArgument for
+/// options that cannot be, kOutOfBudget for a memory limit below 64 MiB, kInputOutput; begin()
+/// throws kBadInput for `like`, kDegenerateInput for points without z or tetrahedra, and kTooLarge
+/// for a raster that is large because of points far away.
+SPILLWAY_API std::unique_ptr<DemSink> create_dem(const std::string& path, const DemOptions& options,
+                                                 const Context& context);
+
+}  // namespace spillway

@@ -1,0 +1,62 @@
+#pragma once
+// What files hold.
+
+#include <spillway/context.h>
+#include <spillway/export.h>
+#include <spillway/extent.h>
+#include <spillway/figures.h>
+#include <spillway/mesh.h>
+#include <spillway/points.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace spillway {
+
+/// The map from integers to coordinates: integer * scale + offset, by axis.
+struct LatticeInfo {
+  std::array<double, 3> scale{1, 1, 1};
+  std::array<double, 3> offset{0, 0, 0};
+};
+
+/// What a point file holds. Texts that it does not tell are empty.
+struct PointsInfo {
+  std::string format{};
+  std::string version{};
+  int point_format = -1;  ///< of LAS; -1: of no LAS
+  int coordinates = 3;    ///< 2: there is no z
+  PointCounts counts{};
+  std::optional<Extent> extent{};        ///< of the points that are kept; none if there are none
+  std::optional<LatticeInfo> lattice{};  ///< that the file says its coordinates are on
+  std::string crs{};
+  std::string crs_note{};  ///< why there is no coordinate system, where that is worth a word
+  std::string software{};  ///< that has written it
+};
+
+/// Reads all points of a file that the options ask for, so that counts and extent are exact
+/// whatever the header says. Throws as open_points() and PointSource::read().
+SPILLWAY_API PointsInfo describe_points(const std::string& path, const PointOptions& options,
+                                        const Context& context);
+
+/// What a mesh holds.
+struct MeshInfo {
+  std::string format{};
+  int dimension = 2;
+  bool has_input_index = false;
+  MeshTotals totals{};        ///< counted
+  bool tells_totals = false;  ///< the file tells points, duplicates and hash
+  std::optional<Extent> extent{};
+  std::optional<LatticeInfo> lattice{};
+  std::string crs{};
+  /// The most vertices that a reader holds at a time, of formats of streams.
+  std::optional<std::uint64_t> peak_live_vertices{};
+};
+
+/// Reads a whole mesh; of formats of streams no more is held than their open border. Throws Error
+/// (kBadInput), also if the end of a stream says otherwise than what was read.
+SPILLWAY_API MeshInfo describe_mesh(const std::string& path, const MeshOptions& options,
+                                    const Context& context);
+
+}  // namespace spillway

@@ -1,0 +1,68 @@
+#include <spillway/context.h>
+#include <spillway/error.h>
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "src/parallel/most_threads.h"
+#include "src/parallel/parallel.h"
+#include "src/runtime/memory_budget.h"
+#include "stream/library/context/context_state.h"
+
+namespace spillway {
+
+Context::Context(ContextOptions options)
+    : options_(std::move(options)), state_(std::make_shared<detail::ContextState>()) {
+  if (options_.threads > detail::kMostThreads) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("{} threads are more than {}", options_.threads, detail::kMostThreads));
+  }
+  threads_ = options_.threads > 0 ? options_.threads : detail::available_threads();
+  memory_ = options_.memory.empty() ? detail::default_memory_limit()
+                                    : detail::parse_memory_size(options_.memory);
+  if (!options_.scratch_limit.empty()) {
+    scratch_limit_ = detail::parse_memory_size(options_.scratch_limit);
+  }
+}
+
+}  // namespace spillway
+
+namespace spillway::detail {
+
+ContextState::~ContextState() { release_threads(); }
+
+std::shared_ptr<ScratchFolder> ContextState::scratch(const Context& context) {
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<ScratchFolder> folder = scratch_.lock();
+  if (!folder) {
+    folder = make_scratch_folder(context.options().scratch_folder, context.scratch_limit());
+    scratch_ = folder;
+  }
+  return folder;
+}
+
+std::shared_ptr<ProbedInput> ContextState::Files::input(const std::string& path) {
+  std::error_code ignored;
+  if (path != "-" && (std::filesystem::is_regular_file(path, ignored) || !exists(path))) {
+    return std::make_shared<ProbedInput>(disk(), path);
+  }
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<ProbedInput>& pipe = pipes_[path];
+  if (!pipe) pipe = std::make_shared<ProbedInput>(disk(), path);
+  return pipe;
+}
+
+std::unique_ptr<InputFile> ContextState::Files::open(const std::string& path) {
+  std::shared_ptr<ProbedInput> looked_at;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = pipes_.find(path);
+    if (found != pipes_.end()) looked_at = found->second;
+  }
+  return looked_at ? looked_at->open(path) : disk().open(path);
+}
+
+}  // namespace spillway::detail

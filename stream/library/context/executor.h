@@ -1,0 +1,35 @@
+#pragma once
+
+#include <spillway/triangulate.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "stream/source/point_source.h"
+
+namespace spillway::detail {
+struct Run;
+}
+
+namespace spillway {
+
+/// Processes that share runs. All functions but is_first() are collective.
+class Executor {
+ public:
+  virtual ~Executor() = default;
+
+  /// Whether this process does what is to be done once for all, such as to report.
+  [[nodiscard]] virtual bool is_first() const = 0;
+
+  /// The files that paths stand for as one source that all processes share. As
+  /// spillway::open_points().
+  virtual std::unique_ptr<detail::PointSource> open_points(const Context& context,
+                                                           const std::vector<std::string>& paths,
+                                                           detail::PointSourceOptions options) = 0;
+
+  /// As spillway::triangulate(), of such a source. Only the first process gets a whole report.
+  virtual Report triangulate(detail::Run& run) = 0;
+};
+
+}  // namespace spillway

@@ -1,0 +1,31 @@
+#include <spillway/input.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "formats/inputs/input_kind.h"
+#include "src/error.h"
+#include "stream/library/context/context_state.h"
+#include "stream/source/input_list.h"
+
+namespace spillway {
+
+InputKind kind_of_input(const std::string& path, const Context& context) {
+  const std::shared_ptr<detail::ProbedInput> input = context.state().input(path);
+  const detail::InputKind kind = detail::kind_of_input(*input);
+  input->release();
+  return kind == detail::InputKind::kPoints ? InputKind::kPoints : InputKind::kMesh;
+}
+
+bool stands_for_several(const std::string& path) { return detail::stands_for_several(path); }
+
+std::vector<std::string> expand_inputs(const std::vector<std::string>& paths,
+                                       const Context& context) {
+  std::vector<std::string> files = detail::expand_inputs(paths, context.options().warning);
+  if (std::ranges::count(files, "-") > 1) {
+    throw detail::InvalidArgument("standard input can be read only once: give - once");
+  }
+  return files;
+}
+
+}  // namespace spillway

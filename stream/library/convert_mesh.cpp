@@ -1,0 +1,119 @@
+#include <spillway/convert.h>
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "stream/library/context/context_state.h"
+#include "stream/library/meshes/opened_mesh.h"
+#include "stream/library/meshes/program_mesh.h"
+#include "stream/library/meshes/program_sink.h"
+
+namespace spillway::detail {
+namespace {
+
+/// A mesh on its way from a reader to a sink.
+class MeshPassage {
+ public:
+  MeshPassage(MeshStreamReader& reader, BlockSink& blocks, RunWatch& watch)
+      : reader_(reader), blocks_(blocks), watch_(watch) {}
+
+  /// Several blocks are absorbed at a time.
+  void run(unsigned threads) {
+    std::vector<Slot> slots(threads + 1);
+    const auto source = [&](std::size_t slot) { return read(slots[slot]); };
+    const std::vector<PipelineStep> steps = {
+        {.in_order = false, .work = [&](std::size_t slot) { blocks_.absorb(slots[slot].block); }},
+        {.in_order = true, .work = [&](std::size_t slot) { write(slots[slot]); }}};
+    with_threads(threads, [&] { run_pipeline(slots.size(), source, steps); });
+  }
+
+  [[nodiscard]] std::uint64_t simplices() const { return simplices_; }
+
+ private:
+  struct Slot {
+    MeshBlock block;
+    std::size_t simplices = 0;
+  };
+
+  bool read(Slot& slot) {
+    slot.block.clear();
+    const bool more = reader_.read(slot.block);
+    slot.simplices = slot.block.corners.size() / (reader_.header().dimension + 1);
+    return more;
+  }
+
+  void write(Slot& slot) {
+    blocks_.write(std::move(slot.block));
+    watch_.tell(simplices_ += slot.simplices, reader_.fraction_read());
+  }
+
+  MeshStreamReader& reader_;
+  BlockSink& blocks_;
+  RunWatch& watch_;
+  std::uint64_t simplices_ = 0;
+};
+
+Report convert(MeshStreamReader& reader, const std::string& name,
+               const std::optional<OpenedMesh::Extent2>& extent, EngineSink& sink,
+               const Context& context, RunWatch& watch) {
+  const int dimension = reader.header().dimension;
+  BlockSink& blocks = sink.start({.header = reader.header(), .name = name});
+  if (extent) sink.extent_known(extent->box, extent->vertices);
+  watch.begin(simplices_of(dimension), simplices_of(dimension));
+  MeshPassage passage(reader, blocks, watch);
+  passage.run(sink.feeding_threads(context.threads()));
+  Report report;
+  report.dimension = dimension;
+  report.triangulate_seconds = watch.end(passage.simplices());
+  report.mesh = reader.totals();
+  report.on_lattice = reader.header().lattice.has_value();
+  if (sink.is_product() && report.mesh.simplices == 0) {
+    throw Error(fmt::format("{}: the mesh has no {}", name, simplices_of(dimension)),
+                ErrorCode::kDegenerateInput, {.file = name});
+  }
+  if (!reader.has_hash() && sink.tells_hash()) {
+    throw InvalidArgument(fmt::format(
+        "{}: its totals tell no canonical hash and hull facets, with which the file would end",
+        name));
+  }
+  sink.complete(watch, report);
+  if (!sink.is_product()) watch.close(report.mesh.simplices);
+  return report;
+}
+
+}  // namespace
+}  // namespace spillway::detail
+
+namespace spillway {
+
+Report convert(MeshSource& source, MeshSink& sink, const Context& context) {
+  using namespace detail;  // NOLINT(google-build-using-namespace): the other side of the door
+  RunWatch watch(context);
+  watch.check();
+  std::optional<ProgramSink> program_sink;
+  auto* target = dynamic_cast<EngineSink*>(&sink);
+  if (target == nullptr) target = &program_sink.emplace(sink);
+  if (!target->is_product()) watch.open("convert", "simplices");
+  std::optional<OpenedMesh::Extent2> extent;
+  if (auto* const file = dynamic_cast<OpenedMesh*>(&source)) {
+    file->take();
+    if (target->wants_extent()) extent = file->find_extent(watch);
+    MeshStreamReader& reader = file->reader(watch, !target->is_product());
+    return detail::convert(reader, file->path(), extent, *target, context, watch);
+  }
+  ProgramMesh reader(source);
+  if (target->wants_extent() && reader.header().dimension == 2) {
+    if (!reader.header().extent) {
+      throw InvalidArgument("the header of the mesh must tell its extent");
+    }
+    extent = {plane_of(*reader.header().extent), reader.header().points.value_or(0)};
+  }
+  return detail::convert(reader, "the mesh", extent, *target, context, watch);
+}
+
+}  // namespace spillway

@@ -1,0 +1,89 @@
+#include <spillway/convert.h>
+
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "stream/library/context/run_watch.h"
+#include "stream/library/points/engine_points.h"
+#include "stream/library/points/point_file.h"
+#include "stream/library/points/program_points.h"
+#include "stream/library/points/public_points.h"
+
+namespace spillway::detail {
+namespace {
+
+/// Pieces of the inputs under way at a time.
+constexpr std::size_t kSlots = 6;
+
+/// Gives all points to `write`, in order, decoding on all threads.
+void pass_on(PointStream& points, unsigned threads, RunWatch& watch,
+             const std::function<void(PointBlock&)>& write) {
+  struct Slot {
+    SourcePiece piece;
+    PointBlock block;
+  };
+  std::vector<Slot> slots(kSlots);
+  const std::vector<PipelineStep> steps = {
+      {.in_order = false,
+       .work = [&](std::size_t slot) { points.decode(slots[slot].piece, slots[slot].block); }},
+      {.in_order = true, .work = [&](std::size_t slot) { write(slots[slot].block); }}};
+  const auto fetch = [&](std::size_t slot) {
+    watch.tell(points.points_read(), points.fraction_read());
+    return points.fetch(slots[slot].piece);
+  };
+  with_threads(threads, [&] { run_pipeline(kSlots, fetch, steps); });
+}
+
+PointConversion to_file(const RunPoints& points, PointFile& file, unsigned threads,
+                        RunWatch& watch) {
+  file.start(points);
+  pass_on(*points.stream, threads, watch, [&](PointBlock& block) { file.append(block); });
+  return file.complete();
+}
+
+PointConversion to_program(const RunPoints& points, spillway::PointSink& sink, unsigned threads,
+                           RunWatch& watch) {
+  PointsHeader header;
+  header.coordinates = points.has_heights ? 3 : 2;
+  header.count = points.stream->expected();
+  if (points.extent) header.extent = Extent{points.extent->lo, points.extent->hi};
+  header.crs = points.crs;
+  sink.begin(header);
+  const std::optional<Lattice>& lattice = points.stream->lattice();
+  PointConversion done;
+  pass_on(*points.stream, threads, watch, [&](PointBlock& block) {
+    if (block.size() == 0) return;
+    sink.write(public_points(lattice, block.points));
+    done.written += block.size();
+  });
+  sink.finish();
+  return done;
+}
+
+}  // namespace
+}  // namespace spillway::detail
+
+namespace spillway {
+
+PointConversion convert(PointSource& source, PointSink& sink, const Context& context) {
+  using namespace detail;  // NOLINT(google-build-using-namespace): the other side of the door
+  RunWatch watch(context);
+  watch.check();
+  std::optional<ProgramPoints> program_points;
+  auto* points = dynamic_cast<EnginePoints*>(&source);
+  if (points == nullptr) points = &program_points.emplace(source);
+  const RunPoints run = points->begin(watch, true);
+  watch.begin(points->phase(), "points");
+  auto* const file = dynamic_cast<PointFile*>(&sink);
+  PointConversion done = file != nullptr ? to_file(run, *file, context.threads(), watch)
+                                         : to_program(run, sink, context.threads(), watch);
+  watch.end(run.stream->points_read());
+  done.points = run.stream->counts();
+  return done;
+}
+
+}  // namespace spillway

@@ -1,0 +1,130 @@
+#pragma once
+
+#include <spillway/mesh.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "formats/meshes/common/mesh_stream.h"
+#include "src/error.h"
+#include "src/geometry/box.h"
+#include "stream/library/context/run_watch.h"
+#include "stream/library/meshes/public_values.h"
+
+namespace spillway::detail {
+
+/// What the simplices of a mesh are called.
+inline const char* simplices_of(int dimension) {
+  return dimension == 2 ? "triangles" : "tetrahedra";
+}
+
+/// What comes to a sink of the library's own.
+struct MeshStart {
+  MeshStreamHeader header;
+  bool is_triangulated = false;  ///< here and now, so that long edges do not come
+  bool has_heights = true;       ///< the points have z
+  std::string name{};            ///< of the first input, for messages
+};
+
+/// Throws Error (kInvalidArgument) for a longest edge that is not above 0.
+void check_max_edge(const std::optional<double>& max_edge);
+
+/// Throws Error (kDegenerateInput) for what is no terrain: tetrahedra, points without z.
+void refuse_tetrahedra(const MeshStart& start);
+void refuse_without_heights(const MeshStart& start);
+
+/// A sink of the library's own, to which the engine writes without a detour over public values.
+/// start() once, extent_known() once if it is wanted, then blocks, then complete().
+class EngineSink {
+ public:
+  virtual ~EngineSink() = default;
+
+  /// Returns where blocks go. That lives as long as the sink. Throws Error(kInvalidArgument) if it
+  /// was called before.
+  BlockSink& start(const MeshStart& start) {
+    if (std::exchange(is_used_, true)) {
+      throw InvalidArgument("a sink takes one mesh, and this one has had its own");
+    }
+    return open(start);
+  }
+
+  /// The bytes of a memory limit that it takes for itself.
+  [[nodiscard]] virtual std::uint64_t own_memory(std::uint64_t /*limit*/) const { return 0; }
+  /// Whether what it makes ends with a canonical hash.
+  [[nodiscard]] virtual bool tells_hash() const { return false; }
+  /// By how many of so many threads it can be fed at a time.
+  [[nodiscard]] virtual unsigned feeding_threads(unsigned threads) const { return threads; }
+  /// Whether extent_known() is needed: a mesh stream has to be read twice then.
+  [[nodiscard]] virtual bool wants_extent() const { return false; }
+  /// Whether it is something else than a mesh, which must have a simplex then.
+  [[nodiscard]] virtual bool is_product() const { return true; }
+
+  /// The box around all vertices in x and y, in the coordinates in which they come, and how many
+  /// these are (of points: how many points; 0: not known), before the first block.
+  virtual void extent_known(const Box<2>& /*extent*/, std::uint64_t /*vertices*/) {}
+
+  /// Ends the blocks and completes the output. The report is that of the run so far, to which the
+  /// sink adds what it knows.
+  virtual void complete(RunWatch& watch, Report& report) = 0;
+
+ protected:
+  /// As start().
+  virtual BlockSink& open(const MeshStart& start) = 0;
+
+ private:
+  bool is_used_ = false;
+};
+
+/// Such a sink that is a public one, too: for programs that call it themselves.
+template <typename PublicSink>
+class OwnSink : public PublicSink, public EngineSink {
+ public:
+  explicit OwnSink(const Context& context) : context_(context) {}
+
+  void begin(const spillway::MeshHeader& header) final {
+    ProgramBlocks program(header);
+    const MeshStreamHeader& stream = program.header();
+    const bool wants_extent = this->wants_extent() && header.dimension == 2;
+    if (wants_extent && !stream.extent) {
+      throw InvalidArgument("the header of the mesh must tell its extent");
+    }
+    blocks_ = &start({.header = stream, .name = "the mesh"});
+    if (wants_extent) extent_known(plane_of(*stream.extent), header.points.value_or(0));
+    program_ = std::move(program);
+  }
+
+  void write(const spillway::MeshBlock& block) final {
+    BlockSink& blocks = begun();
+    MeshBlock own = program_->next(block);
+    blocks.absorb(own);
+    blocks.write(std::move(own));
+  }
+
+  void finish(const spillway::MeshTotals& totals) final {
+    begun();
+    blocks_ = nullptr;
+    RunWatch watch(context_);
+    Report report;
+    report.mesh = totals;
+    complete(watch, report);
+  }
+
+ protected:
+  [[nodiscard]] const Context& context() const { return context_; }
+
+ private:
+  BlockSink& begun() const {
+    if (blocks_ == nullptr) {
+      throw InvalidArgument("blocks of a mesh come between begin and finish");
+    }
+    return *blocks_;
+  }
+
+  const Context context_;
+  BlockSink* blocks_ = nullptr;
+  std::optional<ProgramBlocks> program_;  ///< that calls it, between begin and finish
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,68 @@
+#include "stream/library/meshes/mesh_file.h"
+
+#include <fmt/format.h>
+
+#include "formats/disk/extension.h"
+#include "formats/disk/file_system.h"
+#include "formats/meshes/mesh_formats.h"
+#include "formats/meshes/mesh_stream_writer.h"
+#include "stream/library/context/context_state.h"
+
+namespace spillway::detail {
+
+MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts) {
+  for (const MeshFormat* const format : mesh_formats()) {
+    const bool is_index =
+        format->part_index != nullptr && extension_of(path) == format->part_index->extension;
+    if (is_index && (format_name.empty() || format_name == format->name)) {
+      return {path, format, true};
+    }
+  }
+  const MeshFormat& format = mesh_format(path, format_name);
+  if (parts && path == "-") {
+    throw InvalidArgument("standard output takes no mesh in parts: name a file");
+  }
+  if (parts && !format.stands_in_parts) {
+    const auto stand = [](const MeshFormat& other) { return other.stands_in_parts; };
+    throw InvalidArgument(
+        fmt::format("a mesh in parts is written as {}, not as {}: choose one of these",
+                    list_of_formats(stand, "or"), format.name));
+  }
+  return {path, &format, parts};
+}
+
+MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, const Context& context)
+    : OwnSink(context),
+      target_(mesh_target(path, options.format, options.parts)),
+      scratch_(context.state().scratch(context)) {
+  if (target_.parts && context.options().executor == nullptr) {
+    throw InvalidArgument("parts are a file for each rank, and there is one process",
+                          {.remedy = Remedy::kRanks});
+  }
+}
+
+BlockSink& MeshFile::open(const MeshStart& start) {
+  simplices_ = simplices_of(start.header.dimension);
+  writer_ = open_mesh_stream_writer(disk(), target_.path, *target_.format, start.header, *scratch_);
+  return *writer_;
+}
+
+void MeshFile::complete(RunWatch& watch, Report& report) {
+  watch.begin("write", simplices_);
+  writer_->finish(report.mesh);
+  report.output_format = target_.format->name;
+  report.output_bytes = writer_->bytes_written();
+  writer_.reset();
+  report.write_seconds = watch.end(report.mesh.simplices);
+}
+
+}  // namespace spillway::detail
+
+namespace spillway {
+
+std::unique_ptr<MeshSink> create_mesh(const std::string& path, const MeshFileOptions& options,
+                                      const Context& context) {
+  return std::make_unique<detail::MeshFile>(path, options, context);
+}
+
+}  // namespace spillway

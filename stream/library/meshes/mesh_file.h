@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "formats/disk/scratch_folder.h"
+#include "formats/meshes/common/mesh_format.h"
+#include "formats/meshes/common/mesh_stream.h"
+#include "stream/library/meshes/engine_sink.h"
+
+namespace spillway::detail {
+
+/// Where a mesh goes.
+struct MeshTarget {
+  std::string path;
+  const MeshFormat* format = nullptr;
+  bool parts = false;  ///< a file for each rank
+};
+
+/// As mesh_format() takes path and name; the name of an index (`NAME.pvtu`) means its format in
+/// parts. Throws InvalidArgument for no format, and for parts on standard output or in a format
+/// that does not stand in parts. Looks at no file.
+MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts);
+
+/// A mesh file in the making.
+class MeshFile final : public OwnSink<spillway::MeshSink> {
+ public:
+  /// Throws Error(kInvalidArgument) as mesh_target(), and for parts of one process.
+  MeshFile(const std::string& path, const MeshFileOptions& options, const Context& context);
+
+  [[nodiscard]] bool is_product() const override { return false; }
+  [[nodiscard]] bool tells_hash() const override { return target_.format->has_totals; }
+  /// Blocks are written one after the other, and nothing is done before.
+  [[nodiscard]] unsigned feeding_threads(unsigned /*threads*/) const override { return 1; }
+  void complete(RunWatch& watch, Report& report) override;
+
+  [[nodiscard]] const MeshTarget& target() const { return target_; }
+
+ private:
+  BlockSink& open(const MeshStart& start) override;
+
+  MeshTarget target_;
+  std::shared_ptr<ScratchFolder> scratch_;
+  std::unique_ptr<MeshStreamWriter> writer_;
+  const char* simplices_ = "";  ///< what they are called
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,77 @@
+#include <spillway/mesh.h>
+
+#include <utility>
+
+#include "stream/library/meshes/engine_sink.h"
+
+namespace spillway {
+namespace {
+
+class MeshTaker final : public MeshSink {
+ public:
+  explicit MeshTaker(std::function<void(const MeshBlock&)> take) : take_(std::move(take)) {}
+  void write(const MeshBlock& block) override { take_(block); }
+
+ private:
+  std::function<void(const MeshBlock&)> take_;
+};
+
+template <typename T>
+void append(std::vector<T>& to, const std::vector<T>& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+MeshSource::~MeshSource() = default;
+MeshSink::~MeshSink() = default;
+void MeshSink::begin(const MeshHeader& /*header*/) {}
+void MeshSink::finish(const MeshTotals& /*totals*/) {}
+
+std::unique_ptr<MeshSink> mesh_to(std::function<void(const MeshBlock&)> take) {
+  return std::make_unique<MeshTaker>(std::move(take));
+}
+
+MeshInMemory::MeshInMemory() = default;
+MeshInMemory::~MeshInMemory() = default;
+
+void MeshInMemory::begin(const MeshHeader& header) {
+  header_ = header;
+  totals_ = {};
+  vertices_.clear();
+  input_index_.clear();
+  corners_.clear();
+}
+
+void MeshInMemory::write(const MeshBlock& block) {
+  append(vertices_, block.vertices);
+  append(input_index_, block.input_index);
+  append(corners_, block.corners);
+}
+
+void MeshInMemory::finish(const MeshTotals& totals) { totals_ = totals; }
+
+}  // namespace spillway
+
+namespace spillway::detail {
+
+void check_max_edge(const std::optional<double>& max_edge) {
+  if (!max_edge || *max_edge > 0) return;
+  throw InvalidArgument("max_edge is " + std::to_string(*max_edge) + ", but must be above 0");
+}
+
+void refuse_tetrahedra(const MeshStart& start) {
+  if (start.header.dimension == 2) return;
+  throw Error(start.name + ": a terrain is a mesh of triangles, and this one is of tetrahedra",
+              ErrorCode::kDegenerateInput, {.file = start.name});
+}
+
+void refuse_without_heights(const MeshStart& start) {
+  if (start.has_heights) return;
+  throw Error(start.name +
+                  ": the points have no z: name the column of heights z, or give points that have "
+                  "heights",
+              ErrorCode::kDegenerateInput, {.file = start.name});
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,156 @@
+#include "stream/library/meshes/opened_mesh.h"
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "formats/inputs/open_mesh.h"
+#include "formats/inputs/open_mesh_stream.h"
+#include "formats/meshes/mesh_formats.h"
+#include "src/error.h"
+#include "stream/library/context/context_state.h"
+#include "stream/library/meshes/public_values.h"
+#include "stream/library/meshes/whole_mesh.h"
+
+namespace spillway::detail {
+
+OpenedMesh::OpenedMesh(std::string path, const MeshOptions& options, const Context& context)
+    : path_(std::move(path)),
+      format_name_(options.format),
+      context_(context),
+      input_(context_.state().input(path_)) {
+  if (!format_name_.empty()) {
+    format_ = &mesh_format(path_, format_name_);
+    is_stream_ = format_->is_stream();
+    return;
+  }
+  is_stream_ = input_->is_pipe() || kind_of_input(*input_) == detail::InputKind::kMeshStream;
+  if (is_stream_) format_ = &mesh_stream_format(input_->source(), path_);
+  input_->release();
+}
+
+OpenedMesh::~OpenedMesh() = default;
+
+void OpenedMesh::take() {
+  if (std::exchange(is_taken_, true)) {
+    throw InvalidArgument(path_ + ": the mesh has been read: open it again");
+  }
+}
+
+std::unique_ptr<MeshStreamReader> OpenedMesh::open_stream() {
+  return copy_ ? open_mesh_stream_reader(disk(), copy_->name(), format_name_)
+               : open_mesh_stream_reader(*input_, path_, format_name_);
+}
+
+MeshStreamReader& OpenedMesh::reader(RunWatch& watch, bool all_totals) {
+  if (reader_) return *reader_;
+  if (is_stream_ && (!all_totals || format_->has_totals)) {
+    stream();
+    reader_ = std::move(stream_);
+    return *reader_;
+  }
+  if (mesh_) {
+    reader_ = std::make_unique<WholeMesh>(*std::exchange(mesh_, std::nullopt), path_, all_totals);
+    return *reader_;
+  }
+  watch.begin("read mesh", "simplices");
+  Mesh mesh = stream_ ? collect_mesh(*stream_) : read_whole();
+  stream_.reset();
+  reader_ = std::make_unique<WholeMesh>(std::move(mesh), path_, all_totals);
+  watch.end(reader_->totals().simplices);
+  return *reader_;
+}
+
+Mesh OpenedMesh::read_whole() { return read_mesh(*input_, path_, format_name_); }
+
+MeshStreamReader& OpenedMesh::stream() {
+  if (!stream_) stream_ = open_stream();
+  return *stream_;
+}
+
+const Mesh& OpenedMesh::whole(RunWatch& watch) {
+  if (mesh_) return *mesh_;
+  watch.begin("read mesh", "simplices");
+  mesh_ = read_whole();
+  watch.end(mesh_->corners.size() / mesh_->corners_per_simplex());
+  return *mesh_;
+}
+
+OpenedMesh::Extent2 OpenedMesh::find_extent(RunWatch& watch) {
+  if (!is_stream_) {
+    reader(watch, false);
+    const auto& whole = static_cast<const WholeMesh&>(*reader_);
+    return {whole.extent(), whole.totals().vertices};
+  }
+  if (input_->is_pipe()) {
+    if (stream_) {
+      throw InvalidArgument(path_ +
+                            ": of a mesh from a pipe that is read twice the header cannot "
+                            "be asked for beforehand");
+    }
+    keep_copy(watch);
+  }
+  const std::unique_ptr<MeshStreamReader> reader = open_stream();
+  Extent2 found;
+  if (reader->header().dimension != 2) return found;
+  watch.begin("extent", "vertices");
+  for (MeshBlock block; reader->read(block);) {
+    for (const LatticePoint& vertex : block.vertices) {
+      found.box.expand(Point<2>{vertex[0], vertex[1]});
+    }
+    watch.tell(found.vertices += block.vertices.size(), reader->fraction_read());
+  }
+  watch.end(found.vertices);
+  return found;
+}
+
+void OpenedMesh::keep_copy(RunWatch& watch) {
+  scratch_ = context_.state().scratch(context_);
+  copy_ = scratch_->create("mesh");
+  const std::unique_ptr<InputFile> pipe = input_->open(path_);
+  std::vector<std::byte> piece(std::size_t{1} << 20);
+  watch.begin("copy", "bytes");
+  while (const std::size_t got = pipe->read(piece)) {
+    copy_->append(std::span(piece).first(got));
+    watch.tell(copy_->size(), std::nullopt);
+  }
+  watch.end(copy_->size());
+}
+
+MeshStreamReader& OpenedMesh::public_reader() {
+  RunWatch watch(context_);
+  return reader(watch, true);
+}
+
+spillway::MeshHeader OpenedMesh::header() {
+  if (reader_) return public_header(reader_->header());
+  if (is_stream_) return public_header(stream().header());
+  RunWatch watch(context_);
+  const MeshHeader& header = whole(watch).header;
+  return {
+      .dimension = header.dimension, .has_input_index = header.has_input_index, .crs = header.crs};
+}
+
+bool OpenedMesh::read(spillway::MeshBlock& block) {
+  if (!std::exchange(is_reading_, true)) take();
+  MeshStreamReader& reader = public_reader();
+  MeshBlock own;
+  if (!reader.read(own)) return false;
+  const std::uint64_t first = read_;
+  read_ += own.vertices.size();
+  block = public_block(reader.header(), std::move(own), first);
+  return true;
+}
+
+spillway::MeshTotals OpenedMesh::totals() { return public_reader().totals(); }
+
+}  // namespace spillway::detail
+
+namespace spillway {
+
+std::unique_ptr<MeshSource> open_mesh(const std::string& path, const MeshOptions& options,
+                                      const Context& context) {
+  return std::make_unique<detail::OpenedMesh>(path, options, context);
+}
+
+}  // namespace spillway

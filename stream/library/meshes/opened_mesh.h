@@ -1,0 +1,78 @@
+#pragma once
+
+#include <spillway/mesh.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "formats/disk/scratch_folder.h"
+#include "formats/inputs/input_kind.h"
+#include "formats/meshes/common/mesh.h"
+#include "formats/meshes/common/mesh_stream.h"
+#include "src/geometry/box.h"
+#include "stream/library/context/run_watch.h"
+
+namespace spillway::detail {
+
+/// A mesh file that is read.
+class OpenedMesh final : public spillway::MeshSource {
+ public:
+  OpenedMesh(std::string path, const MeshOptions& options, const Context& context);
+  ~OpenedMesh() override;
+
+  [[nodiscard]] spillway::MeshHeader header() override;
+  bool read(spillway::MeshBlock& block) override;
+  [[nodiscard]] spillway::MeshTotals totals() override;
+
+  /// Notes that the mesh is being read. Throws Error(kInvalidArgument) if it was before.
+  void take();
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// The format's name, where that is known without reading.
+  [[nodiscard]] const MeshFormat* format() const { return format_; }
+  /// Whether the format is one of streams, which is read block by block.
+  [[nodiscard]] bool is_stream() const { return is_stream_; }
+
+  /// Opens the mesh block by block. What is no stream, or does not tell all totals though these are
+  /// wanted, is read as a whole first, as phase "read mesh". Throws Error.
+  MeshStreamReader& reader(RunWatch& watch, bool all_totals);
+  /// A stream block by block, whatever totals it tells. Throws Error.
+  MeshStreamReader& stream();
+  /// The whole mesh of another format, which is read first, as phase "read mesh".
+  const Mesh& whole(RunWatch& watch);
+  /// Reads the whole mesh, whatever its format, and tells no phase.
+  Mesh read_whole();
+
+  /// The box around all vertices in x and y, as their blocks give them, and the number of these. To
+  /// be called before reader(); a stream is read once more for that, from a pipe into a scratch
+  /// file.
+  struct Extent2 {
+    Box<2> box;
+    std::uint64_t vertices = 0;
+  };
+  Extent2 find_extent(RunWatch& watch);
+
+ private:
+  std::unique_ptr<MeshStreamReader> open_stream();
+  void keep_copy(RunWatch& watch);
+  MeshStreamReader& public_reader();
+
+  std::string path_;
+  std::string format_name_;
+  const Context context_;
+  const std::shared_ptr<ProbedInput> input_;
+  const MeshFormat* format_ = nullptr;
+  bool is_stream_ = false;
+  std::shared_ptr<ScratchFolder> scratch_;
+  std::unique_ptr<ScratchFile> copy_;         ///< of a pipe that is read twice
+  std::unique_ptr<MeshStreamReader> stream_;  ///< opened, and not yet read
+  std::optional<Mesh> mesh_;                  ///< read, and not yet passed on
+  std::unique_ptr<MeshStreamReader> reader_;
+  bool is_taken_ = false;
+  bool is_reading_ = false;  ///< by read()
+  std::uint64_t read_ = 0;   ///< vertices that read() has given
+};
+
+}  // namespace spillway::detail

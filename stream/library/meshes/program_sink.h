@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "stream/library/meshes/engine_sink.h"
+
+namespace spillway::detail {
+
+/// A program's sink, as the engine writes to it.
+class ProgramSink final : public EngineSink, private BlockSink {
+ public:
+  /// `sink` must outlive it.
+  explicit ProgramSink(spillway::MeshSink& sink) : sink_(sink) {}
+
+  BlockSink& open(const MeshStart& start) override {
+    header_ = start.header;
+    sink_.begin(public_header(header_));
+    return *this;
+  }
+  [[nodiscard]] bool is_product() const override { return false; }
+  void complete(RunWatch& watch, Report& report) override {
+    watch.begin("write", simplices_of(header_.dimension));
+    sink_.finish(report.mesh);
+    report.write_seconds = watch.end(report.mesh.simplices);
+  }
+
+ private:
+  void write(MeshBlock&& block) override {
+    const std::uint64_t first = vertices_;
+    vertices_ += block.vertices.size();
+    sink_.write(public_block(header_, std::move(block), first));
+  }
+  void finish(const MeshTotals& /*totals*/) override {}
+
+  spillway::MeshSink& sink_;
+  MeshStreamHeader header_;
+  std::uint64_t vertices_ = 0;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,154 @@
+#include "stream/library/meshes/public_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+#include "formats/meshes/common/mesh_block.h"
+#include "src/error.h"
+#include "stream/library/points/public_points.h"
+
+namespace spillway::detail {
+namespace {
+
+/// The short numbers of a block's vertices: its own come first, then those that it imports.
+class ShortNumbers {
+ public:
+  explicit ShortNumbers(const spillway::MeshBlock& block)
+      : first_(block.first_vertex), own_(block.vertices.size()) {}
+
+  std::uint32_t of(std::uint64_t vertex) {
+    if (vertex >= first_ + own_) {
+      throw InvalidArgument(fmt::format("a block of a mesh uses vertex {}, but only {} have come",
+                                        vertex, first_ + own_));
+    }
+    if (vertex >= first_) return static_cast<std::uint32_t>(vertex - first_);
+    const auto [known, is_new] =
+        short_.try_emplace(vertex, static_cast<std::uint32_t>(own_ + imported_.size()));
+    if (is_new) imported_.push_back(vertex);
+    return known->second;
+  }
+
+  std::vector<std::uint64_t> take_imported() { return std::move(imported_); }
+
+ private:
+  std::uint64_t first_;
+  std::size_t own_;
+  std::vector<std::uint64_t> imported_;
+  std::unordered_map<std::uint64_t, std::uint32_t> short_;
+};
+
+}  // namespace
+
+spillway::MeshHeader public_header(const MeshStreamHeader& header) {
+  spillway::MeshHeader told;
+  told.dimension = header.dimension;
+  told.has_input_index = header.has_input_index;
+  told.points = header.points;
+  if (header.extent && !header.extent->empty()) {
+    told.extent = Extent{header.extent->lo, header.extent->hi};
+  }
+  told.crs = header.crs;
+  return told;
+}
+
+MeshStreamHeader stream_header(const spillway::MeshHeader& header) {
+  MeshStreamHeader stream;
+  stream.dimension = header.dimension;
+  stream.has_input_index = header.has_input_index;
+  stream.points = header.points;
+  if (header.extent) stream.extent = Box<3>{header.extent->low, header.extent->high};
+  stream.crs = header.crs;
+  return stream;
+}
+
+spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& block,
+                                 std::uint64_t first_vertex) {
+  spillway::MeshBlock told;
+  told.first_vertex = first_vertex;
+  append_stream_numbers(block, first_vertex, told.corners);
+  told.finalized.reserve(block.finalized.size());
+  const std::size_t own = block.vertices.size();
+  for (const std::uint32_t vertex : block.finalized) {
+    told.finalized.push_back(vertex < own ? first_vertex + vertex : block.imported[vertex - own]);
+  }
+  told.vertices = public_points(header.lattice, block.vertices);
+  told.input_index = std::move(block.input_index);
+  return told;
+}
+
+ProgramBlocks::ProgramBlocks(const spillway::MeshHeader& header) : header_(stream_header(header)) {
+  if (header.dimension != 2 && header.dimension != 3) {
+    throw InvalidArgument(fmt::format("a mesh has 2 or 3 dimensions, not {}", header.dimension));
+  }
+  if (!header_.extent) return;
+  for (int k = 0; k < 3; ++k) {
+    if (std::isfinite(header_.extent->lo[k]) && std::isfinite(header_.extent->hi[k])) continue;
+    throw InvalidArgument("the header of a mesh tells an extent that is not finite");
+  }
+}
+
+void ProgramBlocks::check(const spillway::MeshBlock& block) const {
+  if (block.vertices.size() + block.corners.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw InvalidArgument("a block of a mesh has too many vertices and corners: give smaller ones");
+  }
+  if (block.first_vertex != vertices_) {
+    throw InvalidArgument(fmt::format("the first vertex of a block is {}, but {} have come before",
+                                      block.first_vertex, vertices_));
+  }
+  if (block.corners.size() % static_cast<std::size_t>(header_.dimension + 1) != 0) {
+    throw InvalidArgument(fmt::format("{} corners are not of simplices with {} each",
+                                      block.corners.size(), header_.dimension + 1));
+  }
+  if (header_.has_input_index && block.input_index.size() != block.vertices.size()) {
+    throw InvalidArgument(fmt::format("a block has {} vertices, but {} input indices",
+                                      block.vertices.size(), block.input_index.size()));
+  }
+  for (std::size_t v = 0; v < block.vertices.size(); ++v) {
+    const spillway::Point<3>& vertex = block.vertices[v];
+    if (!std::ranges::all_of(vertex, [](double x) { return std::isfinite(x); })) {
+      throw InvalidArgument(
+          fmt::format("vertex {} has a coordinate that is not finite", vertices_ + v));
+    }
+    if (header_.extent && !header_.extent->contains(vertex)) {
+      throw InvalidArgument(
+          fmt::format("vertex {} ({}) is outside of the extent that the header tells",
+                      vertices_ + v, fmt::join(vertex, ", ")));
+    }
+  }
+  const std::set<std::uint64_t> finalized(block.finalized.begin(), block.finalized.end());
+  if (finalized.size() < block.finalized.size()) {
+    throw InvalidArgument("a block of a mesh finalizes a vertex twice");
+  }
+}
+
+MeshBlock ProgramBlocks::next(const spillway::MeshBlock& block) {
+  check(block);
+  ShortNumbers numbers(block);
+  MeshBlock stream;
+  stream.vertices = points_without_lattice(block.vertices);
+  stream.input_index = block.input_index;
+  stream.corners.reserve(block.corners.size());
+  for (const std::uint64_t vertex : block.corners) stream.corners.push_back(numbers.of(vertex));
+  stream.finalized.reserve(block.finalized.size());
+  for (const std::uint64_t vertex : block.finalized) {
+    stream.finalized.push_back(numbers.of(vertex));
+  }
+  stream.imported = numbers.take_imported();
+  for (const std::uint64_t vertex : stream.imported) {
+    if (imports_.import(vertex)) continue;
+    throw InvalidArgument(
+        fmt::format("a block of a mesh uses vertex {}, which an earlier one finalized", vertex));
+  }
+  imports_.settle(stream);
+  vertices_ += block.vertices.size();
+  simplices_ += block.corners.size() / static_cast<std::size_t>(header_.dimension + 1);
+  return stream;
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,43 @@
+#pragma once
+// Between the values of the engine and those that programs see.
+
+#include <spillway/mesh.h>
+
+#include <cstdint>
+
+#include "formats/meshes/common/import_check.h"
+#include "formats/meshes/common/mesh_stream.h"
+
+namespace spillway::detail {
+
+spillway::MeshHeader public_header(const MeshStreamHeader& header);
+MeshStreamHeader stream_header(const spillway::MeshHeader& header);
+
+/// A block in output coordinates and stream numbers, where `first_vertex` vertices come before it.
+spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& block,
+                                 std::uint64_t first_vertex);
+
+/// The blocks of a program's mesh as those of a stream, in output coordinates.
+class ProgramBlocks {
+ public:
+  /// Throws Error(kInvalidArgument) for a header that cannot be.
+  explicit ProgramBlocks(const spillway::MeshHeader& header);
+
+  /// Throws Error(kInvalidArgument) for blocks out of their order, coordinates that are not finite,
+  /// simplices of another dimension, and vertices that have not come or come no more.
+  MeshBlock next(const spillway::MeshBlock& block);
+
+  [[nodiscard]] const MeshStreamHeader& header() const { return header_; }
+  [[nodiscard]] std::uint64_t vertices() const { return vertices_; }
+  [[nodiscard]] std::uint64_t simplices() const { return simplices_; }
+
+ private:
+  void check(const spillway::MeshBlock& block) const;
+
+  MeshStreamHeader header_;
+  ImportCheck imports_;
+  std::uint64_t vertices_ = 0;  ///< that have come, like the next
+  std::uint64_t simplices_ = 0;
+};
+
+}  // namespace spillway::detail

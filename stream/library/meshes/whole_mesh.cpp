@@ -1,0 +1,105 @@
+#include "stream/library/meshes/whole_mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "formats/meshes/common/mesh_block.h"
+#include "src/error.h"
+#include "stream/checker/checker.h"
+
+namespace spillway::detail {
+namespace {
+
+/// `corners` is the number of vertices of a facet.
+template <std::size_t Corners>
+std::uint64_t count_single(const Mesh& mesh) {
+  using Facet = std::array<std::uint64_t, Corners>;
+  std::vector<Facet> facets;
+  facets.reserve(mesh.corners.size());
+  for (std::size_t simplex = 0; simplex < mesh.corners.size(); simplex += Corners + 1) {
+    for (std::size_t opposite = 0; opposite <= Corners; ++opposite) {
+      Facet facet{};
+      auto place = facet.begin();
+      for (std::size_t i = 0; i <= Corners; ++i) {
+        if (i != opposite) *place++ = mesh.corners[simplex + i];
+      }
+      std::sort(facet.begin(), facet.end());
+      facets.push_back(facet);
+    }
+  }
+  std::sort(facets.begin(), facets.end());
+  std::uint64_t single = 0;
+  for (auto facet = facets.begin(); facet != facets.end();) {
+    const auto next =
+        std::find_if(facet, facets.end(), [&](const Facet& f) { return f != *facet; });
+    if (next - facet == 1) ++single;
+    facet = next;
+  }
+  return single;
+}
+
+/// The vertices as a stream with this lattice has them. In the plane heights need not be on it;
+/// then they have the identity map.
+std::vector<LatticePoint> stream_vertices(const Mesh& mesh, std::optional<Lattice>& lattice) {
+  if (!lattice) return vertices_without_lattice(mesh);
+  if (auto vertices = vertices_on_lattice(mesh, *lattice, 3)) return *std::move(vertices);
+  if (mesh.header.dimension == 2) {
+    lattice->scale[2] = 1;
+    lattice->offset[2] = 0;
+    if (auto vertices = vertices_on_lattice(mesh, *lattice, 2)) return *std::move(vertices);
+  }
+  lattice.reset();
+  return vertices_without_lattice(mesh);
+}
+
+MeshTotals totals_of(const Mesh& mesh, bool all) {
+  MeshTotals totals;
+  totals.vertices = totals.points = mesh.vertices.size();
+  totals.simplices = mesh.corners.size() / mesh.corners_per_simplex();
+  if (!all) return totals;
+  totals.hull_facets = count_boundary_facets(mesh);
+  totals.canonical_hash = canonical_hash(mesh);
+  return totals;
+}
+
+}  // namespace
+
+std::uint64_t count_boundary_facets(const Mesh& mesh) {
+  return mesh.header.dimension == 2 ? count_single<2>(mesh) : count_single<3>(mesh);
+}
+
+WholeMesh::WholeMesh(Mesh mesh, const std::string& name, bool all_totals)
+    : all_totals_(all_totals), totals_(totals_of(mesh, all_totals)) {
+  if (mesh.vertices.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw Error(fmt::format("{}: {} vertices are too many for a mesh that is not a stream; make it "
+                            "as spm from the points",
+                            name, mesh.vertices.size()),
+                ErrorCode::kTooLarge, {.file = name});
+  }
+  header_.dimension = mesh.header.dimension;
+  header_.has_input_index = mesh.header.has_input_index;
+  header_.lattice = mesh.header.lattice;
+  header_.crs = mesh.header.crs;
+  block_.vertices = stream_vertices(mesh, header_.lattice);
+  for (const LatticePoint& vertex : block_.vertices) {
+    extent_.expand(Point<2>{vertex[0], vertex[1]});
+  }
+  block_.input_index = std::move(mesh.input_index);
+  block_.corners.assign(mesh.corners.begin(), mesh.corners.end());
+  block_.finalized.resize(block_.vertices.size());
+  std::iota(block_.finalized.begin(), block_.finalized.end(), 0U);
+}
+
+bool WholeMesh::read(MeshBlock& block) {
+  if (std::exchange(is_read_, true)) return false;
+  block = std::move(block_);
+  return true;
+}
+
+}  // namespace spillway::detail

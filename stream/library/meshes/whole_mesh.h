@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "formats/meshes/common/mesh.h"
+#include "formats/meshes/common/mesh_stream.h"
+#include "src/geometry/box.h"
+
+namespace spillway::detail {
+
+/// The facets of one simplex only.
+std::uint64_t count_boundary_facets(const Mesh& mesh);
+
+/// A mesh in memory, read as a stream of one block.
+class WholeMesh final : public MeshStreamReader {
+ public:
+  /// `name` is for messages. Hull facets and hash are counted if `all_totals`. Throws Error
+  /// (kTooLarge) for more vertices than a block can have.
+  WholeMesh(Mesh mesh, const std::string& name, bool all_totals);
+
+  [[nodiscard]] const MeshStreamHeader& header() const override { return header_; }
+  bool read(MeshBlock& block) override;
+  [[nodiscard]] const MeshTotals& totals() const override { return totals_; }
+  [[nodiscard]] bool has_hash() const override { return all_totals_; }
+  [[nodiscard]] std::optional<double> fraction_read() const override { return std::nullopt; }
+
+  /// The box around all vertices in x and y, as they are in the block.
+  [[nodiscard]] const Box<2>& extent() const { return extent_; }
+
+ private:
+  bool all_totals_;
+  bool is_read_ = false;
+  MeshStreamHeader header_;
+  MeshTotals totals_;
+  Box<2> extent_;
+  MeshBlock block_;
+};
+
+}  // namespace spillway::detail

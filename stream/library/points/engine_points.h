@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/points/common/point_reader.h"
+#include "src/geometry/box.h"
+#include "stream/library/context/run_watch.h"
+#include "stream/source/point_stream.h"
+
+namespace spillway::detail {
+
+/// The points of a run, and what is known of them before it.
+struct RunPoints {
+  PointStream* stream = nullptr;
+  int dimension = 0;                       ///< that they were opened for; 0: any
+  bool has_heights = true;                 ///< there is z
+  bool heights_on_lattice = true;          ///< if the stream has a lattice, z is on it, too
+  bool has_attributes = false;             ///< blocks may come with attributes
+  std::optional<std::uint64_t> records{};  ///< exactly how many there are
+  std::optional<Box<3>> extent{};          ///< in output coordinates
+  std::string crs{};
+  std::string name{};                  ///< of the first input, for messages
+  std::vector<PointHeader> headers{};  ///< of all inputs that are files
+};
+
+/// Points that the engine takes without a detour over public values.
+class EnginePoints {
+ public:
+  virtual ~EnginePoints() = default;
+
+  /// To be called once, and not beside the program's own reading. What follows is told to `watch`,
+  /// which must live as long as points are read, and each point has its index if `index`.
+  virtual RunPoints begin(RunWatch& watch, bool index) = 0;
+
+  /// What making points out of it is called: "convert", ...
+  [[nodiscard]] virtual const char* phase() const { return "convert"; }
+};
+
+/// Throws Error(kInvalidArgument) if a run has taken the points of a source before.
+void refuse_taken_points(bool is_taken);
+
+}  // namespace spillway::detail

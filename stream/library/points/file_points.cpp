@@ -1,0 +1,208 @@
+#include "stream/library/points/file_points.h"
+
+#include <spillway/input.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "formats/points/point_formats.h"
+#include "src/error.h"
+#include "stream/library/context/context_state.h"
+#include "stream/library/context/executor.h"
+#include "stream/library/points/public_points.h"
+
+namespace spillway::detail {
+namespace {
+
+void set_classes(const std::vector<int>& classes, bool used, std::bitset<256>& filter) {
+  for (const int number : classes) {
+    if (number < 0 || number > 255) {
+      throw InvalidArgument(fmt::format("{} is not a class of points: these are 0 to 255", number));
+    }
+    filter.set(static_cast<std::size_t>(number), used);
+  }
+}
+
+ReturnFilter return_filter(const Returns& returns) {
+  ReturnFilter filter{.first = returns.first, .last = returns.last, .single = returns.single};
+  for (const int number : returns.numbers) {
+    if (number < 1 || number > 15) {
+      throw InvalidArgument(
+          fmt::format("{} is not a return of a pulse: these are 1 to 15", number));
+    }
+    filter.numbers.set(static_cast<std::size_t>(number));
+  }
+  return filter;
+}
+
+PointFilter filter_of(const PointOptions& options) {
+  PointFilter filter;
+  if (options.every == 0)
+    throw InvalidArgument("one of every 0 records cannot be taken; give 1 or more");
+  filter.every = options.every;
+  if (!options.classes.empty() || !options.other_classes.empty()) {
+    filter.classes.emplace();
+    if (options.classes.empty()) filter.classes->set();
+    set_classes(options.classes, true, *filter.classes);
+    set_classes(options.other_classes, false, *filter.classes);
+  }
+  if (options.returns) filter.returns = return_filter(*options.returns);
+  if (options.bounds) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(options.bounds->low[k] <= options.bounds->high[k])) {
+        throw InvalidArgument(fmt::format("the bounds have a least {} of {}, but a most of {}",
+                                          "xyz"[k], options.bounds->low[k],
+                                          options.bounds->high[k]));
+      }
+    }
+    filter.bounds = Box<3>{options.bounds->low, options.bounds->high};
+  }
+  return filter;
+}
+
+ThinningRequest thinning_of(const Thin& thin, std::uint64_t memory, ScratchFolder& scratch) {
+  if (!(thin.cell > 0) || !std::isfinite(thin.cell)) {
+    throw InvalidArgument(
+        fmt::format("cells of {} do not thin points: give a side above 0", thin.cell));
+  }
+  return {.cell = thin.cell,
+          .choice = thin.choice,
+          .memory = memory / kThinningShare,
+          .scratch = &scratch};
+}
+
+/// Tells how many inputs have no levels that a resolution could choose from. Throws if none has.
+void check_levels(const std::vector<PointHeader>& headers, const ContextOptions& tell) {
+  const auto whole = std::ranges::count_if(headers, [](const PointHeader& header) {
+    const PointFormat* const format = find_point_format(header.format);
+    return format == nullptr || !format->has_levels;
+  });
+  if (whole == 0) return;
+  if (static_cast<std::size_t>(whole) == headers.size()) {
+    throw InvalidArgument(fmt::format(
+        "{}, so there are no levels to choose from by a resolution: thin the points instead",
+        whole == 1 ? headers.front().name + " is not a COPC file" : "no input is a COPC file"));
+  }
+  if (!tell.warning) return;
+  tell.warning(
+      fmt::format("{} of {} inputs are not COPC files, which have levels to choose from "
+                  "by a resolution: these are read whole",
+                  whole, headers.size()));
+}
+
+}  // namespace
+
+FilePoints::FilePoints(const std::vector<std::string>& paths, const PointOptions& options,
+                       const Context& context)
+    : dimension_(options.dimension),
+      name_(paths.empty() ? "" : paths.front()),
+      scratch_(context.state().scratch(context)),
+      context_(context) {
+  if (options.dimension != 2 && options.dimension != 3) {
+    throw InvalidArgument(fmt::format("there are 2 or 3 dimensions, not {}", options.dimension));
+  }
+  PointSourceOptions how = source_options(options, context);
+  Executor* const executor = context.options().executor.get();
+  is_shared_ = executor != nullptr;
+  if (is_shared_) {
+    input_ = executor->open_points(context, paths, std::move(how));
+  } else {
+    const std::vector<std::string> files = spillway::expand_inputs(paths, context);
+    if (files.empty()) throw InvalidArgument("there are no files to read points from");
+    input_ = std::make_unique<detail::PointSource>(context.state().files(), files, std::move(how));
+  }
+  check_input(options, context);
+}
+
+PointSourceOptions FilePoints::source_options(const PointOptions& options, const Context& context) {
+  PointSourceOptions how;
+  how.dimension = options.dimension;
+  how.index = true;
+  how.reader.format = options.format;
+  how.reader.keep_withheld = options.keep_withheld;
+  how.reader.attributes = options.attributes;
+  how.reader.resolution = options.resolution;
+  how.filter = filter_of(options);
+  how.force_crs = options.foreign_crs;
+  if (context.options().warning) how.warn = context.options().warning;
+  if (context.options().detail) how.detail = context.options().detail;
+  // Over ranks the exchange of the points is still to come.
+  const bool reads_all = context.options().executor == nullptr;
+  how.progress = [this, reads_all](std::uint64_t points, std::optional<double> fraction) {
+    if (watch_ != nullptr) watch_->tell(points, reads_all ? fraction : std::nullopt);
+  };
+  if (!options.thin) return how;
+  how.thinning = thinning_of(*options.thin, context.memory(), *scratch_);
+  how.thinning->progress = {
+      .begin =
+          [this] {
+            if (watch_ != nullptr) watch_->begin_nested("thin", "points");
+          },
+      .update =
+          [this](std::uint64_t done, std::uint64_t points) {
+            if (watch_ == nullptr) return;
+            watch_->tell_nested(done, static_cast<double>(done) / static_cast<double>(points));
+          },
+      .end =
+          [this](std::uint64_t points) {
+            if (watch_ != nullptr) watch_->end_nested(points);
+          }};
+  return how;
+}
+
+void FilePoints::check_input(const PointOptions& options, const Context& context) const {
+  if (options.resolution > 0) check_levels(input_->headers(), context.options());
+  const bool by_height = options.thin && (options.thin->choice == spillway::ThinChoice::kLowest ||
+                                          options.thin->choice == spillway::ThinChoice::kHighest);
+  if (by_height && !input_->has_heights()) {
+    throw InvalidArgument(
+        "the points have no z to thin them by: keep the first of a cell, or that at its center");
+  }
+}
+
+PointsHeader FilePoints::header() const {
+  PointsHeader header;
+  header.coordinates = input_->has_heights() ? 3 : 2;
+  header.count = input_->expected();
+  if (const auto& extent = input_->world_extent()) header.extent = Extent{extent->lo, extent->hi};
+  header.crs = input_->crs();
+  return header;
+}
+
+bool FilePoints::read(std::vector<spillway::Point<3>>& points) {
+  refuse_taken_points(is_taken_);
+  PointBlock block;
+  if (!input_->read(block)) return false;
+  points = public_points(input_->lattice(), block.points);
+  return true;
+}
+
+RunPoints FilePoints::begin(RunWatch& watch, bool index) {
+  refuse_taken_points(std::exchange(is_taken_, true));
+  watch_ = &watch;
+  input_->set_index(index || is_shared_);
+  return {.stream = input_.get(),
+          .dimension = dimension_,
+          .has_heights = input_->has_heights(),
+          .heights_on_lattice = input_->heights_on_lattice(),
+          .has_attributes = input_->has_attributes(),
+          .records = input_->count(),
+          .extent = input_->world_extent(),
+          .crs = input_->crs(),
+          .name = name_,
+          .headers = input_->headers()};
+}
+
+}  // namespace spillway::detail
+
+namespace spillway {
+
+std::unique_ptr<PointSource> open_points(const std::vector<std::string>& paths,
+                                         const PointOptions& options, const Context& context) {
+  return std::make_unique<detail::FilePoints>(paths, options, context);
+}
+
+}  // namespace spillway

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <spillway/points.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formats/disk/scratch_folder.h"
+#include "stream/library/points/engine_points.h"
+#include "stream/source/point_source.h"
+
+namespace spillway::detail {
+
+/// The points of files. Inside of the library they are taken as the pipeline does.
+class FilePoints final : public spillway::PointSource, public EnginePoints {
+ public:
+  FilePoints(const std::vector<std::string>& paths, const PointOptions& options,
+             const Context& context);
+
+  [[nodiscard]] PointsHeader header() const override;
+  bool read(std::vector<spillway::Point<3>>& points) override;
+
+  RunPoints begin(RunWatch& watch, bool index) override;
+
+  [[nodiscard]] detail::PointSource& input() { return *input_; }
+
+ private:
+  PointSourceOptions source_options(const PointOptions& options, const Context& context);
+  void check_input(const PointOptions& options, const Context& context) const;
+
+  int dimension_;
+  bool is_shared_ = false;  ///< by ranks, who tell points by their index
+  std::string name_;
+  std::shared_ptr<ScratchFolder> scratch_;  ///< for thinning, so it outlives input_
+  const Context context_;                   ///< has the files, so it outlives input_, too
+  bool is_taken_ = false;                   ///< by a run
+  RunWatch* watch_ = nullptr;               ///< of the run that reads, if one does
+  std::unique_ptr<detail::PointSource> input_;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,87 @@
+#include "stream/library/points/generated_points.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "stream/library/points/public_points.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::uint64_t kBlockPoints = 65536;
+
+GeneratorOptions generator_options(const GenerateOptions& options) {
+  return {.family = family_by_name(options.family),
+          .count = options.count,
+          .dimension = options.dimension,
+          .seed = options.seed};
+}
+
+}  // namespace
+
+GeneratedPoints::GeneratedPoints(const GenerateOptions& options)
+    : count_(options.count),
+      has_heights_(options.dimension == 3 || family_by_name(options.family) == Family::kTerrain),
+      generator_(make_generator(generator_options(options))) {
+  if (generator_->lattice() != nullptr) lattice_ = *generator_->lattice();
+}
+
+PointsHeader GeneratedPoints::header() const {
+  return {.coordinates = has_heights_ ? 3 : 2, .count = count_};
+}
+
+/// Returns the number of the first of them.
+std::uint64_t GeneratedPoints::make(std::vector<LatticePoint>& points) {
+  const std::uint64_t first = made_;
+  numbers_.resize(std::min(kBlockPoints, count_ - first));
+  numbers_.resize(generator_->next(numbers_));
+  points.clear();
+  points.reserve(numbers_.size());
+  for (const Point<3>& point : numbers_) points.emplace_back(point);
+  made_ += points.size();
+  return first;
+}
+
+bool GeneratedPoints::read(std::vector<spillway::Point<3>>& points) {
+  refuse_taken_points(is_taken_);
+  std::vector<LatticePoint> made;
+  make(made);
+  points = public_points(lattice_, made);
+  return !points.empty();
+}
+
+RunPoints GeneratedPoints::begin(RunWatch& /*watch*/, bool /*index*/) {
+  refuse_taken_points(std::exchange(is_taken_, true));
+  return {.stream = this, .has_heights = has_heights_, .records = count_, .name = "the points"};
+}
+
+bool GeneratedPoints::fetch(SourcePiece& piece) {
+  PointBlock& block = piece.raw.decoded;
+  block.clear();
+  const std::uint64_t first = make(block.points);
+  block.index.resize(block.size());
+  std::iota(block.index.begin(), block.index.end(), first);
+  return block.size() > 0;
+}
+
+void GeneratedPoints::decode(SourcePiece& piece, PointBlock& block) {
+  std::swap(piece.raw.decoded, block);
+}
+
+std::optional<double> GeneratedPoints::fraction_read() const {
+  if (count_ == 0) return std::nullopt;
+  return static_cast<double>(made_) / static_cast<double>(count_);
+}
+
+}  // namespace spillway::detail
+
+namespace spillway {
+
+std::vector<std::string> point_families() { return detail::family_names(); }
+
+std::unique_ptr<PointSource> generate_points(const GenerateOptions& options) {
+  return std::make_unique<detail::GeneratedPoints>(options);
+}
+
+}  // namespace spillway

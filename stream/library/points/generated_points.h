@@ -1,0 +1,53 @@
+#pragma once
+
+#include <spillway/generate.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "src/generators/generators.h"
+#include "stream/library/points/engine_points.h"
+#include "stream/source/point_stream.h"
+
+namespace spillway::detail {
+
+/// Points that are made while they are read, in blocks of 65,536.
+class GeneratedPoints final : public spillway::PointSource,
+                              public EnginePoints,
+                              private PointStream {
+ public:
+  /// Throws Error(kInvalidArgument) for options that cannot be.
+  explicit GeneratedPoints(const GenerateOptions& options);
+
+  [[nodiscard]] PointsHeader header() const override;
+  bool read(std::vector<spillway::Point<3>>& points) override;
+
+  RunPoints begin(RunWatch& watch, bool index) override;
+  [[nodiscard]] const char* phase() const override { return "generate"; }
+
+ private:
+  bool is_taken_ = false;  ///< by a run
+  bool fetch(SourcePiece& piece) override;
+  void decode(SourcePiece& piece, PointBlock& block) override;
+  [[nodiscard]] const std::optional<Lattice>& lattice() const override { return lattice_; }
+  [[nodiscard]] std::optional<std::uint64_t> expected() const override { return count_; }
+  [[nodiscard]] const std::optional<Box<3>>& extent() const override { return extent_; }
+  [[nodiscard]] PointCounts counts() const override { return {.read = made_}; }
+  [[nodiscard]] std::uint64_t points_read() const override { return made_; }
+  [[nodiscard]] std::optional<double> fraction_read() const override;
+
+  std::uint64_t make(std::vector<LatticePoint>& points);
+
+  std::uint64_t count_;
+  bool has_heights_;
+  std::unique_ptr<PointGenerator> generator_;
+  std::vector<Point<3>> numbers_;  ///< of the points that were made last
+  std::optional<Lattice> lattice_;
+  std::optional<Box<3>> extent_;  ///< not known
+  std::atomic<std::uint64_t> made_ = 0;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
+#include "src/geometry/point.h"
+
+namespace spillway::detail {
+
+/// The lattice that points are to be rounded to.
+struct LatticeChoice {
+  std::vector<double> scale{};   ///< none, one for all axes, or three
+  std::vector<double> offset{};  ///< likewise
+
+  [[nodiscard]] bool empty() const { return scale.empty() && offset.empty(); }
+};
+
+/// The lattice of a choice. What it leaves open comes from `source` (the lattice that the points
+/// have), if there is one; else the scale is 1e-7 for x and y that can be degrees and 0.001
+/// otherwise, and the offset 0 where the points of `extent` are 32-bit integers then, otherwise a
+/// round number near their centre.
+Lattice chosen_lattice(const LatticeChoice& choice, const std::optional<Lattice>& source,
+                       const Box<3>& extent);
+
+/// Rounds points to the nearest ones of a lattice, and remembers how far they moved.
+class LatticeRounding {
+ public:
+  /// Points come as integers of `source`, if that is set, else in output coordinates. `output` is
+  /// where they go, for messages, and `extent` a box in output coordinates that has some of them,
+  /// or none. Throws Error if `target` does not keep neighbours in it apart.
+  LatticeRounding(std::string output, const Lattice& target, const std::optional<Lattice>& source,
+                  const Box<3>& extent);
+
+  /// Replaces points by integers of the target lattice. Throws Error that names the first point
+  /// whose integers would take more than 32 bits; `index` has the points' numbers in the input.
+  /// Likewise if the target lattice does not keep them apart from their neighbours.
+  void round(std::span<LatticePoint> points, std::span<const std::uint64_t> index);
+
+  /// How far a coordinate has moved at most; in output units.
+  [[nodiscard]] double farthest() const { return farthest_; }
+
+  [[nodiscard]] const Lattice& target() const { return target_; }
+
+ private:
+  void check_target(const Box<3>& integers) const;
+
+  std::string output_;
+  Lattice target_;
+  std::optional<Lattice> source_;
+  double farthest_ = 0;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,202 @@
+#include "stream/library/points/point_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+
+#include "formats/disk/file_system.h"
+#include "formats/gdal/gdal.h"
+#include "formats/points/create_points.h"
+#include "formats/points/point_formats.h"
+#include "src/error.h"
+#include "stream/library/context/context_state.h"
+#include "stream/library/points/lost_fields.h"
+#include "stream/library/points/public_points.h"
+
+namespace spillway::detail {
+namespace {
+
+const PointFormat& format_to_write(const std::string& path, const std::string& name) {
+  return path == "-" && name.empty() ? own_point_stream() : point_format_to_write(path, name);
+}
+
+/// One number for all axes, or one each.
+void check_axes(std::string_view what, const std::vector<double>& values) {
+  if (values.size() == 2 || values.size() > 3) {
+    throw InvalidArgument(
+        fmt::format("a lattice has one {} for all axes, or three, not {}", what, values.size()));
+  }
+}
+
+bool is_las(const PointHeader& header) { return header.point_format >= 0; }
+
+/// LAS 1.4 for what comes from its point formats, or may be too many points for 1.2.
+std::string las_version_for(const RunPoints& points) {
+  constexpr std::uint64_t kMostOfVersion12 = 4294967295;
+  const bool extended = std::ranges::any_of(
+      points.headers, [](const PointHeader& header) { return header.point_format >= 6; });
+  const bool many =
+      points.stream != nullptr && points.stream->expected().value_or(0) > kMostOfVersion12;
+  return extended || many ? "1.4" : "1.2";
+}
+
+/// `crs` as WKT if it is a code and GDAL is there to tell; else empty.
+std::string wkt_of_code(const std::string& crs) {
+  if (crs.empty() || crs.find('[') != std::string::npos) return "";
+  try {
+    return gdal().crs_to_wkt(crs);
+  } catch (const Error&) {  // LAS can tell the code alone too, or refuses it
+    return "";
+  }
+}
+
+}  // namespace
+
+PointFile::PointFile(const std::string& path, const PointFileOptions& options,
+                     const Context& context)
+    : path_(path),
+      options_(options),
+      format_(format_to_write(path, options.format)),
+      scratch_(context.state().scratch(context)) {
+  check(options);
+}
+
+PointFile::~PointFile() = default;
+
+void PointFile::check(const PointFileOptions& options) const {
+  const std::string& version = options.las_version;
+  if (!version.empty() && !format_.has_versions) {
+    throw InvalidArgument(fmt::format("only LAS has versions, and {} is none", path_));
+  }
+  if (!version.empty() && version != "1.2" && version != "1.4") {
+    throw InvalidArgument(
+        fmt::format("version {} of LAS is not written: choose 1.2 or 1.4", version));
+  }
+  check_axes("scale", options.scale);
+  check_axes("offset", options.offset);
+  for (const double scale : options.scale) {
+    if (!(scale > 0) || !std::isfinite(scale)) {
+      throw InvalidArgument(fmt::format("no lattice has steps of {}: give a scale above 0", scale));
+    }
+  }
+  for (const double offset : options.offset) {
+    if (!std::isfinite(offset)) {
+      throw InvalidArgument(fmt::format("no lattice begins at {}", offset));
+    }
+  }
+}
+
+void PointFile::start(const RunPoints& points) {
+  if (begun_ || finished_) throw InvalidArgument("a file of points begins once");
+  begun_ = true;
+  how_.format = format_.name;
+  adds_heights_ = !points.has_heights && format_.needs_heights;
+  how_.coordinates = !points.has_heights && !adds_heights_ ? 2 : 3;
+  how_.crs = points.crs;
+  how_.scratch = scratch_.get();
+  // Points may be left out of LAS, since they are flagged as withheld.
+  if (std::ranges::none_of(points.headers, is_las)) how_.count = points.records;
+  if (points.stream != nullptr) source_ = points.stream->lattice();
+  if (points.heights_on_lattice) how_.lattice = source_;
+  if (format_.has_versions) {
+    how_.version = options_.las_version.empty() ? las_version_for(points) : options_.las_version;
+  }
+  if (format_.wants_wkt) how_.crs_wkt = wkt_of_code(how_.crs);
+  how_.attributes = format_.holds_attributes && points.has_attributes;
+  lost_ = lost_fields(points.headers, format_, how_.attributes, !points.crs.empty());
+  rounds_ = !options_.scale.empty() || !options_.offset.empty() ||
+            (format_.needs_lattice && !how_.lattice && !options_.exact);
+  if (!rounds_) how_.extent = points.extent;
+  if (!rounds_ || points.extent) open(points.extent.value_or(Box<3>{}));
+}
+
+/// `extent` has some of the points, in output coordinates.
+void PointFile::open(const Box<3>& extent) {
+  if (rounds_) {
+    rounding_.emplace(path_ == "-" ? "standard output" : path_,
+                      chosen_lattice({options_.scale, options_.offset}, how_.lattice, extent),
+                      source_, extent);
+    how_.lattice = rounding_->target();
+  }
+  writer_ = open_point_writer(disk(), path_, how_);
+}
+
+void PointFile::append(PointBlock& block) {
+  if (block.size() == 0) return;
+  if (!writer_) open(world_box(block));
+  if (rounding_) {
+    rounding_->round(block.points, block.index);
+  } else if (source_ && !how_.lattice) {
+    for (LatticePoint& point : block.points) {
+      point = LatticePoint(in_world(source_, point).numbers());
+    }
+  }
+  writer_->write(block.points, block.attributes);
+  written_ += block.size();
+}
+
+Box<3> PointFile::world_box(const PointBlock& block) const {
+  Box<3> box;
+  for (const LatticePoint& point : block.points) box.expand(in_world(source_, point));
+  return box;
+}
+
+PointConversion PointFile::complete() {
+  if (!writer_) open({});
+  writer_->finish();
+  writer_.reset();
+  begun_ = false;
+  finished_ = true;
+  PointConversion done;
+  done.written = written_;
+  if (rounding_) {
+    done.rounded = true;
+    done.scale = rounding_->target().scale;
+    done.offset = rounding_->target().offset;
+    done.farthest = rounding_->farthest();
+  }
+  done.adds_heights = adds_heights_;
+  done.lost = lost_;
+  return done;
+}
+
+void PointFile::begin(const PointsHeader& header) {
+  RunPoints points;
+  points.has_heights = header.coordinates != 2;
+  if (header.extent) points.extent = Box<3>{header.extent->low, header.extent->high};
+  points.crs = header.crs;
+  start(points);
+}
+
+void PointFile::write(std::span<const spillway::Point<3>> points) {
+  if (!begun_) throw InvalidArgument("points of a file come between begin and finish");
+  for (const spillway::Point<3>& point : points) {
+    if (std::ranges::all_of(point, [](double x) { return std::isfinite(x); })) continue;
+    throw InvalidArgument(
+        fmt::format("a point has a coordinate that is not finite: ({})", fmt::join(point, ", ")));
+  }
+  PointBlock block;
+  block.points = points_without_lattice(points);
+  block.index.resize(points.size());
+  std::iota(block.index.begin(), block.index.end(), written_);
+  append(block);
+}
+
+void PointFile::finish() {
+  if (!begun_) throw InvalidArgument("points of a file come between begin and finish");
+  complete();
+}
+
+}  // namespace spillway::detail
+
+namespace spillway {
+
+std::unique_ptr<PointSink> create_points(const std::string& path, const PointFileOptions& options,
+                                         const Context& context) {
+  return std::make_unique<detail::PointFile>(path, options, context);
+}
+
+}  // namespace spillway

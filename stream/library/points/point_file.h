@@ -1,0 +1,62 @@
+#pragma once
+
+#include <spillway/convert.h>
+#include <spillway/points.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/disk/scratch_folder.h"
+#include "formats/points/common/point_format.h"
+#include "formats/points/common/point_writer.h"
+#include "stream/library/points/engine_points.h"
+#include "stream/library/points/lattice_rounding.h"
+
+namespace spillway::detail {
+
+/// A point file in the making. Inside of the library start(), append() and complete() stand for
+/// begin(), write() and finish().
+class PointFile final : public spillway::PointSink {
+ public:
+  /// Throws Error(kInvalidArgument) for a format that is not known or not written, and for options
+  /// that it does not have.
+  PointFile(const std::string& path, const PointFileOptions& options, const Context& context);
+  ~PointFile() override;
+
+  void begin(const PointsHeader& header) override;
+  void write(std::span<const spillway::Point<3>> points) override;
+  void finish() override;
+
+  /// Decides how these points are written. Where a lattice is to be chosen and no extent is known,
+  /// the first block decides, and the file is created then.
+  void start(const RunPoints& points);
+  /// The next points, as `points.stream` gives them, with their index; they are changed.
+  void append(PointBlock& block);
+  /// Returns what became of the points, counts apart.
+  PointConversion complete();
+
+ private:
+  void check(const PointFileOptions& options) const;
+  void open(const Box<3>& extent);
+  [[nodiscard]] Box<3> world_box(const PointBlock& block) const;
+
+  std::string path_;
+  PointFileOptions options_;
+  const PointFormat& format_;
+  std::shared_ptr<ScratchFolder> scratch_;
+  PointWriterOptions how_;
+  bool adds_heights_ = false;
+  bool rounds_ = false;
+  std::vector<std::string> lost_;
+  std::optional<Lattice> source_;  ///< on which points come
+  std::optional<LatticeRounding> rounding_;
+  std::unique_ptr<PointWriter> writer_;  ///< once it is known how
+  bool begun_ = false;
+  bool finished_ = false;
+  std::uint64_t written_ = 0;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <spillway/points.h>
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "stream/library/points/engine_points.h"
+#include "stream/source/point_stream.h"
+
+namespace spillway::detail {
+
+/// The points of a program's own source, as the pipeline takes them.
+class ProgramPoints final : public PointStream, public EnginePoints {
+ public:
+  /// `source` must outlive it. Throws Error(kInvalidArgument) for a header that cannot be.
+  explicit ProgramPoints(spillway::PointSource& source);
+
+  bool fetch(SourcePiece& piece) override;
+  void decode(SourcePiece& piece, PointBlock& block) override;
+
+  [[nodiscard]] const std::optional<Lattice>& lattice() const override { return lattice_; }
+  [[nodiscard]] std::optional<std::uint64_t> expected() const override { return header_.count; }
+  [[nodiscard]] const std::optional<Box<3>>& extent() const override { return extent_; }
+  [[nodiscard]] PointCounts counts() const override { return {.read = read_}; }
+  [[nodiscard]] std::uint64_t points_read() const override { return read_; }
+  [[nodiscard]] std::optional<double> fraction_read() const override;
+
+  RunPoints begin(RunWatch& watch, bool index) override;
+
+ private:
+  spillway::PointSource& source_;
+  PointsHeader header_;
+  std::vector<spillway::Point<3>> points_;  ///< that were read last
+  std::optional<Lattice> lattice_;          ///< none
+  std::optional<Box<3>> extent_;
+  std::atomic<std::uint64_t> read_ = 0;
+};
+
+}  // namespace spillway::detail

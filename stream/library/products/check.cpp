@@ -1,0 +1,109 @@
+#include <spillway/check.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "formats/disk/scratch_folder.h"
+#include "src/error.h"
+#include "stream/checker/checker.h"
+#include "stream/library/context/context_state.h"
+#include "stream/library/context/run_watch.h"
+#include "stream/library/meshes/opened_mesh.h"
+#include "stream/library/meshes/program_mesh.h"
+#include "stream/library/points/engine_points.h"
+#include "stream/library/points/program_points.h"
+#include "stream/library/products/point_comparison.h"
+
+namespace spillway::detail {
+namespace {
+
+/// The points that the vertices are compared with, if there are any; their lattice is noted for the
+/// proof.
+class Comparison {
+ public:
+  Comparison(spillway::PointSource* source, int dimension, const Context& context, RunWatch& watch,
+             CheckOptions& how)
+      : watch_(watch) {
+    if (source == nullptr) return;
+    auto* points = dynamic_cast<EnginePoints*>(source);
+    if (points == nullptr) points = &program_points_.emplace(*source);
+    const RunPoints run = points->begin(watch, true);
+    if (run.dimension != 0 && run.dimension != dimension) {
+      throw InvalidArgument(
+          fmt::format("the points were opened for {} dimensions, and the mesh "
+                      "has {}",
+                      run.dimension, dimension));
+    }
+    input_ = run.stream;
+    how.input_lattice = input_->lattice();
+    scratch_ = context.state().scratch(context);
+    vertices_.emplace(dimension, context.memory(), *scratch_);
+    how.vertex = [this](const WorldPoint& vertex) { vertices_->add_vertex(vertex); };
+  }
+  Comparison(const Comparison&) = delete;
+  Comparison& operator=(const Comparison&) = delete;
+
+  void run(const CheckOptions& how, CheckReport& report) {
+    if (input_ == nullptr) return;
+    vertices_->compare(*input_, how, report, watch_);
+    report.points = input_->counts();
+  }
+
+ private:
+  RunWatch& watch_;
+  std::optional<ProgramPoints> program_points_;
+  PointStream* input_ = nullptr;
+  std::shared_ptr<ScratchFolder> scratch_;
+  std::optional<PointComparison> vertices_;
+};
+
+CheckReport check_whole(const Mesh& mesh, CheckOptions& how, spillway::PointSource* points,
+                        const Context& context, RunWatch& watch) {
+  Comparison comparison(points, mesh.header.dimension, context, watch, how);
+  watch.begin("check", "simplices");
+  CheckReport report = check_mesh(mesh, how);
+  if (how.vertex) std::ranges::for_each(mesh.vertices, how.vertex);
+  watch.end(report.simplices);
+  comparison.run(how, report);
+  return report;
+}
+
+CheckReport check_stream(MeshStreamReader& reader, CheckOptions& how, spillway::PointSource* points,
+                         const Context& context, RunWatch& watch) {
+  Comparison comparison(points, reader.header().dimension, context, watch, how);
+  how.progress = [&watch](std::uint64_t simplices, std::optional<double> fraction) {
+    watch.tell(simplices, fraction);
+  };
+  watch.begin("check", "simplices");
+  CheckReport report = check_mesh_stream(reader, how);
+  watch.end(report.simplices);
+  comparison.run(how, report);
+  return report;
+}
+
+}  // namespace
+}  // namespace spillway::detail
+
+namespace spillway {
+
+CheckReport check(MeshSource& mesh, const CheckOptions& options, const Context& context,
+                  PointSource* points) {
+  detail::RunWatch watch(context);
+  watch.check();
+  detail::CheckOptions how;
+  static_cast<CheckOptions&>(how) = options;
+  how.threads = context.threads();
+  auto* const file = dynamic_cast<detail::OpenedMesh*>(&mesh);
+  if (file == nullptr) {
+    detail::ProgramMesh reader(mesh);
+    return detail::check_stream(reader, how, points, context, watch);
+  }
+  file->take();
+  if (file->is_stream()) return detail::check_stream(file->stream(), how, points, context, watch);
+  return detail::check_whole(file->whole(watch), how, points, context, watch);
+}
+
+}  // namespace spillway

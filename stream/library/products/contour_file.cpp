@@ -1,0 +1,94 @@
+#include "stream/library/products/contour_file.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "formats/disk/output_check.h"
+#include "formats/vectors/vector_formats.h"
+#include "stream/library/context/context_state.h"
+
+namespace spillway::detail {
+namespace {
+
+/// The part of the memory that is for points of lines that are not complete.
+constexpr std::uint64_t kLineShare = 4;
+
+const VectorFormat& format_of(const std::string& path) {
+  if (const VectorFormat* const format = vector_format_of_path(path)) return *format;
+  throw InvalidArgument(
+      fmt::format("{}: contours go to a file that ends in {}", path, vector_extensions(true)));
+}
+
+Levels levels_of(const spillway::ContourOptions& options) {
+  if (options.levels.empty()) return Levels::every(options.interval, options.base);
+  if (options.interval != 0) {
+    throw InvalidArgument("contours have an interval or a list of levels, not both");
+  }
+  return Levels::of_list(options.levels);
+}
+
+}  // namespace
+
+ContourFile::ContourFile(const std::string& path, const spillway::ContourOptions& options,
+                         const Context& context)
+    : OwnSink(context),
+      path_(path),
+      format_(format_of(path)),
+      options_(options),
+      levels_(levels_of(options)),
+      scratch_(context.state().scratch(context)) {
+  check_max_edge(options_.max_edge);
+  check_can_create(disk(), path_);
+}
+
+std::uint64_t ContourFile::own_memory(std::uint64_t limit) const { return limit / kLineShare; }
+
+BlockSink& ContourFile::open(const MeshStart& start) {
+  refuse_tetrahedra(start);
+  refuse_without_heights(start);
+  report_ = {};
+  VectorLayerOptions layer;
+  layer.path = path_;
+  layer.lines = true;
+  layer.crs = start.header.crs;
+  file_.emplace(format_, std::move(layer));
+  return writer_.emplace(
+      ContourOptions{.levels = levels_,
+                     .lattice = start.header.lattice,
+                     .max_edge = start.is_triangulated ? std::nullopt : options_.max_edge,
+                     .memory = own_memory(context().memory())},
+      [this](std::span<const Point<2>> points, double height) { add(points, height); }, *scratch_);
+}
+
+void ContourFile::add(std::span<const Point<2>> points, double height) {
+  line_.clear();
+  for (const Point<2>& point : points) line_.push_back({point[0], point[1], height});
+  file_->layer().add_line(line_, height);
+  report_.points += points.size();
+}
+
+void ContourFile::complete(RunWatch& watch, Report& report) {
+  writer_->finish(report.mesh);
+  watch.begin("write", "lines");
+  file_->finish();
+  report.output_format = format_.name;
+  report.output_bytes = file_->bytes();
+  report.write_seconds = watch.end(writer_->lines());
+  report.left_out += writer_->left_out();
+  report_.lines = writer_->lines();
+  report_.lowest = writer_->lowest();
+  report_.highest = writer_->highest();
+  report_.spilled_bytes = writer_->spilled_bytes();
+}
+
+}  // namespace spillway::detail
+
+namespace spillway {
+
+std::unique_ptr<ContourSink> create_contours(const std::string& path, const ContourOptions& options,
+                                             const Context& context) {
+  return std::make_unique<detail::ContourFile>(path, options, context);
+}
+
+}  // namespace spillway

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <spillway/contours.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/disk/scratch_folder.h"
+#include "formats/vectors/vector_file.h"
+#include "stream/library/meshes/engine_sink.h"
+#include "stream/sinks/contour_writer.h"
+
+namespace spillway::detail {
+
+/// A vector file of contours in the making.
+class ContourFile final : public OwnSink<ContourSink> {
+ public:
+  ContourFile(const std::string& path, const spillway::ContourOptions& options,
+              const Context& context);
+
+  [[nodiscard]] const ContourReport& report() const override { return report_; }
+
+  [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override;
+  void complete(RunWatch& watch, Report& report) override;
+
+ private:
+  BlockSink& open(const MeshStart& start) override;
+
+  void add(std::span<const Point<2>> points, double height);
+
+  std::string path_;
+  const VectorFormat& format_;
+  spillway::ContourOptions options_;
+  Levels levels_;
+  std::shared_ptr<ScratchFolder> scratch_;
+  std::optional<VectorFile> file_;
+  std::optional<ContourWriter> writer_;
+  std::vector<WorldPoint> line_;
+  ContourReport report_;
+};
+
+}  // namespace spillway::detail

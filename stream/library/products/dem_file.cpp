@@ -1,0 +1,240 @@
+#include "stream/library/products/dem_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string_view>
+
+#include "formats/disk/output_check.h"
+#include "formats/gdal/gdal.h"
+#include "formats/rasters/raster_file.h"
+#include "formats/rasters/raster_formats.h"
+#include "src/parallel/parallel.h"
+#include "src/runtime/memory_budget.h"
+#include "src/terrain/grid_choice.h"
+#include "stream/library/context/context_state.h"
+#include "stream/library/context/executor.h"
+#include "stream/plan/memory_plan.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::uint64_t kLeastMemory = std::uint64_t{64} << 20;
+/// The part of the memory that is for pixels.
+constexpr std::uint64_t kPixelShare = 4;
+
+void check_path(const std::string& path) {
+  if (!can_be_tried(path)) {
+    throw InvalidArgument(
+        fmt::format("{}: a GeoTIFF is not written in one go, so it needs a file", path));
+  }
+  if (!kGeoTiff.is_named(path)) {
+    throw InvalidArgument(fmt::format("{}: a DEM is a GeoTIFF: give it a name that ends in .{}",
+                                      path, kGeoTiff.extensions.front()));
+  }
+}
+
+void check_products(const std::vector<DemProduct>& products) {
+  if (products.empty()) throw InvalidArgument("a DEM has a product at least: none is given");
+  for (const DemProduct product : products) {
+    if (static_cast<std::size_t>(product) < dem_product_names().size()) continue;
+    throw InvalidArgument("there is no product of number " +
+                          std::to_string(static_cast<int>(product)));
+  }
+  if (std::set<DemProduct>(products.begin(), products.end()).size() < products.size()) {
+    throw InvalidArgument("a product is there twice");
+  }
+}
+
+void check_light_and_file(const spillway::DemOptions& options) {
+  if (!(options.azimuth >= 0 && options.azimuth <= 360)) {
+    throw InvalidArgument(
+        fmt::format("light comes from 0 to 360 degrees, not from {}", options.azimuth));
+  }
+  if (!(options.altitude >= 0 && options.altitude <= 90)) {
+    throw InvalidArgument(
+        fmt::format("light stands 0 to 90 degrees above the horizon, not {}", options.altitude));
+  }
+  const std::array<std::string_view, 3> kinds = {"deflate", "zstd", "none"};
+  if (std::ranges::find(kinds, options.compression) == kinds.end()) {
+    throw InvalidArgument(fmt::format("\"{}\" is not a compression: choose {}", options.compression,
+                                      fmt::join(kinds, ", ")));
+  }
+}
+
+GridRequest grid_request(const spillway::DemOptions& options) {
+  if (!(options.resolution > 0) || !std::isfinite(options.resolution)) {
+    throw InvalidArgument(fmt::format("pixels have a side above 0, not of {}", options.resolution));
+  }
+  GridRequest grid{.resolution = options.resolution, .align = options.align};
+  if (!options.bounds) return grid;
+  const auto& [west, south, east, north] = *options.bounds;
+  if (!(west < east && south < north)) {
+    throw InvalidArgument(fmt::format("{}, {}, {}, {} is not an area: xmin, ymin, xmax, ymax", west,
+                                      south, east, north));
+  }
+  grid.bounds = Box<2>{{west, south}, {east, north}};
+  return grid;
+}
+
+RasterOptions file_options(const std::string& path, const spillway::DemOptions& options,
+                           RasterOptions raster) {
+  raster.name = raster.path = path;
+  raster.compression = options.compression;
+  raster.cloud_optimized = options.cloud_optimized;
+  return raster;
+}
+
+}  // namespace
+
+DemFile::DemFile(const std::string& path, const spillway::DemOptions& options,
+                 const Context& context)
+    : OwnSink(context), path_(path), options_(options), scratch_(context.state().scratch(context)) {
+  check_path(path_);
+  check_products(options_.products);
+  check_light_and_file(options_);
+  check_max_edge(options_.max_edge);
+  if (context.memory() < kLeastMemory) {
+    throw TooSmallLimit("the memory limit is too small: 64 MiB are the least for a DEM",
+                        {.enough = kLeastMemory, .remedy = Remedy::kMemory});
+  }
+  if (options_.like.empty()) dem_options_.grid = grid_request(options_);
+  const Executor* const executor = context.options().executor.get();
+  if (executor == nullptr || executor->is_first()) check_can_create(disk(), path_);
+  dem_options_.products = options_.products;
+  dem_options_.light = {options_.azimuth, options_.altitude};
+  dem_options_.nodata = options_.nodata;
+  dem_options_.memory = own_memory(context.memory());
+  dem_options_.threads = feeding_threads(context.threads());
+}
+
+std::uint64_t DemFile::own_memory(std::uint64_t limit) const { return limit / kPixelShare; }
+
+unsigned DemFile::feeding_threads(unsigned threads) const {
+  const std::uint64_t limit = context().memory();
+  return plan_memory(limit - own_memory(limit), 2, threads).threads;
+}
+
+bool DemFile::wants_extent() const { return !dem_options_.grid.bounds && options_.like.empty(); }
+
+void DemFile::ask_gdal() {
+  gdal().check_raster_driver(file_options(path_, options_, {}));
+  if (options_.like.empty()) return;
+  like_ = gdal().read_raster_grid(options_.like);
+  dem_options_.grid.given = like_.pixels;
+}
+
+BlockSink& DemFile::open(const MeshStart& start) {
+  refuse_tetrahedra(start);
+  const bool needs_heights = std::ranges::any_of(
+      options_.products, [](DemProduct product) { return product != DemProduct::kDensity; });
+  if (needs_heights) refuse_without_heights(start);
+  ask_gdal();
+  check_crs(start);
+  crs_ = start.header.crs.empty() ? like_.crs : start.header.crs;
+  if (!start.is_triangulated) dem_options_.max_edge = options_.max_edge;
+  dem_.emplace(dem_options_, start.header.lattice, *scratch_);
+  // What is too large is told before the points are read.
+  if (!wants_extent()) dem_->begin(Box<2>{});
+  return writer_.emplace(*dem_);
+}
+
+void DemFile::extent_known(const Box<2>& extent, std::uint64_t vertices) {
+  if (!wants_extent()) return;
+  check_size(extent, vertices);
+  dem_->begin(extent);
+}
+
+void DemFile::check_crs(const MeshStart& start) const {
+  const std::string& crs = start.header.crs;
+  if (crs.empty() || like_.crs.empty() || options_.foreign_crs) return;
+  if (gdal().same_crs(crs, like_.crs)) return;
+  throw Error(
+      fmt::format("{} is in {}, but {} in {}; reproject one of them, or take coordinates "
+                  "as they are",
+                  start.name, gdal().crs_name(crs), options_.like, gdal().crs_name(like_.crs)),
+      ErrorCode::kBadInput, {.file = options_.like, .remedy = Remedy::kForeignCrs});
+}
+
+/// Refuses a raster that is large because of points far away, unless that is wanted: it has many
+/// pixels, and thousands for each vertex. Says how large it is if there are hundreds.
+void DemFile::check_size(const Box<2>& extent, std::uint64_t vertices) const {
+  constexpr double kManyPixels = 1e7;
+  constexpr double kManyForAVertex = 100;
+  constexpr double kTooManyForAVertex = 2000;
+  if (vertices == 0) return;  // not known
+  const Box<2> box = dem_->in_output(extent);
+  const PixelGrid grid = choose_grid(dem_options_.grid, box);
+  const double pixels = static_cast<double>(grid.columns) * grid.rows;
+  const double for_each = pixels / static_cast<double>(vertices);
+  if (pixels <= kManyPixels || for_each <= kManyForAVertex) return;
+  if (options_.many_pixels || for_each <= kTooManyForAVertex) {
+    if (!context().options().warning) return;
+    context().options().warning(fmt::format(
+        "the raster has {} x {} pixels, for {} vertices; some of them may lie far away: bounds "
+        "say what to cover",
+        grid.columns, grid.rows, vertices));
+    return;
+  }
+  throw Error(
+      fmt::format("the points, {} of them, reach from {:.15g}, {:.15g} to {:.15g}, {:.15g}: that "
+                  "is a raster of {} x {} pixels, {:.2g} for each of them, as if some lay far away",
+                  vertices, box.lo[0], box.lo[1], box.hi[0], box.hi[1], grid.columns, grid.rows,
+                  for_each),
+      ErrorCode::kTooLarge, {.remedy = Remedy::kRasterExtent});
+}
+
+void DemFile::complete(RunWatch& watch, Report& report) {
+  complete(watch, report,
+           [this](Raster& raster, const std::function<void(std::uint64_t)>& written) {
+             dem_->write(raster, written);
+           });
+}
+
+void DemFile::complete(RunWatch& watch, Report& report, const WritePixels& write_pixels) {
+  Dem& dem = *dem_;
+  writer_->finish(report.mesh);
+  const PixelGrid& grid = dem.grid();
+  RasterOptions raster = file_options(path_, options_, dem.raster_options());
+  raster.grid.crs = crs_;
+  watch.begin("write", "pixels");
+  RasterFile file(std::move(raster));
+  const std::uint64_t pixels = std::uint64_t{grid.columns} * grid.rows;
+  const auto written = [&](std::uint64_t done) {
+    watch.tell(done, static_cast<double>(done) / static_cast<double>(pixels));
+  };
+  with_threads(dem_options_.threads, [&] { write_pixels(file.raster(), written); });
+  report.output_format = kGeoTiff.name;
+  report.output_bytes = file.finish();
+  report.write_seconds = watch.end(pixels);
+  report.left_out += dem.left_out();
+  report.threads = dem_options_.threads;
+  report_ = {.columns = grid.columns,
+             .rows = grid.rows,
+             .resolution = grid.resolution,
+             .west = grid.west,
+             .north = grid.north,
+             .bands = dem.raster_options().bands,
+             .pixels_with_data = dem.pixels_with_data(),
+             .spilled_bytes = dem.spilled_bytes()};
+}
+
+}  // namespace spillway::detail
+
+namespace spillway {
+
+const std::vector<std::string>& dem_product_names() {
+  static const std::vector<std::string> names = {"height", "slope", "aspect", "hillshade",
+                                                 "density"};
+  return names;
+}
+
+std::unique_ptr<DemSink> create_dem(const std::string& path, const DemOptions& options,
+                                    const Context& context) {
+  return std::make_unique<detail::DemFile>(path, options, context);
+}
+
+}  // namespace spillway

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <spillway/dem.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "formats/disk/scratch_folder.h"
+#include "formats/gdal/raster.h"
+#include "stream/library/meshes/engine_sink.h"
+#include "stream/sinks/dem.h"
+#include "stream/sinks/dem_writer.h"
+
+namespace spillway::detail {
+
+/// A GeoTIFF of a terrain in the making.
+class DemFile final : public OwnSink<DemSink> {
+ public:
+  DemFile(const std::string& path, const spillway::DemOptions& options, const Context& context);
+
+  [[nodiscard]] const DemReport& report() const override { return report_; }
+
+  [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override;
+  [[nodiscard]] unsigned feeding_threads(unsigned threads) const override;
+  [[nodiscard]] bool wants_extent() const override;
+  void extent_known(const Box<2>& extent, std::uint64_t vertices) override;
+  void complete(RunWatch& watch, Report& report) override;
+
+  /// How the pixels get into a file: `written` is told how many are there.
+  using WritePixels =
+      std::function<void(Raster& raster, const std::function<void(std::uint64_t)>& written)>;
+  /// complete() with pixels that others have, too.
+  void complete(RunWatch& watch, Report& report, const WritePixels& write_pixels);
+  /// While blocks come, and until it is complete.
+  [[nodiscard]] Dem& dem() { return *dem_; }
+
+ private:
+  BlockSink& open(const MeshStart& start) override;
+
+  /// Once all is found that is wrong without it: the driver there is, and the raster to be like.
+  void ask_gdal();
+  void check_crs(const MeshStart& start) const;
+  void check_size(const Box<2>& extent, std::uint64_t vertices) const;
+
+  std::string path_;
+  spillway::DemOptions options_;
+  RasterGrid like_;
+  DemOptions dem_options_;
+  std::shared_ptr<ScratchFolder> scratch_;
+  std::string crs_;
+  std::optional<Dem> dem_;
+  std::optional<DemWriter> writer_;
+  DemReport report_;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,136 @@
+#include <spillway/info.h>
+#include <spillway/input.h>
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "src/error.h"
+#include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
+#include "src/geometry/lattice_check.h"
+#include "stream/checker/checker.h"
+#include "stream/library/context/run_watch.h"
+#include "stream/library/meshes/opened_mesh.h"
+#include "stream/library/meshes/whole_mesh.h"
+#include "stream/library/points/file_points.h"
+
+namespace spillway::detail {
+namespace {
+
+std::optional<Extent> extent_of(const Box<3>& box) {
+  if (box.empty()) return std::nullopt;
+  return Extent{box.lo, box.hi};
+}
+
+std::optional<LatticeInfo> lattice_info(const std::optional<Lattice>& lattice) {
+  if (!lattice) return std::nullopt;
+  return LatticeInfo{lattice->scale, lattice->offset};
+}
+
+MeshInfo describe_whole(OpenedMesh& file, RunWatch& watch) {
+  watch.begin("read", "vertices");
+  const Mesh mesh = file.read_whole();
+  watch.end(mesh.vertices.size());
+  MeshInfo info;
+  const std::string extension = std::filesystem::path(file.path()).extension().string();
+  if (!extension.empty()) info.format = extension.substr(1);
+  if (file.format() != nullptr) info.format = file.format()->name;
+  info.dimension = mesh.header.dimension;
+  info.has_input_index = mesh.header.has_input_index;
+  info.totals.vertices = mesh.vertices.size();
+  info.totals.simplices = mesh.corners.size() / mesh.corners_per_simplex();
+  info.totals.hull_facets = count_boundary_facets(mesh);
+  info.totals.canonical_hash = canonical_hash(mesh);
+  info.extent = extent_of(box_around(mesh.vertices));
+  info.lattice = lattice_info(mesh.header.lattice);
+  info.crs = mesh.header.crs;
+  return info;
+}
+
+/// Holds no more of the stream than its open border.
+MeshInfo describe_stream(OpenedMesh& file, RunWatch& watch) {
+  MeshStreamReader& reader = file.stream();
+  Box<3> box;
+  CheckOptions options;
+  options.vertex = [&box](const WorldPoint& vertex) { box.expand(vertex); };
+  options.progress = [&watch](std::uint64_t simplices, std::optional<double> fraction) {
+    watch.tell(simplices, fraction);
+  };
+  watch.begin("read", "simplices");
+  const CheckReport found = count_mesh_stream(reader, options);
+  watch.end(found.simplices);
+  if (found.fault_count > 0) {
+    throw Error(fmt::format("{}: {}; the file is corrupt, write it again", file.path(),
+                            found.faults.front()),
+                ErrorCode::kBadInput, {.file = file.path()});
+  }
+  MeshInfo info;
+  info.format = file.format()->name;
+  info.dimension = reader.header().dimension;
+  info.has_input_index = reader.header().has_input_index;
+  info.tells_totals = reader.has_hash();
+  if (info.tells_totals) info.totals = reader.totals();
+  info.totals.vertices = found.vertices;
+  info.totals.simplices = found.simplices;
+  info.totals.hull_facets = found.hull_facets;
+  info.totals.canonical_hash = found.canonical_hash;
+  info.extent = extent_of(box);
+  info.lattice = lattice_info(reader.header().lattice);
+  info.crs = reader.header().crs;
+  info.peak_live_vertices = found.peak_live_vertices;
+  return info;
+}
+
+}  // namespace
+}  // namespace spillway::detail
+
+namespace spillway {
+
+PointsInfo describe_points(const std::string& path, const PointOptions& options,
+                           const Context& context) {
+  using namespace detail;  // NOLINT(google-build-using-namespace): the other side of the door
+  if (spillway::stands_for_several(path)) {
+    throw InvalidArgument(path + ": this stands for several files; describe one by one");
+  }
+  RunWatch watch(context);
+  watch.check();
+  FilePoints points({path}, options, context);
+  points.begin(watch, false);
+  detail::PointSource& source = points.input();
+  const PointHeader header = source.headers().front();
+  const std::optional<Lattice>& lattice = source.lattice();
+  Box<3> box;
+  PointBlock block;
+  watch.begin("read", "points");
+  while (source.read(block)) {
+    for (const LatticePoint& point : block.points) box.expand(in_world(lattice, point));
+    watch.tell(source.points_read(), source.fraction_read());
+  }
+  watch.end(source.points_read());
+  PointsInfo info;
+  info.format = header.format;
+  info.version = header.version;
+  info.point_format = header.point_format;
+  info.coordinates = header.coordinates;
+  info.counts = source.counts();
+  info.extent = extent_of(box);
+  info.lattice = lattice_info(header.lattice);
+  info.crs = header.crs;
+  info.crs_note = header.crs_note;
+  info.software = header.software;
+  return info;
+}
+
+MeshInfo describe_mesh(const std::string& path, const MeshOptions& options,
+                       const Context& context) {
+  using namespace detail;  // NOLINT(google-build-using-namespace): the other side of the door
+  RunWatch watch(context);
+  watch.check();
+  OpenedMesh file(path, options, context);
+  return file.is_stream() ? describe_stream(file, watch) : describe_whole(file, watch);
+}
+
+}  // namespace spillway

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <spillway/picture.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "formats/disk/scratch_folder.h"
+#include "stream/library/meshes/engine_sink.h"
+#include "stream/sinks/scene.h"
+
+namespace spillway::detail {
+
+/// A PNG file of a mesh in the making.
+class PictureFile final : public OwnSink<PictureSink> {
+ public:
+  PictureFile(const std::string& path, const PictureOptions& options, const Context& context);
+
+  [[nodiscard]] const PictureReport& report() const override { return report_; }
+
+  [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override;
+  [[nodiscard]] unsigned feeding_threads(unsigned threads) const override;
+  [[nodiscard]] bool wants_extent() const override { return !options_.zoom; }
+  void extent_known(const Box<2>& extent, std::uint64_t vertices) override;
+  void complete(RunWatch& watch, Report& report) override;
+
+ private:
+  BlockSink& open(const MeshStart& start) override;
+
+  std::string path_;
+  PictureOptions options_;
+  std::shared_ptr<ScratchFolder> scratch_;
+  std::unique_ptr<Scene> scene_;
+  PictureReport report_;
+};
+
+}  // namespace spillway::detail

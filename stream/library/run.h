@@ -1,0 +1,31 @@
+#pragma once
+
+#include <spillway/triangulate.h>
+
+#include <memory>
+
+#include "formats/disk/scratch_folder.h"
+#include "src/runtime/memory_budget.h"
+#include "stream/library/context/run_watch.h"
+#include "stream/library/meshes/engine_sink.h"
+#include "stream/library/points/engine_points.h"
+#include "stream/plan/stream_options.h"
+
+namespace spillway::detail {
+
+/// A triangulation that is about to begin.
+struct Run {
+  const Context& context;
+  const TriangulateOptions& options;
+  RunWatch& watch;
+  RunPoints points;
+  EngineSink& sink;
+  StreamOptions stream;
+  MemoryBudget budget;  ///< without what the sink takes for itself
+  std::shared_ptr<ScratchFolder> scratch;
+
+  /// What the mesh's header says.
+  [[nodiscard]] MeshStart start() const;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,118 @@
+#include "stream/source/header_survey.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "formats/inputs/open_points.h"
+#include "src/error.h"
+#include "stream/source/input_crs.h"
+
+namespace spillway::detail {
+namespace {
+
+/// Throws Error unless the points have what the dimension and the filter need.
+void check_points_have(const SourceFacts::Input& input, const HeaderSurveyOptions& options) {
+  const PointHeader& header = input.header;
+  if (options.dimension == 3 && !input.has_heights()) {
+    throw Error(header.name + ": the points have no z", ErrorCode::kDegenerateInput,
+                {.file = header.name, .remedy = Remedy::kPlane});
+  }
+  if (options.filter.needs_attributes() && !input.has_attributes()) {
+    throw Error(
+        fmt::format("{}: {} has neither classes nor returns of points", header.name, header.format),
+        ErrorCode::kBadInput, {.file = header.name, .remedy = Remedy::kFilters});
+  }
+}
+
+void survey(FileSystem& files, const std::string& path, const HeaderSurveyOptions& options,
+            HeaderSurvey& all) {
+  std::shared_ptr<PointReader> reader = open_point_reader(files, path, options.reader);
+  SourceFacts::Input input;
+  input.header = reader->header();
+  check_points_have(input, options);
+  std::error_code unknown;
+  input.opens_once = path == "-" || !std::filesystem::is_regular_file(path, unknown);
+  // The n-th records of an input can be told in its pieces only if these know what comes before.
+  if (!input.opens_once && (options.filter.every == 1 || input.header.count)) {
+    input.pieces = reader->pieces();
+  }
+  if (options.digests && !input.opens_once) input.digest = digest_of(*files.open(path));
+  all.readers.push_back(input.opens_once ? std::move(reader) : nullptr);
+  all.facts.inputs.push_back(std::move(input));
+}
+
+/// Says once what holds for many inputs.
+void tell_notices(const SourceFacts& facts, const HeaderSurveyOptions& options) {
+  struct Notice {
+    const std::string* text;
+    const std::string* first;
+    std::size_t count;
+  };
+  static const std::string no_heights =
+      "the points have no z, beside others that have: it is 0 there";
+  std::vector<Notice> notices;
+  const auto add = [&](const PointHeader& header, const std::string& text) {
+    const auto known =
+        std::ranges::find_if(notices, [&](const Notice& notice) { return *notice.text == text; });
+    if (known == notices.end()) {
+      notices.push_back({&text, &header.name, 1});
+    } else {
+      ++known->count;
+    }
+  };
+  const bool heights = facts.has_heights();
+  for (const SourceFacts::Input& input : facts.inputs) {
+    for (const std::string& text : input.header.notices) add(input.header, text);
+    if (heights && !input.has_heights()) add(input.header, no_heights);
+  }
+  for (const Notice& notice : notices) {
+    const std::string more =
+        notice.count > 1 ? fmt::format(" (and {} more)", notice.count - 1) : std::string();
+    options.warn(fmt::format("{}{}: {}", *notice.first == "-" ? "standard input" : *notice.first,
+                             more, *notice.text));
+  }
+}
+
+std::string find_crs(const SourceFacts& facts, const HeaderSurveyOptions& options) {
+  std::vector<InputCrs> systems;
+  for (const SourceFacts::Input& input : facts.inputs) {
+    const PointHeader& header = input.header;
+    systems.push_back({header.name, header.crs, header.crs_note});
+    if (!header.crs.empty() && !header.crs_note.empty()) {
+      options.detail(fmt::format("{}: {}", header.name, header.crs_note));
+    }
+  }
+  return common_crs(systems, options.force_crs, options.warn);
+}
+
+}  // namespace
+
+HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& paths,
+                            const HeaderSurveyOptions& options) {
+  HeaderSurvey all;
+  std::vector<Error> faults;
+  for (const std::string& path : paths) {
+    try {
+      survey(files, path, options, all);
+    } catch (const InvalidArgument&) {
+      throw;
+    } catch (const Error& error) {
+      faults.push_back(error);
+    }
+  }
+  if (faults.size() == 1) throw Error(faults.front());
+  if (!faults.empty()) {
+    const std::size_t count = faults.size();
+    throw ErrorList(fmt::format("{} of {} inputs cannot be read", count, paths.size()),
+                    std::move(faults));
+  }
+  tell_notices(all.facts, options);
+  all.facts.crs = find_crs(all.facts, options);
+  return all;
+}
+
+}  // namespace spillway::detail

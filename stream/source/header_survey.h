@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/disk/file_system.h"
+#include "formats/points/common/point_reader.h"
+#include "stream/source/point_filter.h"
+#include "stream/source/source_facts.h"
+
+namespace spillway::detail {
+
+struct HeaderSurveyOptions {
+  int dimension = 2;
+  PointReaderOptions reader{};
+  PointFilter filter{};    ///< says what inputs must have
+  bool force_crs = false;  ///< inputs of different coordinate systems are no error
+  bool digests = false;    ///< facts have digests of files
+  /// Receives what is worth a warning, and what only -v shows.
+  std::function<void(std::string_view)> warn = [](std::string_view) {};
+  std::function<void(std::string_view)> detail = [](std::string_view) {};
+};
+
+/// What the headers of all inputs say.
+struct HeaderSurvey {
+  SourceFacts facts;
+  /// One an input: the reader of what opens just once, as nobody else can have it, and else null.
+  std::vector<std::shared_ptr<PointReader>> readers;
+};
+
+/// Looks at the headers of all inputs. Throws Error that names all inputs that cannot be opened or
+/// do not have what the dimension and the filter need, or two of different coordinate systems.
+HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& paths,
+                            const HeaderSurveyOptions& options);
+
+}  // namespace spillway::detail

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/disk/file_system.h"
+#include "formats/points/common/point_reader.h"
+#include "stream/source/source_facts.h"
+#include "stream/tiles/point_feed.h"
+
+namespace spillway::detail {
+
+struct PieceSequenceOptions {
+  PointReaderOptions reader{};
+  /// Who reads files that another process has looked at, for messages; empty: it was this one.
+  std::string viewer{};
+  /// Is told of each input that has been read to its end.
+  std::function<void(std::string_view)> detail = [](std::string_view) {};
+};
+
+/// What has been read of all inputs and is still to be decoded: one input after the other, each
+/// from front to back, or one piece of one input. A file is opened when its turn has come.
+class PieceSequence {
+ public:
+  /// `readers` has those of inputs that are open already, and null for others, or nothing at all;
+  /// `facts` must outlive the sequence.
+  PieceSequence(FileSystem& files, const std::vector<std::string>& paths, const SourceFacts& facts,
+                std::vector<std::shared_ptr<PointReader>> readers, PieceSequenceOptions options);
+
+  /// Takes what comes next; false at the end. Indices count through all inputs, dropped records
+  /// too, but see begin_piece().
+  bool fetch(SourcePiece& piece);
+
+  /// From now on fetch() gives a piece of one input, or one whole input, and then false. Indices
+  /// count through all inputs where all headers tell their counts, else from the piece's beginning.
+  /// Throws Error for a file that is another one than its digest tells.
+  void begin_piece(std::size_t input, std::optional<std::uint64_t> piece);
+
+  /// Whether indices count through all inputs also in pieces.
+  [[nodiscard]] bool numbers_pieces() const { return records_.has_value(); }
+
+  /// How far the inputs have been read, from 0 to 1; nothing if that is unknown.
+  [[nodiscard]] std::optional<double> fraction_read() const;
+
+ private:
+  struct Input {
+    std::string path;
+    std::shared_ptr<PointReader> reader;
+    bool same_file;             ///< as was looked at, or not to be compared
+    std::uint64_t records = 0;  ///< fetched so far
+  };
+
+  [[nodiscard]] const PointHeader& header_of(std::size_t input) const {
+    return facts_.inputs[input].header;
+  }
+  void open_current();
+  void check_same_file();
+  bool fetch_of_piece(SourcePiece& piece);
+  void finish_input();
+
+  FileSystem& files_;
+  const SourceFacts& facts_;
+  PieceSequenceOptions options_;
+  std::optional<std::uint64_t> records_;  ///< in all inputs, where all headers tell
+  std::vector<Input> inputs_;
+  std::size_t current_ = 0;
+  std::uint64_t records_before_ = 0;             ///< of all inputs before the current one
+  bool by_pieces_ = false;                       ///< fetch() ends with the piece that was begun
+  std::optional<std::uint64_t> first_of_piece_;  ///< number of its first record, where that counts
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/disk/file_digest.h"
+#include "formats/points/common/point_reader.h"
+#include "src/geometry/box.h"
+#include "stream/source/point_filter.h"
+
+namespace spillway::detail {
+
+/// What one look at all inputs tells, and what follows from it for all of them together.
+struct SourceFacts {
+  struct Input {
+    PointHeader header;
+    std::optional<std::uint64_t> pieces;  ///< that can be read in any order, filters considered
+    bool opens_once = false;              ///< a pipe: the rest of it is with who looked at it
+    std::optional<FileDigest> digest{};   ///< of a file, if asked for
+
+    [[nodiscard]] bool has_heights() const { return header.coordinates != 2; }
+    /// Classes and returns, which are those of LAS.
+    [[nodiscard]] bool has_attributes() const { return header.point_format >= 0; }
+  };
+  std::vector<Input> inputs;
+  std::string crs;  ///< of the first input that names a coordinate system
+
+  /// Whether the points of any input have z.
+  [[nodiscard]] bool has_heights() const;
+  /// Whether the points of any input have classes and returns.
+  [[nodiscard]] bool has_attributes() const;
+  /// Records in all inputs; nothing unless all headers tell.
+  [[nodiscard]] std::optional<std::uint64_t> records() const;
+  /// About how many records a filter leaves, rather too many; nothing unless all headers tell.
+  [[nodiscard]] std::optional<std::uint64_t> expected(const PointFilter& filter) const;
+  /// The part of `bounds` that may have points, in output coordinates; nothing if there is none, or
+  /// unless all headers tell.
+  [[nodiscard]] std::optional<Box<3>> extent(const std::optional<Box<3>>& bounds) const;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,32 @@
+#include "stream/tiles/dealt_points.h"
+
+namespace spillway::detail {
+
+void DealtPoints::deal(const CutTree& cuts, const PointBlock& block) {
+  const std::size_t count = block.points.size();
+  tile_.resize(count);
+  cuts.find_tiles(block.points, tile_);
+  std::vector<std::size_t> next(cuts.tiles() + 1);
+  for (const std::uint32_t tile : tile_) ++next[tile + 1];
+  runs.clear();
+  for (std::uint32_t t = 0; t < cuts.tiles(); ++t) {
+    if (next[t + 1] > 0) {
+      runs.push_back({t, next[t], next[t] + next[t + 1], {}});
+    }
+    next[t + 1] += next[t];
+  }
+  points.points.resize(count);
+  points.index.resize(block.index.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t position = next[tile_[i]]++;
+    points.points[position] = block.points[i];
+    if (!block.index.empty()) points.index[position] = block.index[i];
+  }
+  for (PointRun& run : runs) {
+    Box<3> box;
+    for (std::size_t i = run.begin; i < run.end; ++i) box.expand(points.points[i]);
+    run.box = box;
+  }
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,277 @@
+// Pixels come out of the store as if memory had no limit, whatever went to the disk meanwhile and
+// in whatever order their values came.
+
+#include "stream/sinks/raster_store.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "src/error.h"
+#include "tests/error_facts.h"
+
+namespace spillway::detail {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+constexpr std::uint64_t kTileBytes = RasterStore::kTilePixels * sizeof(float);
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+const std::vector<PixelRule> kAllRules = {PixelRule::kEqual, PixelRule::kPreferred,
+                                          PixelRule::kSum};
+
+/// A value on its way to a pixel.
+struct Put {
+  std::uint64_t tile = 0;
+  std::size_t pixel = 0;  ///< in all bands
+  float value = 0;
+  bool preferred = false;
+};
+
+void put(RasterStore::Hand& hand, const std::vector<PixelRule>& bands, const Put& one) {
+  float* const pixels = hand.tile(one.tile);
+  put_pixel(pixels[one.pixel], one.value, bands[one.pixel / RasterStore::kTilePixels],
+            one.preferred);
+}
+
+/// Values for few pixels, so that many meet; those of kEqual are equal in a pixel.
+std::vector<Put> random_puts(std::size_t count, std::uint64_t tiles, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<Put> puts(count);
+  for (Put& one : puts) {
+    one.tile = random() % tiles;
+    const std::size_t band = random() % kAllRules.size();
+    one.pixel = band * RasterStore::kTilePixels + random() % 50 * 997;
+    one.preferred = random() % 8 == 0;
+    // One preferred value for a pixel, as a rule that prefers gives.
+    one.value = band == 0 || one.preferred ? static_cast<float>(one.pixel % 101)
+                                           : static_cast<float>(random() % 1000);
+  }
+  return puts;
+}
+
+void put_all(RasterStore& store, const std::vector<Put>& puts) {
+  RasterStore::Hand hand(store);
+  for (const Put& one : puts) put(hand, kAllRules, one);
+}
+
+/// All tiles, nothing as -1 so that they can be compared.
+std::vector<std::vector<float>> take_all(RasterStore& store, std::uint64_t tiles) {
+  std::vector<std::vector<float>> all(tiles);
+  for (std::uint64_t t = 0; t < tiles; ++t) {
+    store.take(t, all[t]);
+    for (float& pixel : all[t]) {
+      if (std::isnan(pixel)) pixel = -1;
+    }
+  }
+  return all;
+}
+
+class RasterStoreTest : public ::testing::Test {
+ protected:
+  std::unique_ptr<ScratchFolder> scratch_ = make_scratch_folder(::testing::TempDir(), std::nullopt);
+};
+
+/// What becomes of one pixel.
+float pixel_after(PixelRule rule, const std::vector<std::pair<float, bool>>& values) {
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  RasterStore store({rule}, 10 * kTileBytes, *scratch);
+  {
+    RasterStore::Hand hand(store);
+    for (const auto& [value, preferred] : values) put_pixel(*hand.tile(0), value, rule, preferred);
+  }
+  std::vector<float> pixels;
+  store.take(0, pixels);
+  return pixels[0];
+}
+
+TEST(PutPixel, EqualHoldsTheLastOne) {
+  EXPECT_EQ(pixel_after(PixelRule::kEqual, {{-7.5F, false}, {-7.5F, true}}), -7.5F);
+}
+
+TEST(PutPixel, PreferredHoldsThePreferredOneElseTheSmallest) {
+  using Values = std::vector<std::pair<float, bool>>;
+  for (Values values : {Values{{5, false}, {3, false}, {9, false}}, Values{{3, false}}}) {
+    do {
+      EXPECT_EQ(pixel_after(PixelRule::kPreferred, values), 3);
+    } while (std::next_permutation(values.begin(), values.end()));
+  }
+  Values values = {{1, false}, {3, false}, {8, true}};
+  do {
+    EXPECT_EQ(pixel_after(PixelRule::kPreferred, values), 8);
+  } while (std::next_permutation(values.begin(), values.end()));
+}
+
+TEST(PutPixel, PreferredTakesMinusZeroForZero) {
+  for (const bool preferred : {false, true}) {
+    const float pixel = pixel_after(PixelRule::kPreferred, {{-0.0F, preferred}, {2, false}});
+    EXPECT_EQ(pixel, 0);
+    EXPECT_FALSE(std::signbit(pixel));
+  }
+}
+
+TEST(PutPixel, SumEndsWhereFloatsNoLongerCountByOne) {
+  EXPECT_EQ(pixel_after(PixelRule::kSum, {{1, false}, {2, false}, {4, false}}), 7);
+  EXPECT_EQ(pixel_after(PixelRule::kSum, {{0x1p24F, false}, {2, false}}), 0x1p24F);
+}
+
+TEST(PutPixel, SumLosesNothingBetweenThreads) {
+  float pixel = kNothing;
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 4; ++t) {
+      threads.emplace_back([&pixel] {
+        for (int i = 0; i < 20'000; ++i) put_pixel(pixel, 1, PixelRule::kSum, false);
+      });
+    }
+  }
+  EXPECT_EQ(pixel, 80'000);
+}
+
+TEST_F(RasterStoreTest, GivesNothingForTilesThatNobodyHasWrittenTo) {
+  RasterStore store(kAllRules, 0, *scratch_);
+  EXPECT_THAT(store.tiles(), IsEmpty());
+  std::vector<float> pixels = {1, 2};
+  store.take(7, pixels);
+  EXPECT_EQ(pixels.size(), kAllRules.size() * RasterStore::kTilePixels);
+  EXPECT_TRUE(std::all_of(pixels.begin(), pixels.end(), [](float p) { return std::isnan(p); }));
+  EXPECT_EQ(store.spilled_bytes(), 0U);
+}
+
+TEST_F(RasterStoreTest, SpillsNothingThatFits) {
+  RasterStore store(kAllRules, 30 * kTileBytes, *scratch_);
+  put_all(store, random_puts(2000, 10, 1));
+  EXPECT_EQ(store.spilled_bytes(), 0U);
+}
+
+TEST_F(RasterStoreTest, GivesTheSamePixelsHoweverLittleMemoryItHas) {
+  constexpr std::uint64_t kTiles = 25;
+  const std::vector<Put> puts = random_puts(3000, kTiles, 2);
+  RasterStore large(kAllRules, std::uint64_t{1} << 30, *scratch_);
+  put_all(large, puts);
+  const auto expected = take_all(large, kTiles);
+  EXPECT_EQ(large.spilled_bytes(), 0U);
+  for (const std::uint64_t tiles : {0, 1, 12}) {
+    RasterStore small(kAllRules, tiles * kAllRules.size() * kTileBytes, *scratch_);
+    put_all(small, puts);
+    EXPECT_GT(small.spilled_bytes(), 0U) << tiles;
+    EXPECT_TRUE(take_all(small, kTiles) == expected) << tiles;
+    EXPECT_THAT(small.tiles(), IsEmpty()) << "taken tiles are forgotten";
+  }
+}
+
+TEST_F(RasterStoreTest, GivesTheSamePixelsToManyThreads) {
+  constexpr std::uint64_t kTiles = 12;
+  const std::vector<Put> puts = random_puts(4000, kTiles, 3);
+  RasterStore one(kAllRules, std::uint64_t{1} << 30, *scratch_);
+  put_all(one, puts);
+  RasterStore shared(kAllRules, 9 * kAllRules.size() * kTileBytes, *scratch_);
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t t = 0; t < 4; ++t) {
+      threads.emplace_back([&, t] {
+        RasterStore::Hand hand(shared);
+        for (std::size_t i = t; i < puts.size(); i += 4) put(hand, kAllRules, puts[i]);
+      });
+    }
+  }
+  EXPECT_TRUE(take_all(shared, kTiles) == take_all(one, kTiles));
+}
+
+TEST_F(RasterStoreTest, KeepsTheTilesInAHandWhereTheyAre) {
+  RasterStore store({PixelRule::kEqual}, 0, *scratch_);
+  RasterStore::Hand hand(store);
+  RasterStore::Hand other(store);
+  std::set<float*> tiles;
+  for (std::uint64_t t = 0; t < RasterStore::kTilesInHand; ++t) tiles.insert(hand.tile(t));
+  EXPECT_EQ(tiles.size(), RasterStore::kTilesInHand);
+  for (std::uint64_t t = 100; t < 150; ++t) set_pixel(*other.tile(t), 1);
+  for (std::uint64_t t = 0; t < RasterStore::kTilesInHand; ++t) {
+    EXPECT_TRUE(tiles.contains(hand.tile(t)));
+    EXPECT_EQ(other.tile(t), hand.tile(t)) << "two hands hold one tile";
+  }
+}
+
+TEST_F(RasterStoreTest, NamesItsTilesInAscendingOrder) {
+  RasterStore store({PixelRule::kEqual}, 0, *scratch_);
+  {
+    RasterStore::Hand hand(store);
+    for (const std::uint64_t t : {40, 2, 17, 99, 3, 2, 8}) set_pixel(*hand.tile(t), 1);
+  }
+  EXPECT_THAT(store.tiles(), ElementsAre(2, 3, 8, 17, 40, 99));
+}
+
+TEST_F(RasterStoreTest, PutsPartsOfOtherStoresTogetherInAnyOrder) {
+  constexpr std::uint64_t kTiles = 6;
+  const std::vector<Put> puts = random_puts(1500, kTiles, 4);
+  RasterStore whole(kAllRules, std::uint64_t{1} << 30, *scratch_);
+  put_all(whole, puts);
+  const auto expected = take_all(whole, kTiles);
+  for (const bool last_first : {false, true}) {
+    std::vector<std::vector<Put>> shares(3);
+    for (std::size_t i = 0; i < puts.size(); ++i) shares[i % 3].push_back(puts[i]);
+    if (last_first) std::reverse(shares.begin(), shares.end());
+    RasterStore store(kAllRules, 0, *scratch_);
+    put_all(store, shares[0]);
+    std::vector<std::unique_ptr<RasterStore>> others;
+    for (std::size_t s : {1, 2}) {
+      others.push_back(std::make_unique<RasterStore>(kAllRules, 0, *scratch_));
+      put_all(*others.back(), shares[s]);
+    }
+    for (std::uint64_t t = 0; t < kTiles; ++t) {
+      const std::vector<std::vector<std::byte>> parts = {others[0]->take_tile(t),
+                                                         others[1]->take_tile(t)};
+      std::vector<float> pixels;
+      store.take(t, pixels, parts);
+      for (float& pixel : pixels) {
+        if (std::isnan(pixel)) pixel = -1;
+      }
+      EXPECT_TRUE(pixels == expected[t]) << t;
+    }
+  }
+}
+
+TEST_F(RasterStoreTest, RefusesADamagedPartOfAnotherStore) {
+  RasterStore store({PixelRule::kEqual}, kTileBytes, *scratch_);
+  {
+    RasterStore::Hand hand(store);
+    set_pixel(*hand.tile(0), 1);
+  }
+  std::vector<std::vector<std::byte>> parts = {store.take_tile(0)};
+  parts[0].back() ^= std::byte{1};
+  try {
+    std::vector<float> pixels;
+    store.take(0, pixels, parts);
+    ADD_FAILURE() << "the damage was not seen";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), StartsWith("pixels from another rank")) << error.what();
+  }
+}
+
+TEST(RasterStore, SaysWhenTheDiskIsFull) {
+  const auto scratch = make_scratch_folder(::testing::TempDir(), 300);
+  RasterStore store({PixelRule::kEqual}, 0, *scratch);
+  const ErrorFacts facts = facts_of([&store] {
+    RasterStore::Hand hand(store);
+    for (std::uint64_t t = 0; t < 100; ++t) set_pixel(*hand.tile(t), 1);
+  });
+  EXPECT_EQ(facts.remedy, Remedy::kScratchLimit);
+}
+
+TEST(RasterStore, NeedsRoomForEveryHandAndSome) {
+  const std::uint64_t one = RasterStore::least_memory(1, 1);
+  EXPECT_GT(one, RasterStore::kTilesInHand * kTileBytes);
+  EXPECT_EQ(RasterStore::least_memory(3, 1), 3 * one);
+  EXPECT_EQ(RasterStore::least_memory(1, 3) - one, 2 * RasterStore::kTilesInHand * kTileBytes);
+}
+
+}  // namespace
+}  // namespace spillway::detail

@@ -1,0 +1,138 @@
+// The pieces of all inputs: one after the other, or one piece alone, each with its indices.
+
+#include "stream/source/piece_sequence.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "formats/inputs/open_points.h"
+#include "src/error.h"
+#include "stream/source/header_survey.h"
+#include "tests/stream/source/temporary_files.h"
+
+namespace spillway::detail {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class PieceSequenceTest : public ::testing::Test {
+ protected:
+  PieceSequenceTest()
+      : paths_{files_.put("a.txt", "0 0 0\n1 0 0\n2 0 0\n"), files_.put("b.txt", "10 0 0\n"),
+               files_.put("empty.txt", ""), files_.put("c.txt", "20 0 0\n21 0 0\n")} {
+    look();
+  }
+
+  void look() { facts_ = survey_headers(disk(), paths_, {.digests = true}).facts; }
+
+  /// As if the headers told the counts.
+  void know_counts() {
+    constexpr std::array<std::uint64_t, 4> kCounts = {3, 1, 0, 2};
+    for (std::size_t i = 0; i < kCounts.size(); ++i) facts_.inputs[i].header.count = kCounts.at(i);
+  }
+
+  PieceSequence sequence(const std::string& viewer = "") {
+    PieceSequenceOptions options;
+    options.viewer = viewer;
+    options.detail = [this](std::string_view text) { said_ += std::string(text) + "\n"; };
+    return {disk(), paths_, facts_, {}, options};
+  }
+
+  /// The x and the index of all that fetch() gives.
+  struct Fetched {
+    std::vector<double> x;
+    std::vector<std::uint64_t> index;
+    std::vector<std::size_t> inputs;
+  };
+  static Fetched fetch_all(PieceSequence& sequence) {
+    Fetched all;
+    PointBlock block;
+    for (SourcePiece piece; sequence.fetch(piece);) {
+      piece.reader->decode(piece.raw, block);
+      for (const LatticePoint& point : block.points) all.x.push_back(point[0]);
+      for (const std::uint64_t index : block.index) all.index.push_back(piece.first_index + index);
+      all.inputs.push_back(piece.input);
+    }
+    return all;
+  }
+
+  testing::TemporaryFiles files_;
+  std::vector<std::string> paths_;
+  SourceFacts facts_;
+  std::string said_;
+};
+
+TEST_F(PieceSequenceTest, InputsComeOneAfterTheOther) {
+  PieceSequence all = sequence();
+  EXPECT_EQ(all.fraction_read(), 0);
+  const Fetched fetched = fetch_all(all);
+  EXPECT_THAT(fetched.x, ElementsAre(0, 1, 2, 10, 20, 21));
+  EXPECT_THAT(fetched.index, ElementsAre(0, 1, 2, 3, 4, 5));
+  EXPECT_THAT(fetched.inputs, ElementsAre(0, 1, 3));
+  EXPECT_EQ(all.fraction_read(), 1);
+  EXPECT_THAT(said_, HasSubstr("a.txt: text, 3 records read\n"));
+  EXPECT_THAT(said_, HasSubstr("empty.txt: text, 0 records read\n"));
+}
+
+TEST_F(PieceSequenceTest, AnInputAloneCountsThroughAllWhereHeadersTell) {
+  PieceSequence unknown = sequence();
+  EXPECT_FALSE(unknown.numbers_pieces());
+  unknown.begin_piece(3, std::nullopt);
+  EXPECT_THAT(fetch_all(unknown).index, ElementsAre(0, 1));
+  know_counts();
+  PieceSequence known = sequence();
+  EXPECT_TRUE(known.numbers_pieces());
+  known.begin_piece(3, std::nullopt);
+  const Fetched fetched = fetch_all(known);
+  EXPECT_THAT(fetched.x, ElementsAre(20, 21));
+  EXPECT_THAT(fetched.index, ElementsAre(4, 5));
+}
+
+TEST_F(PieceSequenceTest, PiecesMayBeginInAnyOrder) {
+  PieceSequence all = sequence();
+  all.begin_piece(3, 0);
+  EXPECT_THAT(fetch_all(all).x, ElementsAre(20, 21));
+  all.begin_piece(0, 0);
+  EXPECT_THAT(fetch_all(all).x, ElementsAre(0, 1, 2));
+  all.begin_piece(0, 0);
+  EXPECT_THAT(fetch_all(all).x, ElementsAre(0, 1, 2));
+}
+
+TEST_F(PieceSequenceTest, TheShareThatIsReadGoesByRecordsWhereTheseAreKnown) {
+  know_counts();
+  PieceSequence all = sequence();
+  SourcePiece piece;
+  all.fetch(piece);
+  EXPECT_DOUBLE_EQ(all.fraction_read().value(), 3.0 / 6);
+  all.fetch(piece);
+  EXPECT_DOUBLE_EQ(all.fraction_read().value(), 4.0 / 6);
+}
+
+TEST_F(PieceSequenceTest, AFileThatAnotherProcessSawOtherwiseIsRefused) {
+  static_cast<void>(files_.put("b.txt", "11 0 0\n"));
+  PieceSequence own = sequence();
+  EXPECT_NO_THROW(own.begin_piece(1, 0));
+  PieceSequence of_another = sequence("rank 3");
+  of_another.begin_piece(0, 0);
+  try {
+    of_another.begin_piece(1, 0);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("b.txt: rank 3 reads another file of this name"));
+    EXPECT_THAT(error.what(), HasSubstr("of the same size, but with other contents"));
+  }
+  static_cast<void>(files_.put("b.txt", "11 0 0 \n"));
+  EXPECT_THROW(of_another.begin_piece(1, 0), Error);
+}
+
+TEST_F(PieceSequenceTest, AReaderThatIsOpenGoesOn) {
+  std::vector<std::shared_ptr<PointReader>> readers(4);
+  readers[1] = open_point_reader(disk(), paths_[1], {});
+  std::filesystem::remove(paths_[1]);
+  PieceSequence all(disk(), paths_, facts_, std::move(readers), {});
+  EXPECT_THAT(fetch_all(all).x, ElementsAre(0, 1, 2, 10, 20, 21));
+}
+
+}  // namespace
+}  // namespace spillway::detail

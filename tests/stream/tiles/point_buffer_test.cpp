@@ -1,0 +1,74 @@
+// Points come out of a buffer as they went in, in pieces of one size.
+
+#include "stream/tiles/point_buffer.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace spillway::detail {
+namespace {
+
+constexpr std::size_t kPiece = PointBuffer::kChunk;
+
+/// Points (i, 0, -i) from `begin` on.
+std::vector<LatticePoint> points_from(std::size_t begin, std::size_t count) {
+  std::vector<LatticePoint> points;
+  for (std::size_t i = begin; i < begin + count; ++i) {
+    points.push_back({static_cast<double>(i), 0, -static_cast<double>(i)});
+  }
+  return points;
+}
+
+TEST(PointBuffer, GivesBackPointsAndIndicesInTheirOrder) {
+  PointBuffer buffer;
+  std::size_t begin = 0;
+  for (const std::size_t count : std::array<std::size_t, 5>{1, 0, kPiece, 3 * kPiece, 7}) {
+    std::vector<std::uint64_t> index(count);
+    for (std::size_t i = 0; i < count; ++i) index[i] = 2 * (begin + i);
+    buffer.append(points_from(begin, count), index);
+    begin += count;
+  }
+  EXPECT_EQ(buffer.size(), begin);
+  std::size_t next = 0;
+  buffer.drain([&](std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
+    ASSERT_EQ(points.size(), index.size());
+    EXPECT_LE(points.size(), kPiece);
+    for (std::size_t i = 0; i < points.size(); ++i, ++next) {
+      ASSERT_EQ(points[i][0], static_cast<double>(next));
+      ASSERT_EQ(index[i], 2 * next);
+    }
+  });
+  EXPECT_EQ(next, begin);
+}
+
+TEST(PointBuffer, HasMemoryForWholePieces) {
+  PointBuffer buffer;
+  EXPECT_EQ(buffer.room(), 0U);
+  buffer.append(points_from(0, kPiece), {});
+  EXPECT_EQ(buffer.room(), kPiece);
+  buffer.append(points_from(0, 1), {});
+  EXPECT_EQ(buffer.room(), 2 * kPiece);
+  EXPECT_EQ(buffer.size(), kPiece + 1);
+}
+
+TEST(PointBuffer, IsEmptyAfterItIsDrainedAndCanBeUsedAgain) {
+  PointBuffer buffer;
+  buffer.append(points_from(0, kPiece + 1), {});
+  std::vector<std::size_t> sizes;
+  const auto take = [&](std::span<const LatticePoint> points,
+                        std::span<const std::uint64_t> index) {
+    sizes.push_back(points.size());
+    EXPECT_TRUE(index.empty());
+  };
+  buffer.drain(take);
+  EXPECT_EQ(buffer.size(), 0U);
+  EXPECT_EQ(buffer.room(), 0U);
+  buffer.drain(take);
+  buffer.append(points_from(0, 2), {});
+  buffer.drain(take);
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{kPiece, 1, 2}));
+}
+
+}  // namespace
+}  // namespace spillway::detail

@@ -1,0 +1,141 @@
+// Points as blocks of a file, and back; corrupt blocks are refused.
+
+#include "stream/tiles/tile_block.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "formats/blocks/block.h"
+#include "formats/bytes/bytes.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::size_t kPiece = PointBuffer::kChunk;
+
+PointBlock random_points(std::size_t count) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  PointBlock block;
+  for (std::size_t i = 0; i < count; ++i) {
+    block.points.push_back({unit(random), 1e9 * unit(random), std::floor(100 * unit(random))});
+    block.index.push_back(random());
+  }
+  return block;
+}
+
+std::string error_of(std::span<const std::byte> block) {
+  PointBlock points;
+  try {
+    decode_points(block, {"tile 7", at_byte(0)}, points);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(TilePoints, InThePlaneHeightsStandApart) {
+  TilePoints<2> plane;
+  plane.resize(2, true);
+  plane.set(1, {3, 4, 5});
+  EXPECT_EQ(plane.points[1], (Point<2>{3, 4}));
+  EXPECT_EQ(plane.heights[1], 5);
+  EXPECT_EQ(plane.index.size(), 2U);
+  TilePoints<3> space;
+  space.resize(2, false);
+  space.set(0, {3, 4, 5});
+  EXPECT_EQ(space.points[0], (LatticePoint{3, 4, 5}));
+  EXPECT_TRUE(space.heights.empty());
+  EXPECT_TRUE(space.index.empty());
+}
+
+TEST(TileBlock, OneBlockComesBack) {
+  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, kPiece}) {
+    const PointBlock points = random_points(count);
+    std::vector<std::byte> bytes;
+    append_points(bytes, points.points, points.index);
+    PointBlock back = random_points(5);  // to be replaced
+    decode_points(bytes, {"here"}, back);
+    EXPECT_EQ(back.points, points.points);
+    EXPECT_EQ(back.index, points.index);
+  }
+}
+
+TEST(TileBlock, WithoutIndicesNoneComeBack) {
+  const PointBlock points = random_points(100);
+  std::vector<std::byte> bytes;
+  append_points(bytes, points.points, {});
+  PointBlock back = random_points(5);
+  decode_points(bytes, {"here"}, back);
+  EXPECT_EQ(back.points, points.points);
+  EXPECT_TRUE(back.index.empty());
+}
+
+TEST(TileBlock, ABufferBecomesABlockForEachPiece) {
+  const PointBlock points = random_points(2 * kPiece + 3);
+  PointBuffer buffer;
+  buffer.append(points.points, points.index);
+  std::vector<std::byte> bytes(11);  // what stands there already stays
+  const std::vector<TileBlock> blocks = encode_points(buffer, bytes);
+  ASSERT_EQ(blocks.size(), 3U);
+  EXPECT_EQ(buffer.size(), 0U);
+  EXPECT_EQ(blocks.front().offset, 11U);
+  EXPECT_EQ(blocks.back().offset + blocks.back().size, bytes.size());
+  PointBlock all;
+  for (const TileBlock& block : blocks) {
+    PointBlock some;
+    decode_points(std::span(bytes).subspan(block.offset, block.size), {"here"}, some);
+    EXPECT_EQ(some.size(), block.points);
+    all.points.insert(all.points.end(), some.points.begin(), some.points.end());
+    all.index.insert(all.index.end(), some.index.begin(), some.index.end());
+  }
+  EXPECT_EQ(all.points, points.points);
+  EXPECT_EQ(all.index, points.index);
+}
+
+TEST(TileBlock, AnyNumberOfPointsComesBackAsOne) {
+  for (const std::size_t count : {std::size_t{0}, kPiece, 2 * kPiece + 1}) {
+    const PointBlock points = random_points(count);
+    std::vector<std::byte> bytes;
+    append_all_points(bytes, points.points, points.index);
+    PointBlock back = random_points(5);
+    decode_all_points(bytes, {"here"}, back);
+    EXPECT_EQ(back.points, points.points);
+    EXPECT_EQ(back.index, points.index);
+  }
+}
+
+TEST(TileBlock, TruncatedIsRefused) {
+  const PointBlock points = random_points(100);
+  std::vector<std::byte> bytes;
+  append_points(bytes, points.points, points.index);
+  EXPECT_EQ(error_of(std::span(bytes).first(kBlockHeadSize - 1)),
+            "tile 7, byte 0: the block is cut short");
+  EXPECT_EQ(error_of(std::span(bytes).first(bytes.size() - 1)),
+            "tile 7, byte 0: the block has another size than its head says");
+}
+
+TEST(TileBlock, ChecksumMismatchIsRefused) {
+  const PointBlock points = random_points(100);
+  std::vector<std::byte> bytes;
+  append_points(bytes, points.points, points.index);
+  bytes.back() ^= std::byte{1};
+  EXPECT_THAT(error_of(bytes), HasSubstr("tile 7, byte 0"));
+}
+
+TEST(TileBlock, TooManyPointsAreRefused) {
+  std::vector<std::byte> content(sizeof(std::uint32_t));
+  store(content.data(), static_cast<std::uint32_t>(kPiece + 1));
+  std::vector<std::byte> bytes;
+  append_block(bytes, 1, content);
+  EXPECT_EQ(error_of(bytes), "tile 7, byte 0: the block has too many points");
+}
+
+}  // namespace
+}  // namespace spillway::detail

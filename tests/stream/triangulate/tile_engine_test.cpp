@@ -1,0 +1,243 @@
+// The engine of one process: from a feed of points to a stream and the border that is left.
+
+#include "stream/triangulate/tile_engine.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "tests/stream/stream_runner.h"
+#include "tests/stream/triangulate/indexed_simplices.h"
+
+namespace spillway::detail {
+namespace {
+
+using ::testing::Each;
+using ::testing::Ge;
+using testing::IndexedSimplices;
+using ::testing::IsEmpty;
+using testing::random_points;
+using testing::triangulated;
+
+/// Gives points in batches, with indices from `first_index` on.
+class Feed {
+ public:
+  template <std::size_t D>
+  explicit Feed(const std::vector<std::array<double, D>>& points, std::uint64_t first_index = 0)
+      : first_index_(first_index) {
+    for (const auto& p : points) {
+      LatticePoint& point = points_.emplace_back();
+      std::copy(p.begin(), p.end(), point.begin());
+    }
+  }
+
+  PointFeed feed() {
+    return {.fetch =
+                [this](SourcePiece& piece) {
+                  piece.raw.clear();
+                  PointBlock& block = piece.raw.decoded;
+                  for (; next_ < points_.size() && block.size() < 777; ++next_) {
+                    block.points.push_back(points_[next_]);
+                    block.index.push_back(first_index_ + next_);
+                  }
+                  return block.size() > 0;
+                },
+            .decode = [](SourcePiece& piece,
+                         PointBlock& block) { std::swap(piece.raw.decoded, block); }};
+  }
+
+ private:
+  std::uint64_t first_index_;
+  std::vector<LatticePoint> points_;
+  std::size_t next_ = 0;
+};
+
+/// An engine and all that it needs.
+template <int D>
+struct EngineRun {
+  explicit EngineRun(const StreamOptions& of = small()) : options(of) {}
+
+  static StreamOptions small() {
+    return {.threads = 2, .tile_capacity = 400, .leaf_size = 80, .input_index = true};
+  }
+
+  void spill(const std::vector<Point<D>>& points, std::uint64_t first_index = 0) {
+    Feed feed(points, first_index);
+    with_threads(engine.threads(), [&] { engine.spill(feed.feed()); });
+  }
+  Border<D> triangulate(const Outside<D>& outside = {}) {
+    Border<D> border;
+    with_threads(engine.threads(), [&] {
+      engine.divide_large();
+      root = engine.nodes();
+      border = engine.triangulate(*root, outside);
+    });
+    return border;
+  }
+
+  const StreamOptions options;
+  std::unique_ptr<ScratchFolder> scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  MemoryBudget budget{std::uint64_t{1} << 30};
+  KeepingWriter mesh{D};
+  std::optional<TileNode<D>> root;
+  TileEngine<D> engine{{}, mesh, *scratch, budget, options};
+};
+
+template <typename Dimension>
+class TileEngineTest : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(TileEngineTest, Dimensions);
+
+TYPED_TEST(TileEngineTest, TriangulatesTilesAndMergesThem) {
+  constexpr int kD = TypeParam::value;
+  const auto points = random_points<kD>(5000, 1);
+  const auto expected = triangulated<kD>(points);
+  EngineRun<kD> run;
+  run.spill(points);
+  EXPECT_EQ(run.engine.points(), points.size());
+  const Border<kD> border = run.triangulate();
+  EXPECT_THAT(border.simplices, IsEmpty());
+  EXPECT_EQ(simplices_of<kD>(run.mesh), expected);
+  EXPECT_EQ(run.mesh.live(), 0U);
+  const RunFigures figures = run.engine.figures();
+  EXPECT_EQ(figures.mesh.points, points.size());
+  EXPECT_EQ(figures.mesh.vertices, points.size());
+  EXPECT_EQ(figures.mesh.simplices, expected.size());
+  EXPECT_GT(figures.tiles, 5000U / 400);
+  EXPECT_GT(figures.leaves, figures.tiles);
+  EXPECT_GT(std::accumulate(figures.final_by_level.begin(), figures.final_by_level.end(),
+                            std::uint64_t{0}),
+            0U);
+}
+
+TYPED_TEST(TileEngineTest, HasNoTilesWithoutPoints) {
+  constexpr int kD = TypeParam::value;
+  EngineRun<kD> run;
+  run.spill({});
+  EXPECT_FALSE(run.engine.nodes());
+  EXPECT_EQ(run.engine.points(), 0U);
+  EXPECT_EQ(run.engine.points_to_divide(), 0U);
+}
+
+TYPED_TEST(TileEngineTest, PutsOtherIndicesInPlaceOfThoseThatCame) {
+  constexpr int kD = TypeParam::value;
+  EngineRun<kD> run;
+  run.spill(random_points<kD>(1500, 2));
+  run.engine.replace_indices([](std::span<std::uint64_t> index) {
+    for (std::uint64_t& i : index) i += 10'000;
+  });
+  run.triangulate();
+  EXPECT_THAT(run.mesh.index, Each(Ge(10'000U)));
+  EXPECT_EQ(std::set(run.mesh.index.begin(), run.mesh.index.end()).size(), 1500U);
+}
+
+/// As two ranks do it: each its tiles, one of them the merge.
+TYPED_TEST(TileEngineTest, MergesABorderOfAnotherProcess) {
+  constexpr int kD = TypeParam::value;
+  auto points = random_points<kD>(3000, 3);
+  const auto middle = std::stable_partition(points.begin(), points.end(),
+                                            [](const Point<kD>& p) { return p[0] < 0.4; });
+  const std::vector<Point<kD>> low(points.begin(), middle);
+  const std::vector<Point<kD>> high(middle, points.end());
+  EngineRun<kD> here;
+  EngineRun<kD> there;
+  here.spill(low);
+  there.spill(high, low.size());
+  TileNode<kD> root;
+  root.points = points.size();
+  for (EngineRun<kD>* run : {&here, &there}) {
+    with_threads(2, [run] { run->engine.divide_large(); });
+    root.children.push_back(*run->engine.nodes());
+    root.box.expand(root.children.back().box);
+  }
+  std::vector<Border<kD>> borders;
+  borders.push_back(here.triangulate({&root.children[1]}));
+  borders.push_back(there.triangulate({&root.children[0]}));
+  EXPECT_FALSE(borders[1].simplices.empty());
+  there.engine.hand_over(borders[1]);
+  here.engine.take_in(borders[1]);
+  Task task;
+  Settled<kD> settled;
+  with_threads(2, [&] { settled = here.engine.merge(borders, root, {}, {0, 0}, task); });
+  EXPECT_THAT(settled.border.simplices, IsEmpty());
+  IndexedSimplices<kD> all = simplices_of<kD>(here.mesh);
+  for (const auto& simplex : simplices_of<kD>(there.mesh)) all.push_back(simplex);
+  std::vector<std::uint64_t> index = settled.mesh.input_index;
+  index.insert(index.end(), settled.imported_index.begin(), settled.imported_index.end());
+  for (std::size_t c = 0; c < settled.mesh.corners.size(); c += kD + 1) {
+    auto& simplex = all.emplace_back();
+    for (int i = 0; i <= kD; ++i) {
+      simplex[i] = static_cast<VertexId>(index.at(settled.mesh.corners[c + i]));
+    }
+    std::sort(simplex.begin(), simplex.end());
+  }
+  std::sort(all.begin(), all.end());
+  EXPECT_EQ(all, triangulated<kD>(points));
+}
+
+TEST(TileEngine, DividesTilesAgainThatBecameTooLarge) {
+  std::vector<Point<2>> points = random_points<2>(300'000, 4);
+  std::sort(points.begin(), points.end());
+  EngineRun<2> run({.threads = 2,
+                    .tile_capacity = 1000,
+                    .buffered_points = 40 * PointBuffer::kChunk,
+                    .input_index = true});
+  run.spill(points);
+  EXPECT_GT(run.engine.points_to_divide(), 0U);
+  std::uint64_t divided = 0;
+  with_threads(2, [&] { divided = run.engine.divide_large(); });
+  EXPECT_GT(divided, 0U);
+  EXPECT_EQ(run.engine.points_to_divide(), 0U);
+  EXPECT_EQ(run.engine.nodes()->points, points.size());
+  const RunFigures figures = run.engine.figures();
+  EXPECT_EQ(figures.divided_points, divided);
+  EXPECT_GT(figures.spilled_points, 0U);
+}
+
+/// Fails when its second block comes.
+class FullSink : public BlockSink {
+ public:
+  void write(MeshBlock&& /*block*/) override {
+    if (++blocks_ == 2) throw Error("the disk is full");
+  }
+  void finish(const MeshTotals& /*totals*/) override {}
+
+ private:
+  int blocks_ = 0;
+};
+
+TEST(TileEngine, EndsWithTheErrorOfItsSink) {
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  MemoryBudget budget(std::uint64_t{1} << 30);
+  const StreamOptions options = EngineRun<2>::small();
+  {
+    FullSink sink;
+    TileEngine<2> engine({}, sink, *scratch, budget, options);
+    Feed feed(random_points<2>(20'000, 5));
+    std::string message;
+    with_threads(2, [&] {
+      engine.spill(feed.feed());
+      try {
+        engine.triangulate(*engine.nodes(), {});
+      } catch (const Error& error) {
+        message = error.what();
+      }
+    });
+    EXPECT_EQ(message, "the disk is full");
+  }
+  EXPECT_EQ(budget.used(), 0U) << "all leases are given back";
+}
+
+TEST(TileEngine, RefusesALimitThatIsTooSmall) {
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  MemoryBudget budget(1000);
+  KeepingWriter mesh(2);
+  const StreamOptions options;
+  EXPECT_THROW(TileEngine<2>({}, mesh, *scratch, budget, options), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace spillway::detail

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <spillway/figures.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spillway::detail {
+
+/// Reads a list of core counts: "1,2,8", and "1,2,4,...,1024", where the dots stand for doubling.
+/// Throws UsageError.
+std::vector<unsigned> parse_core_list(std::string_view text);
+
+/// What a greedy schedule of measured tasks would reach.
+struct SimulatedRun {
+  unsigned cores;
+  double seconds;
+  double speed_up;  ///< over the same schedule on one core
+};
+
+std::vector<SimulatedRun> simulate_cores(const Task& tasks, const std::vector<unsigned>& cores);
+
+/// A table for people: a heading, then one line a run; no line end after the last.
+std::string simulation_table(const std::vector<SimulatedRun>& runs);
+
+}  // namespace spillway::detail
