@@ -4,7 +4,7 @@
 #include <atomic>
 #include <mutex>
 
-#include "src/geometry/circumsphere.h"
+#include "src/geometry/constructions/circumsphere.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::detail {

@@ -8,7 +8,7 @@
 
 #include "src/delaunay/common/triangulation.h"
 #include "src/delaunay/divide.h"
-#include "src/geometry/circumsphere.h"
+#include "src/geometry/constructions/circumsphere.h"
 
 namespace spillway::detail {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "src/geometry/canonical_hash.h"
-#include "src/geometry/circumcentre.h"
+#include "src/geometry/constructions/circumcentre.h"
 #include "src/library/construction.h"
 #include "src/library/float_environment.h"
 #include "src/library/interpolation.h"

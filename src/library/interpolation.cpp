@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "src/geometry/barycentric.h"
+#include "src/geometry/constructions/barycentric.h"
 
 namespace spillway::detail {
 

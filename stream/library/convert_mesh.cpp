@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "src/error.h"
+#include "src/geometry/simplex_name.h"
 #include "src/parallel/parallel.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/meshes/opened_mesh.h"

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <memory>
 #include <optional>
-#include <utility>
 
 #include "src/error.h"
 #include "stream/library/context/context_state.h"

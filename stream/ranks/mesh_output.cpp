@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "formats/bytes/bytes.h"
-#include "formats/disk/extension.h"
 #include "formats/disk/unfinished_files.h"
 #include "formats/meshes/common/mesh_block.h"
 #include "formats/meshes/create_mesh.h"
@@ -24,7 +23,7 @@
 #include "formats/meshes/spm/spm_reader.h"
 #include "formats/meshes/spooled_mesh_writer.h"
 #include "src/error.h"
-#include "stream/ranks/collective_step.h"
+#include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/part_files.h"
 #include "stream/ranks/stream_sections.h"
 

@@ -14,7 +14,7 @@
 #include "formats/meshes/spm/spm_encoding.h"
 #include "formats/meshes/spool/spm_section.h"
 #include "stream/output/open_facets.h"
-#include "stream/ranks/collective_step.h"
+#include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/part_file_numbers.h"
 
 namespace spillway::detail {

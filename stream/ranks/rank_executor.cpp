@@ -5,13 +5,14 @@
 #include <utility>
 
 #include "src/error.h"
+#include "src/geometry/simplex_name.h"
 #include "src/parallel/parallel.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/meshes/mesh_file.h"
 #include "stream/library/products/dem_file.h"
 #include "stream/library/run.h"
 #include "stream/pipeline.h"
-#include "stream/ranks/collective_step.h"
+#include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/mesh_output.h"
 #include "stream/ranks/rank_pipeline.h"
 #include "stream/ranks/raster_merge.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "stream/ranks/messages.h"
+#include "stream/ranks/exchange/messages.h"
 
 namespace spillway::detail {
 

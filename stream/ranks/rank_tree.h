@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "src/distributed/ranks.h"
-#include "stream/ranks/rank_division.h"
+#include "stream/ranks/exchange/rank_division.h"
 #include "stream/tiles/tile_tree.h"
 #include "stream/triangulate/tile_triangulation.h"
 

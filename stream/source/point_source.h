@@ -19,7 +19,7 @@
 #include "stream/source/point_stream.h"
 #include "stream/source/source_coordinates.h"
 #include "stream/source/source_facts.h"
-#include "stream/source/thinning.h"
+#include "stream/source/thinning/thinning.h"
 #include "stream/tiles/point_feed.h"
 
 namespace spillway::detail {

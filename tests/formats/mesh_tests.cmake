@@ -1,6 +1,7 @@
 spillway_test(format_tables_test unit
   SOURCES
     formats/inputs/first_bytes_test.cpp
+    formats/inputs/input_list_test.cpp
     formats/meshes/mesh_formats_test.cpp
     formats/points/point_formats_test.cpp
   LIBS spillway_formats fmt::fmt)

@@ -21,11 +21,11 @@ spillway_test(stream_fault_test fault
 
 spillway_test(point_input_test unit
   SOURCES stream/source/common_lattice_test.cpp stream/source/header_survey_test.cpp
-          stream/source/input_crs_test.cpp stream/source/input_list_test.cpp
+          stream/source/input_crs_test.cpp
           stream/source/ordered_blocks_test.cpp stream/source/piece_sequence_test.cpp
-          stream/source/point_filter_test.cpp stream/source/point_runs_test.cpp
+          stream/source/point_filter_test.cpp stream/source/thinning/point_runs_test.cpp
           stream/source/point_source_test.cpp stream/source/source_coordinates_test.cpp
-          stream/source/source_facts_test.cpp stream/source/thinning_test.cpp
+          stream/source/source_facts_test.cpp stream/source/thinning/thinning_test.cpp
   LIBS spillway_stream fmt::fmt)
 
 spillway_test(dem_test property
@@ -40,14 +40,14 @@ spillway_mpi_test(rank_pipeline_test
   TIMEOUT 600)
 
 spillway_test(rank_messages_test unit
-  SOURCES stream/ranks/messages_test.cpp stream/ranks/part_file_numbers_test.cpp
+  SOURCES stream/ranks/exchange/messages_test.cpp stream/ranks/part_file_numbers_test.cpp
   LIBS spillway_stream_ranks)
 
 spillway_mpi_test(rank_unit_test
-  SOURCES stream/ranks/part_files_test.cpp stream/ranks/piece_table_test.cpp
-          stream/ranks/point_exchange_test.cpp stream/ranks/rank_tree_test.cpp
+  SOURCES stream/ranks/part_files_test.cpp stream/ranks/exchange/piece_table_test.cpp
+          stream/ranks/exchange/point_exchange_test.cpp stream/ranks/rank_tree_test.cpp
           stream/ranks/raster_merge_test.cpp stream/ranks/stream_sections_test.cpp
-          stream/ranks/collective_step_test.cpp
+          stream/ranks/exchange/collective_step_test.cpp
   LIBS spillway_stream_ranks
   RANKS 1 2 3 5
   TIMEOUT 300)

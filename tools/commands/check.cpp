@@ -10,6 +10,7 @@
 #include "formats/meshes/mesh_formats.h"
 #include "formats/points/point_formats.h"
 #include "src/geometry/canonical_hash.h"
+#include "src/geometry/simplex_name.h"
 #include "src/parallel/most_threads.h"
 #include "tools/commands/command.h"
 #include "tools/options/command_options.h"
@@ -111,8 +112,8 @@ std::string text_report(const Outcome& outcome, const CheckCommandOptions& optio
         fmt::join(rounding_formats(), ", "));
   }
   text += fmt::format("{} vertices, {} {}, {} hull facets, hash {}\n", report.vertices,
-                      report.simplices, outcome.dimension == 2 ? "triangles" : "tetrahedra",
-                      report.hull_facets, hash_to_hex(report.canonical_hash));
+                      report.simplices, simplices_of(outcome.dimension), report.hull_facets,
+                      hash_to_hex(report.canonical_hash));
   return text + fmt::format("{}: {} Delaunay triangulation of {}\n", printable(options.mesh),
                             report.fault_count > 0 ? "NOT the"
                             : options.any_delaunay ? "proved to be a"

@@ -8,13 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "formats/disk/output_check.h"
 #include "formats/vectors/vector_formats.h"
 #include "tools/commands/command.h"
+#include "tools/commands/run_statistics.h"
 #include "tools/commands/terrain_input.h"
 #include "tools/options/command_options.h"
-#include "tools/report/json_text.h"
-#include "tools/report/statistics.h"
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
@@ -67,23 +65,17 @@ void say(const ContourCommandOptions& options, const Report& report, const Conto
 int run(const ContourCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const spillway::ContourOptions how = contour_options(options);
-  if (!options.stats_path.empty()) check_can_create(disk(), options.stats_path);
+  check_statistics_file(options, options.output, "the lines");
   Progress progress = make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   const Context context = terrain_context(options, progress);
   const auto contours = create_contours(options.output, how, context);
   const Report report = send_terrain(options, *contours, context);
-  const RunFacts facts{
-      .inputs = options.inputs,
-      .output = options.output,
-      .memory_limit = context.memory(),
-      .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+  const RunFacts facts = facts_of_run(options, options.output, context, start);
   say(options, report, contours->report(), facts, progress);
-  if (options.stats_path.empty()) return kExitDone;
-  Json json = to_json(report, facts);
-  json["contours"] = {{"lines", contours->report().lines},
+  const Json lines = {{"lines", contours->report().lines},
                       {"points", contours->report().points},
                       {"spilled_bytes", contours->report().spilled_bytes}};
-  write_text(options.stats_path, json_text(json, 2) + "\n");
+  write_statistics(options, report, facts, {{"contours", lines}});
   return kExitDone;
 }
 

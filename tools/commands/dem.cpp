@@ -6,13 +6,11 @@
 #include <memory>
 #include <string>
 
-#include "formats/disk/output_check.h"
 #include "src/runtime/memory_budget.h"
 #include "tools/commands/command.h"
 #include "tools/commands/dem_options.h"
+#include "tools/commands/run_statistics.h"
 #include "tools/process/rank_job.h"
-#include "tools/report/json_text.h"
-#include "tools/report/statistics.h"
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
@@ -57,28 +55,16 @@ Json raster_json(const DemReport& raster) {
 
 int run(const DemCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  if (options.output == options.stats_path) {
-    throw UsageError("the raster and --stats cannot go to the same place: " + options.output);
-  }
   const spillway::DemOptions how = dem_options(options);
-  if (!options.stats_path.empty() && is_first_rank()) {
-    check_can_create(disk(), options.stats_path);
-  }
+  check_statistics_file(options, options.output, "the raster");
   Progress progress = make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   const Context context = terrain_context(options, progress);
   const auto dem = create_dem(options.output, how, context);
   const Report report = send_terrain(options, *dem, context);
   if (!is_first_rank()) return kExitDone;
-  const RunFacts facts{
-      .inputs = options.inputs,
-      .output = options.output,
-      .memory_limit = context.memory(),
-      .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+  const RunFacts facts = facts_of_run(options, options.output, context, start);
   say(options, report, dem->report(), facts, progress);
-  if (options.stats_path.empty()) return kExitDone;
-  Json json = to_json(report, facts);
-  json["raster"] = raster_json(dem->report());
-  write_text(options.stats_path, json_text(json, 2) + "\n");
+  write_statistics(options, report, facts, {{"raster", raster_json(dem->report())}});
   return kExitDone;
 }
 

@@ -10,12 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "formats/disk/output_check.h"
+#include "src/geometry/simplex_name.h"
 #include "tools/commands/command.h"
+#include "tools/commands/run_statistics.h"
 #include "tools/commands/terrain_input.h"
 #include "tools/options/command_options.h"
-#include "tools/report/json_text.h"
-#include "tools/report/statistics.h"
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
@@ -83,11 +82,8 @@ void check_outputs(const RenderCommandOptions& options) {
   if (options.output == "-" && ::isatty(STDOUT_FILENO) != 0) {
     throw UsageError("a picture cannot go to a terminal: name a file, or pipe it on");
   }
-  if (options.output == options.stats_path) {
-    throw UsageError("the picture and --stats cannot go to the same place: " + options.output);
-  }
   check_duplicates(options, options.dimension);
-  if (!options.stats_path.empty()) check_can_create(disk(), options.stats_path);
+  check_statistics_file(options, options.output, "the picture");
 }
 
 void say(const RenderCommandOptions& options, const Report& report, const PictureReport& picture,
@@ -99,8 +95,7 @@ void say(const RenderCommandOptions& options, const Report& report, const Pictur
                                                    : "give a larger --size"));
   }
   progress.say(fmt::format("{} vertices, {} {}; {} x {} pixels, {}, {:.2f} s", report.mesh.vertices,
-                           report.mesh.simplices,
-                           report.dimension == 2 ? "triangles" : "tetrahedra", picture.columns,
+                           report.mesh.simplices, simplices_of(report.dimension), picture.columns,
                            picture.rows, picture.description, facts.seconds));
 }
 
@@ -112,16 +107,10 @@ int run(const RenderCommandOptions& options) {
   const Context context = terrain_context(options, progress);
   const auto picture = create_picture(options.output, how, context);
   const Report report = send_terrain(options, *picture, context);
-  const RunFacts facts{
-      .inputs = options.inputs,
-      .output = options.output,
-      .memory_limit = context.memory(),
-      .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+  const RunFacts facts = facts_of_run(options, options.output, context, start);
   say(options, report, picture->report(), facts, progress);
-  if (options.stats_path.empty()) return kExitDone;
-  Json json = to_json(report, facts);
-  json["picture"] = {{"columns", picture->report().columns}, {"rows", picture->report().rows}};
-  write_text(options.stats_path, json_text(json, 2) + "\n");
+  const Json size = {{"columns", picture->report().columns}, {"rows", picture->report().rows}};
+  write_statistics(options, report, facts, {{"picture", size}});
   return kExitDone;
 }
 

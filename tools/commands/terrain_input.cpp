@@ -9,9 +9,9 @@
 #include <filesystem>
 
 #include "formats/meshes/mesh_formats.h"
+#include "src/geometry/simplex_name.h"
 #include "tools/options/command_options.h"
 #include "tools/process/rank_job.h"
-#include "tools/report/statistics.h"
 #include "tools/report/usage_error.h"
 
 namespace spillway::detail {
@@ -88,7 +88,7 @@ void say_what_is_left_out(const TerrainOptions& options, const Report& report, P
   if (report.points.dropped() > 0) progress.say(describe(report.points));
   if (report.left_out == 0) return;
   progress.say(fmt::format("{} {} with an edge longer than {} left out", report.left_out,
-                           report.dimension == 2 ? "triangles" : "tetrahedra", *max_edge(options)));
+                           simplices_of(report.dimension), *max_edge(options)));
 }
 
 }  // namespace spillway::detail

@@ -8,22 +8,21 @@
 #include <string>
 #include <vector>
 
-#include "formats/disk/output_check.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/points/point_formats.h"
 #include "formats/rasters/raster_formats.h"
 #include "formats/vectors/vector_formats.h"
 #include "src/distributed/ranks.h"
 #include "src/geometry/canonical_hash.h"
+#include "src/geometry/simplex_name.h"
 #include "src/runtime/memory_budget.h"
 #include "tools/commands/command.h"
+#include "tools/commands/run_statistics.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 #include "tools/options/triangulation_options.h"
 #include "tools/process/rank_job.h"
-#include "tools/report/json_text.h"
 #include "tools/report/speed_up_estimate.h"
-#include "tools/report/statistics.h"
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
@@ -96,8 +95,7 @@ void say(const TriangulateCommandOptions& options, const Report& report, const R
   }
   progress.say(fmt::format("{} points, {} duplicates, {} vertices, {} {}, hash {}, {:.2f} s",
                            report.mesh.points, report.mesh.duplicates, report.mesh.vertices,
-                           report.mesh.simplices,
-                           report.dimension == 2 ? "triangles" : "tetrahedra",
+                           report.mesh.simplices, simplices_of(report.dimension),
                            hash_to_hex(report.mesh.canonical_hash), facts.seconds));
   const MeshFormat& format = mesh_format(options.output, report.output_format);
   if (const std::string note = rounding_note(format); !note.empty()) progress.say(note);
@@ -144,18 +142,13 @@ void check_options(const TriangulateCommandOptions& options) {
     }
   }
   check_duplicates(options, options.dimension);
-  if (options.output == options.stats_path) {
-    throw UsageError("the mesh and --stats cannot go to the same place: " + options.output);
-  }
   if (options.output_format.empty()) refuse_other_output(options.output);
   // mpirun gives its processes a terminal as standard output, whatever its own is.
   const bool on_terminal = ::isatty(STDOUT_FILENO) != 0 && !distributed::launch().as_ranks;
   if (options.output == "-" && on_terminal && options.output_format.empty()) {
     throw UsageError("a mesh stream cannot go to a terminal: name a file, or pipe it on");
   }
-  if (!options.stats_path.empty() && is_first_rank()) {
-    check_can_create(disk(), options.stats_path);
-  }
+  check_statistics_file(options, options.output, "the mesh");
 }
 
 int run(const TriangulateCommandOptions& options) {
@@ -176,15 +169,11 @@ int run(const TriangulateCommandOptions& options) {
   how.input_index = options.input_index;
   const Report report = triangulate(*points, *mesh, how, context);
   if (!is_first_rank()) return kExitDone;
-  RunFacts facts{
-      .inputs = options.inputs, .output = options.output, .memory_limit = context.memory()};
+  RunFacts facts = facts_of_run(options, options.output, context, start);
   if (options.simulates()) {
     facts.simulated = simulate_cores(report.tasks, parse_core_list(options.core_list));
   }
-  facts.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!options.stats_path.empty()) {
-    write_text(options.stats_path, json_text(to_json(report, facts), 2) + "\n");
-  }
+  write_statistics(options, report, facts);
   say(options, report, facts, progress);
   return kExitDone;
 }

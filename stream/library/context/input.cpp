@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "formats/inputs/input_kind.h"
+#include "formats/inputs/input_list.h"
 #include "src/error.h"
 #include "stream/library/context/context_state.h"
-#include "stream/source/input_list.h"
 
 namespace spillway {
 

@@ -15,11 +15,6 @@
 
 namespace spillway::detail {
 
-/// What the simplices of a mesh are called.
-inline const char* simplices_of(int dimension) {
-  return dimension == 2 ? "triangles" : "tetrahedra";
-}
-
 /// What comes to a sink of the library's own.
 struct MeshStart {
   MeshStreamHeader header;

@@ -6,6 +6,7 @@
 #include "formats/disk/file_system.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_stream_writer.h"
+#include "src/geometry/simplex_name.h"
 #include "stream/library/context/context_state.h"
 
 namespace spillway::detail {

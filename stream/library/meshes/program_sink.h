@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "src/geometry/simplex_name.h"
 #include "stream/library/meshes/engine_sink.h"
 
 namespace spillway::detail {

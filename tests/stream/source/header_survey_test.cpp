@@ -7,8 +7,8 @@
 
 #include "src/error.h"
 #include "tests/faulty_file_system.h"
+#include "tests/formats/inputs/temporary_files.h"
 #include "tests/formats/points/las/las_file.h"
-#include "tests/stream/source/temporary_files.h"
 
 namespace spillway::detail {
 namespace {

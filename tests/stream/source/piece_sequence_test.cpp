@@ -8,7 +8,7 @@
 #include "formats/inputs/open_points.h"
 #include "src/error.h"
 #include "stream/source/header_survey.h"
-#include "tests/stream/source/temporary_files.h"
+#include "tests/formats/inputs/temporary_files.h"
 
 namespace spillway::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "src/geometry/barycentric.h"
+#include "src/geometry/constructions/barycentric.h"
 
 #include <algorithm>
 #include <cmath>

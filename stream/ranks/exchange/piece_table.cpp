@@ -1,4 +1,4 @@
-#include "stream/ranks/piece_table.h"
+#include "stream/ranks/exchange/piece_table.h"
 
 #include <algorithm>
 #include <utility>

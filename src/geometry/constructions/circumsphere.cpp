@@ -1,4 +1,4 @@
-#include "src/geometry/circumsphere.h"
+#include "src/geometry/constructions/circumsphere.h"
 
 #include <algorithm>
 #include <cmath>

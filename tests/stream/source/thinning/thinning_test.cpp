@@ -1,7 +1,7 @@
 // One point a cell, compared with a map of all cells: for every choice, any order of the points,
 // and so little memory that cells go to the disk, several times over.
 
-#include "stream/source/thinning.h"
+#include "stream/source/thinning/thinning.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "stream/source/thinning.h"
+#include "stream/source/thinning/thinning.h"
 
 #include <fmt/format.h>
 

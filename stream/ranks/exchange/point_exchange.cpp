@@ -1,4 +1,4 @@
-#include "stream/ranks/point_exchange.h"
+#include "stream/ranks/exchange/point_exchange.h"
 
 #include <algorithm>
 #include <numeric>

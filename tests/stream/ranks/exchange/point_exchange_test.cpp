@@ -1,7 +1,7 @@
 // Space is divided so that ranks have about as many points, and every point gets to its rank once,
 // with an index that tells its place in the inputs.
 
-#include "stream/ranks/point_exchange.h"
+#include "stream/ranks/exchange/point_exchange.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -14,7 +14,7 @@
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
-#include "stream/source/point_runs.h"
+#include "stream/source/thinning/point_runs.h"
 #include "stream/tiles/point_buffer.h"
 #include "stream/tiles/tile_block.h"
 

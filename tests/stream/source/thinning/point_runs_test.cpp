@@ -1,6 +1,6 @@
 // Sorting on the disk: few and many runs, of any length, with little memory and with much.
 
-#include "stream/source/point_runs.h"
+#include "stream/source/thinning/point_runs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stream/ranks/collective_step.h"
+#include "stream/ranks/exchange/collective_step.h"
 
 #include <cstdint>
 #include <exception>

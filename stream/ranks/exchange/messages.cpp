@@ -1,4 +1,4 @@
-#include "stream/ranks/messages.h"
+#include "stream/ranks/exchange/messages.h"
 
 #include <string>
 #include <utility>

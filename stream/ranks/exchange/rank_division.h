@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "src/distributed/ranks.h"
-#include "stream/ranks/piece_table.h"
+#include "stream/ranks/exchange/piece_table.h"
 #include "stream/tiles/cut_tree.h"
 
 namespace spillway::detail {

@@ -1,13 +1,13 @@
 // Names, folders, patterns and lists become the files that they stand for.
 
-#include "stream/source/input_list.h"
+#include "formats/inputs/input_list.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "src/error.h"
-#include "tests/stream/source/temporary_files.h"
+#include "tests/formats/inputs/temporary_files.h"
 
 namespace spillway::detail {
 namespace {

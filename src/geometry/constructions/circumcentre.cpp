@@ -1,8 +1,8 @@
-#include "src/geometry/circumcentre.h"
+#include "src/geometry/constructions/circumcentre.h"
 
 #include <cmath>
 
-#include "src/geometry/circumsphere.h"
+#include "src/geometry/constructions/circumsphere.h"
 #include "src/geometry/determinants.h"
 
 namespace spillway::detail {

@@ -1,4 +1,4 @@
-#include "stream/source/input_list.h"
+#include "formats/inputs/input_list.h"
 
 #include <fmt/format.h>
 #include <glob.h>

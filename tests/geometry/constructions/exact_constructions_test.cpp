@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "src/error.h"
-#include "src/geometry/barycentric.h"
-#include "src/geometry/circumcentre.h"
+#include "src/geometry/constructions/barycentric.h"
+#include "src/geometry/constructions/circumcentre.h"
 #include "src/geometry/distance.h"
 #include "src/geometry/predicates.h"
 #include "tests/geometry/exact_sphere.h"

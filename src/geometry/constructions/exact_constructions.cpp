@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "src/geometry/barycentric.h"
 #include "src/geometry/big_integer.h"
-#include "src/geometry/circumcentre.h"
+#include "src/geometry/constructions/barycentric.h"
+#include "src/geometry/constructions/circumcentre.h"
 #include "src/geometry/determinants.h"
 #include "src/geometry/distance.h"
 

@@ -1,4 +1,4 @@
-#include "stream/ranks/rank_division.h"
+#include "stream/ranks/exchange/rank_division.h"
 
 #include <algorithm>
 #include <span>

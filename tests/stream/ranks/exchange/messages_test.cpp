@@ -1,6 +1,6 @@
 // What a rank takes out of a message is what another one has put into it.
 
-#include "stream/ranks/messages.h"
+#include "stream/ranks/exchange/messages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,8 +8,8 @@
 
 #include "src/distributed/ranks.h"
 #include "src/runtime/stage_times.h"
-#include "stream/ranks/piece_table.h"
-#include "stream/ranks/rank_division.h"
+#include "stream/ranks/exchange/piece_table.h"
+#include "stream/ranks/exchange/rank_division.h"
 
 namespace spillway::detail {
 

@@ -1,6 +1,6 @@
 // A step that all ranks do: what one meets is what ends the job.
 
-#include "stream/ranks/collective_step.h"
+#include "stream/ranks/exchange/collective_step.h"
 
 #include <gtest/gtest.h>
 

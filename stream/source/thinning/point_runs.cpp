@@ -1,4 +1,4 @@
-#include "stream/source/point_runs.h"
+#include "stream/source/thinning/point_runs.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // Every point of the inputs is in one piece, which at least one rank can fetch.
 
-#include "stream/ranks/piece_table.h"
+#include "stream/ranks/exchange/piece_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

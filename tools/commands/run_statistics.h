@@ -1,0 +1,27 @@
+#pragma once
+// --stats of the subcommands that triangulate points.
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+#include "formats/bytes/json.h"
+#include "tools/options/triangulation_options.h"
+#include "tools/report/statistics.h"
+
+namespace spillway::detail {
+
+/// Throws UsageError if --stats would go where the run's output goes, which messages call
+/// `product`, and Error if its file cannot be made.
+void check_statistics_file(const TriangulationOptions& options, const std::string& output,
+                           std::string_view product);
+
+/// What there is to tell of a run that began at `start` and has just ended.
+RunFacts facts_of_run(const TriangulationOptions& options, const std::string& output,
+                      const Context& context, std::chrono::steady_clock::time_point start);
+
+/// Writes the file of --stats, if it is asked for: the report, and what `product` has besides.
+void write_statistics(const TriangulationOptions& options, const Report& report,
+                      const RunFacts& facts, const Json& product = Json::object());
+
+}  // namespace spillway::detail
