@@ -33,13 +33,14 @@ normalise() {
     -e 's#peak memory [0-9]+ bytes#peak memory 0 bytes#'
 }
 
-# A file's content, likewise: a record of a batch and figures of --stats without times, a Shapefile's table without its
-# date.
+# A file's content, likewise: a record of a batch without times, figures of --stats without those that depend on the
+# machine or on the pace of threads, a Shapefile's table without its date.
 content() {
   case "$1" in
     *.dbf) tail -c +5 "$1" ;;
     *.status.json) sed -E -e 's#"(changed|seconds)": [0-9.e+-]+#"\1": 0#' "$1" | normalise ;;
-    *.stats.json) sed -E -e 's#(: *)[0-9]+\.[0-9e.+-]+#\10#; s#"(peak_rss_bytes|memory_limit)": [0-9]+#"\1": 0#' "$1" ;;
+    *.stats.json) sed -E -e 's#(: *)[0-9]+(\.|e-)[0-9e.+-]+#\10#' \
+      -e 's#"(peak_rss_bytes|memory_limit|border_(simplices|bytes))": [0-9]+#"\1": 0#' "$1" ;;
     *.log) normalise < "$1" ;;
     *) cat "$1" ;;
   esac
