@@ -46,6 +46,7 @@ spillway_test(rank_messages_test unit
 spillway_mpi_test(rank_unit_test
   SOURCES stream/ranks/part_files_test.cpp stream/ranks/exchange/piece_table_test.cpp
           stream/ranks/exchange/point_exchange_test.cpp stream/ranks/rank_tree_test.cpp
+          stream/ranks/exchange/rank_division_test.cpp stream/ranks/shared_report_test.cpp
           stream/ranks/raster_merge_test.cpp stream/ranks/stream_sections_test.cpp
           stream/ranks/exchange/collective_step_test.cpp
   LIBS spillway_stream_ranks

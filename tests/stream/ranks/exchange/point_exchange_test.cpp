@@ -1,13 +1,10 @@
-// Space is divided so that ranks have about as many points, and every point gets to its rank once,
-// with an index that tells its place in the inputs.
+// Every point gets to its rank once, with an index that tells its place in the inputs.
 
 #include "stream/ranks/exchange/point_exchange.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "src/distributed/packing.h"
 #include "tests/stream/ranks/shared_inputs.h"
@@ -16,8 +13,6 @@ namespace spillway::detail::testing {
 namespace {
 
 using distributed::world;
-using ::testing::Each;
-using ::testing::ElementsAre;
 
 /// Points on their way from inputs to ranks.
 struct Road {
@@ -35,58 +30,6 @@ int rank_of(const RankDivision& division, const LatticePoint& point) {
   std::uint32_t tile = 0;
   division.cuts.find_tiles(std::span(&point, 1), std::span(&tile, 1));
   return division.rank_of_tile.at(tile);
-}
-
-/// All ranks have the same bytes.
-bool same_everywhere(std::span<const std::byte> bytes) {
-  const auto all = world().gather(bytes);
-  return std::all_of(all.begin(), all.end(), [&all](const auto& one) { return one == all[0]; });
-}
-
-TEST(RankDivision, GivesAllRanksAboutAsManyPoints) {
-  const SharedFolder folder;
-  const auto points = points_of_seed(100'000, 1);
-  const Road road(write_inputs(folder, points, 2, "npy"));
-  const auto ranks = static_cast<std::size_t>(world().size());
-  std::vector<int> sorted = road.division.rank_of_tile;
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<int> expected(ranks);
-  std::iota(expected.begin(), expected.end(), 0);
-  EXPECT_EQ(sorted, expected) << "a tile for each rank";
-  std::vector<int> rank_of_point;
-  std::vector<double> share(ranks);
-  for (const LatticePoint& point : points) {
-    rank_of_point.push_back(rank_of(road.division, point));
-    share[static_cast<std::size_t>(rank_of_point.back())] +=
-        static_cast<double>(ranks) / static_cast<double>(points.size());
-  }
-  EXPECT_THAT(share, Each(::testing::DoubleNear(1, 0.05)));
-  EXPECT_TRUE(same_everywhere(std::as_bytes(std::span(rank_of_point))));
-  world().barrier();
-}
-
-TEST(RankDivision, NumbersRanksInTheOrderOfTheTree) {
-  const SharedFolder folder;
-  const Road road(write_inputs(folder, points_of_seed(5000, 2), 1, "npy"));
-  std::vector<int> ranks;
-  const CutTree& cuts = road.division.cuts;
-  const auto walk = [&](const auto& self, CutTree::NodeRef place) -> void {
-    if (CutTree::is_tile(place)) {
-      ranks.push_back(road.division.rank_of_tile[CutTree::tile_at(place)]);
-      return;
-    }
-    for (const CutTree::NodeRef side : cuts.sides(place)) self(self, side);
-  };
-  walk(walk, cuts.root());
-  EXPECT_TRUE(std::is_sorted(ranks.begin(), ranks.end()));
-  world().barrier();
-}
-
-TEST(RankDivision, OfEqualPointsIsOneTile) {
-  const SharedFolder folder;
-  const Road road(write_inputs(folder, std::vector<LatticePoint>(100, {1, 2, 3}), 1, "npy"));
-  EXPECT_THAT(road.division.rank_of_tile, ElementsAre(0));
-  world().barrier();
 }
 
 struct Arrivals {
