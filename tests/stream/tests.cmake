@@ -65,3 +65,13 @@ spillway_test(stream_library_test unit
           stream/library/misuse_test.cpp stream/library/products_test.cpp stream/library/public_points_test.cpp
           stream/library/triangulate_test.cpp stream/library/whole_mesh_test.cpp
   LIBS spillway_stream spillway_library)
+
+spillway_test(stream_library_unit_test unit
+  SOURCES stream/library/context/context_state_test.cpp stream/library/context/run_watch_test.cpp
+          stream/library/meshes/engine_sink_test.cpp stream/library/meshes/mesh_file_test.cpp
+          stream/library/meshes/opened_mesh_test.cpp stream/library/meshes/program_mesh_test.cpp
+          stream/library/meshes/program_sink_test.cpp stream/library/meshes/public_values_test.cpp
+          stream/library/points/generated_points_test.cpp
+          stream/library/points/lattice_rounding_test.cpp
+          stream/library/points/lost_fields_test.cpp stream/library/points/program_points_test.cpp
+  LIBS spillway_stream)
