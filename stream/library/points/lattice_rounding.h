@@ -22,8 +22,8 @@ struct LatticeChoice {
 
 /// The lattice of a choice. What it leaves open comes from `source` (the lattice that the points
 /// have), if there is one; else the scale is 1e-7 for x and y that can be degrees and 0.001
-/// otherwise, and the offset 0 where the points of `extent` are 32-bit integers then, otherwise a
-/// round number near their centre.
+/// otherwise, and the offset 0 where the points of `extent` are below 2^30 steps from it then, so
+/// that there is room in 32 bits for points beyond, otherwise a round number near their centre.
 Lattice chosen_lattice(const LatticeChoice& choice, const std::optional<Lattice>& source,
                        const Box<3>& extent);
 
