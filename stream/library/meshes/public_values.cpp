@@ -62,7 +62,7 @@ MeshStreamHeader stream_header(const spillway::MeshHeader& header) {
   stream.dimension = header.dimension;
   stream.has_input_index = header.has_input_index;
   stream.points = header.points;
-  if (header.extent) stream.extent = Box<3>{header.extent->low, header.extent->high};
+  stream.extent = told_box(header.extent, "a mesh");
   stream.crs = header.crs;
   return stream;
 }
@@ -85,11 +85,6 @@ spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& blo
 ProgramBlocks::ProgramBlocks(const spillway::MeshHeader& header) : header_(stream_header(header)) {
   if (header.dimension != 2 && header.dimension != 3) {
     throw InvalidArgument(fmt::format("a mesh has 2 or 3 dimensions, not {}", header.dimension));
-  }
-  if (!header_.extent) return;
-  for (int k = 0; k < 3; ++k) {
-    if (std::isfinite(header_.extent->lo[k]) && std::isfinite(header_.extent->hi[k])) continue;
-    throw InvalidArgument("the header of a mesh tells an extent that is not finite");
   }
 }
 

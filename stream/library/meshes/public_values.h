@@ -11,6 +11,7 @@
 namespace spillway::detail {
 
 spillway::MeshHeader public_header(const MeshStreamHeader& header);
+/// Throws Error(kInvalidArgument) for an extent that cannot be.
 MeshStreamHeader stream_header(const spillway::MeshHeader& header);
 
 /// A block in output coordinates and stream numbers, where `first_vertex` vertices come before it.

@@ -166,7 +166,7 @@ PointConversion PointFile::complete() {
 void PointFile::begin(const PointsHeader& header) {
   RunPoints points;
   points.has_heights = header.coordinates != 2;
-  if (header.extent) points.extent = Box<3>{header.extent->low, header.extent->high};
+  points.extent = checked_box(header);
   points.crs = header.crs;
   start(points);
 }

@@ -12,13 +12,7 @@
 namespace spillway::detail {
 
 ProgramPoints::ProgramPoints(spillway::PointSource& source)
-    : source_(source), header_(source.header()) {
-  if (header_.coordinates != 2 && header_.coordinates != 3) {
-    throw InvalidArgument(
-        fmt::format("points have 2 or 3 coordinates, not {}", header_.coordinates));
-  }
-  if (header_.extent) extent_ = Box<3>{header_.extent->low, header_.extent->high};
-}
+    : source_(source), header_(source.header()), extent_(checked_box(header_)) {}
 
 void refuse_taken_points(bool is_taken) {
   if (is_taken) throw InvalidArgument("the points have been read: open them again");

@@ -1,5 +1,11 @@
 #include "stream/library/points/public_points.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "src/error.h"
+
 namespace spillway::detail {
 
 std::vector<Point<3>> public_points(const std::optional<Lattice>& lattice,
@@ -15,6 +21,31 @@ std::vector<LatticePoint> points_without_lattice(std::span<const Point<3>> point
   taken.reserve(points.size());
   for (const Point<3>& point : points) taken.emplace_back(point);
   return taken;
+}
+
+std::optional<Box<3>> told_box(const std::optional<Extent>& extent, const char* what) {
+  if (!extent) return std::nullopt;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = extent->low[axis];
+    const double high = extent->high[axis];
+    if (!std::isfinite(low) || !std::isfinite(high)) {
+      throw InvalidArgument(
+          fmt::format("the header of {} tells an extent that is not finite", what));
+    }
+    if (low > high) {
+      throw InvalidArgument(fmt::format("the header of {} tells an extent from {} to {} in {}",
+                                        what, low, high, "xyz"[axis]));
+    }
+  }
+  return Box<3>{extent->low, extent->high};
+}
+
+std::optional<Box<3>> checked_box(const PointsHeader& header) {
+  if (header.coordinates != 2 && header.coordinates != 3) {
+    throw InvalidArgument(
+        fmt::format("points have 2 or 3 coordinates, not {}", header.coordinates));
+  }
+  return told_box(header.extent, "points");
 }
 
 }  // namespace spillway::detail

@@ -2,10 +2,13 @@
 // Points of the engine from and to those of a program, which are plain numbers in output
 // coordinates.
 
+#include <spillway/points.h>
+
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 
 namespace spillway::detail {
@@ -16,5 +19,12 @@ std::vector<Point<3>> public_points(const std::optional<Lattice>& lattice,
 
 /// A program's points as those of a source or stream without a lattice.
 std::vector<LatticePoint> points_without_lattice(std::span<const Point<3>> points);
+
+/// The box that a program tells of `what` ("points", "a mesh"), if it does. Throws
+/// Error(kInvalidArgument) unless all numbers are finite and low is nowhere above high.
+std::optional<Box<3>> told_box(const std::optional<Extent>& extent, const char* what);
+
+/// The same of points. Throws likewise for a header of other than 2 or 3 coordinates.
+std::optional<Box<3>> checked_box(const PointsHeader& header);
 
 }  // namespace spillway::detail

@@ -10,6 +10,7 @@
 #include <spillway/picture.h>
 #include <spillway/triangulate.h>
 
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -91,6 +92,28 @@ TEST_F(Misuse, BlocksThatCannotBeAreRefusedByEverySink) {
   expect_refused([](Square& mesh) { mesh.totals_.vertices = 7; }, "other totals");
   EXPECT_FALSE(fs::exists(file("a.ply")));
   EXPECT_FALSE(fs::exists(file("a.png")));
+}
+
+/// Of points whose header tells that: no file is made, as none that told it could be read.
+TEST_F(Misuse, AnExtentOfPointsThatCannotBeIsRefused) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::vector<Extent> wrong = {
+      {{0, 0, 0}, {1, kInfinity, 1}}, {{0, 0, std::nan("")}, {1, 1, 1}}, {{0, 1, 0}, {1, 0, 1}}};
+  for (const Extent& extent : wrong) {
+    const std::vector<Point<3>> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    OwnPoints to_mesh(points, {.extent = extent});
+    const auto mesh = create_mesh(file("a.spm"), {}, context_);
+    EXPECT_EQ(code_of([&] { triangulate(to_mesh, *mesh, {}, context_); }),
+              ErrorCode::kInvalidArgument);
+    OwnPoints to_points(points, {.extent = extent});
+    const auto copied = create_points(file("a.spp"), {}, context_);
+    EXPECT_EQ(code_of([&] { convert(to_points, *copied, context_); }), ErrorCode::kInvalidArgument);
+    const auto written = create_points(file("a.las"), {}, context_);
+    EXPECT_EQ(code_of([&] { written->begin({.extent = extent}); }), ErrorCode::kInvalidArgument);
+  }
+  const auto written = create_points(file("a.las"), {}, context_);
+  EXPECT_EQ(code_of([&] { written->begin({.coordinates = 4}); }), ErrorCode::kInvalidArgument);
+  for (const char* const name : {"a.spm", "a.spp", "a.las"}) EXPECT_FALSE(fs::exists(file(name)));
 }
 
 TEST_F(Misuse, TotalsThatAreNotToldAreCounted) {

@@ -221,10 +221,12 @@ TEST(ProgramBlocks, RefuseAHeaderThatCannotBe) {
     header.extent->high = {0, 0, 0};
   })) << "a box may be a point";
   const std::vector<std::function<void(spillway::MeshHeader&)>> wrong = {
-      [](auto& header) { header.dimension = 1; }, [](auto& header) { header.dimension = 4; },
+      [](auto& header) { header.dimension = 1; },
+      [](auto& header) { header.dimension = 4; },
       [](auto& header) { header.extent->low[0] = -kInfinity; },
       [](auto& header) { header.extent->high[2] = kInfinity; },
-      [](auto& header) { header.extent->high[1] = std::nan(""); }};
+      [](auto& header) { header.extent->high[1] = std::nan(""); },
+      [](auto& header) { header.extent->low[1] = 2; }};
   for (std::size_t w = 0; w < wrong.size(); ++w) {
     const auto error = error_of_header(wrong[w]);
     ASSERT_TRUE(error) << "header " << w;

@@ -127,7 +127,13 @@ TEST(ProgramPoints, RefuseAHeaderThatCannotBe) {
     Blocks source({}, header);
     return thrown_by([&] { const ProgramPoints points(source); });
   };
-  const std::vector<PointsHeader> wrong = {{.coordinates = 1}, {.coordinates = 4}};
+  EXPECT_FALSE(error_of({.extent = Extent{{0, 0, 0}, {1, 1, 0}}}));
+  const double nan = std::nan("");
+  const std::vector<PointsHeader> wrong = {{.coordinates = 1},
+                                           {.coordinates = 4},
+                                           {.extent = Extent{{0, nan, 0}, {1, 1, 1}}},
+                                           {.extent = Extent{{0, 0, 0}, {1, 1, nan}}},
+                                           {.extent = Extent{{0, 2, 0}, {1, 1, 1}}}};
   for (std::size_t w = 0; w < wrong.size(); ++w) {
     const auto error = error_of(wrong[w]);
     ASSERT_TRUE(error) << "header " << w;
