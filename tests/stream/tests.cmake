@@ -60,10 +60,11 @@ spillway_mpi_test(rank_output_test
   TIMEOUT 300)
 
 spillway_test(stream_library_test unit
-  SOURCES stream/library/check_test.cpp stream/library/convert_points_test.cpp stream/library/generate_test.cpp
-          stream/library/info_test.cpp stream/library/point_comparison_test.cpp
-          stream/library/misuse_test.cpp stream/library/products_test.cpp stream/library/public_points_test.cpp
-          stream/library/triangulate_test.cpp stream/library/whole_mesh_test.cpp
+  SOURCES stream/library/convert_points_test.cpp stream/library/generate_test.cpp
+          stream/library/misuse_test.cpp stream/library/triangulate_test.cpp
+          stream/library/products/check_test.cpp stream/library/products/info_test.cpp
+          stream/library/products/point_comparison_test.cpp
+          stream/library/products/products_test.cpp
   LIBS spillway_stream spillway_library)
 
 spillway_test(stream_library_unit_test unit
@@ -71,7 +72,10 @@ spillway_test(stream_library_unit_test unit
           stream/library/meshes/engine_sink_test.cpp stream/library/meshes/mesh_file_test.cpp
           stream/library/meshes/opened_mesh_test.cpp stream/library/meshes/program_mesh_test.cpp
           stream/library/meshes/program_sink_test.cpp stream/library/meshes/public_values_test.cpp
+          stream/library/meshes/whole_mesh_test.cpp
           stream/library/points/generated_points_test.cpp
           stream/library/points/lattice_rounding_test.cpp
-          stream/library/points/lost_fields_test.cpp stream/library/points/program_points_test.cpp
+          stream/library/points/lost_fields_test.cpp stream/library/points/point_file_test.cpp
+          stream/library/points/program_points_test.cpp
+          stream/library/points/public_points_test.cpp
   LIBS spillway_stream)
