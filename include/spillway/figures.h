@@ -82,6 +82,34 @@ struct Task {
   [[nodiscard]] SPILLWAY_API double total_seconds() const;
 };
 
+/// A node of the tree over tiles that is done: a tile, or a merge of tiles.
+struct TaskNode {
+  std::uint32_t number = 0;               ///< in post-order, from 0; the last is the root
+  std::uint32_t level = 0;                ///< merges of tiles below it, at most; 0: a tile
+  std::vector<std::uint32_t> children{};  ///< their numbers, in order; none of a tile
+  Task task{};  ///< of a tile with all its parts; of a merge without its `children`
+};
+
+/// What the levels of a TaskSum count.
+enum class TaskScope : std::uint8_t {
+  kInTile,        ///< 0: leaves of a tile; above, its merges by their height over the leaves
+  kBetweenTiles,  ///< 1 and more: merges of tiles by their height over the tiles
+  kBetweenRanks,  ///< 1 and more: merges of ranks
+};
+
+/// The tasks of one kind at one level, all together. A step counts at the level of the part whose
+/// step it is, with all tasks below it: at the levels of merges a base case is one of a border's
+/// triangulation, and a tile is divided at its highest level.
+struct TaskSum {
+  TaskScope scope = TaskScope::kInTile;
+  std::uint32_t level = 0;
+  TaskKind kind = TaskKind::kNode;
+  std::uint64_t tasks = 0;   ///< how many
+  std::uint64_t points = 0;  ///< and so on: the sums of their members
+  double seconds = 0;
+  std::uint64_t grains = 0;
+};
+
 /// The time that the tasks would take on `cores` cores, under a greedy schedule: a core that falls
 /// free takes the deepest piece that is ready, as work-stealing does. Durations as measured; moving
 /// data costs nothing.
@@ -91,6 +119,13 @@ SPILLWAY_API double greedy_makespan(const Task& root, unsigned cores);
 struct StageSeconds {
   std::string_view stage;  ///< "read", "deal", "leaves", "merge", ...
   double seconds = 0;
+};
+
+/// Tiles by the longest side of the box around their points, compared with the shortest one.
+struct TileShapes {
+  std::uint64_t up_to_twice = 0;
+  std::uint64_t up_to_4_times = 0;  ///< but more than twice
+  std::uint64_t longer = 0;
 };
 
 /// What triangulating was like, of a run or of one of its ranks.
@@ -110,12 +145,13 @@ struct RunFigures {
   std::uint64_t retriangulated = 0;             ///< points in triangulations of borders
   std::uint64_t border_simplices = 0;           ///< most that were in memory at a time
   std::uint64_t border_bytes = 0;               ///< likewise
-  std::uint64_t divided_points = 0;             ///< of tiles that were divided again, each time
+  std::uint64_t divided_points = 0;             ///< dealt once more after they were written
+  TileShapes tile_shapes;
   double read_seconds = 0;                      ///< wall time of reading and dealing
   double divide_seconds = 0;                    ///< wall time of dividing tiles again
   double triangulate_seconds = 0;               ///< likewise, with all writing but the last
   std::vector<StageSeconds> stages{};
-  Task tasks{};
+  std::vector<TaskSum> task_sums{};  ///< by scope, level and kind
 };
 
 /// A merge between two ranks.

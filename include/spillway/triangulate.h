@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 namespace spillway {
@@ -27,6 +28,10 @@ struct TriangulateOptions {
   Division division = Division::kLongestExtent;
   unsigned children = 2;  ///< parts that are merged at a time, 2 to 1024
   Kernel kernel = Kernel::kSpillway;
+  /// If set, is told each node of the tree over tiles when it is done, children before parents and
+  /// else in any order: by the run's threads, one at a time. What it throws ends the run. Not for
+  /// runs over ranks.
+  std::function<void(TaskNode node)> task_done{};
 };
 
 /// Triangulates all points of the source and gives the mesh to the sink as it comes: simplices that

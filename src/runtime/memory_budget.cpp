@@ -70,11 +70,13 @@ void MemoryBudget::take(std::uint64_t bytes, const char* purpose) {
     const double mebibytes = std::floor(static_cast<double>(least) * parts / kMiB) + 1;
     return static_cast<std::uint64_t>(mebibytes) << 20;
   };
-  const std::uint64_t perhaps = used + used / 4;
   ErrorFacts facts;
   facts.remedy = Remedy::kMemory;
-  if (enough_ >= used) facts.enough = whole_mebibytes(enough_);
-  if (enough_ > perhaps || enough_ < used) facts.perhaps = whole_mebibytes(perhaps);
+  const bool known = enough_ >= used;
+  if (known) facts.enough = whole_mebibytes(enough_);
+  const std::uint64_t estimate = estimate_ ? estimate_(used - bytes, bytes) : 0;
+  const std::uint64_t perhaps = std::max(estimate, used + used / 4);
+  if (!known || (estimate > 0 && perhaps < enough_)) facts.perhaps = whole_mebibytes(perhaps);
   throw Error(fmt::format("{} of memory are too little for {}", memory_size_text(whole_), purpose),
               ErrorCode::kOutOfBudget, std::move(facts));
 }

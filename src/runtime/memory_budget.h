@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -28,10 +29,19 @@ class MemoryBudget {
   MemoryBudget(std::uint64_t limit, std::uint64_t whole) : limit_(limit), whole_(whole) {}
 
   [[nodiscard]] std::uint64_t limit() const { return limit_; }
+  /// What the user gave, of which limit() is a part.
+  [[nodiscard]] std::uint64_t whole() const { return whole_; }
   [[nodiscard]] std::uint64_t used() const { return used_; }
 
   /// Tells how much is enough for the run whatever it meets, for errors to name it.
   void set_enough(std::uint64_t bytes) { enough_ = bytes; }
+
+  /// Sets what a refusal asks how much will do as things look: a function of the bytes in use and
+  /// of those that are refused; 0 if it cannot tell. To be set while nobody takes anything.
+  void set_estimate(
+      std::function<std::uint64_t(std::uint64_t used, std::uint64_t refused)> estimate) {
+    estimate_ = std::move(estimate);
+  }
 
   /// For holders whose size changes; where it will do a MemoryLease is better. take() throws Error
   /// as that does.
@@ -42,6 +52,7 @@ class MemoryBudget {
   const std::uint64_t limit_;
   const std::uint64_t whole_;
   std::atomic<std::uint64_t> enough_ = 0;
+  std::function<std::uint64_t(std::uint64_t, std::uint64_t)> estimate_;
   std::atomic<std::uint64_t> used_ = 0;
 };
 

@@ -38,6 +38,7 @@ StreamOptions stream_options(const TriangulateOptions& options, const Context& c
   stream.heights = options.heights;
   stream.max_edge = options.max_edge;
   stream.input_index = options.input_index;
+  stream.task_done = options.task_done;
   stream.extent_known = [&sink](const Box<2>& extent, std::uint64_t points) {
     sink.extent_known(extent, points);
   };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "src/error.h"
 
@@ -46,6 +47,12 @@ constexpr double kTileShare = 0.4;
 constexpr double kWaitingShare = 0.1;
 constexpr std::size_t kBufferedPointBytes = 24;
 
+/// Batches of points: raw, and dealt.
+constexpr double kBatchesShare = 0.35;
+constexpr std::size_t kBatchBytes = 65'536 * 58;
+constexpr std::size_t kLeastBatches = 3;
+constexpr std::size_t kMostBatches = 6;
+
 const Costs& costs_of(int dimension) { return dimension == 2 ? kPlane : kSpace; }
 
 std::size_t share(std::uint64_t limit, double part, std::size_t bytes_each) {
@@ -54,13 +61,17 @@ std::size_t share(std::uint64_t limit, double part, std::size_t bytes_each) {
 
 }  // namespace
 
-MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads) {
+MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads,
+                       std::uint64_t whole) {
   const Costs& costs = costs_of(dimension);
   if (limit < costs.least_limit) {
-    throw TooSmallLimit(
-        fmt::format("the memory limit is too small: {} MiB are the least that will do{}",
-                    costs.least_limit / kMiB, dimension == 3 ? " in three dimensions" : ""),
-        {.perhaps = costs.least_limit, .remedy = Remedy::kMemory});
+    const double parts = static_cast<double>(std::max(whole, limit)) /
+                         static_cast<double>(std::max(limit, std::uint64_t{1}));
+    const auto least = static_cast<std::uint64_t>(
+        std::ceil(static_cast<double>(costs.least_limit / kMiB) * parts));
+    throw TooSmallLimit(fmt::format("the memory limit is too small: {} MiB are the least{}", least,
+                                    dimension == 3 ? " in three dimensions" : ""),
+                        {.perhaps = least * kMiB, .remedy = Remedy::kMemory});
   }
   MemoryPlan plan;
   plan.buffered_points = share(limit, costs.buffer_share, kBufferedPointBytes);
@@ -68,6 +79,7 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
   plan.leaf_size = std::min(
       {costs.good_leaf, share(limit, costs.leaf_share, costs.leaf_bytes), plan.tile_capacity});
   plan.waiting_bytes = share(limit, kWaitingShare, 1);
+  plan.batches = std::clamp(share(limit, kBatchesShare, kBatchBytes), kLeastBatches, kMostBatches);
   const std::size_t most = share(limit, costs.leaves_share, costs.leaf_bytes * plan.leaf_size);
   plan.threads = static_cast<unsigned>(std::clamp<std::size_t>(most, 1, wanted_threads));
   return plan;

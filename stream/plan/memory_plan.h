@@ -12,12 +12,15 @@ struct MemoryPlan {
   std::size_t tile_capacity = 0;    ///< points of one tile
   std::size_t leaf_size = 0;        ///< largest number of points of a leaf
   std::uint64_t waiting_bytes = 0;  ///< of output that waits for its turn while tiles are begun
+  std::size_t batches = 1;          ///< of points, on their way to their tiles
   unsigned threads = 1;             ///< that the scratch memory of leaves leaves room for
 };
 
 /// The plan for a limit in bytes. `wanted_threads` is cut down to what there is memory for. Throws
-/// InvalidArgument with the least limit that would do if this one is too small.
-MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads);
+/// TooSmallLimit with the least that may be enough if this one is too small: of `whole`, if the
+/// limit is a part of that.
+MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads,
+                       std::uint64_t whole = 0);
 
 /// The size of leaves of `points` points: at most plan.leaf_size, and smaller where there are few
 /// points, so that all threads have something to do.

@@ -26,6 +26,7 @@ struct StreamOptions {
   Heights heights = Heights::kFirst;
   std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, in output units
   bool input_index = false;
+  std::function<void(TaskNode)> task_done{};  ///< as TriangulateOptions::task_done
   /// Told the box around all points in x and y, in the coordinates in which the source gives them,
   /// and how many they are, before the first block is written.
   std::function<void(const Box<2>&, std::uint64_t points)> extent_known = [](const Box<2>&,

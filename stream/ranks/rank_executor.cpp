@@ -38,6 +38,9 @@ class RankExecutor final : public Executor {
   }
 
   Report triangulate(Run& run) override {
+    if (run.options.task_done) {
+      throw InvalidArgument("the tasks of a run over ranks are told as sums only");
+    }
     auto* const source = dynamic_cast<detail::PointSource*>(run.points.stream);
     if (source == nullptr) {
       throw InvalidArgument("ranks share points of files, and these are of a program");

@@ -219,8 +219,9 @@ class RankRun {
     figures.received_simplices = borders[1].simplices.size();
     figures.border_simplices = borders[0].simplices.size() + borders[1].simplices.size();
     const Stopwatch watch(figures.seconds);
-    Task steps;
+    Task steps{.points = node.tiles->size()};
     Settled<D> settled = engine_.merge(borders, *node.tiles, node.outside, {number, 0}, steps);
+    engine_.count_rank_merge(node.level, steps);
     for (const Task& step : steps.after) {
       if (step.kind == TaskKind::kBorder) figures.retriangulated = step.points;
     }

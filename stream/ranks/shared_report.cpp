@@ -7,6 +7,7 @@
 #include "src/distributed/packing.h"
 #include "src/runtime/peak_memory.h"
 #include "src/runtime/stage_times.h"
+#include "stream/triangulate/task_sums.h"
 
 namespace spillway::detail {
 namespace {
@@ -29,6 +30,9 @@ void for_each_sum(Figures& figures, Each each) {
   each(figures.border_simplices);
   each(figures.border_bytes);
   each(figures.divided_points);
+  each(figures.tile_shapes.up_to_twice);
+  each(figures.tile_shapes.up_to_4_times);
+  each(figures.tile_shapes.longer);
 }
 
 template <typename Figures, typename Each>
@@ -38,7 +42,6 @@ void for_each_time(Figures& figures, Each each) {
   each(figures.triangulate_seconds);
 }
 
-/// All but the tasks.
 void pack(Packer& message, const RunFigures& figures) {
   const auto put = [&](const auto& value) { message.put(value); };
   put(figures.mesh);
@@ -49,6 +52,7 @@ void pack(Packer& message, const RunFigures& figures) {
   for_each_sum(figures, put);
   for_each_time(figures, put);
   message.put_list(figures.final_by_level);
+  message.put_list(figures.task_sums);
   for (const StageSeconds& stage : figures.stages) put(stage.seconds);
 }
 
@@ -63,6 +67,7 @@ RunFigures unpack_figures(Unpacker& message) {
   for_each_sum(figures, take);
   for_each_time(figures, take);
   figures.final_by_level = message.take_list<std::vector<std::uint64_t>>();
+  figures.task_sums = message.take_list<std::vector<TaskSum>>();
   for (const char* const stage : kStageNames) {
     figures.stages.push_back({stage, message.take<double>()});
   }
@@ -127,9 +132,12 @@ Report shared_report(const RankMesh& mesh, const PointCounts& counts, const Rank
   report.mesh = mesh.totals;
   report.left_out = mesh.left_out;
   report.points = shared_counts(counts, ranks);
+  TaskSums tasks;
   for (const auto& bytes : ranks.gather(pack_own(mesh), 0)) {
     report.ranks.push_back(unpack_rank(bytes));
+    tasks.add(report.ranks.back().run.task_sums);
   }
+  report.task_sums = tasks.sums();
   return report;
 }
 

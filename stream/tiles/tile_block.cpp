@@ -6,28 +6,32 @@
 
 #include "formats/blocks/block.h"
 #include "formats/blocks/columns.h"
-#include "formats/bytes/bytes.h"
 #include "src/error.h"
 
 namespace spillway::detail {
 namespace {
 
-constexpr std::uint32_t kPointsKind = 1;
-constexpr std::uint32_t kIndexedPointsKind = 2;
+/// A block's kind is the number of its points, and whether they have an index.
+constexpr std::uint32_t kIndexed = 1;
+
+std::uint32_t kind_of(std::size_t points, bool indexed) {
+  return static_cast<std::uint32_t>(2 * points) + (indexed ? kIndexed : 0);
+}
+
+std::size_t points_of(const BlockHead& head) { return head.kind / 2; }
 
 }  // namespace
 
 void append_points(std::vector<std::byte>& bytes, std::span<const LatticePoint> points,
                    std::span<const std::uint64_t> index) {
-  std::vector<std::byte> content(sizeof(std::uint32_t));
-  store(content.data(), static_cast<std::uint32_t>(points.size()));
+  std::vector<std::byte> content;
   std::vector<double> column(points.size());
   for (int k = 0; k < 3; ++k) {
     for (std::size_t i = 0; i < points.size(); ++i) column[i] = points[i][k];
     append_column(content, column);
   }
   if (!index.empty()) append_column(content, index);
-  append_block(bytes, index.empty() ? kPointsKind : kIndexedPointsKind, content);
+  append_block(bytes, kind_of(points.size(), !index.empty()), content);
 }
 
 void append_all_points(std::vector<std::byte>& bytes, std::span<const LatticePoint> points,
@@ -40,11 +44,37 @@ void append_all_points(std::vector<std::byte>& bytes, std::span<const LatticePoi
 
 std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes) {
   std::vector<TileBlock> blocks;
-  points.drain([&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
+  const auto append = [&](std::span<const LatticePoint> some,
+                          std::span<const std::uint64_t> index) {
     const std::size_t begin = bytes.size();
-    append_points(bytes, chunk, index);
-    blocks.push_back({begin, bytes.size() - begin, chunk.size()});
+    append_points(bytes, some, index);
+    blocks.push_back({begin, bytes.size() - begin, some.size()});
+  };
+  PointBlock gathered;
+  const auto append_gathered = [&] {
+    if (gathered.size() > 0) append(gathered.points, gathered.index);
+    gathered.clear();
+  };
+  points.drain([&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
+    if (gathered.size() + chunk.size() > PointBuffer::kChunk) append_gathered();
+    if (chunk.size() == PointBuffer::kChunk) return append(chunk, index);
+    gathered.points.insert(gathered.points.end(), chunk.begin(), chunk.end());
+    gathered.index.insert(gathered.index.end(), index.begin(), index.end());
   });
+  append_gathered();
+  return blocks;
+}
+
+std::vector<TileBlock> find_blocks(std::span<const std::byte> bytes, const FileSpot& where) {
+  std::vector<TileBlock> blocks;
+  std::size_t offset = 0;
+  while (bytes.size() - offset >= kBlockHeadSize) {
+    const BlockHead head = decode_block_head(bytes.subspan(offset).first<kBlockHeadSize>(), where);
+    const std::size_t size = kBlockHeadSize + head.stored_size;
+    if (size > bytes.size() - offset) break;
+    blocks.push_back({offset, size, points_of(head)});
+    offset += size;
+  }
   return blocks;
 }
 
@@ -54,12 +84,11 @@ void decode_points(std::span<const std::byte> block, const FileSpot& where, Poin
   if (head.stored_size != block.size() - kBlockHeadSize) {
     throw BadInput(where, "the block has another size than its head says");
   }
+  const std::size_t count = points_of(head);
+  if (count > PointBuffer::kChunk) throw BadInput(where, "the block has too many points");
   std::vector<std::byte> content;
   decode_block(head, block.subspan(kBlockHeadSize), content, where);
-  if (content.size() < sizeof(std::uint32_t)) throw BadInput(where, "the block has no count");
-  const std::size_t count = load<std::uint32_t>(content.data());
-  if (count > PointBuffer::kChunk) throw BadInput(where, "the block has too many points");
-  ColumnReader columns(std::span<const std::byte>(content).subspan(sizeof(std::uint32_t)), where);
+  ColumnReader columns(content, where);
   points.points.resize(count);
   std::vector<double> column;
   for (int k = 0; k < 3; ++k) {
@@ -67,7 +96,7 @@ void decode_points(std::span<const std::byte> block, const FileSpot& where, Poin
     for (std::size_t i = 0; i < count; ++i) points.points[i][k] = column[i];
   }
   points.index.clear();
-  if (head.kind == kIndexedPointsKind) columns.read(count, points.index);
+  if ((head.kind & kIndexed) != 0) columns.read(count, points.index);
   columns.expect_end();
 }
 

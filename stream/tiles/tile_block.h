@@ -1,6 +1,7 @@
 #pragma once
-// How points lie in a tile's file: blocks (formats/block.h) of up to some ten thousand points, each
-// a count and the columns x, y, z and, where wanted, the index (formats/columns.h).
+// How points lie in a tile's file: blocks (formats/blocks/block.h) of up to some thousand points,
+// each the columns x, y, z and, where wanted, the index (formats/blocks/columns.h). The head tells
+// their number.
 
 #include <cstddef>
 #include <cstdint>
@@ -58,9 +59,13 @@ struct TileBlock {
   std::size_t points = 0;
 };
 
-/// Appends a buffer's points to `bytes` as blocks, one a chunk, and lets go of them. The blocks'
-/// offsets are counted from the beginning of `bytes`.
+/// Appends a buffer's points to `bytes` as blocks, as few as can be, and lets go of them. The
+/// blocks' offsets are counted from the beginning of `bytes`.
 std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes);
+
+/// The blocks that `bytes` consist of, by their heads; what comes after the last whole one is left
+/// out. Throws BadInput of `where`, the spot of the first byte, for what is no head.
+std::vector<TileBlock> find_blocks(std::span<const std::byte> bytes, const FileSpot& where);
 
 /// Appends one block of points, at most PointBuffer::kChunk. `index` has one entry a point, or
 /// none.

@@ -1,59 +1,88 @@
 #include "stream/tiles/tile_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
-#include "src/delaunay/hash.h"
 #include "src/parallel/parallel.h"
+#include "stream/tiles/point_sample.h"
+#include "stream/tiles/tile_cut.h"
 
 namespace spillway::detail {
 namespace {
 
-/// Batches under way at a time.
-constexpr std::size_t kSlots = 6;
-/// How full the tiles of the first division are meant to get: where the points so far show how all
-/// will lie, and where the density may turn out to be another.
+/// How full tiles are meant to get that are made of a sample: of all points; where those so far
+/// show how all will lie; and where the density may turn out to be another.
+constexpr double kKnownFill = 0.7;
 constexpr double kRepresentativeFill = 0.6;
 constexpr double kExpectedFill = 0.4;
-/// How full the tiles are that a tile of known size is divided into.
-constexpr double kKnownFill = 0.7;
-/// Tiles of the first division where the number of points is not known.
-constexpr std::size_t kUnknownTiles = 64;
-/// Sampled points for each capacity of points, before the first division and later.
-constexpr std::size_t kFirstSamples = 2048;
-constexpr std::size_t kLaterSamples = 64;
-/// Points that span so much of the expected extent on every axis show the whole distribution.
-constexpr double kRepresentativeSpan = 0.9;
-/// Most points that stand for those expected.
-constexpr std::size_t kMostExpectedSamples = 1'000'000;
+/// A tile is cut in two when it is so full, with what it still expects.
+constexpr double kMostFill = 0.9;
+/// ... and has this share of its capacity itself, so that there is something to go by.
+constexpr double kLeastOwnShare = 0.1;
+/// Sampled points for each capacity of points, where many tiles are made at once; and for the cut
+/// of one tile.
+constexpr std::size_t kManySamples = 2048;
+constexpr std::size_t kCutSamples = 256;
 /// Full buffers are emptied by this share of them.
 constexpr std::size_t kSpillShare = 8;
+/// Most segments of a tile that are told apart.
+constexpr std::size_t kMostSegments = 6;
+/// What a tile and a segment take in memory, in points that wait.
+constexpr std::size_t kTileRoom = 28;
+constexpr std::size_t kSegmentRoom = 7;
 
-std::size_t tiles_for(double points, double capacity, double fill) {
-  return static_cast<std::size_t>(std::ceil(points / (fill * capacity)));
+std::size_t tiles_for(double points, std::size_t capacity, double fill) {
+  const double tiles = points / (fill * static_cast<double>(capacity));
+  return std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(tiles)));
 }
+
+/// About every `stride`-th point of a buffer.
+std::vector<LatticePoint> sample_of(const PointBuffer& buffer, std::size_t stride) {
+  PointSample sample(stride);
+  buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
+  return sample.take();
+}
+
+/// Blocks that points are decoded into before they are dealt: as many as are decoded at a time.
+class SpareBlocks {
+ public:
+  PointBlock take() {
+    const std::lock_guard lock(mutex_);
+    if (blocks_.empty()) return {};
+    PointBlock block = std::move(blocks_.back());
+    blocks_.pop_back();
+    return block;
+  }
+  void put_back(PointBlock block) {
+    const std::lock_guard lock(mutex_);
+    blocks_.push_back(std::move(block));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<PointBlock> blocks_;  // guarded by mutex_
+};
 
 }  // namespace
 
 TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times)
-    : options_(options),
-      folder_(folder),
-      times_(times),
-      cuts_(std::make_shared<CutTree>(options.dimension)),
-      tiles_(1),
-      sample_stride_(std::max<std::size_t>(1, options.capacity / kFirstSamples)) {}
+    : options_(options), folder_(folder), times_(times), cuts_(options.dimension), tiles_(1) {}
 
 void TileTree::fill(const PointFeed& source) {
   run_batches([&](Batch& batch) { return source.fetch(batch.piece); },
-              [&](Batch& batch) {
-                source.decode(batch.piece, batch.points);
-                if (!options_.index) batch.points.index.clear();
+              [&](Batch& batch, PointBlock& points) {
+                source.decode(batch.piece, points);
+                if (!options_.index) points.index.clear();
               });
+  points_ = left_over_points_;
   for (const Tile& tile : tiles_) points_ += tile.points;
-  if (!divided_ && points_ > options_.capacity) divide_first();
+  filled_ = true;
+  if (divided_ || points_ <= options_.capacity) return;
+  Batch batch;  // nothing is spilled
+  divide_first(batch);
 }
 
 void TileTree::fill(const std::function<bool(PointBlock&)>& source) {
@@ -63,162 +92,213 @@ void TileTree::fill(const std::function<bool(PointBlock&)>& source) {
 }
 
 void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
-                           const std::function<void(Batch&)>& decode) {
-  std::vector<Batch> batches(kSlots);
+                           const std::function<void(Batch&, PointBlock&)>& decode) {
+  std::vector<Batch> batches(options_.batches);
+  SpareBlocks spare;
   const auto encode = [this](Batch& batch) {
     const StageTimer timer(times_, Stage::kSpill);
-    for (Spill& spill : batch.spills) spill.blocks = encode_points(spill.points, spill.bytes);
+    for (Spill& spill : batch.spills) encode_points(spill.points, spill.bytes);
   };
   const std::vector<PipelineStep> steps = {
       {.in_order = false,
        .work =
            [&](std::size_t slot) {
-             decode(batches[slot]);
-             deal(batches[slot]);
+             PointBlock points = spare.take();
+             decode(batches[slot], points);
+             deal(batches[slot], points);
+             spare.put_back(std::move(points));
            }},
       {.in_order = true, .work = [&](std::size_t slot) { append(batches[slot]); }},
       {.in_order = false, .work = [&](std::size_t slot) { encode(batches[slot]); }},
       {.in_order = true, .work = [&](std::size_t slot) { write(batches[slot]); }}};
   run_pipeline(
-      kSlots, [&](std::size_t slot) { return fetch(batches[slot]); }, steps);
+      batches.size(), [&](std::size_t slot) { return fetch(batches[slot]); }, steps);
 }
 
 /// Groups a batch's points by tile.
-void TileTree::deal(Batch& batch) const {
+void TileTree::deal(Batch& batch, const PointBlock& points) const {
   const StageTimer timer(times_, Stage::kDeal);
-  {
-    const std::lock_guard lock(cuts_mutex_);
-    batch.dealt_by = cuts_;
-  }
-  batch.dealt.deal(*batch.dealt_by, batch.points);
+  const std::shared_lock lock(cuts_mutex_);
+  batch.cuts_made = cuts_made_;
+  batch.dealt.deal(cuts_, points);
 }
 
 /// Puts a batch into the tiles' buffers, and takes out what has to go to the disk.
 void TileTree::append(Batch& batch) {
-  if (batch.dealt_by != cuts_) deal(batch);  // the first division came in between
   const StageTimer timer(times_, Stage::kDeal);
-  append_runs(batch);
-  if (buffered_ <= options_.buffered_points) return;
-  if (!divided_) divide_first();
-  const std::size_t enough = options_.buffered_points - options_.buffered_points / kSpillShare;
-  while (buffered_ > enough) spill_fullest(batch);
+  ++batches_;
+  append_dealt(batch.dealt, batch);
+  if (room_ <= most_room()) return;
+  if (!divided_) divide_first(batch);
+  if (room_ > most_room()) spill_some(batch);
 }
 
-void TileTree::append_runs(Batch& batch) {
-  for (const PointRun& run : batch.dealt.runs) {
-    Tile& tile = tiles_[run.tile];
-    const std::size_t count = run.end - run.begin;
-    const auto points = std::span(batch.dealt.points.points).subspan(run.begin, count);
-    const auto index =
-        batch.dealt.points.index.empty()
-            ? std::span<const std::uint64_t>()
-            : std::span<const std::uint64_t>(batch.dealt.points.index).subspan(run.begin, count);
-    for (; tile.next_sample < tile.points + count;) {
-      tile.sample.push_back(points[tile.next_sample - tile.points]);
-      // Jittered: rows of grids and scan lines have a period.
-      tile.next_sample += 1 + mix64(tile.next_sample) % (2 * sample_stride_ - 1);
+void TileTree::append_dealt(const DealtPoints& dealt, Batch& batch) {
+  for (const PointRun& run : dealt.runs) {
+    const auto points = std::span(dealt.points.points).subspan(run.begin, run.end - run.begin);
+    const auto index = dealt.points.index.empty()
+                           ? std::span<const std::uint64_t>()
+                           : std::span<const std::uint64_t>(dealt.points.index)
+                                 .subspan(run.begin, run.end - run.begin);
+    if (tiles_[run.tile].cut_at <= batch.cuts_made) {
+      append_points(run.tile, points, index, run.box, batch);
+      continue;
     }
-    tile.points += count;
-    tile.box.expand(run.box);
-    buffered_ -= tile.buffer.room();
-    tile.buffer.append(points, index);
-    buffered_ += tile.buffer.room();
+    PointBlock block;  // the tile has been cut since
+    block.points.assign(points.begin(), points.end());
+    block.index.assign(index.begin(), index.end());
+    DealtPoints again;
+    again.deal(cuts_, block);
+    Batch now;
+    now.arrival = batch.arrival;
+    now.run = batch.run;
+    now.cuts_made = cuts_made_;
+    append_dealt(again, now);
+    std::ranges::move(now.spills, std::back_inserter(batch.spills));
   }
 }
 
-void TileTree::spill_fullest(Batch& batch) {
-  const auto fullest = std::max_element(
-      tiles_.begin(), tiles_.end(),
-      [](const Tile& a, const Tile& b) { return a.buffer.size() < b.buffer.size(); });
-  buffered_ -= fullest->buffer.room();
-  batch.spills.push_back({static_cast<std::uint32_t>(fullest - tiles_.begin()),
-                          std::exchange(fullest->buffer, {}),
-                          {},
-                          {}});
+void TileTree::append_points(std::uint32_t number, std::span<const LatticePoint> points,
+                             std::span<const std::uint64_t> index, const Box<3>& box,
+                             Batch& batch) {
+  Tile& tile = tiles_[number];
+  if (tile.buffer.size() > 0 && tile.run != batch.run) spill(number, batch);
+  if (tile.buffer.size() == 0) tile.arrival = batch.arrival;
+  tile.run = batch.run;
+  tile.used = batches_;
+  put(tile, points, index, box);
+  if (divided_ && outgrown(tile)) cut_in_two(number);
+}
+
+/// Puts points of that box into a tile's buffer.
+void TileTree::put(Tile& tile, std::span<const LatticePoint> points,
+                   std::span<const std::uint64_t> index, const Box<3>& box) {
+  tile.points += points.size();
+  tile.box.expand(box);
+  tile.buffer_box.expand(box);
+  room_ -= tile.buffer.room();
+  tile.buffer.append(points, index);
+  room_ += tile.buffer.room();
+}
+
+/// Room for points that wait, besides what the tiles themselves take.
+std::size_t TileTree::most_room() const {
+  const std::size_t taken =
+      std::min(tiles_.size() * kTileRoom + segments_ * kSegmentRoom, options_.buffered_points / 2);
+  return options_.buffered_points - taken;
+}
+
+/// Spills the buffers of the tiles that have not been used for long, and large ones first.
+void TileTree::spill_some(Batch& batch) {
+  struct Full {
+    double weight;
+    std::uint32_t tile;
+  };
+  std::vector<Full> full;
+  for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
+    const Tile& tile = tiles_[t];
+    if (tile.buffer.size() == 0) continue;
+    full.push_back(
+        {static_cast<double>(tile.buffer.size()) * static_cast<double>(1 + batches_ - tile.used),
+         t});
+  }
+  std::ranges::sort(full, [this](const Full& a, const Full& b) {
+    if (a.weight != b.weight) return a.weight > b.weight;
+    return tiles_[a.tile].box.lo < tiles_[b.tile].box.lo;  // the numbers depend on threads
+  });
+  const std::size_t enough = most_room() - most_room() / kSpillShare;
+  for (auto next = full.begin(); next != full.end() && room_ > enough; ++next) {
+    spill(next->tile, batch);
+  }
+}
+
+void TileTree::spill(std::uint32_t number, Batch& batch) {
+  Tile& tile = tiles_[number];
+  if (!tile.file) tile.file = folder_.create("tile");
+  auto stretch = std::make_shared<FileStretch>(tile.file);
+  const std::uint64_t points = tile.buffer.size();
+  room_ -= tile.buffer.room();
+  tile.segments.push_back({.stretch = stretch,
+                           .first_spill = tile.spills,
+                           .end_spill = tile.spills + 1,
+                           .points = points,
+                           .arrival = tile.arrival.value_or(arrivals_),
+                           .box = std::exchange(tile.buffer_box, {})});
+  if (!tile.arrival) arrivals_ += points;
+  ++tile.spills;
+  ++segments_;
+  batch.spills.push_back({std::exchange(tile.buffer, {}), std::move(stretch), points, {}});
+  if (tile.segments.size() <= kMostSegments || filled_) return;
+  const std::size_t before = tile.segments.size();
+  const std::lock_guard lock(stretches_mutex_);
+  join_segments(tile.segments, kMostSegments, options_.dimension);
+  segments_ -= before - tile.segments.size();
 }
 
 void TileTree::write(Batch& batch) {
   const StageTimer timer(times_, Stage::kSpill);
-  for (Spill& spill : batch.spills) {
-    Tile& tile = tiles_[spill.tile];
-    if (!tile.file) tile.file = folder_.create("tile");
-    const std::uint64_t end = tile.file->size();
-    tile.file->append(spill.bytes);
+  for (const Spill& spill : batch.spills) {
+    spill.stretch->append(spill.bytes, stretches_mutex_);
     bytes_written_ += spill.bytes.size();
-    for (TileBlock& block : spill.blocks) {
-      block.offset += end;
-      points_written_ += block.points;
-      tile.blocks.push_back(block);
-    }
+    points_written_ += spill.count;
   }
   batch.spills.clear();
 }
 
-/// Whether the points so far lie all over the expected extent.
-bool TileTree::sample_is_representative() const {
-  if (!options_.expected || !options_.extent) return false;
-  for (int k = 0; k < options_.dimension; ++k) {
-    if (tiles_[0].box.extent(k) < kRepresentativeSpan * options_.extent->extent(k)) return false;
-  }
-  return true;
-}
-
-/// The points that are still to come lie, for all one knows, evenly where none have come so far.
-void TileTree::add_expected_points(std::vector<LatticePoint>& sample) const {
+/// Divides the one tile that there is at first, all of whose points are in memory, for those that
+/// are to come, too, if it is known where they will lie.
+void TileTree::divide_first(Batch& batch) {
+  const Box<3> box = tiles_[0].box;
   const auto seen = static_cast<double>(tiles_[0].points);
-  const double more = static_cast<double>(*options_.expected) / seen - 1;
-  const auto wanted = static_cast<std::size_t>(
-      std::min<double>(kMostExpectedSamples, more * static_cast<double>(sample.size())));
-  // Steps of a Kronecker sequence: M. Roberts, "The unreasonable effectiveness of quasirandom
-  // sequences" (2018); the powers of the plastic number and of its equivalent in space.
-  const std::array<double, 3> step =
-      options_.dimension == 2
-          ? std::array{0.7548776662466927, 0.5698402909980532, 0.0}
-          : std::array{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-  const Box<3>& seen_box = tiles_[0].box;
-  std::size_t added = 0;
-  for (std::size_t i = 1; added < wanted && i <= 4 * wanted; ++i) {
-    LatticePoint point{};
-    bool inside = true;
-    for (int k = 0; k < options_.dimension; ++k) {
-      const double turns = step[k] * static_cast<double>(i);
-      point[k] = options_.extent->lo[k] + (turns - std::floor(turns)) * options_.extent->extent(k);
-      inside = inside && point[k] >= seen_box.lo[k] && point[k] <= seen_box.hi[k];
+  std::vector<LatticePoint> sample = sample_of(tiles_[0].buffer, sample_stride());
+  std::size_t tile_count = tiles_for(seen, options_.capacity, kKnownFill);
+  if (!filled_ && options_.extent && options_.expected.value_or(0) > tiles_[0].points) {
+    const auto expected = static_cast<double>(*options_.expected);
+    const bool everywhere = spans_extent(box, *options_.extent, options_.dimension);
+    tile_count =
+        tiles_for(expected, options_.capacity, everywhere ? kRepresentativeFill : kExpectedFill);
+    if (!everywhere) {
+      append_expected_points(sample, box, *options_.extent, options_.dimension,
+                             expected / seen - 1);
     }
-    if (inside) continue;
-    sample.push_back(point);
-    ++added;
-  }
-}
-
-/// Divides the one tile that there is at first, of what is known by now.
-void TileTree::divide_first() {
-  const auto capacity = static_cast<double>(options_.capacity);
-  const std::uint64_t seen = tiles_[0].points;
-  std::vector<LatticePoint> sample = std::move(tiles_[0].sample);
-  const bool complete = buffered_ <= options_.buffered_points;
-  std::size_t tile_count = kUnknownTiles;
-  if (complete) {
-    tile_count = tiles_for(static_cast<double>(seen), capacity, kKnownFill);
-  } else if (options_.expected && *options_.expected > seen) {
-    const bool representative = sample_is_representative();
-    tile_count = tiles_for(static_cast<double>(*options_.expected), capacity,
-                           representative ? kRepresentativeFill : kExpectedFill);
-    if (!representative && options_.extent) add_expected_points(sample);
   }
   divided_ = true;
-  sample_stride_ = std::max<std::size_t>(1, options_.capacity / kLaterSamples);
-  auto cuts = std::make_shared<CutTree>(*cuts_);
-  split(*cuts, 0, std::move(sample), std::max<std::size_t>(2, tile_count));
-  PointBuffer points = std::exchange(tiles_[0].buffer, {});
-  tiles_[0] = {};
-  tiles_.resize(cuts->tiles());
-  buffered_ = 0;
+  divide(0, std::move(sample), tile_count, batch);
+}
+
+/// Divides a tile into many by a sample of its points; where that tells too little, by its box.
+void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
+                      std::size_t tile_count, Batch& batch) {
+  Tile whole = std::exchange(tiles_[number], {});
+  const CutTree::NodeRef first_cut = cuts_.cuts();
   {
-    const std::lock_guard lock(cuts_mutex_);
-    cuts_ = std::move(cuts);
+    const std::unique_lock lock(cuts_mutex_);
+    cuts_.split(number, sample, tile_count);
+    if (cuts_.tiles() == tiles_.size()) {
+      const auto cut = choose_cut({options_.dimension, whole.box, whole.segments, sample});
+      if (!cut) {  // all points are equal
+        tiles_[number] = std::move(whole);
+        return;
+      }
+      cuts_.cut(number, cut->axis, cut->value);
+    }
+    tiles_[number].cut_at = ++cuts_made_;
   }
-  deal_from_memory(std::move(points));
+  tiles_.resize(cuts_.tiles());
+  for (TileSegment& segment : whole.segments) leave_over(first_cut, std::move(segment));
+  room_ -= whole.buffer.room();
+  Batch dealt;
+  dealt.arrival = whole.arrival;
+  dealt.run = whole.run;
+  PointBlock points;
+  whole.buffer.drain(
+      [&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
+        points.points.assign(chunk.begin(), chunk.end());
+        points.index.assign(index.begin(), index.end());
+        deal(dealt, points);
+        append_dealt(dealt.dealt, dealt);
+      });
+  std::ranges::move(dealt.spills, std::back_inserter(batch.spills));
 }
 
 bool TileTree::too_large(const Tile& tile) const {
@@ -229,26 +309,103 @@ bool TileTree::too_large(const Tile& tile) const {
   return false;
 }
 
-/// Splits a tile by its sample; where that tells too little, by its box.
-void TileTree::split(CutTree& cuts, std::uint32_t number, std::vector<LatticePoint> sample,
-                     std::size_t tile_count) const {
-  const std::uint32_t before = cuts.tiles();
-  cuts.split(number, sample, tile_count);
-  if (cuts.tiles() > before) return;
-  const Box<3>& box = tiles_[number].box;
-  int axis = 0;
-  for (int k = 1; k < options_.dimension; ++k) {
-    if (box.extent(k) > box.extent(axis) || box.lo[axis] == box.hi[axis]) axis = k;
+/// Whether a tile is to be cut in two now.
+bool TileTree::outgrown(const Tile& tile) const {
+  if (filled_) return too_large(tile);
+  const double capacity = static_cast<double>(options_.capacity);
+  const double own = static_cast<double>(tile.points);
+  if (own + tile.expected <= kMostFill * capacity || own < kLeastOwnShare * capacity) return false;
+  for (int k = 0; k < options_.dimension; ++k) {
+    if (tile.box.lo[k] < tile.box.hi[k]) return true;
   }
-  const double sampled = sample.empty() ? box.hi[axis] : sample.front()[axis];
-  const double value = sampled > box.lo[axis]
-                           ? sampled
-                           : std::nextafter(box.lo[axis], std::numeric_limits<double>::infinity());
-  cuts.cut(number, axis, value);
+  return false;
+}
+
+/// Cuts a tile in two, and a half again that is still too large.
+void TileTree::cut_in_two(std::uint32_t number) {
+  Tile whole = std::exchange(tiles_[number], {});
+  std::ranges::stable_sort(whole.segments, {}, &TileSegment::arrival);
+  const std::size_t stride = std::max<std::size_t>(1, whole.buffer.size() / kCutSamples);
+  const CrowdedTile crowded{.dimension = options_.dimension,
+                            .box = whole.box,
+                            .segments = whole.segments,
+                            .sample = sample_of(whole.buffer, stride),
+                            .weight = static_cast<double>(stride)};
+  const TileCut cut = *choose_cut(crowded);
+  CutTree::NodeRef ref = 0;
+  {
+    const std::unique_lock lock(cuts_mutex_);
+    ref = cuts_.cut(number, cut.axis, cut.value);
+    ++cuts_made_;
+  }
+  const std::array<std::uint32_t, 2> halves = {number, static_cast<std::uint32_t>(tiles_.size())};
+  tiles_.emplace_back();
+  const double below = share_below(whole.box, cut);
+  for (const int side : {0, 1}) {
+    Tile& half = tiles_[halves[side]];
+    half.expected = whole.expected * (side == 0 ? below : 1 - below);
+    half.arrival = whole.arrival;
+    half.run = whole.run;
+    half.last_left_over = whole.last_left_over;
+    half.used = whole.used;
+    half.cut_at = cuts_made_;
+  }
+  tiles_[number].file = std::move(whole.file);
+  tiles_[number].spills = whole.spills;
+  bool follows = false;
+  for (TileSegment& segment : whole.segments) {
+    if (const std::optional<int> side = side_of(segment.box, cut)) {
+      Tile& half = tiles_[halves[*side]];
+      half.box.expand(segment.box);
+      half.points += segment.points;
+      half.segments.push_back(std::move(segment));
+      follows = false;
+      continue;
+    }
+    // Later than all that were left over above: then the next one follows at once.
+    segment.follows =
+        std::exchange(follows, !whole.last_left_over || segment.arrival > *whole.last_left_over);
+    for (const std::uint32_t half : halves) {
+      tiles_[half].last_left_over =
+          std::max(tiles_[half].last_left_over, std::optional(segment.arrival));
+    }
+    const double low_share = share_below(segment.box, cut);
+    const auto points = static_cast<double>(segment.points);
+    tiles_[halves[0]].expected += points * low_share;
+    tiles_[halves[1]].expected += points * (1 - low_share);
+    leave_over(ref, std::move(segment));
+  }
+  room_ -= whole.buffer.room();
+  std::array<PointBlock, 2> dealt;
+  whole.buffer.drain(
+      [&](std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
+        std::array<Box<3>, 2> boxes;
+        for (PointBlock& some : dealt) some.clear();
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const int side = points[i][cut.axis] >= cut.value ? 1 : 0;
+          dealt[side].points.push_back(points[i]);
+          if (!index.empty()) dealt[side].index.push_back(index[i]);
+          boxes[side].expand(points[i]);
+        }
+        for (const int side : {0, 1}) {
+          if (dealt[side].size() == 0) continue;
+          put(tiles_[halves[side]], dealt[side].points, dealt[side].index, boxes[side]);
+        }
+      });
+  for (const std::uint32_t half : halves) {
+    if (outgrown(tiles_[half])) cut_in_two(half);
+  }
+}
+
+/// Points of a segment on both sides of a cut are dealt once all are in.
+void TileTree::leave_over(CutTree::NodeRef cut, TileSegment segment) {
+  if (left_over_.size() <= static_cast<std::size_t>(cut)) left_over_.resize(cut + 1);
+  left_over_points_ += segment.points;
+  left_over_[cut].push_back(std::move(segment));
 }
 
 std::uint64_t TileTree::points_to_divide() const {
-  std::uint64_t points = 0;
+  std::uint64_t points = left_over_points_;
   for (const Tile& tile : tiles_) points += too_large(tile) ? tile.points : 0;
   return points;
 }
@@ -257,100 +414,140 @@ std::uint64_t TileTree::divide_large(const DivisionProgress& progress) {
   std::uint64_t all = points_to_divide();
   std::uint64_t done = 0;
   double fraction = 0;  // what is found to be too large again does not take it back
-  for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
-    while (too_large(tiles_[t])) {
-      const std::uint64_t points = tiles_[t].points;
-      const std::size_t before = tiles_.size();
-      divide(t, [&](std::uint64_t of_tile) {
-        fraction =
-            std::max(fraction, static_cast<double>(done + of_tile) / static_cast<double>(all));
-        progress(done + of_tile, fraction);
-      });
-      done += points;
-      if (too_large(tiles_[t])) all += tiles_[t].points;
-      for (std::size_t n = before; n < tiles_.size(); ++n) {
-        if (too_large(tiles_[n])) all += tiles_[n].points;
-      }
+  while (points_to_divide() > 0) {
+    Batch batch;
+    for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
+      if (!too_large(tiles_[t])) continue;
+      std::vector<LatticePoint> sample = sample_of_all(tiles_[t]);
+      divide(t, std::move(sample),
+             tiles_for(static_cast<double>(tiles_[t].points), options_.capacity, kKnownFill),
+             batch);
     }
+    const std::uint64_t points = left_over_points_;
+    deal_again(take_left_over(), [&](std::uint64_t some) {
+      fraction = std::max(fraction, static_cast<double>(done + some) / static_cast<double>(all));
+      progress(done + some, std::min(1.0, fraction));
+    });
+    done += points;
+    all += points_to_divide();
   }
   return done;
 }
 
-/// Divides a tile that has too many points, all of which are in. Tells how many of them have been
-/// taken out of it.
-void TileTree::divide(std::uint32_t number,
-                      const std::function<void(std::uint64_t points)>& progress) {
-  Tile whole = std::exchange(tiles_[number], {});
-  tiles_[number].box = whole.box;  // split() looks at it
-  auto cuts = std::make_shared<CutTree>(*cuts_);
-  split(*cuts, number, std::move(whole.sample),
-        std::max<std::size_t>(2, tiles_for(static_cast<double>(whole.points),
-                                           static_cast<double>(options_.capacity), kKnownFill)));
-  tiles_[number].box = {};
-  tiles_.resize(cuts->tiles());
-  cuts_ = std::move(cuts);
-  buffered_ -= whole.buffer.room();
-  std::uint64_t taken = 0;
-  auto block = whole.blocks.begin();
-  const auto fetch = [&](Batch& batch) {
-    progress(taken);
-    if (block == whole.blocks.end()) return false;
-    taken += block->points;
-    batch.stored.resize(block->size);
-    whole.file->read(block->offset, batch.stored);
-    batch.where = {whole.file->name(), at_byte(block->offset)};
-    ++block;
-    return true;
-  };
-  run_batches(fetch, [this](Batch& batch) {
-    const StageTimer timer(times_, Stage::kDeal);
-    decode_points(batch.stored, batch.where, batch.points);
-  });
-  deal_from_memory(std::move(whole.buffer));
+/// Those of a cut before those of the cuts below it, so that what is dealt after each other goes to
+/// tiles near each other.
+std::vector<TileSegment> TileTree::take_left_over() {
+  std::vector<TileSegment> segments;
+  append_left_over(cuts_.root(), segments);
+  left_over_.clear();
+  left_over_points_ = 0;
+  segments_ -= segments.size();
+  return segments;
 }
 
-void TileTree::deal_from_memory(PointBuffer points) {
-  Batch batch;
-  points.drain([&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
-    batch.points.points.assign(chunk.begin(), chunk.end());
-    batch.points.index.assign(index.begin(), index.end());
-    deal(batch);
-    append_runs(batch);
-  });
+void TileTree::append_left_over(CutTree::NodeRef ref, std::vector<TileSegment>& segments) {
+  if (CutTree::is_tile(ref)) return;
+  if (static_cast<std::size_t>(ref) < left_over_.size()) {
+    std::ranges::move(left_over_[ref], std::back_inserter(segments));
+  }
+  for (const CutTree::NodeRef side : cuts_.sides(ref)) append_left_over(side, segments);
 }
+
+/// A sample of all points of a tile, also of those on the disk.
+std::vector<LatticePoint> TileTree::sample_of_all(const Tile& tile) const {
+  PointSample sample(sample_stride());
+  tile.buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
+  SegmentReader reader(tile.segments);
+  StoredBlocks blocks;
+  PointBlock points;
+  while (reader.fetch(blocks)) {
+    decode_all_points(blocks.bytes, blocks.where, points);
+    sample.add(points.points);
+  }
+  return sample.take();
+}
+
+/// Of samples by which many tiles are made at once.
+std::size_t TileTree::sample_stride() const {
+  return std::max<std::size_t>(1, options_.capacity / kManySamples);
+}
+
+void TileTree::deal_again(std::vector<TileSegment> segments,
+                          const std::function<void(std::uint64_t points)>& progress) {
+  SegmentReader reader(std::move(segments), runs_);
+  run_batches(
+      [&](Batch& batch) {
+        progress(reader.points());
+        if (!reader.fetch(batch.stored)) return false;
+        batch.arrival = batch.stored.arrival;
+        batch.run = batch.stored.run;
+        return true;
+      },
+      [this](Batch& batch, PointBlock& points) {
+        const StageTimer timer(times_, Stage::kDeal);
+        decode_all_points(batch.stored.bytes, batch.stored.where, points);
+      });
+  runs_ = reader.last_run();
+}
+
+/// What is below a node: one tile that may be joined with its neighbour, or others.
+template <int D>
+struct TileTree::Joinable {
+  std::optional<TileNode<D>> tile{};
+  bool others = false;
+};
+
+namespace {
 
 template <int D>
-std::optional<TileNode<D>> TileTree::nodes() const {
-  return node_at<D>(cuts_->root());
+double longest_to_shortest(const Box<D>& box) {
+  double shortest = box.extent(0);
+  for (int k = 1; k < D; ++k) shortest = std::min(shortest, box.extent(k));
+  const double longest = box.extent(box.longest_axis());
+  return longest == 0 ? 1 : longest / shortest;
 }
 
+}  // namespace
+
+/// Appends all tiles below a node but the one that is returned.
 template <int D>
-std::optional<TileNode<D>> TileTree::node_at(CutTree::NodeRef ref) const {
-  TileNode<D> node;
+TileTree::Joinable<D> TileTree::join_below(CutTree::NodeRef ref,
+                                           std::vector<TileNode<D>>& tiles) const {
   if (CutTree::is_tile(ref)) {
     const Tile& tile = tiles_[CutTree::tile_at(ref)];
-    if (tile.points == 0) return std::nullopt;
+    if (tile.points == 0) return {};
+    TileNode<D> node;
     std::copy_n(tile.box.lo.begin(), D, node.box.lo.begin());
     std::copy_n(tile.box.hi.begin(), D, node.box.hi.begin());
     node.points = tile.points;
     node.stored = {CutTree::tile_at(ref)};
-    return node;
+    return {std::move(node)};
   }
-  const auto sides = cuts_->sides(ref);
-  auto below = node_at<D>(sides[0]);
-  auto above = node_at<D>(sides[1]);
-  if (!below || !above) return below ? std::move(below) : std::move(above);
-  node.box = below->box;
-  node.box.expand(above->box);
-  node.points = below->points + above->points;
-  if (node.points <= options_.capacity) {
-    node.stored = std::move(below->stored);
-    node.stored.insert(node.stored.end(), above->stored.begin(), above->stored.end());
-  } else {
-    node.children.push_back(std::move(*below));
-    node.children.push_back(std::move(*above));
+  const auto refs = cuts_.sides(ref);
+  std::array<Joinable<D>, 2> sides = {join_below<D>(refs[0], tiles), join_below<D>(refs[1], tiles)};
+  auto& [below, above] = sides;
+  if (!below.tile && !below.others) return std::move(above);
+  if (!above.tile && !above.others) return std::move(below);
+  if (below.tile && above.tile && below.tile->points + above.tile->points <= options_.capacity) {
+    TileNode<D>& joined = *below.tile;
+    joined.box.expand(above.tile->box);
+    joined.points += above.tile->points;
+    joined.stored.insert(joined.stored.end(), above.tile->stored.begin(), above.tile->stored.end());
+    return std::move(below);
   }
-  return node;
+  for (Joinable<D>& side : sides) {
+    if (side.tile) tiles.push_back(std::move(*side.tile));
+  }
+  return {.others = true};
+}
+
+template <int D>
+std::optional<TileNode<D>> TileTree::nodes() const {
+  std::vector<TileNode<D>> tiles;
+  Joinable<D> all = join_below<D>(cuts_.root(), tiles);
+  if (all.tile) tiles.push_back(std::move(*all.tile));
+  if (tiles.empty()) return std::nullopt;
+  return tree_over(std::move(tiles));
 }
 
 template <int D>
@@ -360,13 +557,22 @@ StoredTile TileTree::read(const TileNode<D>& node) {
   stored.points = node.points;
   for (const std::uint32_t number : node.stored) {
     Tile tile = std::exchange(tiles_[number], {});
-    StoredTile::Segment& segment = stored.segments.emplace_back();
-    segment.blocks = std::move(tile.blocks);
-    segment.buffer = std::move(tile.buffer);
-    if (!tile.file) continue;
-    segment.file = tile.file->name();
-    segment.bytes.resize(tile.file->size());
-    tile.file->read(0, segment.bytes);
+    std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
+    const std::uint64_t buffer_arrival =
+        tile.arrival.value_or(std::numeric_limits<std::uint64_t>::max());
+    const auto put_buffer = [&] {
+      if (tile.buffer.size() > 0) stored.segments.push_back({{}, {}, std::move(tile.buffer)});
+      tile.buffer = {};
+    };
+    for (const TileSegment& segment : tile.segments) {
+      if (segment.arrival > buffer_arrival) put_buffer();
+      const FileStretch& stretch = *segment.stretch;
+      StoredTile::Segment& read = stored.segments.emplace_back();
+      read.where = {stretch.file().name(), at_byte(stretch.offset())};
+      read.bytes.resize(stretch.size());
+      stretch.file().read(stretch.offset(), read.bytes);
+    }
+    put_buffer();
   }
   return stored;
 }
@@ -383,18 +589,19 @@ TilePoints<D> TileTree::decode(StoredTile stored) const {
               result.index.begin() + static_cast<std::ptrdiff_t>(index.empty() ? 0 : first));
   };
   for (StoredTile::Segment& segment : stored.segments) {
-    std::vector<std::size_t> first(segment.blocks.size());
+    const std::vector<TileBlock> blocks = find_blocks(segment.bytes, segment.where);
+    std::vector<std::size_t> first(blocks.size());
     for (std::size_t b = 0; b < first.size(); ++b) {
       first[b] = position;
-      position += segment.blocks[b].points;
+      position += blocks[b].points;
     }
-    parallel_for(segment.blocks.size(), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for(blocks.size(), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
       const StageTimer timer(times_, Stage::kLoad);
       PointBlock points;
       for (std::size_t b = begin; b < end; ++b) {
-        const TileBlock& block = segment.blocks[b];
-        decode_points(std::span<const std::byte>(segment.bytes).subspan(block.offset, block.size),
-                      {segment.file, at_byte(block.offset)}, points);
+        decode_points(
+            std::span<const std::byte>(segment.bytes).subspan(blocks[b].offset, blocks[b].size),
+            segment.where, points);
         put(first[b], points.points, points.index);
       }
     });

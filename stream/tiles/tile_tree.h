@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,14 @@
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/runtime/stage_times.h"
-#include "stream/tiles/cut_tree.h"
-#include "stream/tiles/dealt_points.h"
+#include "stream/tiles/cuts/cut_tree.h"
+#include "stream/tiles/cuts/dealt_points.h"
 #include "stream/tiles/point_buffer.h"
 #include "stream/tiles/point_feed.h"
+#include "stream/tiles/segment_reader.h"
 #include "stream/tiles/tile_block.h"
+#include "stream/tiles/tile_node.h"
+#include "stream/tiles/tile_segment.h"
 
 namespace spillway::detail {
 
@@ -28,37 +32,26 @@ struct TileTreeOptions {
   std::optional<std::uint64_t> expected{};  ///< how many points will come, where that is known
   std::optional<Box<3>> extent{};           ///< where they will lie, where that is known
   bool index = false;                       ///< points keep their index; that of others is dropped
-};
-
-/// A node of the finished tree over tiles: a tile that can be loaded, or two nodes.
-template <int D>
-struct TileNode {
-  Box<D> box;  ///< tight around its points
-  std::uint64_t points = 0;
-  std::vector<TileNode> children;     ///< none for a tile
-  std::vector<std::uint32_t> stored;  ///< of a tile: the stored tiles it is made of
-
-  [[nodiscard]] std::uint64_t size() const { return points; }
-  [[nodiscard]] bool leaf() const { return children.empty(); }
+  std::size_t batches = 6;                  ///< most of them under way at a time
 };
 
 /// A tile's points as they lay in the tree: on the disk, encoded, and in memory.
 struct StoredTile {
   struct Segment {
     std::vector<std::byte> bytes;
-    std::vector<TileBlock> blocks;
-    std::string file;  ///< its name, for messages
+    FileSpot where;  ///< of the bytes, for messages
     PointBuffer buffer;
   };
   std::vector<Segment> segments;
   std::uint64_t points = 0;
 };
 
-/// Points of any number, dealt into tiles that fit into memory. Points wait in memory; when too
-/// many do, the tiles with most of them write theirs to the disk. The first division is made when
-/// that happens for the first time, of what is known then: the points so far, and the expected
-/// number and extent. When all points are in, tiles that became too large are divided once more,
-/// their number then being known, so a point is written at most twice as a rule.
+/// Points of any number and order, dealt into tiles that fit into memory. Points wait in memory;
+/// when too many do, tiles write theirs to the disk. A tile that has become too large is cut in two
+/// at once. Of its points those in memory are dealt to the halves, and on the disk those segments
+/// go to a half that lie in it; the others are left over, to be dealt once more when all points are
+/// in. So a point is written at most twice as a rule, and once where the order is that of a
+/// scanner.
 class TileTree {
  public:
   TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times);
@@ -74,15 +67,15 @@ class TileTree {
   /// The same with points that need no decoding: `source` works as PointReader::read().
   void fill(const std::function<bool(PointBlock&)>& source);
 
-  /// Points of the tiles that fill() has left too large.
+  /// Points that fill() has left over, and those of tiles that are too large.
   [[nodiscard]] std::uint64_t points_to_divide() const;
 
-  /// Divides those tiles, and what is too large again of them. Returns how many points were
-  /// dealt again, those dealt twice counted twice.
+  /// Deals those points once more, by all threads, and what is too large again of them. Returns how
+  /// many points were dealt again, those dealt twice counted twice.
   std::uint64_t divide_large(const DivisionProgress& progress);
 
-  /// The tree of tiles, none of which is too large any more, neighbours that fit together made one;
-  /// nothing if there are no points.
+  /// The balanced tree of tiles, none of which is too large any more, neighbours that fit together
+  /// made one; nothing if there are no points.
   template <int D>
   [[nodiscard]] std::optional<TileNode<D>> nodes() const;
 
@@ -91,7 +84,7 @@ class TileTree {
   template <int D>
   StoredTile read(const TileNode<D>& node);
 
-  /// The points of a tile. Uses all threads.
+  /// The points of a tile, in the order in which they came. Uses all threads.
   template <int D>
   TilePoints<D> decode(StoredTile stored) const;
 
@@ -103,65 +96,91 @@ class TileTree {
  private:
   /// Points on their way from one tile's buffer to its file.
   struct Spill {
-    std::uint32_t tile = 0;
     PointBuffer points;
+    std::shared_ptr<FileStretch> stretch;
+    std::uint64_t count = 0;
     std::vector<std::byte> bytes;
-    std::vector<TileBlock> blocks;
   };
   /// What goes through the pipeline at a time.
   struct Batch {
-    PointBlock points;
-    SourcePiece piece;                        ///< as it came from the source
-    std::vector<std::byte> stored;            ///< the points as read back from a file
-    FileSpot where;                           ///< in which file
-    std::shared_ptr<const CutTree> dealt_by;  ///< the cuts that `dealt` comes from
+    SourcePiece piece;                       ///< as it came from the source
+    StoredBlocks stored;                     ///< or as read back from a file
+    std::optional<std::uint64_t> arrival{};  ///< of the first point, if from a file
+    std::uint64_t run = 0;                   ///< of points from a file, else 0
+    std::uint64_t cuts_made = 0;             ///< when it was dealt
     DealtPoints dealt;
     std::vector<Spill> spills;
   };
   struct Tile {
     Box<3> box;
     std::uint64_t points = 0;
-    PointBuffer buffer;  ///< what came after what is in the file
-    std::unique_ptr<ScratchFile> file;
-    std::vector<TileBlock> blocks;
-    std::vector<LatticePoint> sample;
-    std::uint64_t next_sample = 0;
+    double expected = 0;  ///< points of segments left over above that are still to come
+    PointBuffer buffer;   ///< what came after what is on the disk, if `arrival` does not tell
+    Box<3> buffer_box;
+    std::optional<std::uint64_t> arrival{};  ///< of the buffer's first, if there are later points
+    std::uint64_t run = 0;                   ///< of the buffer's points
+    std::optional<std::uint64_t> last_left_over{};  ///< the latest arrival of what was, above
+    std::vector<TileSegment> segments;
+    std::shared_ptr<ScratchFile> file;
+    std::uint32_t spills = 0;  ///< to the file
+    std::uint64_t used = 0;    ///< the last batch that had points of it
+    std::uint64_t cut_at = 0;  ///< how many cuts had been made when it came about
   };
 
   /// Sends batches through the steps: `fetch` fills them in order, `decode` makes their points.
   void run_batches(const std::function<bool(Batch&)>& fetch,
-                   const std::function<void(Batch&)>& decode);
-  void deal(Batch& batch) const;
+                   const std::function<void(Batch&, PointBlock&)>& decode);
+  void deal(Batch& batch, const PointBlock& points) const;
   void append(Batch& batch);
-  void append_runs(Batch& batch);
-  void spill_fullest(Batch& batch);
+  void append_dealt(const DealtPoints& dealt, Batch& batch);
+  void append_points(std::uint32_t number, std::span<const LatticePoint> points,
+                     std::span<const std::uint64_t> index, const Box<3>& box, Batch& batch);
+  void put(Tile& tile, std::span<const LatticePoint> points, std::span<const std::uint64_t> index,
+           const Box<3>& box);
+  [[nodiscard]] std::size_t most_room() const;
+  void spill_some(Batch& batch);
+  void spill(std::uint32_t number, Batch& batch);
   void write(Batch& batch);
 
-  void divide_first();
-  [[nodiscard]] bool sample_is_representative() const;
-  void add_expected_points(std::vector<LatticePoint>& sample) const;
-  void divide(std::uint32_t number, const std::function<void(std::uint64_t points)>& progress);
-  void split(CutTree& cuts, std::uint32_t number, std::vector<LatticePoint> sample,
-             std::size_t tile_count) const;
-  void deal_from_memory(PointBuffer points);
+  void divide_first(Batch& batch);
+  void divide(std::uint32_t number, std::vector<LatticePoint> sample, std::size_t tile_count,
+              Batch& batch);
+  [[nodiscard]] bool outgrown(const Tile& tile) const;
   [[nodiscard]] bool too_large(const Tile& tile) const;
+  void cut_in_two(std::uint32_t number);
+  void leave_over(CutTree::NodeRef cut, TileSegment segment);
+  [[nodiscard]] std::vector<TileSegment> take_left_over();
+  void append_left_over(CutTree::NodeRef ref, std::vector<TileSegment>& segments);
+  [[nodiscard]] std::size_t sample_stride() const;
+  [[nodiscard]] std::vector<LatticePoint> sample_of_all(const Tile& tile) const;
+  void deal_again(std::vector<TileSegment> segments,
+                  const std::function<void(std::uint64_t points)>& progress);
 
   template <int D>
-  std::optional<TileNode<D>> node_at(CutTree::NodeRef ref) const;
+  struct Joinable;
+  template <int D>
+  Joinable<D> join_below(CutTree::NodeRef ref, std::vector<TileNode<D>>& tiles) const;
 
   TileTreeOptions options_;
   ScratchFolder& folder_;
   StageTimes& times_;
-  /// Replaced as a whole, under the mutex, since batches are dealt by it meanwhile.
-  std::shared_ptr<const CutTree> cuts_;
-  mutable std::mutex cuts_mutex_;
+  CutTree cuts_;
+  std::uint64_t cuts_made_ = 0;
+  mutable std::shared_mutex cuts_mutex_;  ///< guards both: batches are dealt meanwhile
   std::vector<Tile> tiles_;
+  std::vector<std::vector<TileSegment>> left_over_;  ///< by cut
+  std::uint64_t left_over_points_ = 0;
+  std::mutex stretches_mutex_;  ///< guards what is known of stretches, which are written meanwhile
+  std::uint64_t batches_ = 0;
+  std::uint64_t arrivals_ = 0;  ///< handed out so far
+  std::uint64_t runs_ = 0;      ///< likewise
   std::uint64_t points_ = 0;
-  std::size_t buffered_ = 0;  ///< room that all tiles' buffers take, in points
+  std::size_t room_ = 0;      ///< that all tiles' buffers take, in points
+  std::size_t segments_ = 0;  ///< of all tiles, and those left over
   std::uint64_t points_written_ = 0;
   std::uint64_t bytes_written_ = 0;
-  std::size_t sample_stride_ = 1;
-  bool divided_ = false;
+  bool divided_ = false;  ///< the first division has been made
+  bool filled_ = false;
 };
 
 }  // namespace spillway::detail

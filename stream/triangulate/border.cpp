@@ -47,10 +47,8 @@ class Merge {
     for (const Border<D>& child : children_) bytes += child.bytes();
     const MemoryLease copy(budget_, bytes, "the merge of borders");
     find_exposed(task.after[0]);
-    const bool most = 2 * border_vertices_.size() > points_below();
-    const MemoryLease lease(
-        budget_, border_vertices_.size() * (most ? kAllBorderMergeBytes<D> : kMergeBytes<D>),
-        "the triangulation of a border");
+    const MemoryLease lease(budget_, merge_bytes<D>(border_vertices_.size(), points_below()),
+                            "the triangulation of a border");
     triangulate(task.after[1]);
     accept(task.after[2]);
     return std::move(result_);
@@ -189,6 +187,11 @@ std::uint64_t enough_memory(std::uint64_t points) {
   return points * (kLoadedPointBytes + 2 * kBorderBytes<D> + kAllBorderMergeBytes<D>);
 }
 
+template <int D>
+std::uint64_t merge_bytes(std::uint64_t border_points, std::uint64_t below) {
+  return border_points * (2 * border_points > below ? kAllBorderMergeBytes<D> : kMergeBytes<D>);
+}
+
 template <int D, PointTree Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
                               MemoryBudget& budget, Task& task, Kernel kernel) {
@@ -197,6 +200,8 @@ MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tre
 
 template std::uint64_t enough_memory<2>(std::uint64_t);
 template std::uint64_t enough_memory<3>(std::uint64_t);
+template std::uint64_t merge_bytes<2>(std::uint64_t, std::uint64_t);
+template std::uint64_t merge_bytes<3>(std::uint64_t, std::uint64_t);
 template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const Part<2>* const>,
                                        MemoryBudget&, Task&, Kernel);
 template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const Part<3>* const>,

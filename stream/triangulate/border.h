@@ -62,6 +62,11 @@ struct MergedBorder {
 template <int D>
 std::uint64_t enough_memory(std::uint64_t points);
 
+/// Bytes of memory for the triangulation of so many points of a border, where there are `below`
+/// points below the merge.
+template <int D>
+std::uint64_t merge_bytes(std::uint64_t border_points, std::uint64_t below);
+
 /// Makes one of the borders of parts that are children of one node. `trees[c]` is child c's tree of
 /// points (Part or TileNode). The vertices of simplices that a sibling may change, and all vertices
 /// of open children, are triangulated; of that, simplices are accepted that span children, or that

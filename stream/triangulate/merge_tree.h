@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "src/delaunay/point_tree.h"
-#include "src/delaunay/schedule.h"
 
 namespace spillway::detail {
 
@@ -23,19 +22,17 @@ class MergeTree {
     std::uint32_t number = 0;
     Node* parent = nullptr;
     std::vector<Node*> children;
-    Task* task = nullptr;
 
    private:
     friend class MergeTree;
     std::atomic<std::size_t> children_missing_ = 0;
   };
 
-  /// `root` must outlive it. `task` becomes the tree of tasks, which the nodes refer to, with their
-  /// kinds and points.
-  MergeTree(const Tree& root, Task& task)
+  /// `root` must outlive it.
+  explicit MergeTree(const Tree& root)
       : count_(count(root)), nodes_(std::make_unique<Node[]>(count_)) {
     std::uint32_t next = 0;
-    add(root, task, next);
+    add(root, next);
   }
 
   /// In post-order.
@@ -77,18 +74,12 @@ class MergeTree {
     return nodes;
   }
 
-  Node& add(const Tree& tree, Task& task, std::uint32_t& next) {
-    task.kind = tree.leaf() ? TaskKind::kBaseCase : TaskKind::kNode;
-    task.points = tree.size();
-    task.children.resize(tree.children.size());
+  Node& add(const Tree& tree, std::uint32_t& next) {
     std::vector<Node*> children;
-    for (const Tree& child : tree.children) {
-      children.push_back(&add(child, task.children[children.size()], next));
-    }
+    for (const Tree& child : tree.children) children.push_back(&add(child, next));
     Node& node = nodes_[next];
     node.tree = &tree;
     node.number = next++;
-    node.task = &task;
     node.children_missing_ = children.size();
     for (Node* child : children) child->parent = &node;
     if (tree.leaf()) leaves_.push_back(&node);

@@ -16,6 +16,18 @@ namespace {
 /// last merges of one tile leave threads idle; the next one is being read meanwhile.
 constexpr std::size_t kTilesAtATime = 2;
 
+template <int D>
+void count_shape(const Box<D>& box, TileShapes& shapes) {
+  const double longest = box.extent(box.longest_axis());
+  double shortest = longest;
+  for (int k = 0; k < D; ++k) shortest = std::min(shortest, box.extent(k));
+  if (longest <= 2 * shortest) {
+    ++shapes.up_to_twice;
+  } else {
+    ++(longest <= 4 * shortest ? shapes.up_to_4_times : shapes.longer);
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -23,7 +35,7 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
                           MemoryBudget& budget, const StreamOptions& options)
     : options_(options),
       budget_(budget),
-      plan_(plan_memory(budget.limit(), D, options.threads)),
+      plan_(plan_memory(budget.limit(), D, options.threads, budget.whole())),
       planned_tile_(plan_.tile_capacity),
       counts_(budget),
       tree_(tree_options(expected), scratch, counts_.times),
@@ -56,7 +68,8 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
           .buffered_points = plan_.buffered_points,
           .expected = expected.count,
           .extent = expected.extent,
-          .index = index};
+          .index = index,
+          .batches = plan_.batches};
 }
 
 template <int D>
@@ -83,9 +96,13 @@ Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& 
   const Stopwatch watch(figures_.triangulate_seconds);
   context_.options.leaf_size =
       options_.leaf_size > 0 ? options_.leaf_size : leaf_size_for(tree_.points(), D, plan_);
-  nodes_.emplace(root, figures_.tasks);
+  nodes_.emplace(root);
   prepare_nodes(outside);
+  std::uint64_t all_points = root.points;
+  for (const TileNode<D>* const other : outside) all_points += other->points;
+  estimate_shortages(all_points);
   figures_.tiles = nodes_->leaves().size();
+  for (const Node* tile : nodes_->leaves()) count_shape(tile->tree->box, figures_.tile_shapes);
   figures_.final_by_level.resize(nodes_->root().level);
   TaskGroup lanes;
   // Isolated, since a merge that took up the other lane while it waits could end up waiting for
@@ -95,6 +112,18 @@ Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& 
   lane();
   lanes.wait();
   return std::move(nodes_->root().border);
+}
+
+/// From now on refusals tell what will do for so many points.
+template <int D>
+void TileEngine<D>::estimate_shortages(std::uint64_t all_points) {
+  budget_.set_estimate([this, all_points](std::uint64_t used, std::uint64_t refused) {
+    return growth_.enough_for({.limit = budget_.limit(),
+                               .used = used,
+                               .refused = refused,
+                               .loaded = kTilesAtATime * planned_tile_,
+                               .all_points = all_points});
+  });
 }
 
 /// `outside` is that of the root.
@@ -120,12 +149,16 @@ void TileEngine<D>::work_off_tiles() {
       TilePoints<D> points;
       Node* node = take_tile(points);
       if (node == nullptr) return;
+      Task task;
       {
         const MemoryLease lease(
             budget_, std::min(points.points.size(), planned_tile_) * kLoadedPointBytes, "a tile");
-        node->border = triangulate_tile<D>(
-            context_, {std::move(points), node->outside, node->number}, *node->task);
+        node->border =
+            triangulate_tile<D>(context_, {std::move(points), node->outside, node->number}, task);
       }
+      growth_.add_tile(node->tree->size(), node->border);
+      tasks_.add_tile(task);
+      tell_done(*node, std::move(task));
       nodes_->leaf_done(*node, [this](Node& above) { merge_node(above); });
     }
   } catch (...) {
@@ -164,29 +197,48 @@ template <int D>
 void TileEngine<D>::merge_node(Node& node) {
   std::vector<Border<D>> borders;
   for (Node* child : node.children) borders.push_back(std::exchange(child->border, {}));
+  growth_.begin_merge(node.tree->size(), borders);
+  Task task{.points = node.tree->size()};
   MergedTiles<D> merged =
-      merge_tiles<D>(context_, {borders, *node.tree, node.outside, {node.number, 0}}, *node.task);
+      merge_tiles<D>(context_, {borders, *node.tree, node.outside, {node.number, 0}}, task);
   node.border = std::move(merged.border);
+  growth_.end_merge(task.after.front().points, node.border);
+  tasks_.add_merge(TaskScope::kBetweenTiles, static_cast<std::uint32_t>(node.level), task);
+  tell_done(node, std::move(task));
   const std::lock_guard lock(figures_mutex_);
   figures_.final_by_level[node.level - 1] += merged.final_simplices;
+}
+
+template <int D>
+void TileEngine<D>::tell_done(const Node& node, Task task) {
+  if (!options_.task_done) return;
+  TaskNode told{.number = node.number, .level = static_cast<std::uint32_t>(node.level)};
+  for (const Node* child : node.children) told.children.push_back(child->number);
+  told.task = std::move(task);
+  const std::lock_guard lock(tell_mutex_);
+  options_.task_done(std::move(told));
 }
 
 /// Nothing of this is for the sequencer: `place` is one of a stream of many processes.
 template <int D>
 Settled<D> TileEngine<D>::merge(std::span<Border<D>> children, const TileNode<D>& node,
                                 const Outside<D>& outside, BlockPlace place, Task& task) {
-  return merge_borders_of<D>(context_,
-                             {.children = children,
-                              .node = node,
-                              .outside = outside,
-                              .place = place,
-                              .imported_vertices = true},
-                             task);
+  growth_.begin_merge(node.size(), children);
+  Settled<D> settled = merge_borders_of<D>(context_,
+                                           {.children = children,
+                                            .node = node,
+                                            .outside = outside,
+                                            .place = place,
+                                            .imported_vertices = true},
+                                           task);
+  growth_.end_merge(task.after.front().points, settled.border);
+  return settled;
 }
 
 template <int D>
 void TileEngine<D>::take_in(const Border<D>& border) {
   counts_.borders.add(border.simplices.size(), border.bytes());
+  growth_.add(border);
 }
 
 template <int D>
@@ -218,6 +270,7 @@ RunFigures TileEngine<D>::figures() {
   figures_.retriangulated = counts_.retriangulated;
   figures_.border_simplices = counts_.borders.most_simplices();
   figures_.border_bytes = counts_.borders.most_bytes();
+  figures_.task_sums = tasks_.sums();
   for (std::size_t s = 0; s < kStageNames.size(); ++s) {
     figures_.stages.push_back({kStageNames[s], counts_.times.seconds(static_cast<Stage>(s))});
   }

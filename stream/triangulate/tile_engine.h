@@ -18,7 +18,9 @@
 #include "stream/plan/stream_options.h"
 #include "stream/tiles/point_span.h"
 #include "stream/tiles/tile_tree.h"
+#include "stream/triangulate/border_growth.h"
 #include "stream/triangulate/merge_tree.h"
+#include "stream/triangulate/task_sums.h"
 #include "stream/triangulate/tile_triangulation.h"
 
 namespace spillway::detail {
@@ -39,6 +41,9 @@ class TileEngine {
   /// All but `expected` must outlive it.
   TileEngine(const ExpectedPoints& expected, BlockSink& sink, ScratchFolder& scratch,
              MemoryBudget& budget, const StreamOptions& options);
+  ~TileEngine() { budget_.set_estimate({}); }
+  TileEngine(const TileEngine&) = delete;
+  TileEngine& operator=(const TileEngine&) = delete;
 
   [[nodiscard]] unsigned threads() const { return plan_.threads; }
   [[nodiscard]] StageTimes& times() { return counts_.times; }
@@ -74,6 +79,11 @@ class TileEngine {
   Settled<D> merge(std::span<Border<D>> children, const TileNode<D>& node,
                    const Outside<D>& outside, BlockPlace place, Task& task);
 
+  /// Counts the task of a merge between ranks.
+  void count_rank_merge(std::uint32_t level, const Task& task) {
+    tasks_.add_merge(TaskScope::kBetweenRanks, level, task);
+  }
+
   /// A border that came from elsewhere, for merge(); and one that goes elsewhere.
   void take_in(const Border<D>& border);
   void hand_over(const Border<D>& border);
@@ -104,6 +114,8 @@ class TileEngine {
   void work_off_tiles();
   Node* take_tile(TilePoints<D>& points);
   void merge_node(Node& node);
+  void tell_done(const Node& node, Task task);
+  void estimate_shortages(std::uint64_t all_points);
   void report_progress() const;
 
   const StreamOptions& options_;
@@ -121,6 +133,9 @@ class TileEngine {
   std::size_t taken_ = 0;
   std::future<StoredTile> reading_ahead_;
   std::atomic<bool> failed_ = false;
+  TaskSums tasks_;
+  BorderGrowth<D> growth_;
+  std::mutex tell_mutex_;     ///< held while options_.task_done is called
   std::mutex figures_mutex_;  ///< guards the next one
   RunFigures figures_;
 };

@@ -8,6 +8,7 @@
 
 #include "src/delaunay/base_case.h"
 #include "src/delaunay/finality.h"
+#include "src/delaunay/point_tree.h"
 #include "src/parallel/parallel.h"
 #include "stream/triangulate/merge_tree.h"
 
@@ -91,6 +92,19 @@ Settled<D> settle_merged(const MergedBorder<D>& merged, BlockPlace block,
   return settle<D>(MergeToSettle<D>{.block = block, .merged = border, .fates = fates}, output);
 }
 
+/// Cuts `cell` back so that it has nothing in common with any leaf of `tree`. Boxes of nodes may
+/// overlap with `box`, though those of leaves as a rule do not.
+template <int D, PointTree Tree>
+void cut_back_from(Box<D>& cell, const Box<D>& box, const Tree& tree) {
+  if (common_part(box, tree.box).empty()) {
+    cut_back(cell, box, tree.box);
+  } else if (tree.leaf()) {
+    cell = {};
+  } else {
+    for (const Tree& child : tree.children) cut_back_from(cell, box, child);
+  }
+}
+
 template <int D>
 class TileRun {
  public:
@@ -102,19 +116,17 @@ class TileRun {
         slot_(tile.slot) {}
 
   Border<D> run(Task& task) {
-    task.points = tile_.points.size();
-    task.before.resize(1);
+    std::vector<Task> division(1);
     input_index_.resize(tile_.points.size());
     std::iota(input_index_.begin(), input_index_.end(), VertexId{0});
     {
       const StageTimer timer(counts_.times, Stage::kDivide);
       const TileOptions& options = context_.options;
-      root_ =
-          divide<D>(tile_.points, input_index_,
-                    {options.leaf_size, options.division, options.children}, task.before.data());
+      root_ = divide<D>(tile_.points, input_index_,
+                        {options.leaf_size, options.division, options.children}, division.data());
     }
     context_.sequencer.open_slot(slot_, root_.list + 1);
-    tree_.emplace(root_, task);
+    tree_.emplace(root_);
     const std::vector<Node*>& leaves = tree_->leaves();
     parallel_for(leaves.size(), 1, [&](std::size_t, std::size_t begin, std::size_t) {
       Node& leaf = *leaves[begin];
@@ -122,15 +134,28 @@ class TileRun {
       if (context_.progress) context_.progress();
       tree_->leaf_done(leaf, [this](Node& node) { node.border = merge_node(node); });
     });
+    task = task_tree();
+    task.before = std::move(division);
     return std::move(tree_->root().border);
   }
 
  private:
   struct State {
     Border<D> border;  ///< once the node is done
+    Task task;         ///< likewise, without those of its children
   };
   using Tree = MergeTree<Part<D>, State>;
   using Node = typename Tree::Node;
+
+  /// Puts the tasks of all nodes together.
+  Task task_tree() {
+    for (Node& node : tree_->nodes()) {
+      node.task.kind = node.children.empty() ? TaskKind::kBaseCase : TaskKind::kNode;
+      node.task.points = node.tree->size();
+      for (Node* child : node.children) node.task.children.push_back(std::move(child->task));
+    }
+    return std::move(tree_->root().task);
+  }
 
   [[nodiscard]] auto change_test(std::vector<const Part<D>*> siblings) const {
     return [this, siblings = std::move(siblings)](const ConflictRegion<D>& region) {
@@ -141,8 +166,8 @@ class TileRun {
     };
   }
 
-  Border<D> triangulate_leaf(const Node& node) {
-    const Stopwatch watch(node.task->seconds);
+  Border<D> triangulate_leaf(Node& node) {
+    const Stopwatch watch(node.task.seconds);
     const Part<D>& part = *node.tree;
     const auto points = std::span(tile_.points).subspan(part.begin, part.size());
     BaseCase<D> leaf = base_case(node, points);
@@ -188,9 +213,10 @@ class TileRun {
   /// The box around a leaf that has nothing in common with the box of any other part.
   [[nodiscard]] Box<D> clear_box_of(const Node& node) const {
     Box<D> clear_box = whole_space<D>();
-    for (const Part<D>* part : tree_->siblings_up(node))
-      cut_back(clear_box, node.tree->box, part->box);
-    for (const TileNode<D>* tile : outside_) cut_back(clear_box, node.tree->box, tile->box);
+    for (const Part<D>* part : tree_->siblings_up(node)) {
+      cut_back_from(clear_box, node.tree->box, *part);
+    }
+    for (const TileNode<D>* tile : outside_) cut_back_from(clear_box, node.tree->box, *tile);
     return clear_box;
   }
 
@@ -263,10 +289,10 @@ class TileRun {
     return fates;
   }
 
-  Border<D> merge_node(const Node& node) {
+  Border<D> merge_node(Node& node) {
     std::vector<Border<D>> children;
     for (Node* child : node.children) children.push_back(std::exchange(child->border, {}));
-    MergedBorder<D> merged = merge_resident<D>(context_, children, node.tree->children, *node.task);
+    MergedBorder<D> merged = merge_resident<D>(context_, children, node.tree->children, node.task);
     const BlockPlace block = place_of(node);
     if (merged.border.open()) return pass_up(context_, std::move(merged.border), block);
     Settled<D> settled = settle_merged(merged, block, context_.options.output,

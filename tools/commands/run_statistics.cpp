@@ -2,22 +2,52 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "formats/disk/output_check.h"
+#include "src/distributed/ranks.h"
 #include "tools/process/rank_job.h"
 #include "tools/report/json_text.h"
+#include "tools/report/task_file.h"
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
 namespace spillway::detail {
+namespace {
+
+/// Throws UsageError if a file of `option` would go to the same place as `what`.
+void check_place(const std::string& path, const std::string& other, std::string_view what,
+                 std::string_view option) {
+  if (path.empty() || path != other) return;
+  throw UsageError(fmt::format("{} and {} cannot go to the same place: {}", what, option, path));
+}
+
+}  // namespace
 
 void check_statistics_file(const TriangulationOptions& options, const std::string& output,
                            std::string_view product) {
-  if (options.stats_path.empty()) return;
-  if (options.stats_path == output) {
-    throw UsageError(
-        fmt::format("{} and --stats cannot go to the same place: {}", product, output));
+  if (!options.tasks_path.empty() && distributed::launch().as_ranks) {
+    throw UsageError("--tasks is for one process: start it without mpirun");
   }
-  if (is_first_rank()) check_can_create(disk(), options.stats_path);
+  check_place(options.stats_path, output, product, "--stats");
+  check_place(options.tasks_path, output, product, "--tasks");
+  check_place(options.tasks_path, options.stats_path, "--stats", "--tasks");
+  for (const std::string& path : {options.stats_path, options.tasks_path}) {
+    if (!path.empty() && is_first_rank()) check_can_create(disk(), path);
+  }
+}
+
+Report triangulate_with_tasks(const TriangulationOptions& options, PointSource& points,
+                              MeshSink& sink, TriangulateOptions how, const Context& context) {
+  if (options.tasks_path.empty()) return triangulate(points, sink, how, context);
+  TaskFile file(options.tasks_path);
+  how.task_done = [&file, also = std::move(how.task_done)](TaskNode node) {
+    file.write(node);
+    if (also) also(std::move(node));
+  };
+  const Report report = triangulate(points, sink, how, context);
+  file.commit();
+  return report;
 }
 
 RunFacts facts_of_run(const TriangulationOptions& options, const std::string& output,

@@ -1,5 +1,7 @@
 #pragma once
-// --stats of the subcommands that triangulate points.
+// --stats and --tasks of the subcommands that triangulate points.
+
+#include <spillway/triangulate.h>
 
 #include <chrono>
 #include <string>
@@ -11,10 +13,15 @@
 
 namespace spillway::detail {
 
-/// Throws UsageError if --stats would go where the run's output goes, which messages call
-/// `product`, and Error if its file cannot be made.
+/// Throws UsageError if --stats or --tasks would go where the other or the run's output goes, which
+/// messages call `product`, or if --tasks is given to one of several ranks, and Error if a file of
+/// theirs cannot be made.
 void check_statistics_file(const TriangulationOptions& options, const std::string& output,
                            std::string_view product);
+
+/// triangulate() that also writes the file of --tasks, if it is asked for.
+Report triangulate_with_tasks(const TriangulationOptions& options, PointSource& points,
+                              MeshSink& sink, TriangulateOptions how, const Context& context);
 
 /// What there is to tell of a run that began at `start` and has just ended.
 RunFacts facts_of_run(const TriangulationOptions& options, const std::string& output,

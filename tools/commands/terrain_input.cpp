@@ -10,6 +10,7 @@
 
 #include "formats/meshes/mesh_formats.h"
 #include "src/geometry/simplex_name.h"
+#include "tools/commands/run_statistics.h"
 #include "tools/options/command_options.h"
 #include "tools/process/rank_job.h"
 #include "tools/report/usage_error.h"
@@ -81,7 +82,8 @@ Report send_terrain(const TerrainOptions& options, MeshSink& sink, const Context
   const auto points =
       open_points(options.inputs, point_options(options.input, options.dimension), context);
   check_heights(options, points->header());
-  return triangulate(*points, sink, triangulate_options(options, options.dimension), context);
+  return triangulate_with_tasks(options, *points, sink,
+                                triangulate_options(options, options.dimension), context);
 }
 
 void say_what_is_left_out(const TerrainOptions& options, const Report& report, Progress& progress) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/meshes/mesh_formats.h"
@@ -167,11 +168,13 @@ int run(const TriangulateCommandOptions& options) {
   check_heights(options, points->header());
   TriangulateOptions how = triangulate_options(options, options.dimension);
   how.input_index = options.input_index;
-  const Report report = triangulate(*points, *mesh, how, context);
+  TaskTree tasks;
+  if (options.simulates()) how.task_done = [&tasks](TaskNode node) { tasks.add(std::move(node)); };
+  const Report report = triangulate_with_tasks(options, *points, *mesh, how, context);
   if (!is_first_rank()) return kExitDone;
   RunFacts facts = facts_of_run(options, options.output, context, start);
   if (options.simulates()) {
-    facts.simulated = simulate_cores(report.tasks, parse_core_list(options.core_list));
+    facts.simulated = simulate_cores(tasks.take(), parse_core_list(options.core_list));
   }
   write_statistics(options, report, facts);
   say(options, report, facts, progress);

@@ -45,7 +45,9 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
       .value_name("N")
       .show_default();
   add_memory_options(app, options.memory);
-  app.add_option("--stats", options.stats_path, "Write figures and the task tree of the run")
+  app.add_option("--stats", options.stats_path, "Write figures of the run").value_name("FILE");
+  app.add_option("--tasks", options.tasks_path,
+                 "Write the run's tasks, a line of JSON for each tile and merge of tiles")
       .value_name("FILE");
   take_whole_number(app.add_option("--base-case", options.base_case_size,
                                    "Most points of one sequential base case (a leaf); 0: chosen by "

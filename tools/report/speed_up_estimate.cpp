@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <utility>
 
 #include "tools/report/usage_error.h"
 
@@ -43,6 +44,17 @@ std::vector<unsigned> parse_core_list(std::string_view text) {
   }
   if (doubling) refuse(text);
   return cores;
+}
+
+void TaskTree::add(TaskNode node) {
+  for (const std::uint32_t child : node.children) {
+    node.task.children.push_back(std::move(roots_.extract(child).mapped()));
+  }
+  roots_.emplace(node.number, std::move(node.task));
+}
+
+Task TaskTree::take() {
+  return roots_.empty() ? Task() : std::move(roots_.extract(roots_.begin()).mapped());
 }
 
 std::vector<SimulatedRun> simulate_cores(const Task& tasks, const std::vector<unsigned>& cores) {

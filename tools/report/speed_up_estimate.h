@@ -2,6 +2,8 @@
 
 #include <spillway/figures.h>
 
+#include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +19,19 @@ struct SimulatedRun {
   unsigned cores;
   double seconds;
   double speed_up;  ///< over the same schedule on one core
+};
+
+/// Puts the tree of a run's tasks together from its nodes.
+class TaskTree {
+ public:
+  /// Children before parents.
+  void add(TaskNode node);
+
+  /// After the last node: its task, with all below. An empty task if there was none.
+  [[nodiscard]] Task take();
+
+ private:
+  std::map<std::uint32_t, Task> roots_;  ///< by number, those that wait for their parents
 };
 
 std::vector<SimulatedRun> simulate_cores(const Task& tasks, const std::vector<unsigned>& cores);

@@ -4,42 +4,15 @@
 
 #include "src/geometry/canonical_hash.h"
 #include "src/runtime/peak_memory.h"
+#include "tools/report/task_json.h"
 
 namespace spillway::detail {
 namespace {
 
-const char* name_of(TaskKind kind) {
-  switch (kind) {
-    case TaskKind::kNode:
-      return "node";
-    case TaskKind::kBaseCase:
-      return "base_case";
-    case TaskKind::kDivide:
-      return "divide";
-    case TaskKind::kBorder:
-      return "border";
-    case TaskKind::kAccept:
-      return "accept";
-    case TaskKind::kNeighbours:
-      return "neighbours";
-  }
-  return "";
-}
-
-Json to_json(const Task& task) {
-  Json json = {{"kind", name_of(task.kind)},
-               {"points", task.points},
-               {"seconds", task.seconds},
-               {"pieces", task.grains}};
-  const auto add_list = [&json](const char* key, const std::vector<Task>& tasks) {
-    if (tasks.empty()) return;
-    json[key] = Json::array();
-    for (const Task& below : tasks) json[key].push_back(to_json(below));
-  };
-  add_list("before", task.before);
-  add_list("children", task.children);
-  add_list("after", task.after);
-  return json;
+Json task_sums(const RunFigures& figures) {
+  Json sums = Json::array();
+  for (const TaskSum& sum : figures.task_sums) sums.push_back(to_json(sum));
+  return sums;
 }
 
 Json phases(const RunFigures& figures) {
@@ -155,6 +128,9 @@ Json to_json(const Report& report, const RunFacts& facts) {
   json["spilled_points"] = report.spilled_points;
   json["spilled_bytes"] = report.spilled_bytes;
   json["divided_points"] = report.divided_points;
+  json["tile_shapes"] = {{"up_to_twice", report.tile_shapes.up_to_twice},
+                         {"up_to_4_times", report.tile_shapes.up_to_4_times},
+                         {"longer", report.tile_shapes.longer}};
   json["final"] = {{"in_leaves", report.final_in_leaves},
                    {"in_tiles", report.final_in_tiles},
                    {"by_level", report.final_by_level}};
@@ -168,11 +144,8 @@ Json to_json(const Report& report, const RunFacts& facts) {
           {{"cores", run.cores}, {"seconds", run.seconds}, {"speed_up", run.speed_up}});
     }
   }
-  if (report.ranks.empty()) {
-    json["tasks"] = to_json(report.tasks);
-  } else {
-    json["ranks"] = ranks(report);
-  }
+  json["task_sums"] = task_sums(report);
+  if (!report.ranks.empty()) json["ranks"] = ranks(report);
   return json;
 }
 

@@ -8,7 +8,7 @@
 
 #include "src/distributed/packing.h"
 #include "src/parallel/parallel.h"
-#include "stream/tiles/dealt_points.h"
+#include "stream/tiles/cuts/dealt_points.h"
 #include "stream/tiles/tile_block.h"
 
 namespace spillway::detail {

@@ -4,7 +4,7 @@
 
 #include "src/distributed/ranks.h"
 #include "stream/ranks/exchange/piece_table.h"
-#include "stream/tiles/cut_tree.h"
+#include "stream/tiles/cuts/cut_tree.h"
 
 namespace spillway::detail {
 

@@ -47,10 +47,23 @@ TEST(MemoryBudget, NamesWhatMayBeEnoughAndWhatIs) {
   };
   EXPECT_EQ(facts(12 * kMiB).remedy, Remedy::kNone);
   EXPECT_EQ(facts(20 * kMiB).remedy, Remedy::kMemory);
-  EXPECT_EQ(facts(20 * kMiB).perhaps, 51 * kMiB);
+  EXPECT_EQ(facts(20 * kMiB).perhaps, 0U) << "nobody knows";
   EXPECT_EQ(facts(20 * kMiB).enough, 100 * kMiB);
+  std::uint64_t estimate = 60 * kMiB - 1;
+  std::uint64_t wanted = 0;
+  budget.set_estimate([&](std::uint64_t used, std::uint64_t refused) {
+    EXPECT_EQ(used, 20 * kMiB);
+    wanted = used + refused;
+    return estimate;
+  });
+  EXPECT_EQ(facts(20 * kMiB).perhaps, 60 * kMiB);
+  EXPECT_EQ(wanted, 40 * kMiB);
+  EXPECT_EQ(facts(20 * kMiB).enough, 100 * kMiB);
+  EXPECT_EQ(facts(36 * kMiB).perhaps, 71 * kMiB) << "a quarter above what was wanted, at least";
   EXPECT_EQ(facts(70 * kMiB).perhaps, 0U);
   EXPECT_EQ(facts(70 * kMiB).enough, 100 * kMiB);
+  estimate = 0;
+  EXPECT_EQ(facts(20 * kMiB).perhaps, 0U);
   EXPECT_EQ(facts(100 * kMiB).perhaps, 151 * kMiB);
   EXPECT_EQ(facts(100 * kMiB).enough, 0U);
 }
@@ -58,6 +71,7 @@ TEST(MemoryBudget, NamesWhatMayBeEnoughAndWhatIs) {
 TEST(MemoryBudget, SpeaksOfTheWholeThatItIsAPartOf) {
   MemoryBudget budget(24 * kMiB, 32 * kMiB);
   budget.set_enough(60 * kMiB);
+  budget.set_estimate([](std::uint64_t used, std::uint64_t refused) { return used + refused; });
   try {
     const MemoryLease lease(budget, 40 * kMiB, "one thing");
     FAIL();
@@ -81,6 +95,15 @@ TEST(MemoryPlan, RefusesTooSmallALimitAndNamesTheLeast) {
   } catch (const InvalidArgument& error) {
     EXPECT_NE(std::string(error.what()).find("MiB are the least"), std::string::npos);
   }
+}
+
+TEST(MemoryPlan, NamesTheLeastOfTheWhole) {
+  const auto least = [](std::uint64_t limit, int dimension, std::uint64_t whole) {
+    return facts_of([&] { plan_memory(limit, dimension, 1, whole); }).perhaps;
+  };
+  EXPECT_EQ(least(8 * kMiB, 2, 0), 32 * kMiB);
+  EXPECT_EQ(least(24 * kMiB, 2, 32 * kMiB), 43 * kMiB);
+  EXPECT_EQ(least(50 * kMiB, 3, 100 * kMiB), 192 * kMiB);
 }
 
 TEST(MemoryPlan, DependsOnThreadsOnlyInTheirNumber) {

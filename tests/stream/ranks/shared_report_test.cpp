@@ -53,6 +53,7 @@ RankMesh mesh_of(int rank) {
   figures.border_simplices = 8 * n;
   figures.border_bytes = 9 * n;
   figures.divided_points = 10 * n;
+  figures.tile_shapes = {20 * n, 30 * n, 40 * n};
   figures.read_seconds = 1.0 * static_cast<double>(n);
   figures.divide_seconds = 10.0 / static_cast<double>(n);
   figures.triangulate_seconds = rank == 0 ? 5 : 3;
@@ -92,6 +93,9 @@ TEST(SharedReport, SumsWhatIsCountedOverAllRanks) {
   EXPECT_EQ(report.border_simplices, 8 * sum);
   EXPECT_EQ(report.border_bytes, 9 * sum);
   EXPECT_EQ(report.divided_points, 10 * sum);
+  EXPECT_EQ(report.tile_shapes.up_to_twice, 20 * sum);
+  EXPECT_EQ(report.tile_shapes.up_to_4_times, 30 * sum);
+  EXPECT_EQ(report.tile_shapes.longer, 40 * sum);
   EXPECT_EQ(report.points, (PointCounts{.read = 100 * sum, .bounds = sum}));
 }
 

@@ -1,9 +1,10 @@
-// Points come out of a buffer as they went in, in pieces of one size.
+// Points come out of a buffer as they went in, in chunks that grow.
 
 #include "stream/tiles/point_buffer.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 namespace spillway::detail {
@@ -42,32 +43,37 @@ TEST(PointBuffer, GivesBackPointsAndIndicesInTheirOrder) {
   EXPECT_EQ(next, begin);
 }
 
-TEST(PointBuffer, HasMemoryForWholePieces) {
+TEST(PointBuffer, HasMemoryForTwiceAsManyPointsAtMost) {
   PointBuffer buffer;
   EXPECT_EQ(buffer.room(), 0U);
-  buffer.append(points_from(0, kPiece), {});
-  EXPECT_EQ(buffer.room(), kPiece);
-  buffer.append(points_from(0, 1), {});
-  EXPECT_EQ(buffer.room(), 2 * kPiece);
-  EXPECT_EQ(buffer.size(), kPiece + 1);
+  std::size_t points = 0;
+  for (const std::size_t count : std::array<std::size_t, 4>{1, 200, kPiece, 5 * kPiece}) {
+    buffer.append(points_from(points, count), {});
+    points += count;
+    EXPECT_EQ(buffer.size(), points);
+    EXPECT_GE(buffer.room(), points);
+    EXPECT_LE(buffer.room(), std::max<std::size_t>(64, 2 * points));
+  }
+  EXPECT_LE(buffer.room(), points + kPiece);  // chunks grow no further
 }
 
 TEST(PointBuffer, IsEmptyAfterItIsDrainedAndCanBeUsedAgain) {
   PointBuffer buffer;
   buffer.append(points_from(0, kPiece + 1), {});
-  std::vector<std::size_t> sizes;
+  std::size_t taken = 0;
   const auto take = [&](std::span<const LatticePoint> points,
                         std::span<const std::uint64_t> index) {
-    sizes.push_back(points.size());
+    taken += points.size();
     EXPECT_TRUE(index.empty());
   };
   buffer.drain(take);
+  EXPECT_EQ(taken, kPiece + 1);
   EXPECT_EQ(buffer.size(), 0U);
   EXPECT_EQ(buffer.room(), 0U);
   buffer.drain(take);
   buffer.append(points_from(0, 2), {});
   buffer.drain(take);
-  EXPECT_EQ(sizes, (std::vector<std::size_t>{kPiece, 1, 2}));
+  EXPECT_EQ(taken, kPiece + 3);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <random>
 
 #include "formats/blocks/block.h"
-#include "formats/bytes/bytes.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -130,10 +129,8 @@ TEST(TileBlock, ChecksumMismatchIsRefused) {
 }
 
 TEST(TileBlock, TooManyPointsAreRefused) {
-  std::vector<std::byte> content(sizeof(std::uint32_t));
-  store(content.data(), static_cast<std::uint32_t>(kPiece + 1));
   std::vector<std::byte> bytes;
-  append_block(bytes, 1, content);
+  append_block(bytes, 2 * (kPiece + 1), {});
   EXPECT_EQ(error_of(bytes), "tile 7, byte 0: the block has too many points");
 }
 

@@ -1,174 +1,171 @@
-// Points of any order and number end up in tiles of at most the capacity, all of them, once.
+// Points of any order and number end up in tiles of at most the capacity, all of them, once, in the
+// order in which they came.
 
 #include "stream/tiles/tile_tree.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <random>
 
 #include "src/error.h"
 #include "src/parallel/parallel.h"
+#include "tests/stream/tiles/dealt_tiles.h"
 
 namespace spillway::detail {
 namespace {
 
 constexpr std::size_t kCapacity = 1000;
 constexpr std::size_t kBuffered = 40 * PointBuffer::kChunk;
+constexpr std::size_t kMany = 200'000;
+constexpr Knowledge kNothing{};
+constexpr Knowledge kAll{true, true};
 
 using Points = std::vector<LatticePoint>;
 
-enum class Order { kRandom, kSorted, kFlightLines, kSkewed, kEqual };
-
-void PrintTo(Order order, std::ostream* out) {
-  constexpr std::array kNames = {"Random", "Sorted", "FlightLines", "Skewed", "Equal"};
-  *out << kNames.at(static_cast<std::size_t>(order));
+DealtTiles<2> deal(const Points& points, Knowledge known) {
+  return deal_into_tiles<2>(points, {.known = known});
 }
 
-Points make_points(Order order, std::size_t count) {
-  std::mt19937_64 random(17);
-  std::uniform_real_distribution<double> unit(0, 1);
-  Points points(count);
-  for (LatticePoint& p : points) p = {unit(random), unit(random), 100 * unit(random)};
-  switch (order) {
-    case Order::kRandom:
-      break;
-    case Order::kSorted:
-      std::sort(points.begin(), points.end());
-      break;
-    case Order::kFlightLines:
-      std::sort(points.begin(), points.end(), [](const LatticePoint& a, const LatticePoint& b) {
-        return std::floor(20 * a[0]) != std::floor(20 * b[0]) ? a[0] < b[0] : a[1] < b[1];
-      });
-      break;
-    case Order::kSkewed:  // nine tenths in a hundredth of the area
-      for (std::size_t i = 0; i < count; ++i) {
-        if (i % 10 == 0) continue;
-        points[i][0] *= 0.1;
-        points[i][1] *= 0.1;
+/// Where tiles don't hold the points that they say, each of them once; "" if they do.
+template <int D>
+std::string fault_of(const DealtTiles<D>& dealt, const Points& points) {
+  std::vector<bool> found(points.size());
+  for (const DealtTile<D>& tile : dealt.tiles) {
+    Box<D> box;
+    for (std::size_t i = 0; i < tile.points.points.size(); ++i) {
+      const std::uint64_t index = tile.points.index[i];
+      if (found.at(index)) return "a point comes twice";
+      found[index] = true;
+      for (int k = 0; k < D; ++k) {
+        if (tile.points.points[i][k] != points[index][k]) return "a point is another one";
       }
-      break;
-    case Order::kEqual:  // half of them
-      for (std::size_t i = 0; i < count; i += 2) points[i] = {0.25, 0.75, points[i][2]};
-      break;
+      if constexpr (D == 2) {
+        if (tile.points.heights[i] != points[index][2]) return "a height is another one";
+      }
+      box.expand(tile.points.points[i]);
+    }
+    if (box != tile.box) return "a box is not tight";
+    if (box.lo != box.hi && tile.points.points.size() > kCapacity) return "a tile is too large";
   }
-  return points;
+  return std::ranges::count(found, false) > 0 ? "a point is missing" : "";
 }
 
-struct Knowledge {
-  bool count = false;
-  bool extent = false;
-};
-
-struct Filled {
-  Points points;  ///< of all tiles, sorted
-  std::size_t largest = 0;
-  std::size_t tiles = 0;
-  double writes = 0;  ///< of a point, on average
-  std::uint64_t to_divide = 0;
-  std::uint64_t divided = 0;
-};
-
-Filled fill(const Points& points, Knowledge known, unsigned threads = 2) {
-  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
-  StageTimes times;
-  TileTreeOptions options{.dimension = 2, .capacity = kCapacity, .buffered_points = kBuffered};
-  if (known.count) options.expected = points.size();
-  if (known.extent) {
-    options.extent = Box<3>();
-    for (const LatticePoint& p : points) options.extent->expand(p);
+/// Points that come before one that was read earlier, in the tiles that a tile is made of.
+template <int D>
+std::size_t out_of_order(const DealtTiles<D>& dealt) {
+  std::size_t descents = 0;
+  for (const DealtTile<D>& tile : dealt.tiles) {
+    std::size_t here = 0;
+    for (std::size_t i = 1; i < tile.points.index.size(); ++i) {
+      here += tile.points.index[i] < tile.points.index[i - 1] ? 1 : 0;
+    }
+    descents += here - std::min(here, tile.stored - 1);
   }
-  Filled filled;
-  with_threads(threads, [&] {
-    TileTree tree(options, *scratch, times);
-    std::size_t next = 0;
-    tree.fill([&](PointBlock& block) {
-      const std::size_t count = std::min<std::size_t>(777, points.size() - next);
-      const auto begin = points.begin() + static_cast<std::ptrdiff_t>(next);
-      block.points.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
-      next += count;
-      return count > 0;
-    });
-    std::uint64_t told = 0;
-    double share = 0;
-    filled.to_divide = tree.points_to_divide();
-    filled.divided = tree.divide_large([&](std::uint64_t dealt, double fraction) {
-      EXPECT_GE(dealt, told);
-      EXPECT_GE(fraction, share);
-      EXPECT_LE(fraction, 1);
-      told = dealt;
-      share = fraction;
-    });
-    EXPECT_LE(told, filled.divided);
-    EXPECT_EQ(tree.points_to_divide(), 0U);
-    const auto visit = [&](const auto& self, const TileNode<2>& node) -> void {
-      for (const auto& child : node.children) self(self, child);
-      if (!node.children.empty()) return;
-      const TilePoints<2> tile = tree.decode<2>(tree.read(node));
-      ++filled.tiles;
-      EXPECT_EQ(tile.points.size(), node.points);
-      Box<2> box;
-      for (std::size_t i = 0; i < tile.points.size(); ++i) {
-        box.expand(tile.points[i]);
-        filled.points.push_back({tile.points[i][0], tile.points[i][1], tile.heights[i]});
-      }
-      EXPECT_EQ(box, node.box);
-      if (box.lo != box.hi) filled.largest = std::max(filled.largest, tile.points.size());
-    };
-    if (const auto root = tree.nodes<2>()) visit(visit, *root);
-    filled.writes = static_cast<double>(tree.points_written()) / static_cast<double>(points.size());
+  return descents;
+}
+
+/// The share of tiles whose box is longer than four times its width.
+double share_of_long(const DealtTiles<2>& dealt) {
+  const auto count = std::ranges::count_if(dealt.tiles, [](const DealtTile<2>& tile) {
+    const auto [shorter, longer] = std::minmax(tile.box.extent(0), tile.box.extent(1));
+    return longer > 4 * shorter;
   });
-  std::sort(filled.points.begin(), filled.points.end());
-  return filled;
+  return static_cast<double>(count) / static_cast<double>(dealt.tiles.size());
 }
 
 class TileTreeOfOrder : public testing::TestWithParam<Order> {};
 
 TEST_P(TileTreeOfOrder, KeepsEveryPointInTilesOfTheCapacity) {
-  Points points = make_points(GetParam(), 300'000);
-  for (const Knowledge known : {Knowledge{}, Knowledge{true, false}, Knowledge{true, true}}) {
+  const Points points = make_points(GetParam(), kMany);
+  for (const Knowledge known : {kNothing, Knowledge{true, false}, kAll}) {
     SCOPED_TRACE(testing::Message()
                  << "count known " << known.count << ", extent " << known.extent);
-    const Filled filled = fill(points, known);
-    EXPECT_LE(filled.largest, kCapacity);
-    EXPECT_LE(filled.writes, 2.0);
-    EXPECT_GE(filled.divided, filled.to_divide);
-    Points expected = points;
-    std::sort(expected.begin(), expected.end());
-    EXPECT_TRUE(filled.points == expected);
+    const DealtTiles<2> dealt = deal(points, known);
+    EXPECT_EQ(fault_of(dealt, points), "");
+    EXPECT_LE(dealt.writes(), 2.0);
+    EXPECT_GE(dealt.divided, dealt.left_over);
+  }
+}
+
+TEST_P(TileTreeOfOrder, GivesPointsInTheOrderInWhichTheyCame) {
+  EXPECT_EQ(out_of_order(deal(make_points(GetParam(), kMany), kNothing)), 0U);
+}
+
+TEST_P(TileTreeOfOrder, GivesTheSameTilesForAnyNumberOfThreads) {
+  const Points points = make_points(GetParam(), kMany / 2);
+  const DealtTiles<2> one = deal_into_tiles<2>(points, {.threads = 1});
+  const DealtTiles<2> three = deal_into_tiles<2>(points, {.threads = 3});
+  EXPECT_EQ(one.written, three.written);
+  ASSERT_EQ(one.tiles.size(), three.tiles.size());
+  for (std::size_t t = 0; t < one.tiles.size(); ++t) {
+    ASSERT_EQ(one.tiles[t].points.index, three.tiles[t].points.index) << "tile " << t;
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, TileTreeOfOrder,
                          testing::Values(Order::kRandom, Order::kSorted, Order::kFlightLines,
-                                         Order::kSkewed, Order::kEqual),
+                                         Order::kStrips, Order::kOutwards, Order::kCurve,
+                                         Order::kSkewed, Order::kCluster, Order::kEqual,
+                                         Order::kRepeated),
                          testing::PrintToStringParamName());
 
-TEST(TileTree, WritesEveryPointOnceWhenTheHeaderTellsTheTruth) {
-  for (const Order order : {Order::kRandom, Order::kSorted, Order::kFlightLines}) {
-    EXPECT_LE(fill(make_points(order, 300'000), {true, true}).writes, 1.02)
-        << static_cast<int>(order);
+TEST(TileTree, MakesCompactTilesInWhateverOrderPointsCome) {
+  for (const Order order : {Order::kRandom, Order::kSorted, Order::kFlightLines, Order::kStrips,
+                            Order::kOutwards, Order::kCurve}) {
+    EXPECT_LE(share_of_long(deal(make_points(order, kMany), kNothing)), 0.02)
+        << testing::PrintToString(order);
   }
 }
 
-TEST(TileTree, DividesTilesAgainThatFillWithoutNotice) {
-  const Filled filled = fill(make_points(Order::kSorted, 300'000), {});
-  EXPECT_GT(filled.to_divide, kCapacity);
-  EXPECT_EQ(fill(make_points(Order::kRandom, 5'000), {}).divided, 0U);
+TEST(TileTree, KeepsPointsOfSpaceLikewise) {
+  for (const Order order : {Order::kRandom, Order::kSorted}) {
+    const Points points = make_points(order, kMany / 2, false);
+    const DealtTiles<3> dealt = deal_into_tiles<3>(points, {});
+    EXPECT_EQ(fault_of(dealt, points), "");
+    EXPECT_EQ(out_of_order(dealt), 0U);
+    EXPECT_LE(dealt.writes(), 2.0);
+  }
+}
+
+TEST(TileTree, KeepsPointsFarFromTheOrigin) {
+  Points points = make_points(Order::kFlightLines, kMany / 2);
+  for (LatticePoint& p : points) p = {1e15 + std::floor(1000 * p[0]), std::floor(1e6 * p[1]), p[2]};
+  EXPECT_EQ(fault_of(deal(points, kNothing), points), "");
+}
+
+TEST(TileTree, WritesEveryPointOnceWhenTheHeaderTellsTheTruth) {
+  for (const Order order : {Order::kRandom, Order::kSorted, Order::kFlightLines}) {
+    EXPECT_LE(deal(make_points(order, kMany), kAll).writes(), 1.02)
+        << testing::PrintToString(order);
+  }
+}
+
+TEST(TileTree, WritesLittleTwiceInTheOrderOfAScanner) {
+  for (const Order order : {Order::kSorted, Order::kFlightLines, Order::kCurve}) {
+    EXPECT_LE(deal(make_points(order, kMany), kNothing).writes(), 1.3)
+        << testing::PrintToString(order);
+  }
+}
+
+TEST(TileTree, DealsAgainWhatALaterCutPartedOnTheDisk) {
+  const DealtTiles<2> dealt = deal(make_points(Order::kRandom, kMany), kNothing);
+  EXPECT_GT(dealt.left_over, kCapacity);
+  EXPECT_GE(dealt.divided, dealt.left_over);
+  EXPECT_EQ(deal(make_points(Order::kRandom, 5'000), kNothing).divided, 0U);
 }
 
 TEST(TileTree, WritesNothingIfEverythingFits) {
-  const Filled filled = fill(make_points(Order::kRandom, 5'000), {});
-  EXPECT_EQ(filled.writes, 0);
-  EXPECT_GT(filled.tiles, 4U);
+  const DealtTiles<2> dealt = deal(make_points(Order::kRandom, 5'000), kNothing);
+  EXPECT_EQ(dealt.written, 0U);
+  EXPECT_GT(dealt.tiles.size(), 4U);
 }
 
 TEST(TileTree, TakesEqualPointsAsOneTileWhateverTheirNumber) {
-  const Filled filled = fill(Points(200'000, LatticePoint{1, 2, 3}), {});
-  EXPECT_EQ(filled.tiles, 1U);
-  EXPECT_EQ(filled.points.size(), 200'000U);
+  const Points points(200'000, LatticePoint{1, 2, 3});
+  const DealtTiles<2> dealt = deal(points, kNothing);
+  EXPECT_EQ(dealt.tiles.size(), 1U);
+  EXPECT_EQ(fault_of(dealt, points), "");
 }
 
 TEST(TileTree, SurvivesAHeaderThatLies) {

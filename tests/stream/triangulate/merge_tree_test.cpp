@@ -43,8 +43,7 @@ Shape full(int levels, std::size_t children) {
 
 TEST(MergeTree, NumbersNodesInPostOrder) {
   const Shape shape = two_and_three();
-  Task task;
-  Tree tree(shape, task);
+  Tree tree(shape);
   std::vector<std::uint32_t> numbers;
   for (const Tree::Node& node : tree.nodes()) numbers.push_back(node.number);
   EXPECT_THAT(numbers, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
@@ -58,23 +57,9 @@ TEST(MergeTree, NumbersNodesInPostOrder) {
   EXPECT_EQ(tree.root().parent, nullptr);
 }
 
-TEST(MergeTree, MakesATreeOfTasks) {
-  const Shape shape = two_and_three();
-  Task task;
-  Tree tree(shape, task);
-  EXPECT_EQ(task.kind, TaskKind::kNode);
-  EXPECT_EQ(task.points, 5U);
-  ASSERT_EQ(task.children.size(), 2U);
-  ASSERT_EQ(task.children[1].children.size(), 3U);
-  EXPECT_EQ(task.children[1].children[2].kind, TaskKind::kBaseCase);
-  EXPECT_EQ(tree.nodes()[5].task, &task.children[1].children[2]);
-  EXPECT_EQ(tree.nodes()[6].task, &task.children[1]);
-}
-
 TEST(MergeTree, SiblingsUpAreTheRestOfTheTree) {
   const Shape shape = two_and_three();
-  Task task;
-  Tree tree(shape, task);
+  Tree tree(shape);
   const auto& [left, right] = std::tie(shape.children[0], shape.children[1]);
   EXPECT_THAT(tree.siblings_up(tree.nodes()[4]),
               ElementsAre(&right.children[0], &right.children[2], &left));
@@ -84,8 +69,7 @@ TEST(MergeTree, SiblingsUpAreTheRestOfTheTree) {
 
 TEST(MergeTree, MergesWhenTheLastChildIsDone) {
   const Shape shape = two_and_three();
-  Task task;
-  Tree tree(shape, task);
+  Tree tree(shape);
   std::vector<std::uint32_t> merged;
   const auto merge = [&merged](const Tree::Node& node) { merged.push_back(node.number); };
   for (const int leaf : {1, 5, 3, 0}) tree.leaf_done(tree.nodes()[leaf], merge);
@@ -96,17 +80,14 @@ TEST(MergeTree, MergesWhenTheLastChildIsDone) {
 
 TEST(MergeTree, OfOneLeafHasNothingToMerge) {
   const Shape shape;
-  Task task;
-  Tree tree(shape, task);
-  EXPECT_EQ(task.kind, TaskKind::kBaseCase);
+  Tree tree(shape);
   tree.leaf_done(*tree.leaves()[0], [](Tree::Node&) { FAIL(); });
   EXPECT_EQ(&tree.root(), tree.leaves()[0]);
 }
 
 TEST(MergeTree, EachNodeIsMergedOnceAfterItsChildrenByAnyThreads) {
   const Shape shape = full(5, 4);
-  Task task;
-  Tree tree(shape, task);
+  Tree tree(shape);
   with_threads(4, [&] {
     parallel_for(tree.leaves().size(), 1, [&](std::size_t, std::size_t begin, std::size_t) {
       Tree::Node& leaf = *tree.leaves()[begin];

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numeric>
 
 #include "src/error.h"
@@ -113,6 +114,58 @@ TYPED_TEST(TileEngineTest, TriangulatesTilesAndMergesThem) {
             0U);
 }
 
+TYPED_TEST(TileEngineTest, TellsEachNodeOnceAfterItsChildren) {
+  constexpr int kD = TypeParam::value;
+  std::vector<TaskNode> told;
+  StreamOptions options = EngineRun<kD>::small();
+  options.task_done = [&told](TaskNode node) { told.push_back(std::move(node)); };
+  EngineRun<kD> run(options);
+  run.spill(random_points<kD>(5000, 1));
+  run.triangulate();
+  const RunFigures figures = run.engine.figures();
+  std::map<std::uint32_t, const TaskNode*> waiting;
+  std::uint64_t tiles = 0;
+  for (const TaskNode& node : told) {
+    std::size_t points = node.task.points;
+    std::uint32_t level = 0;
+    for (const std::uint32_t child : node.children) {
+      ASSERT_TRUE(waiting.contains(child));
+      points -= waiting[child]->task.points;
+      level = std::max(level, waiting[child]->level + 1);
+      waiting.erase(child);
+    }
+    EXPECT_EQ(node.level, level);
+    EXPECT_EQ(points, node.children.empty() ? node.task.points : 0U);
+    tiles += node.children.empty() ? 1 : 0;
+    ASSERT_TRUE(waiting.emplace(node.number, &node).second);
+  }
+  ASSERT_EQ(waiting.size(), 1U);
+  EXPECT_EQ(waiting.begin()->first + 1, told.size());
+  EXPECT_EQ(tiles, figures.tiles);
+  std::uint64_t leaves = 0;
+  std::uint64_t merges = 0;
+  for (const TaskSum& sum : figures.task_sums) {
+    if (sum.scope == TaskScope::kInTile && sum.level == 0 && sum.kind == TaskKind::kBaseCase) {
+      leaves += sum.tasks;
+    }
+    if (sum.scope == TaskScope::kBetweenTiles && sum.kind == TaskKind::kNode) {
+      merges += sum.tasks;
+    }
+  }
+  EXPECT_EQ(leaves, figures.leaves);
+  EXPECT_EQ(merges, told.size() - tiles);
+}
+
+TYPED_TEST(TileEngineTest, AFailureOfWhoIsToldOfTasksEndsTheRun) {
+  StreamOptions options = EngineRun<TypeParam::value>::small();
+  options.task_done = [](const TaskNode& node) {
+    if (node.number > 3) throw InvalidArgument("enough of it");
+  };
+  EngineRun<TypeParam::value> run(options);
+  run.spill(random_points<TypeParam::value>(5000, 1));
+  EXPECT_THROW(run.triangulate(), InvalidArgument);
+}
+
 TYPED_TEST(TileEngineTest, HasNoTilesWithoutPoints) {
   constexpr int kD = TypeParam::value;
   EngineRun<kD> run;
@@ -179,8 +232,7 @@ TYPED_TEST(TileEngineTest, MergesABorderOfAnotherProcess) {
 }
 
 TEST(TileEngine, DividesTilesAgainThatBecameTooLarge) {
-  std::vector<Point<2>> points = random_points<2>(300'000, 4);
-  std::sort(points.begin(), points.end());
+  const std::vector<Point<2>> points = random_points<2>(300'000, 4);
   EngineRun<2> run({.threads = 2,
                     .tile_capacity = 1000,
                     .buffered_points = 40 * PointBuffer::kChunk,

@@ -109,6 +109,31 @@ TYPED_TEST(TileTriangulation, OfATileAloneIsAll) {
   EXPECT_EQ(bench.counts.leaves, static_cast<std::uint64_t>(bench.leaves_told));
 }
 
+TYPED_TEST(TileTriangulation, HasATaskForEachLeafAndMerge) {
+  constexpr int kD = TypeParam::value;
+  Bench<kD> bench;
+  TilePoints<kD> points;
+  points.resize(1000, true);
+  points.points = random_points<kD>(1000, 1);
+  std::iota(points.index.begin(), points.index.end(), std::uint64_t{0});
+  const Outside<kD> outside;
+  Task tile;
+  with_threads(2, [&] { triangulate_tile<kD>(bench.context, {std::move(points), outside}, tile); });
+  EXPECT_EQ(tile.before.size(), 1U);
+  std::uint64_t leaves = 0;
+  const auto check = [&](const auto& self, const Task& task) -> std::size_t {
+    EXPECT_EQ(task.kind, task.children.empty() ? TaskKind::kBaseCase : TaskKind::kNode);
+    EXPECT_EQ(task.after.size(), task.children.empty() ? 0U : 3U);
+    leaves += task.children.empty() ? 1 : 0;
+    std::size_t below = task.children.empty() ? task.points : 0;
+    for (const Task& child : task.children) below += self(self, child);
+    EXPECT_EQ(below, task.points);
+    return task.points;
+  };
+  EXPECT_EQ(check(check, tile), 1000U);
+  EXPECT_EQ(leaves, bench.counts.leaves);
+}
+
 TYPED_TEST(TileTriangulation, OfTwoTilesAndTheirMergeIsAll) {
   constexpr int kD = TypeParam::value;
   const TwoTiles<kD> tiles(random_points<kD>(1500, 2));

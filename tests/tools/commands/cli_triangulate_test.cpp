@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <iterator>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -205,13 +208,63 @@ TEST(Triangulate, StatsHaveTheirDocumentedKeys) {
   for (const char* key :
        {"version", "dimension", "threads", "inputs", "output", "output_format", "on_lattice",
         "points", "withheld", "duplicates", "vertices", "simplices", "left_out", "hull_facets",
-        "canonical_hash", "peak_rss_bytes", "seconds", "phases", "tasks"}) {
+        "canonical_hash", "peak_rss_bytes", "seconds", "phases", "task_sums"}) {
     EXPECT_TRUE(stats.contains(key)) << key;
   }
   EXPECT_EQ(stats["points"], 5000);
   EXPECT_EQ(stats["points"].get<int>() - stats["duplicates"].get<int>(), stats["vertices"]);
   EXPECT_GT(stats["peak_rss_bytes"], 1 << 20);
-  EXPECT_FALSE(stats["tasks"]["kind"].get<std::string>().empty());
+  const auto& leaves = stats["task_sums"][0];
+  EXPECT_EQ(leaves["scope"], "in_tile");
+  EXPECT_EQ(leaves["level"], 0);
+  EXPECT_EQ(leaves["kind"], "base_case");
+  EXPECT_EQ(leaves["tasks"], stats["leaves"]);
+  EXPECT_EQ(leaves["points"], 5000);
+  EXPECT_GT(leaves["seconds"], 0.0);
+  EXPECT_EQ(leaves["pieces"], stats["leaves"]);
+}
+
+TEST(Triangulate, TasksAreALineForEachNodeChildrenFirst) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 20000 -o in.las\n"
+      "spillway triangulate -q in.las -o mesh.ply --stats stats.json --tasks tasks.jsonl "
+      "--tile 2000 --base-case 500");
+  std::istringstream lines(work.read("tasks.jsonl"));
+  std::set<int> waiting;
+  int tiles = 0;
+  int points = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const auto node = nlohmann::json::parse(line);
+    for (const int child : node["below"]) EXPECT_EQ(waiting.erase(child), 1U);
+    EXPECT_TRUE(waiting.insert(node["number"].get<int>()).second);
+    EXPECT_EQ(node["level"] == 0, node["below"].empty());
+    EXPECT_GT(node["task"]["pieces"], 0);
+    if (node["level"] != 0) continue;
+    ++tiles;
+    points += node["task"]["points"].get<int>();
+    EXPECT_EQ(node["task"]["before"][0]["kind"], "divide");
+  }
+  EXPECT_EQ(waiting.size(), 1U);
+  EXPECT_EQ(points, 20000);
+  EXPECT_EQ(tiles, stats_of(work)["tiles"]);
+}
+
+TEST(Triangulate, TasksGetTheirFileOnlyIfTheRunEndsWell) {
+  const Workspace work;
+  work.write("in.txt", "0 0 0\n1 0 0\n0 1 0\n");
+  const auto fails = [&](const std::string& options, const char* words, int code) {
+    const Result result = work.run("spillway triangulate -q in.txt -o mesh.obj " + options);
+    EXPECT_EQ(result.exit_code, code) << options;
+    EXPECT_THAT(result.err, HasSubstr(words));
+    EXPECT_FALSE(std::filesystem::exists(work.folder() / "mesh.obj"));
+    EXPECT_FALSE(std::filesystem::exists(work.folder() / "tasks.jsonl"));
+  };
+  fails("--tasks tasks.jsonl --max-edge 0.1", "nothing is left", 1);
+  fails("--tasks no/tasks.jsonl", "create the folder no", 1);
+  fails("--tasks mesh.obj", "the mesh and --tasks cannot go to the same place", 2);
+  fails("--tasks tasks.jsonl --stats tasks.jsonl", "--stats and --tasks cannot go", 2);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(work.folder()), {}), 1);
 }
 
 TEST(Triangulate, SimulatedCoresAreATableAndInTheStats) {

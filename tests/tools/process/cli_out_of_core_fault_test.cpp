@@ -26,6 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 /// Enough to overflow what waits in memory under the least --memory for two dimensions.
@@ -127,6 +128,61 @@ TEST_F(OutOfCoreFault, TooLittleMemoryIsRefusedWithTheLeastThatWillDo) {
     work_.succeed(command + memory + least.substr(0, least.find(' ')));
   }
 }
+
+/// The first size after `words` in a message; "" if there is none.
+std::string size_after(const std::string& message, const std::string& words) {
+  const std::size_t at = message.find(words);
+  if (at == std::string::npos) return "";
+  const std::size_t begin = at + words.size();
+  return message.substr(begin, message.find('M', begin) + 1 - begin);
+}
+
+TEST_F(OutOfCoreFault, TheLeastMemoryIsNamedWithWhatOutputsTakeThemselves) {
+  generate("in.las", 3000);
+  for (const std::string command :
+       {"contour in.las -o c.geojson --interval 5", "render --dim 3 in.las -o p.png --size 100"}) {
+    const std::string limited = "spillway " + command + " -q --memory ";
+    const std::string message = work_.run(limited + (command[0] == 'c' ? "20M" : "96M")).err;
+    EXPECT_THAT(message, HasSubstr("MiB are the least"));
+    work_.succeed(limited + size_after(message, "--memory "));
+  }
+}
+
+struct Refusal {
+  const char* points;
+  const char* memory;
+  bool all_border;  ///< so that what is enough for any points is all that can be told
+};
+
+class OutOfCoreRefusal : public testing::TestWithParam<Refusal> {};
+
+TEST_P(OutOfCoreRefusal, NamesMemoryThatIsEnough) {
+  const Workspace work;
+  const Refusal& refusal = GetParam();
+  work.succeed(fmt::format("spillway generate -q {} -o in.spp", refusal.points));
+  const std::string dimension =
+      std::string(refusal.points).find("--dim 3") == std::string::npos ? "" : "--dim 3 ";
+  const std::string command = "spillway triangulate -q --tmpdir . " + dimension +
+                              "in.spp -o /dev/null --output-format spm --memory ";
+  const Result refused = work.run(command + refusal.memory);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("of memory are too little for"));
+  if (refusal.all_border) {
+    EXPECT_THAT(refused.err, AllOf(HasSubstr(" is enough"), Not(HasSubstr("may be"))));
+  } else {
+    EXPECT_THAT(refused.err, HasSubstr(" may be enough"));
+  }
+  const std::string told = size_after(refused.err, "--memory ");
+  EXPECT_LT(std::stoi(told), 800) << refused.err;
+  work.succeed(command + told);
+}
+
+INSTANTIATE_TEST_SUITE_P(Points, OutOfCoreRefusal,
+                         testing::Values(Refusal{"circle -n 3e5", "32M", true},
+                                         Refusal{"ellipsoid -n 3e5", "32M", true},
+                                         Refusal{"lines -n 3e5", "32M", true},
+                                         Refusal{"ellipsoid --dim 3 -n 150000", "96M", true},
+                                         Refusal{"normal --dim 3 -n 6e6", "96M", false}));
 
 TEST_F(OutOfCoreFault, FoldersThatCannotBeWrittenTo) {
   generate("in.las", 100);

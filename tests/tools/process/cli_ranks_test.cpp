@@ -238,6 +238,7 @@ TEST_F(RanksThatFail, SayOnceWhatIsWrongWithInputOptionsAndOutput) {
   expect_failure(ranks(3, "triangulate -q in.las -o b.ply --max-edge 0.0001"), "nothing is left");
   expect_failure(ranks(3, "triangulate -q in.las"), "--output", 2);
   expect_failure(ranks(3, "triangulate -q in.las -o b.ply --simulate-cores 1,2"), "mpirun", 2);
+  expect_failure(ranks(3, "triangulate -q in.las -o b.ply --tasks t.jsonl"), "mpirun", 2);
   expect_failure(ranks(3, "info in.las"), "start it without mpirun", 2);
   expect_failure("spillway triangulate -q in.las -o b.ply --parts", "start it with mpirun", 2);
 }

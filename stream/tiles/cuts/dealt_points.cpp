@@ -1,4 +1,4 @@
-#include "stream/tiles/dealt_points.h"
+#include "stream/tiles/cuts/dealt_points.h"
 
 namespace spillway::detail {
 

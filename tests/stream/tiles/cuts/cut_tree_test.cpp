@@ -1,12 +1,14 @@
-#include "stream/tiles/cut_tree.h"
+#include "stream/tiles/cuts/cut_tree.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
+#include <utility>
 
-#include "stream/tiles/dealt_points.h"
+#include "stream/tiles/cuts/dealt_points.h"
 
 namespace spillway::detail {
 namespace {
@@ -84,6 +86,54 @@ TEST(CutTree, EqualPointsStayTogether) {
   cuts.split(0, two, 4);
   EXPECT_EQ(cuts.tiles(), 2U);
   EXPECT_THAT(tiles_of(cuts, {{1, 2, 3}, {1, 7, 3}}), ElementsAre(0, 1));
+}
+
+/// The tile that the cuts themselves lead to, where they are known by their references.
+std::uint32_t walk(const CutTree& cuts, const std::vector<std::pair<int, double>>& planes,
+                   const LatticePoint& point) {
+  CutTree::NodeRef ref = cuts.root();
+  while (!CutTree::is_tile(ref)) {
+    const auto [axis, value] = planes[static_cast<std::size_t>(ref)];
+    ref = cuts.sides(ref)[point[axis] >= value ? 1 : 0];
+  }
+  return CutTree::tile_at(ref);
+}
+
+TEST(CutTree, FindsTheSameAsAWalkAfterEachCutOfALongChain) {
+  for (const int dimension : {2, 3}) {
+    CutTree cuts(dimension);
+    std::vector<std::pair<int, double>> planes;
+    std::vector<LatticePoint> points = random_points(200, 5);
+    for (LatticePoint& point : points) {
+      for (double& x : point) x = std::floor(150 * x);  // many on cuts
+    }
+    for (int i = 0; i < 120; ++i) {
+      planes.emplace_back(i % dimension, i);
+      const std::uint32_t last = cuts.tiles() - 1;
+      EXPECT_EQ(cuts.cut(last, i % dimension, i), i);
+      const std::vector<std::uint32_t> tiles = tiles_of(cuts, points);
+      for (std::size_t p = 0; p < points.size(); ++p) {
+        ASSERT_EQ(tiles[p], walk(cuts, planes, points[p])) << "cut " << i;
+      }
+    }
+  }
+}
+
+TEST(CutTree, FindsTheSameAsAWalkAfterCutsOfAnyTile) {
+  CutTree cuts(2);
+  std::mt19937 random(6);
+  std::vector<std::pair<int, double>> planes;
+  const std::vector<LatticePoint> points = random_points(300, 7);
+  for (int i = 0; i < 150; ++i) {
+    const LatticePoint& at = points[random() % points.size()];
+    const int axis = static_cast<int>(random() % 2);
+    cuts.cut(tiles_of(cuts, {at})[0], axis, at[axis]);
+    planes.emplace_back(axis, at[axis]);
+    const std::vector<std::uint32_t> tiles = tiles_of(cuts, points);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      ASSERT_EQ(tiles[p], walk(cuts, planes, points[p])) << "cut " << i;
+    }
+  }
 }
 
 TEST(DealtPoints, AreGroupedByTileInTheOrderInWhichTheyCame) {

@@ -1,9 +1,13 @@
-#include "stream/tiles/cut_tree.h"
+#include "stream/tiles/cuts/cut_tree.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace spillway::detail {
 namespace {
+
+/// Cuts of a tile that the lookup does without.
+constexpr int kMostCutsSince = 6;
 
 /// The axis on which the points lie farthest apart.
 int longest_axis(const LatticePoint* begin, const LatticePoint* end, int dimension,
@@ -24,6 +28,9 @@ int longest_axis(const LatticePoint* begin, const LatticePoint* end, int dimensi
 
 }  // namespace
 
+CutTree::CutTree(int dimension)
+    : dimension_(dimension), lookup_({{whole_space<3>(), ref_of(0)}}, dimension) {}
+
 CutTree::NodeRef CutTree::make_cut(std::uint32_t tile, int axis, double value) {
   const auto ref = static_cast<NodeRef>(cuts_.size());
   const NodeRef above = parents_[tile];
@@ -35,30 +42,71 @@ CutTree::NodeRef CutTree::make_cut(std::uint32_t tile, int axis, double value) {
     auto& sides = cuts_[above].sides;
     sides[sides[0] == ref_of(tile) ? 0 : 1] = ref;
   }
+  cells_.push_back(cells_[tile]);
+  cells_.back().lo[axis] = value;
+  cells_[tile].hi[axis] = value;
   parents_[tile] = ref;
   parents_.push_back(ref);
-  cuts_above_.push_back(++cuts_above_[tile]);
-  most_cuts_ = std::max(most_cuts_, cuts_above_.back());
+  if (cuts_since_[tile] == 0) since_[tile] = ref;
+  since_.push_back(ref_of(other));
+  cuts_since_.push_back(++cuts_since_[tile]);
+  most_cuts_since_ = std::max(most_cuts_since_, cuts_since_.back());
   return ref;
 }
 
 void CutTree::find_tiles(std::span<const LatticePoint> points,
                          std::span<std::uint32_t> tiles) const {
+  std::uint32_t tile = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    NodeRef ref = root_;
-    for (int step = 0; step < most_cuts_; ++step) {
-      const Cut& cut = cuts_[std::max(ref, 0)];
-      const NodeRef next = cut.sides[points[i][cut.axis] >= cut.value ? 1 : 0];
-      ref = ref >= 0 ? next : ref;
-    }
-    tiles[i] = tile_at(ref);
+    if (!in_cell(points[i], tile)) tile = find_tile(points[i]);
+    tiles[i] = tile;
   }
 }
 
-void CutTree::cut(std::uint32_t tile, int axis, double value) { make_cut(tile, axis, value); }
+bool CutTree::in_cell(const LatticePoint& point, std::uint32_t tile) const {
+  const Box<3>& cell = cells_[tile];
+  bool inside = true;
+  for (int k = 0; k < dimension_; ++k) {
+    inside = inside && point[k] >= cell.lo[k] && point[k] < cell.hi[k];
+  }
+  return inside;
+}
+
+std::uint32_t CutTree::find_tile(const LatticePoint& point) const {
+  // As many steps for each point as for the deepest one: nobody can tell where a walk ends.
+  const Cut* const lookup = lookup_.cuts().data();
+  NodeRef ref = lookup_.root();
+  for (int step = 0; step < lookup_.depth(); ++step) {
+    const Cut& cut = lookup[std::max(ref, 0)];
+    const NodeRef next = cut.sides[point[cut.axis] >= cut.value ? 1 : 0];
+    ref = ref >= 0 ? next : ref;
+  }
+  ref = since_[tile_at(ref)];
+  while (ref >= 0) {
+    const Cut& cut = cuts_[ref];
+    ref = cut.sides[point[cut.axis] >= cut.value ? 1 : 0];
+  }
+  return tile_at(ref);
+}
+
+void CutTree::renew_lookup() {
+  std::vector<TileCell> cells;
+  for (std::uint32_t tile = 0; tile < tiles_; ++tile) cells.push_back({cells_[tile], ref_of(tile)});
+  lookup_ = CutLookup(std::move(cells), dimension_);
+  for (std::uint32_t tile = 0; tile < tiles_; ++tile) since_[tile] = ref_of(tile);
+  std::ranges::fill(cuts_since_, 0);
+  most_cuts_since_ = 0;
+}
+
+CutTree::NodeRef CutTree::cut(std::uint32_t tile, int axis, double value) {
+  const NodeRef ref = make_cut(tile, axis, value);
+  if (most_cuts_since_ > kMostCutsSince) renew_lookup();
+  return ref;
+}
 
 void CutTree::split(std::uint32_t tile, std::vector<LatticePoint>& sample, std::size_t parts) {
   split_sample(tile, sample.data(), sample.data() + sample.size(), parts);
+  renew_lookup();
 }
 
 void CutTree::split_sample(std::uint32_t tile, LatticePoint* begin, LatticePoint* end,

@@ -6,7 +6,7 @@
 
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
-#include "stream/tiles/cut_tree.h"
+#include "stream/tiles/cuts/cut_tree.h"
 
 namespace spillway::detail {
 

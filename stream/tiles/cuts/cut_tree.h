@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "src/geometry/framed_point.h"
+#include "stream/tiles/cuts/cut_lookup.h"
 
 namespace spillway::detail {
 
@@ -14,11 +15,14 @@ namespace spillway::detail {
 /// knows a tile for points anywhere. Points on a cut go up; equal points always go together.
 class CutTree {
  public:
-  /// One tile, number 0, that holds everything. Only the first `dimension` axes are cut.
-  explicit CutTree(int dimension) : dimension_(dimension) {}
+  /// A node of the tree, for walking it: a tile, or a cut with two sides.
+  using NodeRef = std::int32_t;
 
-  /// The tile of each point. In as many steps for each as for the deepest one: nobody can tell
-  /// where a walk ends.
+  /// One tile, number 0, that holds everything. Only the first `dimension` axes are cut.
+  explicit CutTree(int dimension);
+
+  /// The tile of each point, in about the logarithm of their number of steps, however the tiles
+  /// came about; in one step where it is that of the point before.
   void find_tiles(std::span<const LatticePoint> points, std::span<std::uint32_t> tiles) const;
 
   [[nodiscard]] std::uint32_t tiles() const { return tiles_; }
@@ -28,11 +32,11 @@ class CutTree {
   /// get new ones. Fewer parts come out where the sample's points are equal.
   void split(std::uint32_t tile, std::vector<LatticePoint>& sample, std::size_t parts);
 
-  /// Cuts a tile in two: below `value` on `axis` and not below.
-  void cut(std::uint32_t tile, int axis, double value);
+  /// Cuts a tile in two: it keeps its number for what is below `value` on `axis`. Returns the cut.
+  NodeRef cut(std::uint32_t tile, int axis, double value);
 
-  /// A node of the tree, for walking it: a tile, or a cut with two sides.
-  using NodeRef = std::int32_t;
+  /// Number of cuts; the next one gets it as its reference.
+  [[nodiscard]] NodeRef cuts() const { return static_cast<NodeRef>(cuts_.size()); }
   [[nodiscard]] NodeRef root() const { return root_; }
   [[nodiscard]] static bool is_tile(NodeRef ref) { return ref < 0; }
   [[nodiscard]] static std::uint32_t tile_at(NodeRef ref) {
@@ -41,23 +45,24 @@ class CutTree {
   [[nodiscard]] std::array<NodeRef, 2> sides(NodeRef ref) const { return cuts_[ref].sides; }
 
  private:
-  struct Cut {
-    double value;
-    int axis;
-    std::array<NodeRef, 2> sides;  ///< below, not below
-  };
-
   static NodeRef ref_of(std::uint32_t tile) { return -static_cast<NodeRef>(tile) - 1; }
   NodeRef make_cut(std::uint32_t tile, int axis, double value);
   void split_sample(std::uint32_t tile, LatticePoint* begin, LatticePoint* end, std::size_t parts);
+  void renew_lookup();
+  [[nodiscard]] bool in_cell(const LatticePoint& point, std::uint32_t tile) const;
+  [[nodiscard]] std::uint32_t find_tile(const LatticePoint& point) const;
 
   int dimension_;
-  int most_cuts_ = 0;               ///< above a tile
-  std::vector<int> cuts_above_{0};  ///< by tile
   NodeRef root_ = ref_of(0);
   std::uint32_t tiles_ = 1;
   std::vector<Cut> cuts_;
-  std::vector<NodeRef> parents_{-1};  ///< by tile: the cut above it, or -1
+  std::vector<NodeRef> parents_{-1};             ///< by tile: the cut above it, or -1
+  std::vector<Box<3>> cells_{whole_space<3>()};  ///< by tile
+  /// Finds the tile as it was when this was made; of that tile `since_` has what it is now.
+  CutLookup lookup_;
+  std::vector<NodeRef> since_{ref_of(0)};
+  std::vector<int> cuts_since_{0};  ///< by tile: cuts above it that the lookup does not have
+  int most_cuts_since_ = 0;
 };
 
 }  // namespace spillway::detail

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "src/geometry/box.h"
+
+namespace spillway::detail {
+
+/// A node of the finished tree over tiles: a tile that can be loaded, or two nodes.
+template <int D>
+struct TileNode {
+  Box<D> box;  ///< tight around its points
+  std::uint64_t points = 0;
+  std::vector<TileNode> children;     ///< none for a tile
+  std::vector<std::uint32_t> stored;  ///< of a tile: the stored tiles it is made of
+
+  [[nodiscard]] std::uint64_t size() const { return points; }
+  [[nodiscard]] bool leaf() const { return children.empty(); }
+};
+
+/// A balanced tree over tiles, of which there is at least one: the two sides of a node have about
+/// as many points each, and their boxes overlap little. In which order the tiles come makes no
+/// difference but between equal ones.
+template <int D>
+TileNode<D> tree_over(std::vector<TileNode<D>> tiles);
+
+}  // namespace spillway::detail

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "formats/disk/scratch_folder.h"
+#include "src/geometry/box.h"
+
+namespace spillway::detail {
+
+/// Where bytes that follow each other in a scratch file lie, or will lie: the file grows by them in
+/// the order in which they are spilled, but later.
+class FileStretch {
+ public:
+  explicit FileStretch(std::shared_ptr<ScratchFile> file) : file_(std::move(file)) {}
+
+  [[nodiscard]] ScratchFile& file() const { return *file_; }
+  [[nodiscard]] std::uint64_t offset() const { return offset_; }
+  [[nodiscard]] std::uint64_t size() const { return size_; }
+
+  /// Writes the bytes to the end of the file. `mutex` is held for what other threads look at.
+  void append(std::span<const std::byte> bytes, std::mutex& mutex);
+
+  /// Becomes a part of the stretch before it. Under the mutex.
+  void join(const std::shared_ptr<FileStretch>& before);
+
+ private:
+  void count(std::uint64_t offset, std::uint64_t bytes);
+
+  std::shared_ptr<ScratchFile> file_;
+  std::uint64_t offset_ = 0;
+  std::uint64_t size_ = 0;
+  std::shared_ptr<FileStretch> joined_;  ///< the stretch that it has become a part of
+};
+
+/// Points of a tile that lie on the disk side by side.
+struct TileSegment {
+  std::shared_ptr<FileStretch> stretch;
+  std::uint32_t first_spill = 0;  ///< of its file: how many came before
+  std::uint32_t end_spill = 0;
+  std::uint64_t points = 0;
+  /// Points of a tile that came earlier have lower ones. The segment's points have as many from
+  /// this one on as there are: those of its parts lie within.
+  std::uint64_t arrival = 0;
+  bool follows = false;  ///< no other points that are dealt again come between it and the last
+  Box<3> box;
+};
+
+/// Joins neighbours in `segments`, those of a tile in the order of their arrival, until at most
+/// `most` are left, or no two of them lie side by side. Those first that lie close together, and
+/// have few points. Under the mutex of FileStretch::append().
+void join_segments(std::vector<TileSegment>& segments, std::size_t most, int dimension);
+
+}  // namespace spillway::detail

@@ -1,0 +1,118 @@
+#!/usr/bin/env bash
+# Triangulates the same points of terrain from a pipe in several orders, and prints a Markdown table: what each order
+# took, and whether all gave the same triangulation. The first row is a run of three points, which shows what a process
+# takes besides its data. Each run begins when its points are ready, so that the time is that of spillway. Where
+# other programs use the machine, processor time is the better measure.
+#
+#   tests/benchmark/pipe_orders.sh [OPTIONS] SPILLWAY
+#
+#   -n N             points [1e6]
+#   --memory SIZE    as spillway triangulate takes it [32M]
+#   --orders LIST    of scan random curve outwards strips [all]
+#   --told           the stream's header tells the number of points and their extent
+#   --threads N      of spillway; 0: all there are [0]
+#   --limit SECONDS  a run that takes longer is ended, with exit code 124 [3600]
+#   --tmpdir DIR     where a folder for files is made, and removed at the end [$TMPDIR, else /tmp]
+#   --driver FILE    the ordered_points to run [beside SPILLWAY]
+#
+# The exit code is 1 if a run failed or hashes differ.
+set -u -o pipefail
+export LC_ALL=C
+
+usage() {
+  sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "$0" >&2
+  exit 2
+}
+
+points=1e6
+memory=32M
+orders="scan random curve outwards strips"
+told=()
+threads=0
+limit=3600
+tmpdir=${TMPDIR:-/tmp}
+driver=
+while [ $# -gt 1 ]; do
+  case "$1" in
+    -n) points=$2 ;;
+    --memory) memory=$2 ;;
+    --orders) orders=${2//,/ } ;;
+    --threads) threads=$2 ;;
+    --limit) limit=$2 ;;
+    --tmpdir) tmpdir=$2 ;;
+    --driver) driver=$2 ;;
+    --told) told=(--told); shift; continue ;;
+    *) usage ;;
+  esac
+  shift 2
+done
+if [ $# -ne 1 ] || [[ $1 == -* ]]; then usage; fi
+spillway=$1
+driver=${driver:-$(dirname "$spillway")/ordered_points}
+for program in "$spillway" "$driver" /usr/bin/time; do
+  [ -x "$program" ] || { echo "pipe_orders.sh: no program $program" >&2; exit 2; }
+done
+
+folder=$(mktemp -d "$tmpdir/pipe-orders-XXXXXX") || exit 2
+trap 'rm -rf "$folder"' EXIT
+trap 'exit 130' INT TERM
+mkfifo "$folder/pipe"
+
+# The number of that name among the figures of the last run, so deep in it; nothing if there is none.
+figure() {
+  sed -n -E "s/^ {$((2 * ${2:-1}))}\"$1\": \"?([^\",]*)\"?,?\$/\\1/p" "$folder/stats.json" 2> /dev/null
+}
+
+# Triangulates what comes through the pipe.
+triangulate() {
+  rm -f "$folder/stats.json"
+  /usr/bin/time -q -f '%e %U %S %M' -o "$folder/time" timeout "$limit" "$spillway" triangulate -q - \
+    -o "$folder/out.spm" --memory "$memory" --threads "$threads" --tmpdir "$folder" --stats "$folder/stats.json" < "$folder/pipe"
+}
+
+# The row of a run that ended with that exit code.
+print_row() {
+  local name=$1 code=$2 seconds user system kilobytes
+  read -r seconds user system kilobytes < "$folder/time"
+  awk -v name="$name" -v code="$code" -v seconds="$seconds" \
+    -v user="$user" -v kernel="$system" -v kilobytes="$kilobytes" -v n="$(figure points)" \
+    -v peak="$(figure peak_rss_bytes)" -v tiles="$(figure tiles)" -v spilled="$(figure spilled_points)" \
+    -v long="$(figure longer 2)" -v divided="$(figure divided_points)" -v bytes="$(figure spilled_bytes)" -v hash="$(figure canonical_hash)" '
+    function finished(value) { return n > 0 ? value : "-" }
+    function share(format, value) { return n > 3 ? sprintf(format, value / n) : "-" }
+    BEGIN {
+      mebibytes = peak > 0 ? peak / 1048576 : kilobytes / 1024
+      printf "| %s | %d | %.1f | %s | %.0f | %s | %s | %s | %s | %s | %s |\n", name, code, seconds,
+        share("%.3f", 1e6 * (user + kernel)), mebibytes, share("%.2f", spilled), finished(tiles),
+        finished(long), share("%.2f", divided), share("%.1f", bytes), finished(hash)
+    }'
+}
+
+failed=0
+hashes=()
+echo "| order | exit code | wall s | CPU us/pt | peak MiB | spilled/pt | tiles | above 4:1 | divided/pt | disk B/pt | hash |"
+echo "|---|---|---|---|---|---|---|---|---|---|---|"
+printf '0 0 0\n1 0 0\n0 1 0\n' > "$folder/pipe" &
+triangulate
+print_row "3 points" $?
+wait
+for order in $orders; do
+  # The pipe is opened when the points are ready; if they never are, its reader must not wait.
+  { "$driver" -n "$points" --order "$order" "${told[@]}" -o "$folder/pipe" || : <> "$folder/pipe"; } &
+  triangulate
+  code=$?
+  wait
+  print_row "$order" "$code"
+  if [ "$code" -eq 0 ]; then hashes+=("$(figure canonical_hash)"); else failed=1; fi
+done
+different=$(printf '%s\n' "${hashes[@]}" | sort -u | wc -l)
+echo
+if [ ${#hashes[@]} -lt 2 ]; then
+  echo "Fewer than two runs ended: no hashes to compare."
+elif [ "$different" -eq 1 ]; then
+  echo "All ${#hashes[@]} hashes are equal."
+else
+  echo "Hashes DIFFER: $different triangulations of the same points."
+  failed=1
+fi
+exit $failed

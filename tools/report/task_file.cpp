@@ -1,0 +1,13 @@
+#include "tools/report/task_file.h"
+
+#include "formats/disk/file_system.h"
+#include "tools/report/json_text.h"
+#include "tools/report/task_json.h"
+
+namespace spillway::detail {
+
+TaskFile::TaskFile(const std::string& path) : output_(disk().create(path)) {}
+
+void TaskFile::write(const TaskNode& node) { output_.append(json_text(to_json(node)) + "\n"); }
+
+}  // namespace spillway::detail

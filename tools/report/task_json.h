@@ -1,0 +1,13 @@
+#pragma once
+
+#include <spillway/figures.h>
+
+#include "formats/bytes/json.h"
+
+namespace spillway::detail {
+
+/// A line of --tasks, and an item of "task_sums" of --stats. docs/cli.md lists their keys.
+Json to_json(const TaskNode& node);
+Json to_json(const TaskSum& sum);
+
+}  // namespace spillway::detail
