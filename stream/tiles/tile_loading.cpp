@@ -1,0 +1,132 @@
+// From the filled tree to the points of its tiles.
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "src/parallel/parallel.h"
+#include "stream/tiles/tile_tree.h"
+
+namespace spillway::detail {
+
+/// What is below a node: one tile that may be joined with its neighbour, or others.
+template <int D>
+struct TileTree::Joinable {
+  std::optional<TileNode<D>> tile{};
+  bool others = false;
+};
+
+/// Appends all tiles below a node but the one that is returned.
+template <int D>
+TileTree::Joinable<D> TileTree::join_below(CutTree::NodeRef ref,
+                                           std::vector<TileNode<D>>& tiles) const {
+  if (CutTree::is_tile(ref)) {
+    const Tile& tile = tiles_[CutTree::tile_at(ref)];
+    if (tile.points == 0) return {};
+    TileNode<D> node;
+    std::copy_n(tile.box.lo.begin(), D, node.box.lo.begin());
+    std::copy_n(tile.box.hi.begin(), D, node.box.hi.begin());
+    node.points = tile.points;
+    node.stored = {CutTree::tile_at(ref)};
+    return {std::move(node)};
+  }
+  const auto refs = cuts_.sides(ref);
+  std::array<Joinable<D>, 2> sides = {join_below<D>(refs[0], tiles), join_below<D>(refs[1], tiles)};
+  auto& [below, above] = sides;
+  if (!below.tile && !below.others) return std::move(above);
+  if (!above.tile && !above.others) return std::move(below);
+  if (below.tile && above.tile && below.tile->points + above.tile->points <= options_.capacity) {
+    TileNode<D>& joined = *below.tile;
+    joined.box.expand(above.tile->box);
+    joined.points += above.tile->points;
+    joined.stored.insert(joined.stored.end(), above.tile->stored.begin(), above.tile->stored.end());
+    return std::move(below);
+  }
+  for (Joinable<D>& side : sides) {
+    if (side.tile) tiles.push_back(std::move(*side.tile));
+  }
+  return {.others = true};
+}
+
+template <int D>
+std::optional<TileNode<D>> TileTree::nodes() const {
+  std::vector<TileNode<D>> tiles;
+  Joinable<D> all = join_below<D>(cuts_.root(), tiles);
+  if (all.tile) tiles.push_back(std::move(*all.tile));
+  if (tiles.empty()) return std::nullopt;
+  return tree_over(std::move(tiles));
+}
+
+template <int D>
+StoredTile TileTree::read(const TileNode<D>& node) {
+  const StageTimer timer(times_, Stage::kLoad);
+  StoredTile stored;
+  stored.points = node.points;
+  for (const std::uint32_t number : node.stored) {
+    Tile tile = std::exchange(tiles_[number], {});
+    std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
+    const std::uint64_t buffer_arrival =
+        tile.arrival.value_or(std::numeric_limits<std::uint64_t>::max());
+    const auto put_buffer = [&] {
+      if (tile.buffer.size() > 0) stored.segments.push_back({{}, {}, std::move(tile.buffer)});
+      tile.buffer = {};
+    };
+    for (const TileSegment& segment : tile.segments) {
+      if (segment.arrival > buffer_arrival) put_buffer();
+      const FileStretch& stretch = *segment.stretch;
+      StoredTile::Segment& read = stored.segments.emplace_back();
+      read.where = {stretch.file().name(), at_byte(stretch.offset())};
+      read.bytes.resize(stretch.size());
+      stretch.file().read(stretch.offset(), read.bytes);
+    }
+    put_buffer();
+  }
+  return stored;
+}
+
+template <int D>
+TilePoints<D> TileTree::decode(StoredTile stored) const {
+  TilePoints<D> result;
+  result.resize(stored.points, options_.index);
+  std::size_t position = 0;
+  const auto put = [&](std::size_t first, std::span<const LatticePoint> points,
+                       std::span<const std::uint64_t> index) {
+    for (std::size_t i = 0; i < points.size(); ++i) result.set(first + i, points[i]);
+    std::copy(index.begin(), index.end(),
+              result.index.begin() + static_cast<std::ptrdiff_t>(index.empty() ? 0 : first));
+  };
+  for (StoredTile::Segment& segment : stored.segments) {
+    const std::vector<TileBlock> blocks = find_blocks(segment.bytes, segment.where);
+    std::vector<std::size_t> first(blocks.size());
+    for (std::size_t b = 0; b < first.size(); ++b) {
+      first[b] = position;
+      position += blocks[b].points;
+    }
+    parallel_for(blocks.size(), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
+      const StageTimer timer(times_, Stage::kLoad);
+      PointBlock points;
+      for (std::size_t b = begin; b < end; ++b) {
+        decode_points(
+            std::span<const std::byte>(segment.bytes).subspan(blocks[b].offset, blocks[b].size),
+            segment.where, points);
+        put(first[b], points.points, points.index);
+      }
+    });
+    segment.buffer.drain(
+        [&](std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
+          put(position, points, index);
+          position += points.size();
+        });
+  }
+  return result;
+}
+
+template std::optional<TileNode<2>> TileTree::nodes<2>() const;
+template std::optional<TileNode<3>> TileTree::nodes<3>() const;
+template StoredTile TileTree::read<2>(const TileNode<2>&);
+template StoredTile TileTree::read<3>(const TileNode<3>&);
+template TilePoints<2> TileTree::decode<2>(StoredTile) const;
+template TilePoints<3> TileTree::decode<3>(StoredTile) const;
+
+}  // namespace spillway::detail
