@@ -45,7 +45,7 @@ Report triangulate_with_tasks(const TriangulationOptions& options, PointSource& 
     file.write(node);
     if (also) also(std::move(node));
   };
-  const Report report = triangulate(points, sink, how, context);
+  Report report = triangulate(points, sink, how, context);
   file.commit();
   return report;
 }
