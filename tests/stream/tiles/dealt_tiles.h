@@ -68,17 +68,21 @@ inline std::vector<LatticePoint> make_points(Order order, std::size_t count, boo
     case Order::kOutwards:
       sort_by(points, [](const LatticePoint& p) { return std::hypot(p[0] - 0.5, p[1] - 0.5); });
       break;
-    case Order::kCurve:
-      sort_by(points, [](const LatticePoint& p) {
+    case Order::kCurve: {
+      std::vector<std::pair<std::uint64_t, LatticePoint>> keyed;
+      for (const LatticePoint& p : points) {
         std::uint64_t key = 0;
         for (int bit = 1; bit <= 20; ++bit) {
           for (const int k : {1, 0}) {
             key = 2 * key + (static_cast<std::uint64_t>(std::ldexp(p[k], bit)) & 1U);
           }
         }
-        return key;
-      });
+        keyed.emplace_back(key, p);
+      }
+      std::ranges::sort(keyed);
+      for (std::size_t i = 0; i < count; ++i) points[i] = keyed[i].second;
       break;
+    }
     case Order::kSkewed:
     case Order::kCluster:
       for (std::size_t i = 0; i < count; ++i) {

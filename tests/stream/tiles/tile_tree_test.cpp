@@ -103,6 +103,30 @@ TEST_P(TileTreeOfOrder, GivesTheSameTilesForAnyNumberOfThreads) {
   }
 }
 
+/// How many points lie in another tile than an equal one.
+std::size_t apart_from_equal(const DealtTiles<2>& dealt) {
+  std::vector<std::pair<Point<2>, std::size_t>> all;
+  for (std::size_t t = 0; t < dealt.tiles.size(); ++t) {
+    for (const Point<2>& p : dealt.tiles[t].points.points) all.emplace_back(p, t);
+  }
+  std::ranges::sort(all);
+  std::size_t apart = 0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    apart += all[i].first == all[i - 1].first && all[i].second != all[i - 1].second ? 1 : 0;
+  }
+  return apart;
+}
+
+TEST_P(TileTreeOfOrder, KeepsEqualPointsTogetherAndTheirOrderInLittleMemory) {
+  // A fraction of the points fits: most tiles are cut when they have segments on the disk.
+  const Dealing dealing{.capacity = 200, .buffered = 6'000, .block = 300};
+  const Points points = make_points(GetParam(), 25'000);
+  const DealtTiles<2> dealt = deal_into_tiles<2>(points, dealing);
+  EXPECT_EQ(fault_of(dealt, points), "");
+  EXPECT_EQ(out_of_order(dealt), 0U);
+  EXPECT_EQ(apart_from_equal(dealt), 0U);
+}
+
 INSTANTIATE_TEST_SUITE_P(Orders, TileTreeOfOrder,
                          testing::Values(Order::kRandom, Order::kSorted, Order::kFlightLines,
                                          Order::kStrips, Order::kOutwards, Order::kCurve,
