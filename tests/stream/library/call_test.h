@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/stream/library/error_code.h"
+
 namespace spillway::testing {
 
 class CallTest : public ::testing::Test {
@@ -45,17 +47,6 @@ class CallTest : public ::testing::Test {
     stop.request_stop();
     options.stop = stop.get_token();
     return options;
-  }
-
-  template <typename Work>
-  static ErrorCode code_of(Work&& work) {
-    try {
-      work();
-    } catch (const Error& error) {
-      return error.code();
-    }
-    ADD_FAILURE() << "nothing is thrown";
-    return {};
   }
 
   std::string folder_;

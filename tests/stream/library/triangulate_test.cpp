@@ -17,6 +17,8 @@
 #include <thread>
 #include <vector>
 
+#include "tests/stream/library/error_code.h"
+
 namespace spillway {
 namespace {
 
@@ -74,17 +76,6 @@ class Streams : public testing::Test {
     options.threads = threads;
     options.scratch_folder = folder_;
     return options;
-  }
-
-  template <typename Work>
-  static ErrorCode code_of(Work&& work) {
-    try {
-      work();
-    } catch (const Error& error) {
-      return error.code();
-    }
-    ADD_FAILURE() << "nothing is thrown";
-    return {};
   }
 
   std::string folder_;

@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/stream/library/error_code.h"
+
 namespace spillway {
 namespace {
 
@@ -107,17 +109,6 @@ class Products : public testing::Test {
     EXPECT_EQ(bytes_of(file("file." + extension)), bytes);
     EXPECT_EQ(bytes_of(file("program." + extension)), bytes);
     return report;
-  }
-
-  template <typename Work>
-  static ErrorCode code_of(Work&& work) {
-    try {
-      work();
-    } catch (const Error& error) {
-      return error.code();
-    }
-    ADD_FAILURE() << "nothing is thrown";
-    return {};
   }
 
   std::string folder_;
