@@ -38,6 +38,14 @@ std::size_t tiles_for(double points, std::size_t capacity, double fill) {
   return std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(tiles)));
 }
 
+/// Whether not all points of that box are equal.
+bool can_be_cut(const Box<3>& box, int dimension) {
+  for (int k = 0; k < dimension; ++k) {
+    if (box.lo[k] < box.hi[k]) return true;
+  }
+  return false;
+}
+
 /// About every `stride`-th point of a buffer.
 std::vector<LatticePoint> sample_of(const PointBuffer& buffer, std::size_t stride) {
   PointSample sample(stride);
@@ -301,11 +309,7 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
 }
 
 bool TileTree::too_large(const Tile& tile) const {
-  if (tile.points <= options_.capacity) return false;
-  for (int k = 0; k < options_.dimension; ++k) {
-    if (tile.box.lo[k] < tile.box.hi[k]) return true;
-  }
-  return false;
+  return tile.points > options_.capacity && can_be_cut(tile.box, options_.dimension);
 }
 
 /// Whether a tile is to be cut in two now.
@@ -314,10 +318,7 @@ bool TileTree::outgrown(const Tile& tile) const {
   const double capacity = static_cast<double>(options_.capacity);
   const double own = static_cast<double>(tile.points);
   if (own + tile.expected <= kMostFill * capacity || own < kLeastOwnShare * capacity) return false;
-  for (int k = 0; k < options_.dimension; ++k) {
-    if (tile.box.lo[k] < tile.box.hi[k]) return true;
-  }
-  return false;
+  return can_be_cut(tile.box, options_.dimension);
 }
 
 /// Cuts a tile in two, and a half again that is still too large.
