@@ -50,6 +50,12 @@ struct PointBlock {
   }
 };
 
+/// A part of a source, all of whose points lie in a box.
+struct PointRegion {
+  Box<3> box;               ///< in output coordinates, closed; z only where points have it
+  std::uint64_t count = 0;  ///< records
+};
+
 /// A batch of a source as fetch() leaves it: bytes that are still to be decoded, or points.
 struct RawPoints {
   PointBlock decoded;            ///< by readers whose input can only be decoded in order
@@ -57,13 +63,15 @@ struct RawPoints {
   std::uint64_t offset = 0;      ///< of `bytes` in the source
   std::uint64_t first = 0;       ///< number of the first record
   std::uint64_t count = 0;       ///< of records in `bytes`
+  /// Of PointHeader::regions, that all records of the batch belong to, where there are any.
+  std::uint64_t region = 0;
 
   [[nodiscard]] std::uint64_t records() const { return count + decoded.size() + decoded.withheld; }
   /// As new, but for the memory it has.
   void clear() {
     decoded.clear();
     bytes.clear();
-    offset = first = count = 0;
+    offset = first = count = region = 0;
   }
 };
 
@@ -83,6 +91,9 @@ struct PointHeader {
   std::string software;                ///< generating software, LAS only
   std::size_t extra_bytes = 0;         ///< of each record, after what the LAS point format has
   std::vector<std::string> notices;    ///< what was taken where the source leaves some doubt
+  /// What the source tells of where its points lie: parts that come one after the other, in this
+  /// order. Empty where it does not tell.
+  std::vector<PointRegion> regions;
 };
 
 struct PointReaderOptions {
