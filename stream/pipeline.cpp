@@ -5,10 +5,15 @@
 #include "src/delaunay/base_case.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
+#include "stream/plan/memory_plan.h"
+#include "stream/tiles/regions/region_plan.h"
 #include "stream/triangulate/tile_engine.h"
 
 namespace spillway::detail {
 namespace {
+
+/// How full cells of a plan are meant to get, of what a tile may have: densities differ.
+constexpr double kMostFill = 0.8;
 
 /// Points of a source as a tree of tiles takes them.
 PointFeed feed_of(PointStream& source, const StreamOptions& options, StageTimes& times) {
@@ -26,15 +31,19 @@ PointFeed feed_of(PointStream& source, const StreamOptions& options, StageTimes&
 }
 
 template <int D>
+void divide(TileEngine<D>& engine, const StreamOptions& options) {
+  if (engine.points_to_divide() == 0) return;
+  options.begin_phase("divide");
+  options.end_phase(engine.divide_large());
+}
+
+template <int D>
 void run(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
          const StreamOptions& options) {
   options.begin_phase("read");
   engine.spill(feed_of(source, options, engine.times()));
   options.end_phase(source.points_read());
-  if (engine.points_to_divide() > 0) {
-    options.begin_phase("divide");
-    options.end_phase(engine.divide_large());
-  }
+  divide(engine, options);
   options.begin_phase("triangulate");
   const std::optional<TileNode<D>> root = engine.nodes();
   if (!root) refuse_empty_input(source.counts());
@@ -45,14 +54,59 @@ void run(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
   options.end_phase(engine.points());
 }
 
+/// Triangulates while it reads.
+template <int D>
+void run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
+               const StreamOptions& options) {
+  budget.set_enough(enough_memory<D>(source.expected().value_or(0)));
+  options.begin_phase("read");
+  engine.spill(feed_of(source, options, engine.times()));
+  options.end_phase(source.points_read());
+  divide(engine, options);
+  options.begin_phase("triangulate");
+  if (engine.points() == 0) refuse_empty_input(source.counts());
+  refuse_flat_points(engine.span(), engine.points());
+  engine.triangulate_rest();
+  options.end_phase(engine.points());
+}
+
+/// The plan by which tiles are complete while other points are still to be read; none if the source
+/// does not tell where its points lie, or if too few tiles would be complete early.
+std::optional<RegionPlan> early_plan(PointStream& source, int dimension, const MemoryBudget& budget,
+                                     const StreamOptions& options) {
+  if (!options.early || source.regions().empty()) return std::nullopt;
+  std::size_t capacity = options.tile_capacity;
+  if (capacity == 0) {
+    capacity =
+        plan_memory(budget.limit(), dimension, options.threads, budget.whole(), true).tile_capacity;
+  }
+  std::optional<RegionPlan> plan =
+      plan_regions(source.regions(), {.dimension = dimension,
+                                      .most_points = kMostFill * static_cast<double>(capacity),
+                                      .any_order = source.any_order()});
+  if (!pays(*plan)) return std::nullopt;
+  source.keep_to(*plan);
+  return plan;
+}
+
 }  // namespace
 
 template <int D>
 RunFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
                               MemoryBudget& budget, const StreamOptions& options) {
-  TileEngine<D> engine({source.lattice(), source.expected(), source.extent()}, sink, scratch,
-                       budget, options);
-  with_threads(engine.threads(), [&] { run(engine, source, budget, options); });
+  const std::optional<RegionPlan> plan = early_plan(source, D, budget, options);
+  TileEngine<D> engine({.lattice = source.lattice(),
+                        .count = source.expected(),
+                        .extent = source.extent(),
+                        .plan = plan ? &*plan : nullptr},
+                       sink, scratch, budget, options);
+  with_threads(engine.threads(), [&] {
+    if (plan) {
+      run_early(engine, source, budget, options);
+    } else {
+      run(engine, source, budget, options);
+    }
+  });
   release_base_case_memory();
   return engine.figures();
 }

@@ -25,20 +25,21 @@ SPILLWAY_API const char* to_string(ErrorCode code) noexcept;
 
 /// What the caller can change so that the same call works. Whoever has a user words the advice.
 enum class Remedy {
-  kNone,           ///< nothing that is known
-  kMemory,         ///< a larger memory limit
-  kScratchFolder,  ///< another folder for scratch files, or more room in it
-  kScratchLimit,   ///< a larger limit of scratch files, or of memory
-  kRasterSize,     ///< larger pixels, or a smaller part of the plane
-  kRasterMemory,   ///< as kRasterSize, or a larger memory limit
-  kPlane,          ///< triangulating in the plane instead of in space
-  kFilters,        ///< no filter by what the input does not tell of its points
-  kForeignCrs,     ///< taking coordinates as they are, whatever their coordinate systems
-  kOneFile,        ///< a mesh in one file instead of in parts
-  kLas14,          ///< writing version 1.4 of LAS
-  kRanks,          ///< several processes that share the work
-  kRasterExtent,   ///< saying what a raster covers, larger pixels, or agreeing to many
-  kPointLattice,   ///< rounding points to another lattice
+  kNone,             ///< nothing that is known
+  kMemory,           ///< a larger memory limit
+  kScratchFolder,    ///< another folder for scratch files, or more room in it
+  kScratchLimit,     ///< a larger limit of scratch files, or of memory
+  kRasterSize,       ///< larger pixels, or a smaller part of the plane
+  kRasterMemory,     ///< as kRasterSize, or a larger memory limit
+  kPlane,            ///< triangulating in the plane instead of in space
+  kFilters,          ///< no filter by what the input does not tell of its points
+  kForeignCrs,       ///< taking coordinates as they are, whatever their coordinate systems
+  kOneFile,          ///< a mesh in one file instead of in parts
+  kLas14,            ///< writing version 1.4 of LAS
+  kRanks,            ///< several processes that share the work
+  kRasterExtent,     ///< saying what a raster covers, larger pixels, or agreeing to many
+  kPointLattice,     ///< rounding points to another lattice
+  kDistrustHeaders,  ///< not relying on what headers tell of where points lie
 };
 
 /// What a place in a file is counted in.

@@ -146,10 +146,11 @@ struct RunFigures {
   std::uint64_t border_simplices = 0;           ///< most that were in memory at a time
   std::uint64_t border_bytes = 0;               ///< likewise
   std::uint64_t divided_points = 0;             ///< dealt once more after they were written
+  std::uint64_t first_block_read_points = 0;    ///< read when the first block was written
   TileShapes tile_shapes;
-  double read_seconds = 0;                      ///< wall time of reading and dealing
-  double divide_seconds = 0;                    ///< wall time of dividing tiles again
-  double triangulate_seconds = 0;               ///< likewise, with all writing but the last
+  double read_seconds = 0;         ///< wall time of reading and dealing
+  double divide_seconds = 0;       ///< wall time of dividing tiles again
+  double triangulate_seconds = 0;  ///< likewise, with all writing but the last
   std::vector<StageSeconds> stages{};
   std::vector<TaskSum> task_sums{};  ///< by scope, level and kind
 };

@@ -27,6 +27,9 @@ struct TriangulateOptions {
   std::size_t leaf_points = 0;        ///< most of a leaf; 0: chosen by number and memory
   Division division = Division::kLongestExtent;
   unsigned children = 2;  ///< parts that are merged at a time, 2 to 1024
+  /// Whether tiles are triangulated while others are still being read, where headers tell where all
+  /// points lie. A point that lies elsewhere is an error then.
+  bool trust_headers = true;
   Kernel kernel = Kernel::kSpillway;
   /// If set, is told each node of the tree over tiles when it is done, children before parents and
   /// else in any order: by the run's threads, one at a time. What it throws ends the run. Not for

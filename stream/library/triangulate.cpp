@@ -39,6 +39,7 @@ StreamOptions stream_options(const TriangulateOptions& options, const Context& c
   stream.max_edge = options.max_edge;
   stream.input_index = options.input_index;
   stream.task_done = options.task_done;
+  stream.early = options.trust_headers && !(sink.wants_extent() && options.dimension == 2);
   stream.extent_known = [&sink](const Box<2>& extent, std::uint64_t points) {
     sink.extent_known(extent, points);
   };

@@ -83,7 +83,9 @@ void Sequencer<D>::write(Waiting&& waiting) {
   vertices_ += waiting.vertices;
   simplices_ += waiting.simplices;
   const bool empty = waiting.vertices == 0 && waiting.simplices == 0 && mesh.imported.empty();
-  if (!empty) sink_.write(std::move(mesh));
+  if (empty) return;
+  if (tell_first_block_) std::exchange(tell_first_block_, {})();
+  sink_.write(std::move(mesh));
 }
 
 template <int D>

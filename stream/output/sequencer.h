@@ -2,8 +2,10 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "formats/meshes/common/mesh_stream.h"
@@ -22,6 +24,9 @@ class Sequencer {
  public:
   /// `sink` and `times` must outlive it.
   Sequencer(BlockSink& sink, const OutputOptions& output, StageTimes& times);
+
+  /// Is called once, before the first block is written.
+  void tell_first_block(std::function<void()> tell) { tell_first_block_ = std::move(tell); }
 
   /// Tells how many blocks a slot has, at least one; once for every slot, in any order.
   void open_slot(std::uint32_t slot, std::uint32_t blocks);
@@ -62,6 +67,7 @@ class Sequencer {
   [[nodiscard]] std::uint64_t number_of_written(const StreamPlace& place) const;
 
   BlockSink& sink_;
+  std::function<void()> tell_first_block_;  ///< empty once it has been called
   StageTimes& times_;
   mutable std::mutex mutex_;
   std::condition_variable turned_;

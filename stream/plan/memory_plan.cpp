@@ -44,6 +44,8 @@ constexpr Costs kSpace{.leaf_bytes = 800,
                        .least_limit = 96 * kMiB};
 
 constexpr double kTileShare = 0.4;
+/// What buffers and tiles get of their shares if they are there at the same time.
+constexpr double kEarlyShare = 0.75;
 constexpr double kWaitingShare = 0.1;
 constexpr std::size_t kBufferedPointBytes = 24;
 
@@ -62,7 +64,7 @@ std::size_t share(std::uint64_t limit, double part, std::size_t bytes_each) {
 }  // namespace
 
 MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads,
-                       std::uint64_t whole) {
+                       std::uint64_t whole, bool early) {
   const Costs& costs = costs_of(dimension);
   if (limit < costs.least_limit) {
     const double parts = static_cast<double>(std::max(whole, limit)) /
@@ -74,8 +76,9 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
                         {.perhaps = least * kMiB, .remedy = Remedy::kMemory});
   }
   MemoryPlan plan;
-  plan.buffered_points = share(limit, costs.buffer_share, kBufferedPointBytes);
-  plan.tile_capacity = share(limit, kTileShare, costs.tile_bytes);
+  const double part = early ? kEarlyShare : 1;
+  plan.buffered_points = share(limit, part * costs.buffer_share, kBufferedPointBytes);
+  plan.tile_capacity = share(limit, part * kTileShare, costs.tile_bytes);
   plan.leaf_size = std::min(
       {costs.good_leaf, share(limit, costs.leaf_share, costs.leaf_bytes), plan.tile_capacity});
   plan.waiting_bytes = share(limit, kWaitingShare, 1);

@@ -18,9 +18,10 @@ struct MemoryPlan {
 
 /// The plan for a limit in bytes. `wanted_threads` is cut down to what there is memory for. Throws
 /// TooSmallLimit with the least that may be enough if this one is too small: of `whole`, if the
-/// limit is a part of that.
+/// limit is a part of that. If tiles are triangulated `early`, while points wait for others, both
+/// get less.
 MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads,
-                       std::uint64_t whole = 0);
+                       std::uint64_t whole = 0, bool early = false);
 
 /// The size of leaves of `points` points: at most plan.leaf_size, and smaller where there are few
 /// points, so that all threads have something to do.

@@ -27,8 +27,10 @@ struct StreamOptions {
   std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, in output units
   bool input_index = false;
   std::function<void(TaskNode)> task_done{};  ///< as TriangulateOptions::task_done
+  /// Triangulate while points are being read, where regions of the source tell where they lie.
+  bool early = false;
   /// Told the box around all points in x and y, in the coordinates in which the source gives them,
-  /// and how many they are, before the first block is written.
+  /// and how many they are, before the first block is written; not if that is early.
   std::function<void(const Box<2>&, std::uint64_t points)> extent_known = [](const Box<2>&,
                                                                              std::uint64_t) {};
   /// Called when a phase begins: "read", "divide" if there are tiles to be divided again,

@@ -30,6 +30,7 @@ void for_each_sum(Figures& figures, Each each) {
   each(figures.border_simplices);
   each(figures.border_bytes);
   each(figures.divided_points);
+  each(figures.first_block_read_points);
   each(figures.tile_shapes.up_to_twice);
   each(figures.tile_shapes.up_to_4_times);
   each(figures.tile_shapes.longer);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
 #include <utility>
 
 #include "formats/inputs/open_points.h"
@@ -13,7 +14,12 @@ PieceSequence::PieceSequence(FileSystem& files, const std::vector<std::string>& 
                              const SourceFacts& facts,
                              std::vector<std::shared_ptr<PointReader>> readers,
                              PieceSequenceOptions options)
-    : files_(files), facts_(facts), options_(std::move(options)), records_(facts.records()) {
+    : files_(files),
+      facts_(facts),
+      options_(std::move(options)),
+      records_(facts.records()),
+      order_(paths.size()) {
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
   readers.resize(paths.size());
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const bool compared = !options_.viewer.empty() && facts.inputs[i].digest;
@@ -21,22 +27,28 @@ PieceSequence::PieceSequence(FileSystem& files, const std::vector<std::string>& 
   }
 }
 
+void PieceSequence::read_in_order(std::vector<std::size_t> inputs) {
+  order_ = std::move(inputs);
+  first_indices_.clear();
+  for (std::size_t i = 0; i < inputs_.size(); ++i) first_indices_.push_back(first_index_of(i));
+}
+
 void PieceSequence::open_current() {
-  Input& input = inputs_[current_];
+  Input& input = inputs_[current()];
   if (!input.reader) input.reader = open_point_reader(files_, input.path, options_.reader);
 }
 
 /// Looks at a file once; what has changed since is not seen.
 void PieceSequence::check_same_file() {
-  Input& input = inputs_[current_];
+  Input& input = inputs_[current()];
   if (input.same_file) return;
-  const FileDigest& expected = *facts_.inputs[current_].digest;
+  const FileDigest& expected = *facts_.inputs[current()].digest;
   const FileDigest digest = digest_of(*files_.open(input.path));
   if (digest != expected) {
     const std::string difference = digest.size != expected.size
                                        ? fmt::format("{} bytes, not {}", digest.size, expected.size)
                                        : "of the same size, but with other contents";
-    throw BadInput(header_of(current_).name,
+    throw BadInput(header_of(current()).name,
                    fmt::format("{} reads another file of this name than the one that was looked at "
                                "first ({}); all must see the same files",
                                options_.viewer, difference));
@@ -45,26 +57,32 @@ void PieceSequence::check_same_file() {
 }
 
 void PieceSequence::begin_piece(std::size_t input, std::optional<std::uint64_t> piece) {
-  if (!by_pieces_ || input != current_) {
-    if (by_pieces_) inputs_[current_].reader.reset();
-    current_ = input;
-    records_before_ = 0;
-    for (std::size_t i = 0; i < input; ++i) records_before_ += header_of(i).count.value_or(0);
+  if (!by_pieces_ || input != current()) {
+    if (by_pieces_) inputs_[current()].reader.reset();
+    turn_ = input;
+    records_before_ = first_index_of(input);
   }
   by_pieces_ = true;
   first_of_piece_.reset();
   check_same_file();
   open_current();
-  if (piece) inputs_[current_].reader->begin_piece(*piece);
+  if (piece) inputs_[current()].reader->begin_piece(*piece);
+}
+
+/// By what headers tell.
+std::uint64_t PieceSequence::first_index_of(std::size_t input) const {
+  std::uint64_t records = 0;
+  for (std::size_t i = 0; i < input; ++i) records += header_of(i).count.value_or(0);
+  return records;
 }
 
 /// Where indices cannot count through all inputs, those of a piece begin with 0.
 bool PieceSequence::fetch_of_piece(SourcePiece& piece) {
-  Input& input = inputs_[current_];
+  Input& input = inputs_[current()];
   piece.raw.clear();
   if (!input.reader->fetch(piece.raw)) return false;
   if (!first_of_piece_) first_of_piece_ = numbers_pieces() ? 0 : piece.raw.first;
-  piece.input = current_;
+  piece.input = current();
   piece.first_index = numbers_pieces() ? records_before_ : 0 - *first_of_piece_;
   piece.reader = input.reader;
   return true;
@@ -72,13 +90,13 @@ bool PieceSequence::fetch_of_piece(SourcePiece& piece) {
 
 bool PieceSequence::fetch(SourcePiece& piece) {
   if (by_pieces_) return fetch_of_piece(piece);
-  for (; current_ < inputs_.size(); finish_input()) {
-    Input& input = inputs_[current_];
+  for (; turn_ < inputs_.size(); finish_input()) {
+    Input& input = inputs_[current()];
     open_current();
     piece.raw.clear();
     if (!input.reader->fetch(piece.raw)) continue;
-    piece.input = current_;
-    piece.first_index = records_before_;
+    piece.input = current();
+    piece.first_index = first_indices_.empty() ? records_before_ : first_indices_[current()];
     piece.reader = input.reader;
     input.records += piece.raw.records();
     return true;
@@ -87,8 +105,9 @@ bool PieceSequence::fetch(SourcePiece& piece) {
 }
 
 void PieceSequence::finish_input() {
-  const PointHeader& header = header_of(current_);
-  Input& input = inputs_[current_++];
+  const PointHeader& header = header_of(current());
+  Input& input = inputs_[current()];
+  ++turn_;
   options_.detail(fmt::format("{}: {}{}{}, {} records read", header.name, header.format,
                               header.version.empty() ? "" : " ", header.version, input.records));
   records_before_ += header.count.value_or(input.records);
@@ -96,17 +115,17 @@ void PieceSequence::finish_input() {
 }
 
 std::optional<double> PieceSequence::fraction_read() const {
-  if (current_ == inputs_.size()) return 1;
+  if (turn_ == inputs_.size()) return 1;
   std::optional<double> fraction = 0;
-  const Input& input = inputs_[current_];
+  const Input& input = inputs_[current()];
   if (input.reader) fraction = input.reader->fraction_read();
   if (!fraction) return fraction;
   if (records_ && *records_ > 0) {
     const double before = static_cast<double>(records_before_);
-    const double now = *fraction * static_cast<double>(*header_of(current_).count);
+    const double now = *fraction * static_cast<double>(*header_of(current()).count);
     return (before + now) / static_cast<double>(*records_);
   }
-  return (static_cast<double>(current_) + *fraction) / static_cast<double>(inputs_.size());
+  return (static_cast<double>(turn_) + *fraction) / static_cast<double>(inputs_.size());
 }
 
 }  // namespace spillway::detail

@@ -37,6 +37,10 @@ class PieceSequence {
   /// too, but see begin_piece().
   bool fetch(SourcePiece& piece);
 
+  /// Inputs come in another order; indices are as ever. To be called before anything is read, where
+  /// all headers tell their counts.
+  void read_in_order(std::vector<std::size_t> inputs);
+
   /// From now on fetch() gives a piece of one input, or one whole input, and then false. Indices
   /// count through all inputs where all headers tell their counts, else from the piece's beginning.
   /// Throws Error for a file that is another one than its digest tells.
@@ -56,12 +60,14 @@ class PieceSequence {
     std::uint64_t records = 0;  ///< fetched so far
   };
 
+  [[nodiscard]] std::size_t current() const { return order_[turn_]; }
   [[nodiscard]] const PointHeader& header_of(std::size_t input) const {
     return facts_.inputs[input].header;
   }
   void open_current();
   void check_same_file();
   bool fetch_of_piece(SourcePiece& piece);
+  [[nodiscard]] std::uint64_t first_index_of(std::size_t input) const;
   void finish_input();
 
   FileSystem& files_;
@@ -69,8 +75,10 @@ class PieceSequence {
   PieceSequenceOptions options_;
   std::optional<std::uint64_t> records_;  ///< in all inputs, where all headers tell
   std::vector<Input> inputs_;
-  std::size_t current_ = 0;
-  std::uint64_t records_before_ = 0;             ///< of all inputs before the current one
+  std::vector<std::size_t> order_;               ///< in which inputs are read
+  std::vector<std::uint64_t> first_indices_;     ///< by input, if the order is not the inputs' own
+  std::size_t turn_ = 0;                         ///< of `order_`: the input that is being read
+  std::uint64_t records_before_ = 0;             ///< of all inputs that were read before it
   bool by_pieces_ = false;                       ///< fetch() ends with the piece that was begun
   std::optional<std::uint64_t> first_of_piece_;  ///< number of its first record, where that counts
 };

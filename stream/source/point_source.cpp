@@ -1,5 +1,6 @@
 #include "stream/source/point_source.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "stream/source/ordered_blocks.h"
@@ -25,6 +26,11 @@ HeaderSurveyOptions survey_options(const PointSourceOptions& options) {
           .detail = options.detail};
 }
 
+/// Number of the first record in its input.
+std::uint64_t first_record(const RawPoints& raw) {
+  return raw.decoded.index.empty() ? raw.first : raw.decoded.index.front();
+}
+
 }  // namespace
 
 PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
@@ -41,6 +47,7 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
     : options_(options),
       facts_(std::move(survey.facts)),
       coordinates_(facts_, options.dimension, options.filter, options.detail),
+      regions_(facts_, coordinates_, options.filter),
       pieces_(files, paths, facts_, std::move(survey.readers),
               {reader_options(options), std::move(viewer), options.detail}),
       world_extent_(facts_.extent(options.filter.bounds)) {
@@ -66,6 +73,17 @@ std::optional<std::uint64_t> PointSource::expected() const {
   return thins() ? std::nullopt : facts_.expected(options_.filter);
 }
 
+/// A pipe may wait for another one to be read.
+bool PointSource::any_order() const {
+  return std::ranges::none_of(facts_.inputs, &SourceFacts::Input::opens_once);
+}
+
+void PointSource::keep_to(const RegionPlan& plan) {
+  positions_.resize(plan.regions.size());
+  for (std::size_t p = 0; p < positions_.size(); ++p) positions_[plan.regions[p]] = p;
+  pieces_.read_in_order(plan.inputs);
+}
+
 std::vector<PointHeader> PointSource::headers() const {
   std::vector<PointHeader> headers;
   for (const SourceFacts::Input& input : facts_.inputs) headers.push_back(input.header);
@@ -77,7 +95,13 @@ bool PointSource::has_attributes() const {
 }
 
 bool PointSource::fetch(SourcePiece& piece) {
-  if (!thins()) return pieces_.fetch(piece);
+  if (!thins()) {
+    if (!pieces_.fetch(piece)) return false;
+    if (positions_.empty()) return true;
+    piece.region = positions_[regions_.number(piece.input, piece.raw.region)];
+    piece.arrival = piece.first_index + first_record(piece.raw);
+    return true;
+  }
   if (!thinned_) thin_inputs();
   piece.reader.reset();
   return thinning_->next(piece.raw.decoded);
@@ -106,6 +130,9 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   counts.withheld = block.withheld;
   counts.read = block.size() + block.withheld;
   if (options_.filter.active()) apply_filter(options_.filter, lattice(), block, counts);
+  if (!positions_.empty()) {
+    regions_.check(block, regions_.number(piece.input, piece.raw.region));
+  }
   for (std::uint64_t& index : block.index) index += piece.first_index;
   if (!piece.counted) return;
   const std::lock_guard lock(counts_mutex_);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 #include "stream/source/header_survey.h"
+#include "stream/source/input_regions.h"
 #include "stream/source/piece_sequence.h"
 #include "stream/source/point_filter.h"
 #include "stream/source/point_stream.h"
@@ -111,6 +113,10 @@ class PointSource : public PointStream {
   /// input that has none comes without; a thinned one with zeros.
   [[nodiscard]] bool has_attributes() const;
 
+  [[nodiscard]] std::span<const InputRegion> regions() const override { return regions_.all(); }
+  [[nodiscard]] bool any_order() const override;
+  void keep_to(const RegionPlan& plan) override;
+
   [[nodiscard]] PointCounts counts() const override;
   [[nodiscard]] std::uint64_t points_read() const override;
   [[nodiscard]] std::optional<double> fraction_read() const override {
@@ -127,6 +133,8 @@ class PointSource : public PointStream {
   PointSourceOptions options_;
   SourceFacts facts_;
   SourceCoordinates coordinates_;
+  InputRegions regions_;
+  std::vector<std::size_t> positions_;  ///< in the plan, by region; none if there is no plan
   PieceSequence pieces_;
   std::optional<Box<3>> world_extent_;
   std::optional<Box<3>> extent_;

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 #include "stream/source/point_filter.h"
 #include "stream/tiles/point_feed.h"
+#include "stream/tiles/regions/region_plan.h"
 
 namespace spillway::detail {
 
@@ -27,6 +29,15 @@ class PointStream {
   [[nodiscard]] virtual std::optional<std::uint64_t> expected() const = 0;
   /// Of all points, in the coordinates of decode(), where that is known.
   [[nodiscard]] virtual const std::optional<Box<3>>& extent() const = 0;
+
+  /// Parts of the points of which is known where they lie, in the coordinates of decode(); none
+  /// unless that is known of all points.
+  [[nodiscard]] virtual std::span<const InputRegion> regions() const { return {}; }
+  /// Whether inputs may be read in another order than that in which regions() has them.
+  [[nodiscard]] virtual bool any_order() const { return false; }
+  /// From now on pieces come as planned, with their region. decode() throws Error for a point
+  /// outside of it.
+  virtual void keep_to(const RegionPlan& /*plan*/) {}
 
   /// What became of the records so far.
   [[nodiscard]] virtual PointCounts counts() const = 0;

@@ -30,6 +30,9 @@ class SourceCoordinates {
   /// Whether z is on lattice(), too: an integer, and not an output coordinate.
   [[nodiscard]] bool heights_on_lattice() const { return heights_on_lattice_; }
 
+  /// Axes that are triangulated.
+  [[nodiscard]] int dimension() const { return dimension_; }
+
   /// A box of output coordinates in these coordinates.
   [[nodiscard]] Box<3> of_world(const Box<3>& world) const;
 

@@ -13,8 +13,10 @@ namespace spillway::detail {
 struct SourcePiece {
   RawPoints raw;
   std::size_t input = 0;
-  std::uint64_t first_index = 0;              ///< what the piece's numbers are counted from
-  bool counted = true;                        ///< decode() counts what becomes of its records
+  std::uint64_t first_index = 0;  ///< what the piece's numbers are counted from
+  bool counted = true;            ///< decode() counts what becomes of its records
+  std::size_t region = 0;         ///< position in the plan of the region that all its points are of
+  std::uint64_t arrival = 0;  ///< of its first record: in the order of all inputs as they are named
   std::shared_ptr<const PointReader> reader;  ///< lives until its last piece is decoded
 };
 

@@ -9,6 +9,18 @@
 #include "stream/tiles/tile_tree.h"
 
 namespace spillway::detail {
+namespace {
+
+/// An arrival after all others.
+constexpr std::uint64_t kLast = std::numeric_limits<std::uint64_t>::max();
+
+/// What waits without an arrival came last.
+template <typename Held>
+std::uint64_t arrival_of(const Held& held) {
+  return held.arrival.value_or(kLast - 1);
+}
+
+}  // namespace
 
 /// What is below a node: one tile that may be joined with its neighbour, or others.
 template <int D>
@@ -22,8 +34,9 @@ template <int D>
 TileTree::Joinable<D> TileTree::join_below(CutTree::NodeRef ref,
                                            std::vector<TileNode<D>>& tiles) const {
   if (CutTree::is_tile(ref)) {
-    const Tile& tile = tiles_[CutTree::tile_at(ref)];
-    if (tile.points == 0) return {};
+    const auto taken = taken_.find(CutTree::tile_at(ref));
+    if (taken == taken_.end()) return {};
+    const Tile& tile = taken->second;
     TileNode<D> node;
     std::copy_n(tile.box.lo.begin(), D, node.box.lo.begin());
     std::copy_n(tile.box.hi.begin(), D, node.box.hi.begin());
@@ -49,13 +62,78 @@ TileTree::Joinable<D> TileTree::join_below(CutTree::NodeRef ref,
   return {.others = true};
 }
 
+/// Of tiles that have been taken.
 template <int D>
-std::optional<TileNode<D>> TileTree::nodes() const {
+std::optional<TileNode<D>> TileTree::nodes_below(CutTree::NodeRef ref) const {
+  const std::shared_lock cuts_lock(cuts_mutex_);
+  const std::lock_guard lock(taken_mutex_);
   std::vector<TileNode<D>> tiles;
-  Joinable<D> all = join_below<D>(cuts_.root(), tiles);
+  Joinable<D> all = join_below<D>(ref, tiles);
   if (all.tile) tiles.push_back(std::move(*all.tile));
   if (tiles.empty()) return std::nullopt;
   return tree_over(std::move(tiles));
+}
+
+/// Tiles below a node get no more points.
+void TileTree::take_below(CutTree::NodeRef ref) {
+  if (!CutTree::is_tile(ref)) {
+    for (const CutTree::NodeRef side : cuts_.sides(ref)) take_below(side);
+    return;
+  }
+  const std::uint32_t number = CutTree::tile_at(ref);
+  Tile tile = std::exchange(tiles_[number], {});
+  if (tile.points == 0) return;
+  room_ -= tile.room();
+  segments_ -= tile.segments.size();
+  const std::lock_guard lock(taken_mutex_);
+  taken_.emplace(number, std::move(tile));
+}
+
+template <int D>
+std::optional<TileNode<D>> TileTree::nodes() {
+  take_below(cuts_.root());
+  return nodes_below<D>(cuts_.root());
+}
+
+template <int D>
+std::optional<TileNode<D>> TileTree::take_cell(std::uint32_t cell) {
+  return nodes_below<D>(cell_roots_[cell]);
+}
+
+template <int D>
+bool TileTree::on_disk(const TileNode<D>& node) const {
+  const std::lock_guard lock(taken_mutex_);
+  return std::ranges::any_of(node.stored, [this](std::uint32_t number) {
+    const auto taken = taken_.find(number);
+    return taken != taken_.end() && !taken->second.segments.empty();
+  });
+}
+
+TileTree::Tile TileTree::take(std::uint32_t number) {
+  const std::lock_guard lock(taken_mutex_);
+  const auto taken = taken_.extract(number);
+  return taken.empty() ? Tile{} : std::move(taken.mapped());
+}
+
+/// Appends what is on the disk of a tile and what is held, in the order in which it came.
+void TileTree::append_stored(Tile tile, std::vector<StoredTile::Segment>& stored) {
+  std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
+  std::ranges::stable_sort(tile.held, {}, arrival_of<HeldPoints>);
+  auto held = tile.held.begin();
+  const auto append_held_before = [&](std::uint64_t arrival) {
+    for (; held != tile.held.end() && arrival_of(*held) < arrival; ++held) {
+      stored.push_back({{}, {}, std::move(held->buffer)});
+    }
+  };
+  for (const TileSegment& segment : tile.segments) {
+    append_held_before(segment.arrival);
+    const FileStretch& stretch = *segment.stretch;
+    StoredTile::Segment& read = stored.emplace_back();
+    read.where = {stretch.file().name(), at_byte(stretch.offset())};
+    read.bytes.resize(stretch.size());
+    stretch.file().read(stretch.offset(), read.bytes);
+  }
+  append_held_before(kLast);
 }
 
 template <int D>
@@ -63,25 +141,7 @@ StoredTile TileTree::read(const TileNode<D>& node) {
   const StageTimer timer(times_, Stage::kLoad);
   StoredTile stored;
   stored.points = node.points;
-  for (const std::uint32_t number : node.stored) {
-    Tile tile = std::exchange(tiles_[number], {});
-    std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
-    const std::uint64_t buffer_arrival =
-        tile.arrival.value_or(std::numeric_limits<std::uint64_t>::max());
-    const auto put_buffer = [&] {
-      if (tile.buffer.size() > 0) stored.segments.push_back({{}, {}, std::move(tile.buffer)});
-      tile.buffer = {};
-    };
-    for (const TileSegment& segment : tile.segments) {
-      if (segment.arrival > buffer_arrival) put_buffer();
-      const FileStretch& stretch = *segment.stretch;
-      StoredTile::Segment& read = stored.segments.emplace_back();
-      read.where = {stretch.file().name(), at_byte(stretch.offset())};
-      read.bytes.resize(stretch.size());
-      stretch.file().read(stretch.offset(), read.bytes);
-    }
-    put_buffer();
-  }
+  for (const std::uint32_t number : node.stored) append_stored(take(number), stored.segments);
   return stored;
 }
 
@@ -122,8 +182,12 @@ TilePoints<D> TileTree::decode(StoredTile stored) const {
   return result;
 }
 
-template std::optional<TileNode<2>> TileTree::nodes<2>() const;
-template std::optional<TileNode<3>> TileTree::nodes<3>() const;
+template std::optional<TileNode<2>> TileTree::nodes<2>();
+template std::optional<TileNode<3>> TileTree::nodes<3>();
+template std::optional<TileNode<2>> TileTree::take_cell<2>(std::uint32_t);
+template std::optional<TileNode<3>> TileTree::take_cell<3>(std::uint32_t);
+template bool TileTree::on_disk<2>(const TileNode<2>&) const;
+template bool TileTree::on_disk<3>(const TileNode<3>&) const;
 template StoredTile TileTree::read<2>(const TileNode<2>&);
 template StoredTile TileTree::read<3>(const TileNode<3>&);
 template TilePoints<2> TileTree::decode<2>(StoredTile) const;

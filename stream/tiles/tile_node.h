@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "src/geometry/box.h"
+#include "stream/tiles/shared_children.h"
 
 namespace spillway::detail {
 
@@ -13,7 +14,7 @@ template <int D>
 struct TileNode {
   Box<D> box;  ///< tight around its points
   std::uint64_t points = 0;
-  std::vector<TileNode> children;     ///< none for a tile
+  SharedChildren<TileNode> children;  ///< none for a tile
   std::vector<std::uint32_t> stored;  ///< of a tile: the stored tiles it is made of
 
   [[nodiscard]] std::uint64_t size() const { return points; }

@@ -46,10 +46,13 @@ bool can_be_cut(const Box<3>& box, int dimension) {
   return false;
 }
 
-/// About every `stride`-th point of a buffer.
-std::vector<LatticePoint> sample_of(const PointBuffer& buffer, std::size_t stride) {
+/// About every `stride`-th point of some buffers.
+template <typename Held>
+std::vector<LatticePoint> sample_of(const std::vector<Held>& held, std::size_t stride) {
   PointSample sample(stride);
-  buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
+  for (const Held& some : held) {
+    some.buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
+  }
   return sample.take();
 }
 
@@ -75,17 +78,48 @@ class SpareBlocks {
 
 }  // namespace
 
-TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times)
-    : options_(options), folder_(folder), times_(times), cuts_(options.dimension), tiles_(1) {}
+std::size_t TileTree::Tile::room() const {
+  std::size_t room = 0;
+  for (const HeldPoints& some : held) room += some.buffer.room();
+  return room;
+}
 
-void TileTree::fill(const PointFeed& source) {
-  run_batches([&](Batch& batch) { return source.fetch(batch.piece); },
-              [&](Batch& batch, PointBlock& points) {
-                source.decode(batch.piece, points);
-                if (!options_.index) points.index.clear();
-              });
-  points_ = left_over_points_;
-  for (const Tile& tile : tiles_) points_ += tile.points;
+std::size_t TileTree::Tile::waiting() const {
+  std::size_t waiting = 0;
+  for (const HeldPoints& some : held) waiting += some.buffer.size();
+  return waiting;
+}
+
+TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times)
+    : options_(options), folder_(folder), times_(times), cuts_(options.dimension), tiles_(1) {
+  if (options.plan == nullptr) return;
+  cuts_ = options.plan->cuts;
+  tiles_.resize(cuts_.tiles());
+  for (std::uint32_t cell = 0; cell < tiles_.size(); ++cell) {
+    tiles_[cell].cell = cell;
+    cell_roots_.push_back(CutTree::ref_of(cell));
+  }
+  cell_done_.resize(tiles_.size());
+  runs_ = options.plan->regions.size();  // each is a run
+  divided_ = true;
+}
+
+void TileTree::fill(const PointFeed& source, const CellDone& done) {
+  run_batches(
+      [&](Batch& batch) {
+        if (!source.fetch(batch.piece)) return false;
+        if (options_.plan != nullptr) {
+          batch.arrival = batch.piece.arrival;
+          batch.region = batch.piece.region;
+          batch.run = batch.region + 1;
+        }
+        return true;
+      },
+      [&](Batch& batch, PointBlock& points) {
+        source.decode(batch.piece, points);
+        if (!options_.index) points.index.clear();
+      },
+      done);
   filled_ = true;
   if (divided_ || points_ <= options_.capacity) return;
   Batch batch;  // nothing is spilled
@@ -99,7 +133,8 @@ void TileTree::fill(const std::function<bool(PointBlock&)>& source) {
 }
 
 void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
-                           const std::function<void(Batch&, PointBlock&)>& decode) {
+                           const std::function<void(Batch&, PointBlock&)>& decode,
+                           const CellDone& done) {
   std::vector<Batch> batches(options_.batches);
   SpareBlocks spare;
   const auto encode = [this](Batch& batch) {
@@ -117,7 +152,12 @@ void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
            }},
       {.in_order = true, .work = [&](std::size_t slot) { append(batches[slot]); }},
       {.in_order = false, .work = [&](std::size_t slot) { encode(batches[slot]); }},
-      {.in_order = true, .work = [&](std::size_t slot) { write(batches[slot]); }}};
+      {.in_order = true, .work = [&](std::size_t slot) {
+         Batch& batch = batches[slot];
+         write(batch);
+         // Only now everything of these cells is on the disk that has to go there.
+         for (const std::uint32_t cell : std::exchange(batch.cells_done, {})) done(cell);
+       }}};
   run_pipeline(
       batches.size(), [&](std::size_t slot) { return fetch(batches[slot]); }, steps);
 }
@@ -134,6 +174,8 @@ void TileTree::deal(Batch& batch, const PointBlock& points) const {
 void TileTree::append(Batch& batch) {
   const StageTimer timer(times_, Stage::kDeal);
   ++batches_;
+  if (options_.plan != nullptr && !filled_) begin_region(batch.region, batch);
+  if (!filled_) points_ += batch.dealt.points.size();
   append_dealt(batch.dealt, batch);
   if (room_ <= most_room()) return;
   if (!divided_) divide_first(batch);
@@ -169,23 +211,59 @@ void TileTree::append_points(std::uint32_t number, std::span<const LatticePoint>
                              std::span<const std::uint64_t> index, const Box<3>& box,
                              Batch& batch) {
   Tile& tile = tiles_[number];
-  if (tile.buffer.size() > 0 && tile.run != batch.run) spill(number, batch);
-  if (tile.buffer.size() == 0) tile.arrival = batch.arrival;
-  tile.run = batch.run;
+  const bool other_run = !tile.held.empty() && tile.held.back().run != batch.run;
+  if (other_run && options_.plan == nullptr) spill(number, batch);
+  if (other_run || tile.held.empty()) {
+    tile.held.push_back({.arrival = batch.arrival, .run = batch.run});
+  }
   tile.used = batches_;
-  put(tile, points, index, box);
+  put(tile.held.back(), tile, points, index, box);
   if (divided_ && outgrown(tile)) cut_in_two(number);
 }
 
-/// Puts points of that box into a tile's buffer.
-void TileTree::put(Tile& tile, std::span<const LatticePoint> points,
+/// Puts points of that box into a buffer of a tile.
+void TileTree::put(HeldPoints& held, Tile& tile, std::span<const LatticePoint> points,
                    std::span<const std::uint64_t> index, const Box<3>& box) {
   tile.points += points.size();
   tile.box.expand(box);
-  tile.buffer_box.expand(box);
-  room_ -= tile.buffer.room();
-  tile.buffer.append(points, index);
-  room_ += tile.buffer.room();
+  held.box.expand(box);
+  room_ -= held.buffer.room();
+  held.buffer.append(points, index);
+  room_ += held.buffer.room();
+}
+
+/// The regions before this one, by its position in the plan, have been read: their last cells are
+/// complete.
+void TileTree::begin_region(std::size_t region, Batch& batch) {
+  const RegionPlan& plan = *options_.plan;
+  for (; regions_begun_ < region; ++regions_begun_) {
+    for (const std::uint32_t cell : plan.done_after[regions_begun_]) finish_cell(cell, batch);
+  }
+}
+
+void TileTree::finish_cell(std::uint32_t cell, Batch& batch) {
+  if (left_over_below(cell_roots_[cell])) return;
+  take_below(cell_roots_[cell]);
+  cell_done_[cell] = true;
+  batch.cells_done.push_back(cell);
+}
+
+bool TileTree::left_over_below(CutTree::NodeRef ref) const {
+  if (CutTree::is_tile(ref)) return false;
+  const auto cut = static_cast<std::size_t>(ref);
+  if (cut < left_over_.size() && !left_over_[cut].empty()) return true;
+  return std::ranges::any_of(cuts_.sides(ref),
+                             [this](CutTree::NodeRef side) { return left_over_below(side); });
+}
+
+std::vector<std::uint32_t> TileTree::finish() {
+  Batch last;
+  for (const std::vector<std::uint32_t>& cells : options_.plan->done_after) {
+    for (const std::uint32_t cell : cells) {
+      if (!cell_done_[cell]) finish_cell(cell, last);
+    }
+  }
+  return std::move(last.cells_done);
 }
 
 /// Room for points that wait, besides what the tiles themselves take.
@@ -195,7 +273,18 @@ std::size_t TileTree::most_room() const {
   return options_.buffered_points - taken;
 }
 
-/// Spills the buffers of the tiles that have not been used for long, and large ones first.
+/// Tiles with larger weights go first: those that wait longest for points to come, and large ones.
+double TileTree::spill_weight(const Tile& tile) const {
+  const std::uint64_t age =
+      options_.plan == nullptr
+          ? batches_ - tile.used
+          : options_.plan->cells[tile.cell].done_after -
+                std::min(regions_begun_, options_.plan->cells[tile.cell].done_after);
+  return static_cast<double>(tile.waiting()) * static_cast<double>(1 + age);
+}
+
+/// Spills the buffers of the tiles that have not been used for long, or by the plan will not be
+/// complete for long, and large ones first.
 void TileTree::spill_some(Batch& batch) {
   struct Full {
     double weight;
@@ -203,11 +292,7 @@ void TileTree::spill_some(Batch& batch) {
   };
   std::vector<Full> full;
   for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
-    const Tile& tile = tiles_[t];
-    if (tile.buffer.size() == 0) continue;
-    full.push_back(
-        {static_cast<double>(tile.buffer.size()) * static_cast<double>(1 + batches_ - tile.used),
-         t});
+    if (!tiles_[t].held.empty()) full.push_back({spill_weight(tiles_[t]), t});
   }
   std::ranges::sort(full, [this](const Full& a, const Full& b) {
     if (a.weight != b.weight) return a.weight > b.weight;
@@ -222,20 +307,22 @@ void TileTree::spill_some(Batch& batch) {
 void TileTree::spill(std::uint32_t number, Batch& batch) {
   Tile& tile = tiles_[number];
   if (!tile.file) tile.file = folder_.create("tile");
-  auto stretch = std::make_shared<FileStretch>(tile.file);
-  const std::uint64_t points = tile.buffer.size();
-  room_ -= tile.buffer.room();
-  tile.segments.push_back({.stretch = stretch,
-                           .first_spill = tile.spills,
-                           .end_spill = tile.spills + 1,
-                           .points = points,
-                           .arrival = tile.arrival.value_or(arrivals_),
-                           .box = std::exchange(tile.buffer_box, {})});
-  if (!tile.arrival) arrivals_ += points;
-  ++tile.spills;
-  ++segments_;
-  batch.spills.push_back({std::exchange(tile.buffer, {}), std::move(stretch), points, {}});
-  if (tile.segments.size() <= kMostSegments || filled_) return;
+  room_ -= tile.room();
+  for (HeldPoints& held : std::exchange(tile.held, {})) {
+    auto stretch = std::make_shared<FileStretch>(tile.file);
+    const std::uint64_t points = held.buffer.size();
+    tile.segments.push_back({.stretch = stretch,
+                             .first_spill = tile.spills,
+                             .end_spill = tile.spills + 1,
+                             .points = points,
+                             .arrival = held.arrival.value_or(arrivals_),
+                             .box = held.box});
+    if (!held.arrival) arrivals_ += points;
+    ++tile.spills;
+    ++segments_;
+    batch.spills.push_back({std::move(held.buffer), std::move(stretch), points, {}});
+  }
+  if (tile.segments.size() <= kMostSegments || filled_ || options_.plan != nullptr) return;
   const std::size_t before = tile.segments.size();
   const std::lock_guard lock(stretches_mutex_);
   join_segments(tile.segments, kMostSegments, options_.dimension);
@@ -257,7 +344,7 @@ void TileTree::write(Batch& batch) {
 void TileTree::divide_first(Batch& batch) {
   const Box<3> box = tiles_[0].box;
   const auto seen = static_cast<double>(tiles_[0].points);
-  std::vector<LatticePoint> sample = sample_of(tiles_[0].buffer, sample_stride());
+  std::vector<LatticePoint> sample = sample_of(tiles_[0].held, sample_stride());
   std::size_t tile_count = tiles_for(seen, options_.capacity, kKnownFill);
   if (!filled_ && options_.extent && options_.expected.value_or(0) > tiles_[0].points) {
     const auto expected = static_cast<double>(*options_.expected);
@@ -278,6 +365,7 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
                       std::size_t tile_count, Batch& batch) {
   Tile whole = std::exchange(tiles_[number], {});
   const CutTree::NodeRef first_cut = cuts_.cuts();
+  const auto first_new = static_cast<std::ptrdiff_t>(tiles_.size());
   {
     const std::unique_lock lock(cuts_mutex_);
     cuts_.split(number, sample, tile_count);
@@ -292,20 +380,32 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
     tiles_[number].cut_at = ++cuts_made_;
   }
   tiles_.resize(cuts_.tiles());
+  set_cell_root(number, whole.cell, first_cut);
+  tiles_[number].cell = whole.cell;
+  for (auto tile = tiles_.begin() + first_new; tile != tiles_.end(); ++tile)
+    tile->cell = whole.cell;
   for (TileSegment& segment : whole.segments) leave_over(first_cut, std::move(segment));
-  room_ -= whole.buffer.room();
-  Batch dealt;
-  dealt.arrival = whole.arrival;
-  dealt.run = whole.run;
-  PointBlock points;
-  whole.buffer.drain(
-      [&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
-        points.points.assign(chunk.begin(), chunk.end());
-        points.index.assign(index.begin(), index.end());
-        deal(dealt, points);
-        append_dealt(dealt.dealt, dealt);
-      });
-  std::ranges::move(dealt.spills, std::back_inserter(batch.spills));
+  room_ -= whole.room();
+  for (HeldPoints& held : whole.held) {
+    Batch dealt;
+    dealt.arrival = held.arrival;
+    dealt.run = held.run;
+    PointBlock points;
+    held.buffer.drain(
+        [&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
+          points.points.assign(chunk.begin(), chunk.end());
+          points.index.assign(index.begin(), index.end());
+          deal(dealt, points);
+          append_dealt(dealt.dealt, dealt);
+        });
+    std::ranges::move(dealt.spills, std::back_inserter(batch.spills));
+  }
+}
+
+/// A tile has been cut: if it was a whole cell, that is now what is below the cut.
+void TileTree::set_cell_root(std::uint32_t tile, std::uint32_t cell, CutTree::NodeRef cut) {
+  if (options_.plan != nullptr && cell_roots_[cell] == CutTree::ref_of(tile))
+    cell_roots_[cell] = cut;
 }
 
 bool TileTree::too_large(const Tile& tile) const {
@@ -325,11 +425,11 @@ bool TileTree::outgrown(const Tile& tile) const {
 void TileTree::cut_in_two(std::uint32_t number) {
   Tile whole = std::exchange(tiles_[number], {});
   std::ranges::stable_sort(whole.segments, {}, &TileSegment::arrival);
-  const std::size_t stride = std::max<std::size_t>(1, whole.buffer.size() / kCutSamples);
+  const std::size_t stride = std::max<std::size_t>(1, whole.waiting() / kCutSamples);
   const CrowdedTile crowded{.dimension = options_.dimension,
                             .box = whole.box,
                             .segments = whole.segments,
-                            .sample = sample_of(whole.buffer, stride),
+                            .sample = sample_of(whole.held, stride),
                             .weight = static_cast<double>(stride)};
   const TileCut cut = *choose_cut(crowded);
   CutTree::NodeRef ref = 0;
@@ -338,17 +438,17 @@ void TileTree::cut_in_two(std::uint32_t number) {
     ref = cuts_.cut(number, cut.axis, cut.value);
     ++cuts_made_;
   }
+  set_cell_root(number, whole.cell, ref);
   const std::array<std::uint32_t, 2> halves = {number, static_cast<std::uint32_t>(tiles_.size())};
   tiles_.emplace_back();
   const double below = share_below(whole.box, cut);
   for (const int side : {0, 1}) {
     Tile& half = tiles_[halves[side]];
     half.expected = whole.expected * (side == 0 ? below : 1 - below);
-    half.arrival = whole.arrival;
-    half.run = whole.run;
     half.last_left_over = whole.last_left_over;
     half.used = whole.used;
     half.cut_at = cuts_made_;
+    half.cell = whole.cell;
   }
   tiles_[number].file = std::move(whole.file);
   tiles_[number].spills = whole.spills;
@@ -375,25 +475,39 @@ void TileTree::cut_in_two(std::uint32_t number) {
     tiles_[halves[1]].expected += points * (1 - low_share);
     leave_over(ref, std::move(segment));
   }
-  room_ -= whole.buffer.room();
-  std::array<PointBlock, 2> dealt;
-  whole.buffer.drain(
-      [&](std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
-        std::array<Box<3>, 2> boxes;
-        for (PointBlock& some : dealt) some.clear();
-        for (std::size_t i = 0; i < points.size(); ++i) {
-          const int side = points[i][cut.axis] >= cut.value ? 1 : 0;
-          dealt[side].points.push_back(points[i]);
-          if (!index.empty()) dealt[side].index.push_back(index[i]);
-          boxes[side].expand(points[i]);
-        }
-        for (const int side : {0, 1}) {
-          if (dealt[side].size() == 0) continue;
-          put(tiles_[halves[side]], dealt[side].points, dealt[side].index, boxes[side]);
-        }
-      });
+  room_ -= whole.room();
+  for (HeldPoints& held : whole.held) deal_to_halves(std::move(held), cut, halves);
   for (const std::uint32_t half : halves) {
     if (outgrown(tiles_[half])) cut_in_two(half);
+  }
+}
+
+void TileTree::deal_to_halves(HeldPoints held, const TileCut& cut,
+                              const std::array<std::uint32_t, 2>& halves) {
+  std::array<PointBlock, 2> dealt;
+  std::array<HeldPoints, 2> parts;
+  for (HeldPoints& part : parts) {
+    part.arrival = held.arrival;
+    part.run = held.run;
+  }
+  held.buffer.drain([&](std::span<const LatticePoint> points,
+                        std::span<const std::uint64_t> index) {
+    std::array<Box<3>, 2> boxes;
+    for (PointBlock& some : dealt) some.clear();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const int side = points[i][cut.axis] >= cut.value ? 1 : 0;
+      dealt[side].points.push_back(points[i]);
+      if (!index.empty()) dealt[side].index.push_back(index[i]);
+      boxes[side].expand(points[i]);
+    }
+    for (const int side : {0, 1}) {
+      if (dealt[side].size() == 0) continue;
+      put(parts[side], tiles_[halves[side]], dealt[side].points, dealt[side].index, boxes[side]);
+    }
+  });
+  for (const int side : {0, 1}) {
+    if (parts[side].buffer.size() == 0) continue;
+    tiles_[halves[side]].held.push_back(std::move(parts[side]));
   }
 }
 
@@ -456,7 +570,9 @@ void TileTree::append_left_over(CutTree::NodeRef ref, std::vector<TileSegment>& 
 /// A sample of all points of a tile, also of those on the disk.
 std::vector<LatticePoint> TileTree::sample_of_all(const Tile& tile) const {
   PointSample sample(sample_stride());
-  tile.buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
+  for (const HeldPoints& held : tile.held) {
+    held.buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
+  }
   SegmentReader reader(tile.segments);
   StoredBlocks blocks;
   PointBlock points;
@@ -486,7 +602,8 @@ void TileTree::deal_again(std::vector<TileSegment> segments,
       [this](Batch& batch, PointBlock& points) {
         const StageTimer timer(times_, Stage::kDeal);
         decode_all_points(batch.stored.bytes, batch.stored.where, points);
-      });
+      },
+      {});
   runs_ = reader.last_run();
 }
 

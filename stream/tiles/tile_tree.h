@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -8,6 +10,7 @@
 #include <optional>
 #include <shared_mutex>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "formats/disk/scratch_folder.h"
@@ -18,8 +21,10 @@
 #include "stream/tiles/cuts/dealt_points.h"
 #include "stream/tiles/point_buffer.h"
 #include "stream/tiles/point_feed.h"
+#include "stream/tiles/regions/region_plan.h"
 #include "stream/tiles/segment_reader.h"
 #include "stream/tiles/tile_block.h"
+#include "stream/tiles/tile_cut.h"
 #include "stream/tiles/tile_node.h"
 #include "stream/tiles/tile_segment.h"
 
@@ -33,6 +38,7 @@ struct TileTreeOptions {
   std::optional<Box<3>> extent{};           ///< where they will lie, where that is known
   bool index = false;                       ///< points keep their index; that of others is dropped
   std::size_t batches = 6;                  ///< most of them under way at a time
+  const RegionPlan* plan = nullptr;         ///< that the feed keeps to; outlives the tree
 };
 
 /// A tile's points as they lay in the tree: on the disk, encoded, and in memory.
@@ -60,9 +66,14 @@ class TileTree {
   /// known to be necessary, from 0 to 1.
   using DivisionProgress = std::function<void(std::uint64_t points, double fraction)>;
 
+  /// Told of a cell of the plan that is complete: take_cell() gives its tiles.
+  using CellDone = std::function<void(std::uint32_t cell)>;
+
   /// Deals all points of `source`. Reading, decoding, dealing, encoding and writing go on beside
-  /// each other; the result does not depend on threads.
-  void fill(const PointFeed& source);
+  /// each other; the result does not depend on threads. With a plan, `done` is called for one cell
+  /// at a time, in an order that does not depend on threads either, while other threads read on.
+  /// Cells that have been parted on the disk are not told of: finish() gives them.
+  void fill(const PointFeed& source, const CellDone& done = {});
 
   /// The same with points that need no decoding: `source` works as PointReader::read().
   void fill(const std::function<bool(PointBlock&)>& source);
@@ -74,20 +85,30 @@ class TileTree {
   /// many points were dealt again, those dealt twice counted twice.
   std::uint64_t divide_large(const DivisionProgress& progress);
 
+  /// The cells of the plan that `done` was not told of, which are complete now that all is divided.
+  std::vector<std::uint32_t> finish();
+
   /// The balanced tree of tiles, none of which is too large any more, neighbours that fit together
-  /// made one; nothing if there are no points.
+  /// made one; nothing if there are no points. Of all points, or of those in one cell.
   template <int D>
-  [[nodiscard]] std::optional<TileNode<D>> nodes() const;
+  [[nodiscard]] std::optional<TileNode<D>> nodes();
+  template <int D>
+  [[nodiscard]] std::optional<TileNode<D>> take_cell(std::uint32_t cell);
 
   /// Takes a tile of nodes() out of the tree: reads what is on the disk of it. By one thread at a
-  /// time, but beside decode().
+  /// time, but beside fill() and decode().
   template <int D>
   StoredTile read(const TileNode<D>& node);
+
+  /// Whether a part of the tile is on the disk.
+  template <int D>
+  [[nodiscard]] bool on_disk(const TileNode<D>& node) const;
 
   /// The points of a tile, in the order in which they came. Uses all threads.
   template <int D>
   TilePoints<D> decode(StoredTile stored) const;
 
+  /// Points dealt so far.
   [[nodiscard]] std::uint64_t points() const { return points_; }
   /// How many points were written to the disk, those written twice counted twice.
   [[nodiscard]] std::uint64_t points_written() const { return points_written_; }
@@ -106,48 +127,66 @@ class TileTree {
     SourcePiece piece;                       ///< as it came from the source
     StoredBlocks stored;                     ///< or as read back from a file
     std::optional<std::uint64_t> arrival{};  ///< of the first point, if from a file
-    std::uint64_t run = 0;                   ///< of points from a file, else 0
+    std::uint64_t run = 0;                   ///< of points from a file or a region, else 0
+    std::size_t region = 0;                  ///< by its position in the plan
     std::uint64_t cuts_made = 0;             ///< when it was dealt
     DealtPoints dealt;
     std::vector<Spill> spills;
+    std::vector<std::uint32_t> cells_done;
+  };
+  /// Points that wait, side by side in the order of their arrival.
+  struct HeldPoints {
+    PointBuffer buffer{};
+    Box<3> box{};
+    std::optional<std::uint64_t> arrival{};  ///< of the first, if there are later points
+    std::uint64_t run = 0;
   };
   struct Tile {
     Box<3> box;
     std::uint64_t points = 0;
     double expected = 0;  ///< points of segments left over above that are still to come
-    PointBuffer buffer;   ///< what came after what is on the disk, if `arrival` does not tell
-    Box<3> buffer_box;
-    std::optional<std::uint64_t> arrival{};  ///< of the buffer's first, if there are later points
-    std::uint64_t run = 0;                   ///< of the buffer's points
+    std::vector<HeldPoints>
+        held;  ///< a run each; came after what is on the disk, if no arrival tells
     std::optional<std::uint64_t> last_left_over{};  ///< the latest arrival of what was, above
     std::vector<TileSegment> segments;
     std::shared_ptr<ScratchFile> file;
     std::uint32_t spills = 0;  ///< to the file
     std::uint64_t used = 0;    ///< the last batch that had points of it
     std::uint64_t cut_at = 0;  ///< how many cuts had been made when it came about
+    std::uint32_t cell = 0;    ///< of the plan
+
+    [[nodiscard]] std::size_t room() const;     ///< of what is held, in points
+    [[nodiscard]] std::size_t waiting() const;  ///< points held
   };
 
   /// Sends batches through the steps: `fetch` fills them in order, `decode` makes their points.
   void run_batches(const std::function<bool(Batch&)>& fetch,
-                   const std::function<void(Batch&, PointBlock&)>& decode);
+                   const std::function<void(Batch&, PointBlock&)>& decode, const CellDone& done);
   void deal(Batch& batch, const PointBlock& points) const;
   void append(Batch& batch);
   void append_dealt(const DealtPoints& dealt, Batch& batch);
   void append_points(std::uint32_t number, std::span<const LatticePoint> points,
                      std::span<const std::uint64_t> index, const Box<3>& box, Batch& batch);
-  void put(Tile& tile, std::span<const LatticePoint> points, std::span<const std::uint64_t> index,
-           const Box<3>& box);
+  void put(HeldPoints& held, Tile& tile, std::span<const LatticePoint> points,
+           std::span<const std::uint64_t> index, const Box<3>& box);
   [[nodiscard]] std::size_t most_room() const;
   void spill_some(Batch& batch);
   void spill(std::uint32_t number, Batch& batch);
   void write(Batch& batch);
 
+  void begin_region(std::size_t region, Batch& batch);
+  void finish_cell(std::uint32_t cell, Batch& batch);
+  [[nodiscard]] bool left_over_below(CutTree::NodeRef ref) const;
+  [[nodiscard]] double spill_weight(const Tile& tile) const;
   void divide_first(Batch& batch);
   void divide(std::uint32_t number, std::vector<LatticePoint> sample, std::size_t tile_count,
               Batch& batch);
   [[nodiscard]] bool outgrown(const Tile& tile) const;
   [[nodiscard]] bool too_large(const Tile& tile) const;
   void cut_in_two(std::uint32_t number);
+  void deal_to_halves(HeldPoints held, const TileCut& cut,
+                      const std::array<std::uint32_t, 2>& halves);
+  void set_cell_root(std::uint32_t tile, std::uint32_t cell, CutTree::NodeRef cut);
   void leave_over(CutTree::NodeRef cut, TileSegment segment);
   [[nodiscard]] std::vector<TileSegment> take_left_over();
   void append_left_over(CutTree::NodeRef ref, std::vector<TileSegment>& segments);
@@ -160,6 +199,11 @@ class TileTree {
   struct Joinable;
   template <int D>
   Joinable<D> join_below(CutTree::NodeRef ref, std::vector<TileNode<D>>& tiles) const;
+  template <int D>
+  [[nodiscard]] std::optional<TileNode<D>> nodes_below(CutTree::NodeRef ref) const;
+  void take_below(CutTree::NodeRef ref);
+  [[nodiscard]] Tile take(std::uint32_t number);
+  static void append_stored(Tile tile, std::vector<StoredTile::Segment>& stored);
 
   TileTreeOptions options_;
   ScratchFolder& folder_;
@@ -168,13 +212,18 @@ class TileTree {
   std::uint64_t cuts_made_ = 0;
   mutable std::shared_mutex cuts_mutex_;  ///< guards both: batches are dealt meanwhile
   std::vector<Tile> tiles_;
+  std::vector<CutTree::NodeRef> cell_roots_;         ///< by cell of the plan
+  std::vector<bool> cell_done_;                      ///< likewise
+  std::size_t regions_begun_ = 0;                    ///< of the plan
+  mutable std::mutex taken_mutex_;                   ///< guards the next one
+  std::unordered_map<std::uint32_t, Tile> taken_;    ///< complete, by their number
   std::vector<std::vector<TileSegment>> left_over_;  ///< by cut
   std::uint64_t left_over_points_ = 0;
   std::mutex stretches_mutex_;  ///< guards what is known of stretches, which are written meanwhile
   std::uint64_t batches_ = 0;
   std::uint64_t arrivals_ = 0;  ///< handed out so far
   std::uint64_t runs_ = 0;      ///< likewise
-  std::uint64_t points_ = 0;
+  std::atomic<std::uint64_t> points_ = 0;
   std::size_t room_ = 0;      ///< that all tiles' buffers take, in points
   std::size_t segments_ = 0;  ///< of all tiles, and those left over
   std::uint64_t points_written_ = 0;

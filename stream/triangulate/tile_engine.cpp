@@ -15,6 +15,8 @@ namespace {
 /// Tiles that are triangulated at the same time. Two, so that there is something to do while the
 /// last merges of one tile leave threads idle; the next one is being read meanwhile.
 constexpr std::size_t kTilesAtATime = 2;
+/// Tiles and merges that may be ready before the thread that reads lends a hand.
+constexpr std::size_t kMostReady = 1;
 
 template <int D>
 void count_shape(const Box<D>& box, TileShapes& shapes) {
@@ -35,16 +37,22 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
                           MemoryBudget& budget, const StreamOptions& options)
     : options_(options),
       budget_(budget),
-      plan_(plan_memory(budget.limit(), D, options.threads, budget.whole())),
+      plan_(plan_memory(budget.limit(), D, options.threads, budget.whole(),
+                        expected.plan != nullptr)),
       planned_tile_(plan_.tile_capacity),
       counts_(budget),
+      expected_points_(expected.count.value_or(0)),
       tree_(tree_options(expected), scratch, counts_.times),
       sequencer_(sink, {.max_edge = options.max_edge}, counts_.times),
       context_{.options = tile_options(expected.lattice),
                .budget = budget,
                .sequencer = sequencer_,
                .counts = counts_,
-               .progress = [this] { report_progress(); }} {}
+               .progress = [this] { report_progress(); }} {
+  if (expected.plan == nullptr) return;
+  cells_.emplace(*expected.plan);
+  parts_.resize(cells_->parts());
+}
 
 template <int D>
 TileOptions TileEngine<D>::tile_options(const std::optional<Lattice>& lattice) const {
@@ -69,7 +77,8 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
           .expected = expected.count,
           .extent = expected.extent,
           .index = index,
-          .batches = plan_.batches};
+          .batches = plan_.batches,
+          .plan = expected.plan};
 }
 
 template <int D>
@@ -77,10 +86,24 @@ void TileEngine<D>::spill(const PointFeed& feed) {
   const Stopwatch watch(figures_.read_seconds);
   const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(LatticePoint),
                             "points that wait to be spilled");
-  tree_.fill({.fetch = feed.fetch, .decode = [&](SourcePiece& piece, PointBlock& block) {
-                feed.decode(piece, block);
-                span_.add(block.points);
-              }});
+  const PointFeed spanned = {.fetch = feed.fetch,
+                             .decode = [&](SourcePiece& piece, PointBlock& block) {
+                               feed.decode(piece, block);
+                               span_.add(block.points);
+                             }};
+  if (!cells_) return tree_.fill(spanned);
+  begin_triangulating(expected_points_, expected_points_);
+  TaskGroup lanes;
+  try {
+    tree_.fill(spanned, [&](std::uint32_t cell) {
+      add_cell(cell);
+      triangulate_ahead(lanes);
+    });
+    lanes.wait();
+  } catch (...) {
+    give_up();
+    throw;
+  }
 }
 
 template <int D>
@@ -92,26 +115,31 @@ std::uint64_t TileEngine<D>::divide_large() {
 }
 
 template <int D>
+void TileEngine<D>::begin_triangulating(std::uint64_t points, std::uint64_t all_points) {
+  context_.options.leaf_size =
+      options_.leaf_size > 0 ? options_.leaf_size : leaf_size_for(points, D, plan_);
+  sequencer_.tell_first_block([this] { figures_.first_block_read_points = tree_.points(); });
+  estimate_shortages(all_points);
+}
+
+template <int D>
 Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& outside) {
   const Stopwatch watch(figures_.triangulate_seconds);
-  context_.options.leaf_size =
-      options_.leaf_size > 0 ? options_.leaf_size : leaf_size_for(tree_.points(), D, plan_);
-  nodes_.emplace(root);
-  prepare_nodes(outside);
   std::uint64_t all_points = root.points;
   for (const TileNode<D>* const other : outside) all_points += other->points;
-  estimate_shortages(all_points);
-  figures_.tiles = nodes_->leaves().size();
-  for (const Node* tile : nodes_->leaves()) count_shape(tile->tree->box, figures_.tile_shapes);
-  figures_.final_by_level.resize(nodes_->root().level);
-  TaskGroup lanes;
-  // Isolated, since a merge that took up the other lane while it waits could end up waiting for
-  // room in the sequencer, which only it can make.
-  const auto lane = [this] { isolated([this] { work_off_tiles(); }); };
-  for (std::size_t other = 1; other < kTilesAtATime; ++other) lanes.run(lane);
-  lane();
-  lanes.wait();
-  return std::move(nodes_->root().border);
+  begin_triangulating(tree_.points(), all_points);
+  tells_progress_ = true;
+  Node* const top = add_nodes(root, outside, nullptr);
+  work_off_all();
+  return std::move(top->border);
+}
+
+template <int D>
+void TileEngine<D>::triangulate_rest() {
+  const Stopwatch watch(figures_.triangulate_seconds);
+  tells_progress_ = true;
+  for (const std::uint32_t cell : tree_.finish()) add_cell(cell);
+  work_off_all();
 }
 
 /// From now on refusals tell what will do for so many points.
@@ -126,70 +154,174 @@ void TileEngine<D>::estimate_shortages(std::uint64_t all_points) {
   });
 }
 
-/// `outside` is that of the root.
+/// The tiles of a cell are ready, and merges with what is complete beside it follow.
 template <int D>
-void TileEngine<D>::prepare_nodes(const Outside<D>& outside) {
-  const std::span<Node> nodes = nodes_->nodes();
-  for (Node& node : nodes) {
-    for (const Node* child : node.children) node.level = std::max(node.level, child->level + 1);
+void TileEngine<D>::add_cell(std::uint32_t cell) {
+  auto complete = cells_->complete(cell, tree_.template take_cell<D>(cell));
+  const auto surrounded = [](const auto& part) {
+    return std::make_shared<const Surroundings>(Surroundings{part.node, part.outside});
+  };
+  const auto outside_of = [](const Surroundings& surroundings) {
+    Outside<D> outside;
+    for (const auto& other : surroundings.outside) outside.push_back(other.get());
+    return outside;
+  };
+  if (complete.node) {
+    const auto surroundings = surrounded(complete);
+    parts_[complete.part] = add_nodes(*surroundings->root, outside_of(*surroundings), surroundings);
   }
-  for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {  // parents before children
-    node->outside = node->parent == nullptr ? outside : node->parent->outside;
-    Tree::append_siblings(*node, node->outside);
+  for (const auto& join : complete.joins) {
+    const auto surroundings = surrounded(join);
+    parts_[join.part] = add_node({.tree = surroundings->root.get(),
+                                  .outside = outside_of(*surroundings),
+                                  .surroundings = surroundings,
+                                  .outside_shrank = true},
+                                 {parts_[join.below[0]], parts_[join.below[1]]});
   }
 }
 
-/// Takes tiles in order as long as there are any; after the last child of a merge, does that too.
-/// Of a tile that is larger than planned, of equal points or by --tile, only what others may have
-/// is leased.
+/// Adds the nodes of a tree, those of tiles in order.
 template <int D>
-void TileEngine<D>::work_off_tiles() {
-  try {
-    for (;;) {
-      TilePoints<D> points;
-      Node* node = take_tile(points);
-      if (node == nullptr) return;
-      Task task;
-      {
-        const MemoryLease lease(
-            budget_, std::min(points.points.size(), planned_tile_) * kLoadedPointBytes, "a tile");
-        node->border =
-            triangulate_tile<D>(context_, {std::move(points), node->outside, node->number}, task);
-      }
-      growth_.add_tile(node->tree->size(), node->border);
-      tasks_.add_tile(task);
-      tell_done(*node, std::move(task));
-      nodes_->leaf_done(*node, [this](Node& above) { merge_node(above); });
+typename TileEngine<D>::Node* TileEngine<D>::add_nodes(
+    const TileNode<D>& tree, const Outside<D>& outside,
+    const std::shared_ptr<const Surroundings>& surroundings) {
+  std::vector<Node*> children;
+  for (const TileNode<D>& child : tree.children) {
+    Outside<D> others = outside;
+    for (const TileNode<D>& other : tree.children) {
+      if (&other != &child) others.push_back(&other);
     }
-  } catch (...) {
-    failed_ = true;
-    sequencer_.give_up();
+    children.push_back(add_nodes(child, others, surroundings));
+  }
+  if (tree.leaf()) {
+    ++figures_.tiles;
+    count_shape(tree.box, figures_.tile_shapes);
+  }
+  return add_node({.tree = &tree, .outside = outside, .surroundings = surroundings},
+                  std::move(children));
+}
+
+template <int D>
+typename TileEngine<D>::Node* TileEngine<D>::add_node(State state, std::vector<Node*> children) {
+  for (const Node* child : children) state.level = std::max(state.level, child->level + 1);
+  const auto [node, ready] = forest_.add(std::move(state), std::move(children));
+  if (ready) {
     const std::lock_guard lock(take_mutex_);
-    if (reading_ahead_.valid()) reading_ahead_.wait();  // the tree that it reads from may go now
+    ready_.push_back(node);
+  }
+  return node;
+}
+
+/// While points are being read: as many tiles as there may be are worked off beside that, and if
+/// more are ready, this thread, which would bring still more, lends a hand.
+template <int D>
+void TileEngine<D>::triangulate_ahead(TaskGroup& lanes) {
+  if (failed_) lanes.wait();  // throws what a lane has thrown
+  bool more_lanes = false;
+  {
+    const std::lock_guard lock(take_mutex_);
+    more_lanes = !ready_.empty() && lanes_ + 1 < kTilesAtATime;
+    if (more_lanes) ++lanes_;
+  }
+  if (more_lanes) {
+    lanes.run([this] { isolated([this] { work_off_ready(); }); });
+  }
+  const auto too_many = [this] {
+    const std::lock_guard lock(take_mutex_);
+    return ready_.size() > kMostReady;
+  };
+  while (too_many()) isolated([this] { work_off_one(); });
+}
+
+/// All that is ready, and all above it.
+template <int D>
+void TileEngine<D>::work_off_all() {
+  TaskGroup group;
+  // Isolated, since a merge that took up the other lane while it waits could end up waiting for
+  // room in the sequencer, which only it can make.
+  const auto lane = [this] { isolated([this] { work_off_ready(); }); };
+  lanes_ = kTilesAtATime;
+  for (std::size_t other = 1; other < kTilesAtATime; ++other) group.run(lane);
+  lane();
+  group.wait();
+}
+
+/// A lane: until nothing is ready.
+template <int D>
+void TileEngine<D>::work_off_ready() {
+  while (work_off_one()) {
+  }
+  const std::lock_guard lock(take_mutex_);
+  --lanes_;
+}
+
+/// Takes what is next; after the last child of a merge, does that too. False if nothing is ready.
+template <int D>
+bool TileEngine<D>::work_off_one() {
+  try {
+    StoredTile stored;
+    Node* const node = take_ready(stored);
+    if (node == nullptr) return false;
+    work_off(*node, std::move(stored));
+    return true;
+  } catch (...) {
+    give_up();
     throw;
   }
 }
 
-/// The next tile and its points; null at the end, or if the run has failed. What is on the disk
-/// of it has been read ahead, and the reading of the one after it begins.
+/// Of a tile that is larger than planned, of equal points or by --tile, only what others may have
+/// is leased.
 template <int D>
-typename TileEngine<D>::Node* TileEngine<D>::take_tile(TilePoints<D>& points) {
-  StoredTile stored;
-  Node* node = nullptr;
-  {
-    const std::lock_guard lock(take_mutex_);
-    const std::vector<Node*>& tiles = nodes_->leaves();
-    if (taken_ == tiles.size() || failed_) return nullptr;
-    node = tiles[taken_++];
-    sequencer_.wait_for_room(plan_.waiting_bytes, node->number);
-    stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.read(*node->tree);
-    if (taken_ < tiles.size()) {
-      reading_ahead_ = std::async(std::launch::async,
-                                  [this, next = tiles[taken_]->tree] { return tree_.read(*next); });
+void TileEngine<D>::work_off(Node& node, StoredTile stored) {
+  if (node.children.empty()) {
+    TilePoints<D> points = tree_.template decode<D>(std::move(stored));
+    if (replace_indices_) replace_indices_(points.index);
+    Task task;
+    {
+      const MemoryLease lease(
+          budget_, std::min(points.points.size(), planned_tile_) * kLoadedPointBytes, "a tile");
+      node.border =
+          triangulate_tile<D>(context_, {std::move(points), node.outside, node.number}, task);
     }
+    growth_.add_tile(node.tree->size(), node.border);
+    tasks_.add_tile(task);
+    tell_done(node, std::move(task));
+    node.outside = {};
+  } else {
+    merge_node(node);
   }
-  points = tree_.template decode<D>(std::move(stored));
-  if (replace_indices_) replace_indices_(points.index);
+  for (Node* above = forest_.done(node); above != nullptr; above = forest_.done(*above)) {
+    merge_node(*above);
+  }
+}
+
+template <int D>
+void TileEngine<D>::give_up() {
+  failed_ = true;
+  sequencer_.give_up();
+  const std::lock_guard lock(take_mutex_);
+  if (reading_ahead_.valid()) reading_ahead_.wait();  // the tree that it reads from may go now
+}
+
+/// The next tile and its points, or the next merge; null if nothing is ready, or if the run has
+/// failed. What is on the disk of a tile has been read ahead, and the reading of the one after it
+/// begins.
+template <int D>
+typename TileEngine<D>::Node* TileEngine<D>::take_ready(StoredTile& stored) {
+  const std::lock_guard lock(take_mutex_);
+  if (ready_.empty() || failed_) return nullptr;
+  Node* const node = ready_.front();
+  ready_.pop_front();
+  if (!node->children.empty()) return node;
+  sequencer_.wait_for_room(plan_.waiting_bytes, node->number);
+  stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.read(*node->tree);
+  const auto next =
+      std::ranges::find_if(ready_, [](const Node* other) { return other->children.empty(); });
+  if (next != ready_.end() && tree_.on_disk(*(*next)->tree)) {
+    reading_ahead_ =
+        std::async(std::launch::async, [this, tree = (*next)->tree] { return tree_.read(*tree); });
+  }
   return node;
 }
 
@@ -199,20 +331,28 @@ void TileEngine<D>::merge_node(Node& node) {
   for (Node* child : node.children) borders.push_back(std::exchange(child->border, {}));
   growth_.begin_merge(node.tree->size(), borders);
   Task task{.points = node.tree->size()};
-  MergedTiles<D> merged =
-      merge_tiles<D>(context_, {borders, *node.tree, node.outside, {node.number, 0}}, task);
+  MergedTiles<D> merged = merge_tiles<D>(context_,
+                                         {.children = borders,
+                                          .node = *node.tree,
+                                          .outside = node.outside,
+                                          .place = {node.number, 0},
+                                          .outside_shrank = node.outside_shrank},
+                                         task);
   node.border = std::move(merged.border);
   growth_.end_merge(task.after.front().points, node.border);
-  tasks_.add_merge(TaskScope::kBetweenTiles, static_cast<std::uint32_t>(node.level), task);
+  tasks_.add_merge(TaskScope::kBetweenTiles, node.level, task);
   tell_done(node, std::move(task));
+  node.outside = {};
+  node.surroundings = {};
   const std::lock_guard lock(figures_mutex_);
+  if (figures_.final_by_level.size() < node.level) figures_.final_by_level.resize(node.level);
   figures_.final_by_level[node.level - 1] += merged.final_simplices;
 }
 
 template <int D>
 void TileEngine<D>::tell_done(const Node& node, Task task) {
   if (!options_.task_done) return;
-  TaskNode told{.number = node.number, .level = static_cast<std::uint32_t>(node.level)};
+  TaskNode told{.number = node.number, .level = node.level};
   for (const Node* child : node.children) told.children.push_back(child->number);
   told.task = std::move(task);
   const std::lock_guard lock(tell_mutex_);
@@ -248,6 +388,7 @@ void TileEngine<D>::hand_over(const Border<D>& border) {
 
 template <int D>
 void TileEngine<D>::report_progress() const {
+  if (!tells_progress_) return;
   const std::uint64_t done = counts_.points;
   options_.progress(done, static_cast<double>(done) / static_cast<double>(tree_.points()));
 }

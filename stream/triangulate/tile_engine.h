@@ -1,8 +1,10 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <future>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -11,15 +13,17 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
+#include "src/parallel/parallel.h"
 #include "src/runtime/memory_budget.h"
 #include "stream/output/sequencer.h"
 #include "stream/output/stream_place.h"
 #include "stream/plan/memory_plan.h"
 #include "stream/plan/stream_options.h"
 #include "stream/tiles/point_span.h"
+#include "stream/tiles/regions/cell_tree.h"
 #include "stream/tiles/tile_tree.h"
 #include "stream/triangulate/border_growth.h"
-#include "stream/triangulate/merge_tree.h"
+#include "stream/triangulate/merge_forest.h"
 #include "stream/triangulate/task_sums.h"
 #include "stream/triangulate/tile_triangulation.h"
 
@@ -31,10 +35,13 @@ struct ExpectedPoints {
   std::optional<std::uint64_t> count;  ///< about how many
   std::optional<Box<3>> extent;        ///< where they will lie
   bool ordered_by_index = false;       ///< they come in any order, with an index that tells
+  const RegionPlan* plan = nullptr;    ///< to which their feed keeps; must outlive the engine
 };
 
 /// Takes the points of one process from the feed to the border that is left of them: spill(), then
-/// divide_large(), then triangulate(), all inside of with_threads(threads()).
+/// divide_large(), then triangulate(). With a plan of the regions that come, spill() triangulates
+/// tiles as they are complete, and triangulate_rest() the others. All inside of
+/// with_threads(threads()).
 template <int D>
 class TileEngine {
  public:
@@ -48,7 +55,7 @@ class TileEngine {
   [[nodiscard]] unsigned threads() const { return plan_.threads; }
   [[nodiscard]] StageTimes& times() { return counts_.times; }
 
-  /// Deals all points of the feed into tiles.
+  /// Deals all points of the feed into tiles. With a plan, triangulates tiles that are complete.
   void spill(const PointFeed& feed);
 
   /// After spill(): points of tiles that are too large, and are to be divided before nodes(); and
@@ -68,11 +75,14 @@ class TileEngine {
   [[nodiscard]] std::uint64_t points() const { return tree_.points(); }
 
   /// The tree of tiles; nothing if there are no points.
-  [[nodiscard]] std::optional<TileNode<D>> nodes() const { return tree_.template nodes<D>(); }
+  [[nodiscard]] std::optional<TileNode<D>> nodes() { return tree_.template nodes<D>(); }
 
   /// Triangulates the tiles of `root`, one by one, and merges them. What nothing `outside` can
   /// change has gone to the sink when it returns; the rest is returned.
   Border<D> triangulate(const TileNode<D>& root, const Outside<D>& outside);
+
+  /// The same with a plan, for all that is left. Nothing remains.
+  void triangulate_rest();
 
   /// Merges borders of children of `node`, which need not be tiles of this process, as block
   /// `place` of a stream. Counts what has been settled, but writes nothing.
@@ -99,20 +109,37 @@ class TileEngine {
   [[nodiscard]] RunFigures figures();
 
  private:
+  /// Keeps what `Outside` points to.
+  struct Surroundings {
+    std::shared_ptr<const TileNode<D>> root;
+    std::vector<std::shared_ptr<TileNode<D>>> outside;
+  };
   /// What a node has, which is a tile or a merge of tiles. Its number is its slot of the stream.
   struct State {
+    const TileNode<D>* tree = nullptr;
     Outside<D> outside;
-    std::size_t level = 0;  ///< merges below, at most
-    Border<D> border;       ///< once it is done
+    std::shared_ptr<const Surroundings> surroundings;  ///< that the two point to, or none
+    bool outside_shrank = false;                       ///< as in MergeInput
+    std::uint32_t level = 0;                           ///< merges below, at most
+    Border<D> border{};                                ///< once it is done
   };
-  using Tree = MergeTree<TileNode<D>, State>;
-  using Node = typename Tree::Node;
+  using Forest = MergeForest<State>;
+  using Node = typename Forest::Node;
 
   [[nodiscard]] TileOptions tile_options(const std::optional<Lattice>& lattice) const;
   TileTreeOptions tree_options(const ExpectedPoints& expected);
-  void prepare_nodes(const Outside<D>& outside);
-  void work_off_tiles();
-  Node* take_tile(TilePoints<D>& points);
+  void begin_triangulating(std::uint64_t points, std::uint64_t all_points);
+  void add_cell(std::uint32_t cell);
+  void triangulate_ahead(TaskGroup& lanes);
+  Node* add_nodes(const TileNode<D>& tree, const Outside<D>& outside,
+                  const std::shared_ptr<const Surroundings>& surroundings);
+  Node* add_node(State state, std::vector<Node*> children);
+  void work_off_all();
+  void work_off_ready();
+  bool work_off_one();
+  void work_off(Node& node, StoredTile stored);
+  Node* take_ready(StoredTile& stored);
+  void give_up();
   void merge_node(Node& node);
   void tell_done(const Node& node, Task task);
   void estimate_shortages(std::uint64_t all_points);
@@ -124,13 +151,18 @@ class TileEngine {
   const std::size_t planned_tile_;  ///< points of a tile, unless --tile is given
   StreamCounts counts_;
   PointSpan<D> span_;
+  const std::uint64_t expected_points_;  ///< 0: not known
   TileTree tree_;
   Sequencer<D> sequencer_;
   TileContext<D> context_;
-  std::optional<Tree> nodes_;
+  Forest forest_;
+  std::optional<CellTree<D>> cells_;          ///< with a plan
+  std::vector<Node*> parts_;                  ///< of these, by number, as far as they are complete
+  std::atomic<bool> tells_progress_ = false;  ///< of triangulating: reading has ended
   std::function<void(std::span<std::uint64_t>)> replace_indices_;
-  std::mutex take_mutex_;  ///< guards the next three
-  std::size_t taken_ = 0;
+  std::mutex take_mutex_;    ///< guards the next four
+  std::deque<Node*> ready_;  ///< tiles, and merges whose children are done, in order
+  unsigned lanes_ = 0;       ///< that work off what is ready, beside the reading
   std::future<StoredTile> reading_ahead_;
   std::atomic<bool> failed_ = false;
   TaskSums tasks_;

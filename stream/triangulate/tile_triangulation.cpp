@@ -49,7 +49,7 @@ Border<D> pass_up(const TileContext<D>& context, Border<D> border, BlockPlace bl
 /// merge_borders() of borders that are counted as resident; its result is not yet.
 template <int D, PointTree Tree>
 MergedBorder<D> merge_resident(const TileContext<D>& context, std::span<Border<D>> children,
-                               const std::vector<Tree>& trees, Task& task) {
+                               const Tree& node, Task& task) {
   std::uint64_t simplices = 0;
   std::uint64_t bytes = 0;
   for (const Border<D>& child : children) {
@@ -57,7 +57,7 @@ MergedBorder<D> merge_resident(const TileContext<D>& context, std::span<Border<D
     bytes += child.bytes();
   }
   std::vector<const Tree*> of_children;
-  for (const Tree& tree : trees) of_children.push_back(&tree);
+  for (const Tree& tree : node.children) of_children.push_back(&tree);
   const StageTimer timer(context.counts.times, Stage::kMerge);
   MergedBorder<D> merged =
       merge_borders<D, Tree>(children, of_children, context.budget, task, context.options.kernel);
@@ -292,7 +292,7 @@ class TileRun {
   Border<D> merge_node(Node& node) {
     std::vector<Border<D>> children;
     for (Node* child : node.children) children.push_back(std::exchange(child->border, {}));
-    MergedBorder<D> merged = merge_resident<D>(context_, children, node.tree->children, node.task);
+    MergedBorder<D> merged = merge_resident<D>(context_, children, *node.tree, node.task);
     const BlockPlace block = place_of(node);
     if (merged.border.open()) return pass_up(context_, std::move(merged.border), block);
     Settled<D> settled = settle_merged(merged, block, context_.options.output,
@@ -322,7 +322,8 @@ Border<D> triangulate_tile(const TileContext<D>& context, TileInput<D> tile, Tas
 
 template <int D>
 Settled<D> merge_borders_of(const TileContext<D>& context, const MergeInput<D>& input, Task& task) {
-  MergedBorder<D> merged = merge_resident<D>(context, input.children, input.node.children, task);
+  MergedBorder<D> merged = merge_resident<D>(context, input.children, input.node, task);
+  if (input.outside_shrank) merged.tested = 0;
   Settled<D> settled;
   if (merged.border.open()) {
     settled.border = std::move(merged.border);

@@ -110,6 +110,9 @@ struct MergeInput {
   const TileNode<D>& node;
   const Outside<D>& outside;
   BlockPlace place;  ///< of the stream
+  /// Whether boxes outside are tighter now than when the children were settled: then what they have
+  /// kept may be final, though no sibling touches it.
+  bool outside_shrank = false;
   /// Whether to tell what the vertices are that the block imports.
   bool imported_vertices = false;
 };

@@ -8,16 +8,17 @@ spillway_test(stream_unit_test unit
           stream/tiles/tile_block_test.cpp stream/tiles/tile_cut_test.cpp
           stream/tiles/tile_node_test.cpp stream/tiles/tile_segment_test.cpp
           stream/tiles/tile_tree_test.cpp stream/tiles/cuts/cut_lookup_test.cpp
-          stream/tiles/cuts/cut_tree_test.cpp
+          stream/tiles/cuts/cut_tree_test.cpp stream/tiles/regions/cell_tree_test.cpp
+          stream/tiles/regions/reading_order_test.cpp stream/tiles/regions/region_plan_test.cpp
           stream/triangulate/border_growth_test.cpp stream/triangulate/border_test.cpp
-          stream/triangulate/merge_tree_test.cpp
+          stream/triangulate/merge_forest_test.cpp stream/triangulate/merge_tree_test.cpp
           stream/triangulate/settle_test.cpp stream/triangulate/task_sums_test.cpp
           stream/triangulate/tile_engine_test.cpp
           stream/triangulate/tile_triangulation_test.cpp
   LIBS spillway_stream)
 
 spillway_test(stream_property_test property
-  SOURCES stream/stream_property_test.cpp
+  SOURCES stream/early_triangulation_test.cpp stream/stream_property_test.cpp
   LIBS spillway_stream spillway_generators cgal_oracle
   TIMEOUT 900)
 

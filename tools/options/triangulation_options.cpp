@@ -45,6 +45,8 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
       .value_name("N")
       .show_default();
   add_memory_options(app, options.memory);
+  app.add_flag("--distrust-headers", options.distrust_headers,
+               "Triangulate nothing before all is read: headers may lie about where points are");
   app.add_option("--stats", options.stats_path, "Write figures of the run").value_name("FILE");
   app.add_option("--tasks", options.tasks_path,
                  "Write the run's tasks, a line of JSON for each tile and merge of tiles")
@@ -103,6 +105,7 @@ TriangulateOptions triangulate_options(const TriangulationOptions& options, int 
   how.division = division_by_name(options.division);
   how.children = options.children;
   if (options.kernel == "cgal") how.kernel = Kernel::kCgal;
+  how.trust_headers = !options.distrust_headers;
   return how;
 }
 

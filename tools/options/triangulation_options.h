@@ -25,6 +25,7 @@ struct TriangulationOptions {
   std::string max_edge;
   unsigned threads = 0;
   MemoryOptions memory;
+  bool distrust_headers = false;
   std::string stats_path;
   std::string tasks_path;
   std::size_t base_case_size = 0;
@@ -36,13 +37,14 @@ struct TriangulationOptions {
 };
 
 /// All but IN and those of ReportOptions: --duplicates, --max-edge, the input's, --threads, the
-/// memory's, --stats, --tasks, and how the work is divided.
+/// memory's, --distrust-headers, --stats, --tasks, and how the work is divided.
 void add_triangulation_options(CommandLine& app, TriangulationOptions& options);
 
 /// Of these the names of those that have no effect where a mesh is read, beside those of
 /// add_input_options().
-inline constexpr std::array<std::string_view, 7> kTriangulationOptionNames = {
-    "--duplicates", "--tasks", "--base-case", "--tile", "--division", "--children", "--kernel"};
+inline constexpr std::array<std::string_view, 8> kTriangulationOptionNames = {
+    "--duplicates", "--distrust-headers", "--tasks",    "--base-case",
+    "--tile",       "--division",         "--children", "--kernel"};
 
 /// Throws UsageError if --duplicates is given, though points of equal x and y are no duplicates:
 /// in three dimensions.

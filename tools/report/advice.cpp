@@ -57,6 +57,8 @@ std::string advice(const ErrorFacts& facts) {
       return " (without --parts)";
     case Remedy::kLas14:
       return "; choose --las-version 1.4";
+    case Remedy::kDistrustHeaders:
+      return "; with --distrust-headers it may lie anywhere";
     case Remedy::kPointLattice:
       return "; choose another --scale or --offset";
     case Remedy::kRanks:

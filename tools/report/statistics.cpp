@@ -128,6 +128,7 @@ Json to_json(const Report& report, const RunFacts& facts) {
   json["spilled_points"] = report.spilled_points;
   json["spilled_bytes"] = report.spilled_bytes;
   json["divided_points"] = report.divided_points;
+  json["first_block_read_points"] = report.first_block_read_points;
   json["tile_shapes"] = {{"up_to_twice", report.tile_shapes.up_to_twice},
                          {"up_to_4_times", report.tile_shapes.up_to_4_times},
                          {"longer", report.tile_shapes.longer}};

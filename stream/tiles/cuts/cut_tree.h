@@ -42,10 +42,12 @@ class CutTree {
   [[nodiscard]] static std::uint32_t tile_at(NodeRef ref) {
     return static_cast<std::uint32_t>(-ref - 1);
   }
+  [[nodiscard]] static NodeRef ref_of(std::uint32_t tile) {
+    return -static_cast<NodeRef>(tile) - 1;
+  }
   [[nodiscard]] std::array<NodeRef, 2> sides(NodeRef ref) const { return cuts_[ref].sides; }
 
  private:
-  static NodeRef ref_of(std::uint32_t tile) { return -static_cast<NodeRef>(tile) - 1; }
   NodeRef make_cut(std::uint32_t tile, int axis, double value);
   void split_sample(std::uint32_t tile, LatticePoint* begin, LatticePoint* end, std::size_t parts);
   void renew_lookup();

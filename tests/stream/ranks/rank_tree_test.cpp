@@ -110,9 +110,9 @@ TEST(RankTree, KnowsHowTheOwnTilesAreStoredAndNoOthers) {
     if (node.is_merge()) continue;
     EXPECT_EQ(n == *tree.own_node(), node.leader == world().rank());
     if (n == *tree.own_node()) {
-      EXPECT_THAT(node.tiles->children.at(1).stored, ElementsAre(2));
+      EXPECT_THAT(node.tiles->children[1].stored, ElementsAre(2));
     } else {
-      EXPECT_THAT(node.tiles->children.at(1).stored, IsEmpty());
+      EXPECT_THAT(node.tiles->children[1].stored, IsEmpty());
     }
   }
 }

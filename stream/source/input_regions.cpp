@@ -1,0 +1,92 @@
+#include "stream/source/input_regions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+/// Headers may be off by so much in their coordinates, by rounding, where there are no steps of a
+/// lattice to tell.
+constexpr double kRelativeMargin = 1e-12;
+
+bool tells_where(const PointHeader& header) {
+  return !header.regions.empty() || header.count == 0 || (header.extent && header.count);
+}
+
+}  // namespace
+
+InputRegions::InputRegions(const SourceFacts& facts, const SourceCoordinates& coordinates,
+                           const PointFilter& filter)
+    : facts_(facts), coordinates_(coordinates) {
+  if (!std::ranges::all_of(facts.inputs, tells_where,
+                           [](const SourceFacts::Input& input) { return input.header; })) {
+    return;
+  }
+  const std::optional<Box<3>> bounds = filter.loose_bounds();
+  for (std::size_t i = 0; i < facts.inputs.size(); ++i) {
+    const PointHeader& header = facts.inputs[i].header;
+    first_.push_back(regions_.size());
+    const auto add = [&](const Box<3>& told, std::uint64_t count) {
+      InputRegion region{i, {}, count / filter.every};
+      const Box<3> kept = bounds ? common_part(told, *bounds) : told;
+      if (count > 0 && !kept.empty()) region.box = box_of(i, kept);
+      regions_.push_back(region);
+    };
+    for (const PointRegion& region : header.regions) add(region.box, region.count);
+    if (header.regions.empty()) add(header.extent.value_or(Box<3>{}), *header.count);
+  }
+}
+
+/// What a header tells, in the coordinates of the source, and a step of its own lattice more: many
+/// programs round what they write there.
+Box<3> InputRegions::box_of(std::size_t input, const Box<3>& told) const {
+  const auto& own = facts_.inputs[input].header.lattice;
+  Box<3> wide = told;
+  for (int k = 0; k < 3; ++k) {
+    const double most = std::max(std::abs(told.lo[k]), std::abs(told.hi[k]));
+    const double margin = std::max(own ? std::abs(own->scale[k]) : 0.0, most * kRelativeMargin);
+    wide.lo[k] -= margin;
+    wide.hi[k] += margin;
+  }
+  const Box<3> box = coordinates_.of_world(wide);
+  Box<3> ordered;  // scales may be negative
+  ordered.expand(box.lo);
+  ordered.expand(box.hi);
+  return ordered;
+}
+
+/// Heights are not looked at in the plane, and where a source has none.
+void InputRegions::check(const PointBlock& block, std::size_t region) const {
+  const Box<3>& box = regions_[region].box;
+  const int axes = coordinates_.dimension();
+  Box<3> reached;
+  for (const LatticePoint& point : block.points) reached.expand(point);
+  bool inside = true;
+  for (int k = 0; k < axes; ++k) {
+    inside = inside && reached.lo[k] >= box.lo[k] && reached.hi[k] <= box.hi[k];
+  }
+  if (inside || block.points.empty()) return;
+  for (std::size_t i = 0; i < block.points.size(); ++i) {
+    for (int k = 0; k < axes; ++k) {
+      const double x = block.points[i][k];
+      if (!(x >= box.lo[k] && x <= box.hi[k])) refuse(block, i, region);
+    }
+  }
+}
+
+void InputRegions::refuse(const PointBlock& block, std::size_t point, std::size_t region) const {
+  const PointHeader& header = facts_.inputs[regions_[region].input].header;
+  const auto world = in_world(coordinates_.lattice(), block.points[point]);
+  const std::uint64_t number = block.index[point];
+  throw BadInput(header.name,
+                 fmt::format("point {} at ({}, {}) lies outside of the box that the header tells",
+                             number, world[0], world[1]),
+                 {PlaceUnit::kRecord, number}, Remedy::kDistrustHeaders);
+}
+
+}  // namespace spillway::detail

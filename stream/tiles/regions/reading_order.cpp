@@ -1,0 +1,95 @@
+#include "stream/tiles/regions/reading_order.h"
+
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace spillway::detail {
+namespace {
+
+class Reading {
+ public:
+  Reading(std::span<const WaitingCell> cells, std::span<const double> points)
+      : cells_(cells),
+        points_(points),
+        cells_of_(points.size()),
+        is_read_(points.size()),
+        missing_(cells.size()),
+        enabled_(cells.size()) {
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      missing_[c] = cells[c].inputs.size();
+      for (const std::size_t input : cells[c].inputs) cells_of_[input].push_back(c);
+    }
+  }
+
+  std::vector<std::size_t> order() {
+    for (std::size_t next = 0; next < cells_.size(); ++next) {
+      if (missing_[next] == 0) continue;
+      complete(next);
+      while (!begun_.empty()) complete(cheapest());
+    }
+    for (std::size_t input = 0; input < points_.size(); ++input)
+      read(input);  // those without cells
+    return std::move(order_);
+  }
+
+ private:
+  void read(std::size_t input) {
+    if (is_read_[input]) return;
+    is_read_[input] = true;
+    order_.push_back(input);
+    for (const std::size_t c : cells_of_[input]) {
+      if (--missing_[c] == 0) {
+        begun_.erase(c);
+      } else {
+        begun_.insert(c);
+      }
+    }
+  }
+
+  void complete(std::size_t cell) {
+    for (const std::size_t input : cells_[cell].inputs) read(input);
+  }
+
+  /// Of the cells that are begun.
+  std::size_t cheapest() {
+    std::pair best{std::numeric_limits<double>::infinity(), std::size_t{0}};
+    for (const std::size_t c : begun_) best = std::min(best, {cost(c), c});
+    return best.second;
+  }
+
+  /// Points to be read for a cell, less those of cells that are complete then.
+  double cost(std::size_t cell) {
+    double cost = 0;
+    touched_.clear();
+    for (const std::size_t input : cells_[cell].inputs) {
+      if (is_read_[input]) continue;
+      cost += points_[input];
+      for (const std::size_t c : cells_of_[input]) {
+        if (++enabled_[c] == missing_[c]) cost -= cells_[c].points;
+        touched_.push_back(c);
+      }
+    }
+    for (const std::size_t c : touched_) enabled_[c] = 0;
+    return cost;
+  }
+
+  std::span<const WaitingCell> cells_;
+  std::span<const double> points_;
+  std::vector<std::vector<std::size_t>> cells_of_;  ///< by input
+  std::vector<bool> is_read_;
+  std::vector<std::size_t> missing_;  ///< by cell: inputs that are not read
+  std::vector<std::size_t> enabled_;  ///< by cell: of these, those that cost() looks at
+  std::vector<std::size_t> touched_;
+  std::set<std::size_t> begun_;  ///< cells of which some inputs are read, and some not
+  std::vector<std::size_t> order_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> reading_order(std::span<const WaitingCell> cells,
+                                       std::span<const double> points) {
+  return Reading(cells, points).order();
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,254 @@
+#include "stream/tiles/regions/region_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "stream/tiles/regions/reading_order.h"
+
+namespace spillway::detail {
+namespace {
+
+/// The lower side of a cut gets this share of the points, at the least and at the most.
+constexpr double kLeastShare = 0.4;
+constexpr double kMostShare = 0.6;
+/// What uneven sides cost, against points of regions that lie on both sides.
+constexpr double kUnevenCost = 0.5;
+/// Most values that are looked at for a cut.
+constexpr std::size_t kMostValues = 32;
+/// Steps by which a value is found that has a share of the points below it.
+constexpr int kBisections = 40;
+/// Triangulating while reading pays from this share of points on that are complete early.
+constexpr double kLeastEarly = 0.25;
+
+/// The part of a region in a cell.
+struct Portion {
+  std::size_t region = 0;
+  Box<3> box;
+  double points = 0;
+
+  [[nodiscard]] double share_below(int axis, double value) const {
+    if (box.hi[axis] < value) return 1;
+    if (box.lo[axis] >= value) return 0;
+    const double extent = box.hi[axis] - box.lo[axis];
+    return extent > 0 ? (value - box.lo[axis]) / extent : 0;
+  }
+};
+
+double points_below(const std::vector<Portion>& portions, int axis, double value) {
+  double points = 0;
+  for (const Portion& portion : portions)
+    points += portion.points * portion.share_below(axis, value);
+  return points;
+}
+
+double points_of(const std::vector<Portion>& portions) {
+  double points = 0;
+  for (const Portion& portion : portions) points += portion.points;
+  return points;
+}
+
+/// Points of regions that have some on both sides.
+double points_parted(const std::vector<Portion>& portions, int axis, double value) {
+  double points = 0;
+  for (const Portion& portion : portions) {
+    if (portion.box.lo[axis] < value && value <= portion.box.hi[axis]) points += portion.points;
+  }
+  return points;
+}
+
+Box<3> box_around(const std::vector<Portion>& portions) {
+  Box<3> box;
+  for (const Portion& portion : portions) box.expand(portion.box);
+  return box;
+}
+
+/// The least value with about that share of the points below it.
+double quantile(const std::vector<Portion>& portions, int axis, const Box<3>& box, double points) {
+  double lo = box.lo[axis];
+  double hi = box.hi[axis];
+  for (int step = 0; step < kBisections; ++step) {
+    const double middle = lo + (hi - lo) / 2;
+    (points_below(portions, axis, middle) < points ? lo : hi) = middle;
+  }
+  return hi;
+}
+
+/// Where to cut a cell: at the sides of regions, if that parts the points evenly enough.
+double best_value(const std::vector<Portion>& portions, int axis, const Box<3>& box) {
+  const double all = points_of(portions);
+  const double least = quantile(portions, axis, box, kLeastShare * all);
+  const double most = quantile(portions, axis, box, kMostShare * all);
+  std::vector<double> values;
+  for (const Portion& portion : portions) {
+    for (const double value : {portion.box.lo[axis], portion.box.hi[axis]}) {
+      if (value > least && value < most) values.push_back(value);
+    }
+  }
+  std::ranges::sort(values);
+  const auto [first, last] = std::ranges::unique(values);
+  values.erase(first, last);
+  const std::size_t stride = values.size() / kMostValues + 1;
+  double best = quantile(portions, axis, box, all / 2);
+  double least_cost = points_parted(portions, axis, best) / all;
+  for (std::size_t i = 0; i < values.size(); i += stride) {
+    const double uneven = std::abs(points_below(portions, axis, values[i]) / all - 0.5);
+    const double cost = points_parted(portions, axis, values[i]) / all + kUnevenCost * uneven;
+    if (cost >= least_cost) continue;
+    least_cost = cost;
+    best = values[i];
+  }
+  return best;
+}
+
+/// Cuts the plane or space into cells, and keeps what each has of the regions.
+class Planner {
+ public:
+  Planner(int dimension, double most_points) : dimension_(dimension), most_points_(most_points) {}
+
+  void cut(std::uint32_t tile, std::vector<Portion> portions) {
+    const Box<3> box = box_around(portions);
+    const double points = points_of(portions);
+    int axis = 0;
+    for (int k = 1; k < dimension_; ++k) {
+      if (box.extent(k) > box.extent(axis)) axis = k;
+    }
+    if (points > most_points_ && box.extent(axis) > 0) {
+      const double value = best_value(portions, axis, box);
+      if (value > box.lo[axis] && value <= box.hi[axis]) {
+        return cut_at(tile, std::move(portions), axis, value);
+      }
+    }
+    if (by_cell.size() <= tile) by_cell.resize(tile + 1);
+    in_order.push_back(tile);
+    by_cell[tile] = std::move(portions);
+  }
+
+  [[nodiscard]] CutTree take_cuts() { return std::move(cuts_); }
+
+  std::vector<std::vector<Portion>> by_cell;
+  std::vector<std::uint32_t> in_order;  ///< cells, neighbours soon after each other
+
+ private:
+  void cut_at(std::uint32_t tile, std::vector<Portion> portions, int axis, double value) {
+    const std::uint32_t other = cuts_.tiles();
+    cuts_.cut(tile, axis, value);
+    std::vector<Portion> below;
+    std::vector<Portion> above;
+    for (const Portion& portion : portions) {
+      const double share = portion.share_below(axis, value);
+      if (portion.box.lo[axis] < value) {
+        Portion part = portion;
+        // Points on the cut go up.
+        const double next = std::nextafter(value, -std::numeric_limits<double>::infinity());
+        part.box.hi[axis] = std::min(part.box.hi[axis], next);
+        part.points *= share;
+        below.push_back(part);
+      }
+      if (portion.box.hi[axis] >= value) {
+        Portion part = portion;
+        part.box.lo[axis] = std::max(part.box.lo[axis], value);
+        part.points *= 1 - share;
+        above.push_back(part);
+      }
+    }
+    portions = {};
+    cut(tile, std::move(below));
+    cut(other, std::move(above));
+  }
+
+  int dimension_;
+  double most_points_;
+  CutTree cuts_{dimension_};
+};
+
+/// Inputs in their own order, or so that few points wait.
+std::vector<std::size_t> order_inputs(std::span<const InputRegion> regions, const Planner& planner,
+                                      bool any_order) {
+  std::vector<double> points;  // by input
+  for (const InputRegion& region : regions) {
+    points.resize(std::max(points.size(), region.input + 1));
+    points[region.input] += static_cast<double>(region.count);
+  }
+  if (!any_order) {
+    std::vector<std::size_t> inputs(points.size());
+    std::iota(inputs.begin(), inputs.end(), std::size_t{0});
+    return inputs;
+  }
+  std::vector<WaitingCell> cells;
+  for (const std::uint32_t c : planner.in_order) {
+    WaitingCell& cell = cells.emplace_back();
+    for (const Portion& portion : planner.by_cell[c]) {
+      cell.points += portion.points;
+      const std::size_t input = regions[portion.region].input;
+      if (cell.inputs.empty() || cell.inputs.back() != input) cell.inputs.push_back(input);
+    }
+  }
+  return reading_order(cells, points);
+}
+
+/// The order in which regions come, if their inputs are read as planned.
+void order_regions(std::span<const InputRegion> regions, RegionPlan& plan) {
+  std::vector<std::vector<std::size_t>> of_input(plan.inputs.size());
+  for (std::size_t r = 0; r < regions.size(); ++r) of_input[regions[r].input].push_back(r);
+  for (const std::size_t input : plan.inputs) {
+    plan.regions.insert(plan.regions.end(), of_input[input].begin(), of_input[input].end());
+  }
+}
+
+void tell_when_done(const Planner& planner, RegionPlan& plan) {
+  std::vector<std::size_t> position(plan.regions.size());
+  for (std::size_t p = 0; p < position.size(); ++p) position[plan.regions[p]] = p;
+  plan.cells.resize(planner.by_cell.size());
+  plan.done_after.resize(plan.regions.size());
+  for (const std::uint32_t c : planner.in_order) {
+    RegionPlan::Cell& cell = plan.cells[c];
+    const std::vector<Portion>& portions = planner.by_cell[c];
+    cell.box = box_around(portions);
+    cell.expected = points_of(portions);
+    for (const Portion& portion : portions) {
+      cell.done_after = std::max(cell.done_after, position[portion.region]);
+    }
+    plan.done_after[cell.done_after].push_back(c);
+  }
+}
+
+/// How many points wait while the regions come.
+void expect_waiting(std::span<const InputRegion> regions, RegionPlan& plan) {
+  double all = 0;
+  double done = 0;
+  double read = 0;
+  for (const InputRegion& region : regions) all += static_cast<double>(region.count);
+  for (std::size_t p = 0; p < plan.regions.size(); ++p) {
+    read += static_cast<double>(regions[plan.regions[p]].count);
+    plan.most_waiting = std::max(plan.most_waiting, read - done);
+    if (p + 1 == plan.regions.size()) break;
+    for (const std::uint32_t cell : plan.done_after[p]) done += plan.cells[cell].expected;
+  }
+  plan.done_early = all > 0 ? done / all : 0;
+}
+
+}  // namespace
+
+RegionPlan plan_regions(std::span<const InputRegion> regions, const RegionPlanOptions& options) {
+  Planner planner(options.dimension, options.most_points);
+  std::vector<Portion> all;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    const InputRegion& region = regions[r];
+    if (region.box.empty()) continue;
+    all.push_back({r, region.box, static_cast<double>(region.count)});
+  }
+  planner.cut(0, std::move(all));
+  RegionPlan plan{.cuts = planner.take_cuts()};
+  plan.inputs = order_inputs(regions, planner, options.any_order);
+  order_regions(regions, plan);
+  tell_when_done(planner, plan);
+  expect_waiting(regions, plan);
+  return plan;
+}
+
+bool pays(const RegionPlan& plan) { return plan.done_early >= kLeastEarly; }
+
+}  // namespace spillway::detail

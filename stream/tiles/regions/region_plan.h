@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "src/geometry/box.h"
+#include "stream/tiles/cuts/cut_tree.h"
+
+namespace spillway::detail {
+
+/// A part of the points to come, all of which lie in a box. Regions of one input come one after the
+/// other.
+struct InputRegion {
+  std::size_t input = 0;
+  Box<3> box;  ///< in the coordinates in which points are dealt
+  std::uint64_t count = 0;
+};
+
+/// Which tiles to begin with, and in which order to read, so that tiles are complete early: decided
+/// by the boxes of regions alone. A tile that is cut later on stays a *cell* of this plan.
+struct RegionPlan {
+  struct Cell {
+    Box<3> box;  ///< has all points of the cell that any region may have; empty if none may
+    double expected = 0;
+    std::size_t done_after = 0;  ///< position of the last region that may have points of it
+  };
+  CutTree cuts;                        ///< its tiles are the cells
+  std::vector<Cell> cells{};           ///< by tile
+  std::vector<std::size_t> inputs{};   ///< in the order in which to read them
+  std::vector<std::size_t> regions{};  ///< in the order in which they come then
+  /// By position in `regions`: the cells that are complete when that region has been read.
+  std::vector<std::vector<std::uint32_t>> done_after{};
+  double most_waiting = 0;  ///< points of cells that are not complete, at the most, as expected
+  double done_early = 0;    ///< share of points in cells that are complete before the last region
+};
+
+struct RegionPlanOptions {
+  int dimension = 2;       ///< only the first axes are looked at
+  double most_points = 0;  ///< that a cell expects
+  bool any_order = true;   ///< inputs may be read in any order
+};
+
+/// The plan for regions that are spread evenly over their boxes. Regions with an empty box have no
+/// points.
+RegionPlan plan_regions(std::span<const InputRegion> regions, const RegionPlanOptions& options);
+
+/// Whether enough tiles are complete early for a run that triangulates while it reads.
+bool pays(const RegionPlan& plan);
+
+}  // namespace spillway::detail

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace spillway::detail {
+
+/// Trees that grow upwards while they are worked off, by many threads: whoever is done with the
+/// last child of a node goes on with that node. Nodes are numbered in the order in which they are
+/// added. Each has what a `State` has, which is for the caller.
+template <typename State>
+class MergeForest {
+ public:
+  struct Node : State {
+    std::uint32_t number = 0;
+    std::vector<Node*> children;
+
+   private:
+    friend class MergeForest;
+    Node* parent = nullptr;
+    std::size_t children_missing = 0;
+    bool done = false;
+  };
+
+  struct Added {
+    Node* node = nullptr;
+    bool ready = false;  ///< it can be done at once: no child of it will lead to it
+  };
+
+  /// Adds a leaf, or a node above others that have no parent yet. By one thread at a time.
+  Added add(State state, std::vector<Node*> children) {
+    const std::lock_guard lock(mutex_);
+    Node& node = nodes_.emplace_back();
+    static_cast<State&>(node) = std::move(state);
+    node.number = static_cast<std::uint32_t>(nodes_.size() - 1);
+    for (Node* child : children) {
+      child->parent = &node;
+      if (!child->done) ++node.children_missing;
+    }
+    node.children = std::move(children);
+    return {&node, node.children_missing == 0};
+  }
+
+  /// A node is done. Returns its parent if no other child of that is missing, else null.
+  Node* done(Node& node) {
+    const std::lock_guard lock(mutex_);
+    node.done = true;
+    return node.parent != nullptr && --node.parent->children_missing == 0 ? node.parent : nullptr;
+  }
+
+ private:
+  std::mutex mutex_;        ///< guards all that follows, and what is private of nodes
+  std::deque<Node> nodes_;  ///< which stay where they are
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,231 @@
+// Tiles are triangulated while other points are still to be read, where it is known where they lie.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "tests/stream/region_stream.h"
+#include "tests/stream/stream_runner.h"
+#include "tests/stream/triangulate/indexed_simplices.h"
+
+namespace spillway::detail {
+namespace {
+
+using ::testing::Gt;
+using testing::IndexedSimplices;
+using ::testing::Lt;
+using testing::triangulated;
+
+using Regions = std::vector<std::vector<LatticePoint>>;
+
+struct EarlyRun {
+  RunFigures figures;
+  KeepingWriter mesh;
+  bool is_early = false;
+};
+
+StreamOptions small_tiles() {
+  return {.threads = 2,
+          .tile_capacity = 600,
+          .buffered_points = 1U << 20,
+          .leaf_size = 100,
+          .input_index = true,
+          .early = true};
+}
+
+template <int D>
+EarlyRun run(RegionStream source, const StreamOptions& options = small_tiles()) {
+  EarlyRun run{{}, KeepingWriter(D)};
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  MemoryBudget budget(std::uint64_t{1} << 30);
+  run.figures = triangulate_stream<D>(source, run.mesh, *scratch, budget, options);
+  run.is_early = source.kept_to_plan;
+  EXPECT_EQ(run.mesh.live(), 0U);
+  EXPECT_EQ(budget.used(), 0U);
+  return run;
+}
+
+template <int D>
+IndexedSimplices<D> expected_of(const Regions& regions) {
+  std::vector<Point<D>> points;
+  for (const auto& region : regions) {
+    for (const LatticePoint& point : region) {
+      Point<D>& p = points.emplace_back();
+      std::copy_n(point.begin(), D, p.begin());
+    }
+  }
+  return triangulated<D>(points);
+}
+
+TEST(EarlyTriangulation, OfASurveyIsThatOfAllPoints) {
+  const Regions regions = survey(8, 20'000, 1);
+  const EarlyRun early = run<2>(RegionStream(regions));
+  EXPECT_TRUE(early.is_early);
+  EXPECT_EQ(simplices_of<2>(early.mesh), expected_of<2>(regions));
+  EXPECT_EQ(early.figures.mesh.points, 20'000U);
+  EXPECT_EQ(early.figures.mesh.vertices, 20'000U);
+}
+
+TEST(EarlyTriangulation, OfSpaceIsThatOfAllPoints) {
+  const Regions regions = survey(5, 8'000, 2);
+  const EarlyRun early = run<3>(RegionStream(regions));
+  EXPECT_TRUE(early.is_early);
+  EXPECT_EQ(simplices_of<3>(early.mesh), expected_of<3>(regions));
+}
+
+TEST(EarlyTriangulation, WritesItsFirstBlockEarlyAndSpillsNothing) {
+  const EarlyRun early = run<2>(RegionStream(survey(12, 60'000, 3)));
+  EXPECT_THAT(early.figures.first_block_read_points, Lt(9'000U));
+  EXPECT_EQ(early.figures.spilled_points, 0U);
+}
+
+TEST(EarlyTriangulation, IsTheSameForAnyNumberOfThreads) {
+  const Regions regions = survey(7, 15'000, 4, 0.3);
+  StreamOptions options = small_tiles();
+  std::vector<std::vector<std::uint64_t>> corners;
+  for (const unsigned threads : {1U, 2U, 3U, 4U}) {
+    options.threads = threads;
+    corners.push_back(run<2>(RegionStream(regions), options).mesh.corner_list);
+  }
+  for (const auto& other : corners) EXPECT_EQ(other, corners.front());
+}
+
+/// Points on a lattice: many are equal, many on one circle, many on the cuts.
+TEST(EarlyTriangulation, TakesEqualPointsOfSeveralInputsInTheInputsOrder) {
+  for (const unsigned seed : {5U, 6U, 7U}) {
+    const Regions regions = survey(6, 12'000, seed, 0.4, 10);
+    StreamOptions options = small_tiles();
+    const EarlyRun early = run<2>(RegionStream(regions), options);
+    options.early = false;
+    const EarlyRun late = run<2>(RegionStream(regions), options);
+    EXPECT_TRUE(early.is_early);
+    EXPECT_FALSE(late.is_early);
+    EXPECT_EQ(simplices_of<2>(early.mesh), simplices_of<2>(late.mesh));
+    EXPECT_EQ(early.figures.mesh.canonical_hash, late.figures.mesh.canonical_hash);
+    const auto heights = [](const EarlyRun& run) {
+      return std::multiset<LatticePoint>(run.mesh.vertices.begin(), run.mesh.vertices.end());
+    };
+    EXPECT_EQ(heights(early), heights(late)) << "z of the first of several equal points";
+  }
+}
+
+TEST(EarlyTriangulation, SpillsPointsThatWaitLongestWhereMemoryIsLittle) {
+  const Regions regions = survey(8, 40'000, 8, 0.2);
+  StreamOptions options = small_tiles();
+  options.buffered_points = 6'000;
+  const EarlyRun early = run<2>(RegionStream(regions), options);
+  EXPECT_TRUE(early.is_early);
+  EXPECT_THAT(early.figures.spilled_points, Gt(0U));
+  EXPECT_THAT(early.figures.spilled_points, Lt(40'000U));
+  EXPECT_EQ(simplices_of<2>(early.mesh), expected_of<2>(regions));
+}
+
+/// Cells that get far more points than their regions let expect are cut, also when parts of them
+/// are on the disk, on both sides of the cut.
+TEST(EarlyTriangulation, CutsCellsThatGetMoreThanTheyExpect) {
+  for (const std::size_t buffered : {std::size_t{1} << 20, std::size_t{4'000}}) {
+    Regions regions = survey(6, 10'000, 9);
+    std::mt19937 random(10);
+    std::normal_distribution<double> spread(0, 0.02);
+    for (std::size_t r = 0; r < regions.size(); r += 5) {
+      const LatticePoint center = regions[r].front();
+      for (int i = 0; i < 2'000; ++i) {
+        regions[r].push_back({center[0] + spread(random), center[1] + spread(random), 0});
+      }
+    }
+    StreamOptions options = small_tiles();
+    options.buffered_points = buffered;
+    const EarlyRun early = run<2>(RegionStream(regions), options);
+    EXPECT_TRUE(early.is_early);
+    EXPECT_EQ(simplices_of<2>(early.mesh), expected_of<2>(regions));
+  }
+}
+
+TEST(EarlyTriangulation, TakesRegionsThatCoverAllAndSuchAsHaveNoPoints) {
+  Regions regions = survey(8, 20'000, 11);
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> coordinate(0, 8);
+  std::vector<LatticePoint> everywhere(500);
+  for (LatticePoint& point : everywhere) point = {coordinate(random), coordinate(random), 1};
+  regions.push_back(everywhere);
+  regions.insert(regions.begin(), 3, {});
+  RegionStream source(regions);
+  source.told()[0].box = Box<3>{{100, 100, 0}, {200, 200, 0}};
+  const EarlyRun early = run<2>(std::move(source));
+  EXPECT_TRUE(early.is_early);
+  EXPECT_EQ(simplices_of<2>(early.mesh), expected_of<2>(regions));
+}
+
+/// Boxes may be much larger than what is in them: then less is final early, and no more than that.
+TEST(EarlyTriangulation, TakesBoxesThatAreTooLarge) {
+  const Regions regions = survey(8, 20'000, 13);
+  RegionStream source(regions);
+  for (InputRegion& region : source.told()) {
+    for (int k = 0; k < 3; ++k) {
+      region.box.lo[k] -= 0.4;
+      region.box.hi[k] += 0.7;
+    }
+  }
+  const EarlyRun early = run<2>(std::move(source));
+  EXPECT_TRUE(early.is_early);
+  EXPECT_EQ(simplices_of<2>(early.mesh), expected_of<2>(regions));
+}
+
+/// As in rotated strips: cells that no point lies in, and tiles at the rim of the empty ones.
+TEST(EarlyTriangulation, TakesBoxesThatAreEmptyInPart) {
+  Regions regions;
+  std::mt19937 random(14);
+  std::uniform_real_distribution<double> along(0, 10);
+  std::uniform_real_distribution<double> across(-0.3, 0.3);
+  for (int strip = 0; strip < 12; ++strip) {
+    std::vector<LatticePoint>& points = regions.emplace_back();
+    for (int i = 0; i < 1'500; ++i) {
+      const double t = along(random);
+      points.push_back({t + across(random) + strip, t - across(random) - strip, 0});
+    }
+  }
+  const EarlyRun early = run<2>(RegionStream(regions));
+  EXPECT_TRUE(early.is_early);
+  EXPECT_EQ(simplices_of<2>(early.mesh), expected_of<2>(regions));
+}
+
+TEST(EarlyTriangulation, ReadsAllFirstWhereThatIsNoGain) {
+  const Regions regions = {survey(1, 5'000, 15)[0], survey(1, 5'000, 16)[0]};
+  const EarlyRun late = run<2>(RegionStream(regions));
+  EXPECT_FALSE(late.is_early) << "both regions cover all";
+  EXPECT_EQ(simplices_of<2>(late.mesh), expected_of<2>(regions));
+}
+
+TEST(EarlyTriangulation, RefusesPointsOfALine) {
+  Regions regions(20);
+  for (int i = 0; i < 20'000; ++i) regions[i / 1'000].push_back({i * 1.0, i * 2.0, 0});
+  EXPECT_THROW(run<2>(RegionStream(regions)), Error);
+}
+
+/// Fails when its third block comes.
+class FullSink : public BlockSink {
+ public:
+  void write(MeshBlock&& /*block*/) override {
+    if (++blocks_ == 3) throw Error("the disk is full");
+  }
+  void finish(const MeshTotals& /*totals*/) override {}
+
+ private:
+  int blocks_ = 0;
+};
+
+TEST(EarlyTriangulation, EndsWithTheErrorOfItsSinkBeforeAllIsRead) {
+  RegionStream source(survey(20, 200'000, 17), 100);
+  FullSink sink;
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  MemoryBudget budget(std::uint64_t{1} << 30);
+  EXPECT_THROW(triangulate_stream<2>(source, sink, *scratch, budget, small_tiles()), Error);
+  EXPECT_THAT(source.points_read(), Lt(200'000U));
+  EXPECT_EQ(budget.used(), 0U);
+}
+
+}  // namespace
+}  // namespace spillway::detail

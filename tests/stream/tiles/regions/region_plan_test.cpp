@@ -1,0 +1,169 @@
+#include "stream/tiles/regions/region_plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+namespace spillway::detail {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::Ge;
+using ::testing::Gt;
+using ::testing::IsEmpty;
+using ::testing::Le;
+using ::testing::Lt;
+
+Box<3> box_between(const LatticePoint& lo, const LatticePoint& hi) {
+  Box<3> box;
+  box.expand(lo);
+  box.expand(hi);
+  return box;
+}
+
+/// Unit squares in rows, a file each.
+std::vector<InputRegion> squares(int side, std::uint64_t points, double margin = 0) {
+  std::vector<InputRegion> regions;
+  for (int x = 0; x < side; ++x) {
+    for (int y = 0; y < side; ++y) {
+      const Box<3> box =
+          box_between({x - margin, y - margin, 0}, {x + 1 + margin, y + 1 + margin, 9});
+      regions.push_back({regions.size(), box, points});
+    }
+  }
+  return regions;
+}
+
+/// Each point of a region lies in a cell that is complete after that region or later, and in the
+/// cell's box.
+void expect_to_hold(const RegionPlan& plan, const std::vector<InputRegion>& regions,
+                    int dimension) {
+  ASSERT_EQ(plan.cells.size(), plan.cuts.tiles());
+  std::vector<std::size_t> position(regions.size());
+  for (std::size_t p = 0; p < plan.regions.size(); ++p) position.at(plan.regions[p]) = p;
+  std::mt19937 random(1);
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    const Box<3>& box = regions[r].box;
+    if (box.empty()) continue;
+    std::vector<LatticePoint> points = {LatticePoint(box.lo), LatticePoint(box.hi)};
+    for (int i = 0; i < 50; ++i) {
+      LatticePoint& point = points.emplace_back();
+      for (int k = 0; k < 3; ++k) {
+        point[k] = std::uniform_real_distribution<double>(box.lo[k], box.hi[k])(random);
+      }
+    }
+    std::vector<std::uint32_t> cells(points.size());
+    plan.cuts.find_tiles(points, cells);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const RegionPlan::Cell& cell = plan.cells[cells[i]];
+      EXPECT_GE(cell.done_after, position[r]);
+      for (int k = 0; k < dimension; ++k) {
+        EXPECT_GE(points[i][k], cell.box.lo[k]);
+        EXPECT_LE(points[i][k], cell.box.hi[k]);
+      }
+    }
+  }
+  std::vector<int> told(plan.cells.size());
+  for (std::size_t p = 0; p < plan.done_after.size(); ++p) {
+    for (const std::uint32_t cell : plan.done_after[p]) {
+      ++told[cell];
+      EXPECT_EQ(plan.cells[cell].done_after, p);
+    }
+  }
+  EXPECT_THAT(told, Each(1));
+}
+
+TEST(RegionPlan, CellsExpectAtMostSoManyPointsAndAllOfThem) {
+  const auto regions = squares(10, 1000, 0.1);
+  const RegionPlan plan = plan_regions(regions, {.most_points = 2500});
+  expect_to_hold(plan, regions, 2);
+  double all = 0;
+  for (const RegionPlan::Cell& cell : plan.cells) {
+    EXPECT_THAT(cell.expected, Le(2500));
+    EXPECT_THAT(cell.expected, Ge(2500 / 3.0));
+    all += cell.expected;
+  }
+  EXPECT_NEAR(all, 100'000, 1e-3);
+}
+
+TEST(RegionPlan, CutsWhereFilesMeet) {
+  const RegionPlan plan = plan_regions(squares(2, 1000), {.most_points = 1000});
+  ASSERT_EQ(plan.cells.size(), 4U);
+  for (const RegionPlan::Cell& cell : plan.cells) EXPECT_NEAR(cell.expected, 1000, 1e-6);
+}
+
+TEST(RegionPlan, InputsComeSoThatFewPointsWait) {
+  auto regions = squares(16, 1000, 0.05);
+  std::shuffle(regions.begin(), regions.end(), std::mt19937(2));
+  for (std::size_t r = 0; r < regions.size(); ++r) regions[r].input = r;
+  const RegionPlan plan = plan_regions(regions, {.most_points = 2000});
+  expect_to_hold(plan, regions, 2);
+  EXPECT_TRUE(pays(plan));
+  EXPECT_THAT(plan.most_waiting, Lt(60'000)) << "of 256,000";
+  const RegionPlan as_named = plan_regions(regions, {.most_points = 2000, .any_order = false});
+  expect_to_hold(as_named, regions, 2);
+  EXPECT_THAT(as_named.most_waiting, Gt(120'000));
+  EXPECT_THAT(as_named.inputs.front(), 0U);
+  EXPECT_TRUE(std::ranges::is_sorted(as_named.inputs));
+}
+
+TEST(RegionPlan, KeepsTheRegionsOfOneInputInTheirOrder) {
+  auto regions = squares(8, 1000);
+  for (InputRegion& region : regions) region.input = 0;
+  const RegionPlan plan = plan_regions(regions, {.most_points = 1500});
+  expect_to_hold(plan, regions, 2);
+  EXPECT_THAT(plan.inputs, ElementsAre(0U));
+  EXPECT_TRUE(std::ranges::is_sorted(plan.regions));
+  EXPECT_TRUE(pays(plan));
+}
+
+TEST(RegionPlan, DoesNotPayWhereEverythingWaitsForTheLast) {
+  auto regions = squares(4, 1000);
+  regions.push_back({16, box_between({0, 0, 0}, {4, 4, 9}), 1000});
+  EXPECT_TRUE(pays(plan_regions(regions, {.most_points = 1500}))) << "that is read first";
+  EXPECT_FALSE(pays(plan_regions(regions, {.most_points = 1500, .any_order = false})));
+  EXPECT_FALSE(pays(plan_regions(squares(1, 100'000), {.most_points = 1000}))) << "one file";
+}
+
+TEST(RegionPlan, OfRegionsWithoutPointsHasOneCell) {
+  const std::vector<InputRegion> regions = {{0, {}, 0}, {1, {}, 0}};
+  const RegionPlan plan = plan_regions(regions, {.most_points = 10});
+  EXPECT_EQ(plan.cells.size(), 1U);
+  EXPECT_TRUE(plan.cells[0].box.empty());
+  EXPECT_THAT(plan.inputs, ElementsAre(0U, 1U));
+  EXPECT_FALSE(pays(plan));
+}
+
+TEST(RegionPlan, TakesFlatBoxesAndEqualOnes) {
+  std::vector<InputRegion> regions = squares(3, 1000);
+  for (std::size_t i = 0; i < 9; ++i) {
+    regions.push_back({9 + i, box_between({1, 1, 1}, {1, 1, 1}), 5000});
+    regions.push_back({18 + i, box_between({0, 2, 0}, {3, 2, 0}), 5000});
+  }
+  for (std::size_t r = 0; r < regions.size(); ++r) regions[r].input = r;
+  const RegionPlan plan = plan_regions(regions, {.most_points = 2000});
+  expect_to_hold(plan, regions, 2);
+}
+
+TEST(RegionPlan, OfSpaceCutsAllAxes) {
+  std::vector<InputRegion> regions;
+  for (int i = 0; i < 64; ++i) {
+    const double x = i % 4;
+    const double y = i / 4 % 4;
+    const double z = i / 16;
+    regions.push_back({regions.size(), box_between({x, y, z}, {x + 1, y + 1, z + 1}), 1000});
+  }
+  const RegionPlan plan = plan_regions(regions, {.dimension = 3, .most_points = 1500});
+  expect_to_hold(plan, regions, 3);
+  EXPECT_THAT(plan.cells.size(), Ge(50U));
+  for (const RegionPlan::Cell& cell : plan.cells) {
+    for (int k = 0; k < 3; ++k) EXPECT_THAT(cell.box.extent(k), Le(2));
+  }
+}
+
+}  // namespace
+}  // namespace spillway::detail
