@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "formats/disk/output_target.h"
+#include "formats/disk/private_file.h"
 #include "formats/disk/unfinished_files.h"
 #include "src/error.h"
 
@@ -99,11 +100,16 @@ class DiskInput : public InputFile {
   std::optional<std::uint64_t> size_;
 };
 
-/// A file being written through one buffer. `temporary` is null for what has no temporary name.
+/// A file being written through one buffer. `temporary` is null for what has no temporary name;
+/// `is_private` if that is a file in a private folder.
 class DiskOutput : public OutputFile {
  public:
-  DiskOutput(int fd, std::string name, std::unique_ptr<UnfinishedFile> temporary)
-      : file_(fd), name_(std::move(name)), temporary_(std::move(temporary)) {
+  DiskOutput(int fd, std::string name, std::unique_ptr<UnfinishedFile> temporary,
+             bool is_private = false)
+      : file_(fd),
+        name_(std::move(name)),
+        temporary_(std::move(temporary)),
+        can_rewrite_(temporary_ != nullptr || is_private) {
     buffer_.reserve(kOutputBuffer);
   }
 
@@ -117,7 +123,7 @@ class DiskOutput : public OutputFile {
   }
 
   bool rewrite(std::uint64_t offset, std::span<const std::byte> bytes) override {
-    if (!temporary_) return false;
+    if (!can_rewrite_) return false;
     flush();
     while (!bytes.empty()) {
       const ssize_t put =
@@ -172,6 +178,7 @@ class DiskOutput : public OutputFile {
   Descriptor file_;
   std::string name_;
   std::unique_ptr<UnfinishedFile> temporary_;
+  bool can_rewrite_;
   std::vector<std::byte> buffer_;
 };
 
@@ -234,6 +241,12 @@ class Disk : public FileSystem {
 };
 
 }  // namespace
+
+std::unique_ptr<OutputFile> create_private_file(const std::string& path, const std::string& name) {
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (fd < 0) fail_to_create(name, errno);
+  return std::make_unique<DiskOutput>(fd, name, nullptr, true);
+}
 
 FileSystem& disk() {
   static Disk instance;

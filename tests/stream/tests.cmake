@@ -67,7 +67,8 @@ spillway_mpi_test(rank_output_test
   TIMEOUT 300)
 
 spillway_test(stream_library_test unit
-  SOURCES stream/library/convert_points_test.cpp stream/library/generate_test.cpp
+  SOURCES stream/library/convert_points_test.cpp stream/library/generate_grid_test.cpp
+          stream/library/generate_test.cpp
           stream/library/misuse_test.cpp stream/library/triangulate_test.cpp
           stream/library/products/check_test.cpp stream/library/products/info_test.cpp
           stream/library/products/point_comparison_test.cpp
@@ -81,6 +82,7 @@ spillway_test(stream_library_unit_test unit
           stream/library/meshes/program_sink_test.cpp stream/library/meshes/public_values_test.cpp
           stream/library/meshes/whole_mesh_test.cpp
           stream/library/points/generated_points_test.cpp
+          stream/library/points/grid_names_test.cpp
           stream/library/points/lattice_rounding_test.cpp
           stream/library/points/lost_fields_test.cpp stream/library/points/point_file_test.cpp
           stream/library/points/program_points_test.cpp

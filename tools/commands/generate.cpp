@@ -2,16 +2,20 @@
 #include <spillway/convert.h>
 #include <spillway/generate.h>
 
+#include <charconv>
 #include <chrono>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 #include "formats/points/create_points.h"
 #include "formats/points/point_formats.h"
 #include "tools/commands/command.h"
 #include "tools/options/command_options.h"
 #include "tools/options/point_output.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {
@@ -22,6 +26,8 @@ constexpr const char* kExamples =
     "it\n"
     "  spillway generate uniform -n 1e5 --dim 3 -o cube.npy\n"
     "  spillway generate circle -n 1000 | spillway triangulate - -o disc.obj\n"
+    "  spillway generate terrain -n 1e8 --grid 20x20 -o 'survey/hills_#.las'  400 overlapping "
+    "files\n"
     "LAS takes the families of integers: lattice, terrain, duplicates, collinear, coplanar.\n"
     "The same family, number, dimension and seed give the same points on every machine.";
 
@@ -31,35 +37,92 @@ struct GenerateCommandOptions {
   std::string count;
   int dimension = 2;
   std::uint64_t seed = 1;
+  std::string grid;
+  double overlap = 0.05;
   PointOutput output;
   ReportOptions report;
 };
 
-int run(const GenerateCommandOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+struct GridSize {
+  int columns = 0;
+  int rows = 0;
+};
+
+/// Reads COLUMNSxROWS. Throws UsageError for anything else.
+GridSize parse_grid(std::string_view text) {
+  GridSize size;
+  const char* const end = text.data() + text.size();
+  const auto columns = std::from_chars(text.data(), end, size.columns);
+  if (columns.ec == std::errc{} && columns.ptr != end && *columns.ptr == 'x') {
+    const auto rows = std::from_chars(columns.ptr + 1, end, size.rows);
+    if (rows.ec == std::errc{} && rows.ptr == end && size.columns > 0 && size.rows > 0) return size;
+  }
+  throw UsageError(fmt::format("'{}' is no grid: write columns x rows, as in 20x20", text));
+}
+
+void check_options(const GenerateCommandOptions& options) {
   if (options.family == "terrain") {
     refuse_given(*options.app, {"--dim"}, "on terrain, which always has z");
   }
-  if (options.family == "lattice") {
-    refuse_given(*options.app, {"--seed"}, "on lattice, of which there is only one");
+  if (options.grid.empty()) {
+    refuse_given(*options.app, {"--overlap"}, "without --grid");
+    if (options.family == "lattice") {
+      refuse_given(*options.app, {"--seed"}, "on lattice, of which there is only one");
+    }
+  } else if (options.output.path == "-") {
+    throw UsageError(
+        "standard output cannot take a grid of files: name them with -o, with a # for column and "
+        "row, as in -o 'hills_#.las'");
   }
-  const auto points = generate_points({.family = options.family,
-                                       .count = parse_point_count(options.count),
-                                       .dimension = options.dimension,
-                                       .seed = options.seed});
-  const std::string format = format_name_of(options.output);
+}
+
+GenerateOptions points_of(const GenerateCommandOptions& options) {
+  return {.family = options.family,
+          .count = parse_point_count(options.count),
+          .dimension = options.dimension,
+          .seed = options.seed};
+}
+
+/// Writes one file; returns how many points and where they went.
+std::string write_file(const GenerateCommandOptions& options, const std::string& format,
+                       const Context& context) {
+  const auto points = generate_points(points_of(options));
+  const auto file = create_points(
+      options.output.path,
+      {.format = format, .las_version = options.output.las_version, .exact = true}, context);
+  const PointConversion done = convert(*points, *file, context);
+  return fmt::format("{} points of {} written to {}", done.written, options.family,
+                     options.output.name());
+}
+
+std::string write_grid(const GenerateCommandOptions& options, const std::string& format,
+                       const Context& context) {
+  const GridSize size = parse_grid(options.grid);
+  const GridReport done = generate_grid(points_of(options), options.output.path,
+                                        {.columns = size.columns,
+                                         .rows = size.rows,
+                                         .overlap = options.overlap,
+                                         .format = format,
+                                         .las_version = options.output.las_version},
+                                        context);
+  return fmt::format("{} points of {} written to {} files {}", done.points, options.family,
+                     done.files, options.output.name());
+}
+
+int run(const GenerateCommandOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  check_options(options);
+  const bool is_grid = !options.grid.empty();
+  const std::string format = is_grid ? options.output.format : format_name_of(options.output);
   check_las_version(options.output,
                     point_format_to_write(options.output.path, format).has_versions);
   // How messages are written is settled before there is anything that an interruption would remove.
   Progress progress = make_progress(options.report);
   const Context context(context_options({}, 0, progress));
-  const auto file = create_points(
-      options.output.path,
-      {.format = format, .las_version = options.output.las_version, .exact = true}, context);
-  const PointConversion done = convert(*points, *file, context);
+  const std::string done =
+      is_grid ? write_grid(options, format, context) : write_file(options, format, context);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  progress.say(fmt::format("{} points of {} written to {}, {:.2f} s", done.written, options.family,
-                           options.output.name(), seconds.count()));
+  progress.say(fmt::format("{}, {:.2f} s", done, seconds.count()));
   return kExitDone;
 }
 
@@ -80,6 +143,16 @@ Subcommand add_generate(CommandLine& root) {
   add_dimension(app, options->dimension, "Dimension; terrain always has z");
   take_whole_number(app.add_option("--seed", options->seed, "Another seed, other points"))
       .value_name("S")
+      .show_default();
+  take_parsed(app.add_option("--grid", options->grid,
+                             "Write a survey: a file for each tile of an uneven grid; -o has # for "
+                             "column and row"),
+              parse_grid)
+      .value_name("CxR");
+  take_number_between(
+      app.add_option("--overlap", options->overlap, "By how much tiles overlap, in their sides"), 0,
+      0.4)
+      .value_name("SHARE")
       .show_default();
   app.add_option("-o,--output", options->output.path, "Point file; - is standard output")
       .value_name("FILE")

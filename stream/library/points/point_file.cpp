@@ -7,7 +7,6 @@
 #include <numeric>
 #include <string_view>
 
-#include "formats/disk/file_system.h"
 #include "formats/gdal/gdal.h"
 #include "formats/points/create_points.h"
 #include "formats/points/point_formats.h"
@@ -56,8 +55,9 @@ std::string wkt_of_code(const std::string& crs) {
 }  // namespace
 
 PointFile::PointFile(const std::string& path, const PointFileOptions& options,
-                     const Context& context)
-    : path_(path),
+                     const Context& context, FileSystem& files)
+    : files_(files),
+      path_(path),
       options_(options),
       format_(format_to_write(path, options.format)),
       scratch_(context.state().scratch(context)) {
@@ -121,7 +121,7 @@ void PointFile::open(const Box<3>& extent) {
                       source_, extent);
     how_.lattice = rounding_->target();
   }
-  writer_ = open_point_writer(disk(), path_, how_);
+  writer_ = open_point_writer(files_, path_, how_);
 }
 
 void PointFile::append(PointBlock& block) {

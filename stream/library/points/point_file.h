@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/disk/file_system.h"
 #include "formats/disk/scratch_folder.h"
 #include "formats/points/common/point_format.h"
 #include "formats/points/common/point_writer.h"
@@ -22,8 +23,9 @@ namespace spillway::detail {
 class PointFile final : public spillway::PointSink {
  public:
   /// Throws Error(kInvalidArgument) for a format that is not known or not written, and for options
-  /// that it does not have.
-  PointFile(const std::string& path, const PointFileOptions& options, const Context& context);
+  /// that it does not have. `files` must outlive it.
+  PointFile(const std::string& path, const PointFileOptions& options, const Context& context,
+            FileSystem& files = disk());
   ~PointFile() override;
 
   void begin(const PointsHeader& header) override;
@@ -43,6 +45,7 @@ class PointFile final : public spillway::PointSink {
   void open(const Box<3>& extent);
   [[nodiscard]] Box<3> world_box(const PointBlock& block) const;
 
+  FileSystem& files_;
   std::string path_;
   PointFileOptions options_;
   const PointFormat& format_;

@@ -129,6 +129,40 @@ TEST(Generate, SameArgumentsGiveTheSameBytesAndAnotherSeedOthers) {
       "cmp a.las b.las; ! cmp -s a.las c.las");
 }
 
+TEST(Generate, AGridOfFilesHoldsThePointsOfOne) {
+  const Workspace work;
+  work.succeed(
+      "mkdir survey\n"
+      "spillway generate -q terrain -n 60000 -o one.las\n"
+      "spillway generate -q terrain -n 60000 --grid 4x3 --overlap 0.1 -o 'survey/hills_#.las'\n"
+      "spillway triangulate -q one.las -o one.spm\n"
+      "spillway triangulate -q survey -o many.spm");
+  EXPECT_EQ(work.succeed("ls survey | wc -l"), "12\n");
+  EXPECT_EQ(work.info("many.spm")["canonical_hash"], work.info("one.spm")["canonical_hash"]);
+  EXPECT_EQ(work.info("survey/hills_03_02.las")["scale"], work.info("one.las")["scale"]);
+  EXPECT_EQ(work.info("survey/hills_03_02.las")["offset"], work.info("one.las")["offset"]);
+}
+
+TEST(Generate, AGridOfFilesIsNotMixedWithAnother) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 1000 --grid 2x2 -o 'a_#.las'");
+  const auto names = work.names();
+  const Result again = work.run("spillway generate terrain -n 1000 --grid 3x3 -o 'a_#.las'");
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.err, HasSubstr("a_00_00.las is there and would be taken for part"));
+  EXPECT_EQ(work.names(), names);
+}
+
+TEST(Generate, AGridTakesFewDescriptors) {
+  const Workspace work;
+  work.succeed(
+      "ulimit -n 48; spillway generate -q terrain -n 60000 --grid 12x12 -o 'a_#.las'\n"
+      "spillway generate -q terrain -n 60000 -o one.las\n"
+      "spillway triangulate -q one.las -o one.spm; rm one.las\n"
+      "spillway triangulate -q '*.las' -o many.spm");
+  EXPECT_EQ(work.info("many.spm")["canonical_hash"], work.info("one.spm")["canonical_hash"]);
+}
+
 /// Terrain takes none: it always has z.
 std::string dimension_option(const std::string& family, const std::string& dimension) {
   return family == "terrain" ? "" : "--dim " + dimension;

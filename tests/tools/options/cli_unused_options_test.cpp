@@ -189,6 +189,11 @@ INSTANTIATE_TEST_SUITE_P(
                            "--dim has no effect on terrain"},
                     Unused{"SeedOfALattice", "generate lattice -n 9 --seed 2 -o a.las",
                            "--seed has no effect on lattice"},
+                    Unused{"OverlapWithoutGrid", "generate terrain -n 9 --overlap 0.1 -o a.las",
+                           "--overlap has no effect without --grid"},
+                    Unused{"LasVersionOfATextGrid",
+                           "generate terrain -n 9 --grid 2x2 -o a#.txt --las-version 1.2",
+                           "--las-version is for LAS"},
                     Unused{"LasVersionOfText", "generate terrain -n 9 -o a.txt --las-version 1.2",
                            "--las-version is for LAS"}),
     name_of);

@@ -169,6 +169,8 @@ TEST(BadOutput, FileBeyondTheSizeLimit) {
   const Workspace work;
   work.succeed("spillway generate -q uniform -n 20000 -o in.npy");
   expect_failure(work, "ulimit -f 8; spillway generate -q terrain -n 1e5 -o out.las", "out.las");
+  expect_failure(work, "ulimit -f 8; spillway generate -q terrain -n 1e5 --grid 2x2 -o out_#.las",
+                 "cannot write out_00_00.las: File too large");
   expect_failure(work, "ulimit -f 8; spillway triangulate -q in.npy -o mesh.ply", "mesh.ply");
 }
 

@@ -50,6 +50,18 @@ TEST_P(Interrupted, LongGenerateLeavesNothingBehind) {
       << "with -q, too";
 }
 
+TEST_P(Interrupted, LongGridLeavesNothingBehind) {
+  const Workspace work;
+  const int exit_code = interrupt(
+      work, {"generate", "terrain", "-n", "1e9", "--grid", "9x9", "-o", "long_#.las", "-q"},
+      GetParam(), [&] { return work.has_unfinished("long_#.las"); });
+  EXPECT_EQ(exit_code, 128 + GetParam());
+  EXPECT_TRUE(work.names().empty());
+  EXPECT_EQ(work.messages(),
+            fmt::format("spillway: interrupted by SIG{}; nothing was written to long_#.las\n",
+                        sigabbrev_np(GetParam())));
+}
+
 TEST_P(Interrupted, ProgramsReadThatAsJson) {
   const Workspace work;
   interrupt(work, {"generate", "terrain", "-n", "1e9", "-o", "long.las", "--progress", "json"},
