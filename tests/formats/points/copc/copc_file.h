@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <random>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,13 +46,20 @@ struct CopcFile {
   /// Makes the points of the nodes, and the entries; to be called once, before bytes().
   void build() {
     std::vector<std::string> records;
+    for (const Node& node : nodes) {
+      if (node.count == 0) continue;
+      for (std::string& record : records_of(node)) records.push_back(std::move(record));
+    }
+    build(records);
+  }
+
+  /// The same with these points, those of one node after the other's.
+  void build(std::span<const std::string> records) {
     LazFormat format;
     format.point_format = 6;
     format.compressor = 3;
     for (const Node& node : nodes) {
-      if (node.count == 0) continue;
-      format.counts.push_back(static_cast<std::uint32_t>(node.count));
-      for (std::string& record : records_of(node)) records.push_back(std::move(record));
+      if (node.count > 0) format.counts.push_back(static_cast<std::uint32_t>(node.count));
     }
     laz = make_laz_file(format, records);
     laz.las.vlrs = {{"copc", 1, std::string(160, '\0')}};
