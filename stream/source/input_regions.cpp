@@ -14,8 +14,15 @@ namespace {
 /// lattice to tell.
 constexpr double kRelativeMargin = 1e-12;
 
+/// Where a program has not filled in the extent, there are zeros in its place.
+bool is_filled_in(const Box<3>& extent) {
+  const Point<3> zero{};
+  return extent.lo != zero || extent.hi != zero;
+}
+
 bool tells_where(const PointHeader& header) {
-  return !header.regions.empty() || header.count == 0 || (header.extent && header.count);
+  if (!header.regions.empty() || header.count == 0) return true;
+  return header.count && header.extent && (header.count == 1 || is_filled_in(*header.extent));
 }
 
 }  // namespace
@@ -31,8 +38,17 @@ InputRegions::InputRegions(const SourceFacts& facts, const SourceCoordinates& co
   for (std::size_t i = 0; i < facts.inputs.size(); ++i) {
     const PointHeader& header = facts.inputs[i].header;
     first_.push_back(regions_.size());
+    // Pieces of a file that are a region each, as nodes of COPC, can be read in any order.
+    const bool in_pieces =
+        !header.regions.empty() && facts.inputs[i].pieces == header.regions.size();
     const auto add = [&](const Box<3>& told, std::uint64_t count) {
-      InputRegion region{i, {}, count / filter.every};
+      const std::uint64_t piece = regions_.size() - first_.back();
+      if (in_pieces) {
+        turns_.push_back({i, piece});
+      } else if (piece == 0) {
+        turns_.push_back({i, std::nullopt});
+      }
+      InputRegion region{turns_.size() - 1, {}, count / filter.every};
       const Box<3> kept = bounds ? common_part(told, *bounds) : told;
       if (count > 0 && !kept.empty()) region.box = box_of(i, kept);
       regions_.push_back(region);
@@ -80,12 +96,13 @@ void InputRegions::check(const PointBlock& block, std::size_t region) const {
 }
 
 void InputRegions::refuse(const PointBlock& block, std::size_t point, std::size_t region) const {
-  const PointHeader& header = facts_.inputs[regions_[region].input].header;
+  const PointHeader& header = facts_.inputs[turns_[regions_[region].unit].input].header;
   const auto world = in_world(coordinates_.lattice(), block.points[point]);
   const std::uint64_t number = block.index[point];
   throw BadInput(header.name,
-                 fmt::format("point {} at ({}, {}) lies outside of the box that the header tells",
-                             number, world[0], world[1]),
+                 fmt::format("point {} at ({}, {}) lies outside of the box that the {} tells",
+                             number, world[0], world[1],
+                             header.regions.empty() ? "header" : "file's division into parts"),
                  {PlaceUnit::kRecord, number}, Remedy::kDistrustHeaders);
 }
 

@@ -5,6 +5,7 @@
 
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
+#include "stream/source/piece_sequence.h"
 #include "stream/source/point_filter.h"
 #include "stream/source/source_coordinates.h"
 #include "stream/source/source_facts.h"
@@ -21,6 +22,8 @@ class InputRegions {
                const PointFilter& filter);
 
   [[nodiscard]] const std::vector<InputRegion>& all() const { return regions_; }
+  /// What to read for each unit of all().
+  [[nodiscard]] const std::vector<ReadingTurn>& turns() const { return turns_; }
   /// Number in all() of a region of an input.
   [[nodiscard]] std::size_t number(std::size_t input, std::size_t region) const {
     return first_[input] + region;
@@ -37,6 +40,7 @@ class InputRegions {
   const SourceFacts& facts_;
   const SourceCoordinates& coordinates_;
   std::vector<InputRegion> regions_;
+  std::vector<ReadingTurn> turns_;  ///< by unit
   std::vector<std::size_t> first_;  ///< by input: number of its first region
 };
 

@@ -2,35 +2,53 @@
 
 #include <fmt/format.h>
 
-#include <numeric>
+#include <algorithm>
 #include <utility>
 
 #include "formats/inputs/open_points.h"
 #include "src/error.h"
 
 namespace spillway::detail {
+namespace {
+
+/// Most files that are open at a time because others are read in between.
+constexpr std::size_t kMostOpen = 64;
+
+}  // namespace
 
 PieceSequence::PieceSequence(FileSystem& files, const std::vector<std::string>& paths,
                              const SourceFacts& facts,
                              std::vector<std::shared_ptr<PointReader>> readers,
                              PieceSequenceOptions options)
-    : files_(files),
-      facts_(facts),
-      options_(std::move(options)),
-      records_(facts.records()),
-      order_(paths.size()) {
-  std::iota(order_.begin(), order_.end(), std::size_t{0});
+    : files_(files), facts_(facts), options_(std::move(options)), records_(facts.records()) {
   readers.resize(paths.size());
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const bool compared = !options_.viewer.empty() && facts.inputs[i].digest;
+    turns_.push_back({i, std::nullopt});
     inputs_.push_back({paths[i], std::move(readers[i]), !compared});
   }
 }
 
-void PieceSequence::read_in_order(std::vector<std::size_t> inputs) {
-  order_ = std::move(inputs);
+void PieceSequence::read_in_order(std::vector<ReadingTurn> turns) {
+  turns_ = std::move(turns);
+  for (Input& input : inputs_) input.turns_left = 0;
+  for (const ReadingTurn& turn : turns_) ++inputs_[turn.input].turns_left;
   first_indices_.clear();
   for (std::size_t i = 0; i < inputs_.size(); ++i) first_indices_.push_back(first_index_of(i));
+}
+
+/// Files that are read by turns stay open, but not all of many.
+void PieceSequence::begin_turn() {
+  if (std::exchange(turn_begun_, true)) return;
+  open_current();
+  const std::optional<std::uint64_t> piece = turns_[turn_].piece;
+  if (!piece) return;
+  inputs_[current()].reader->begin_piece(*piece);
+  std::erase(open_, current());
+  open_.push_back(current());
+  if (open_.size() <= kMostOpen) return;
+  inputs_[open_.front()].reader.reset();
+  open_.pop_front();
 }
 
 void PieceSequence::open_current() {
@@ -90,32 +108,41 @@ bool PieceSequence::fetch_of_piece(SourcePiece& piece) {
 
 bool PieceSequence::fetch(SourcePiece& piece) {
   if (by_pieces_) return fetch_of_piece(piece);
-  for (; turn_ < inputs_.size(); finish_input()) {
+  for (; turn_ < turns_.size(); end_turn()) {
+    begin_turn();
     Input& input = inputs_[current()];
-    open_current();
     piece.raw.clear();
     if (!input.reader->fetch(piece.raw)) continue;
     piece.input = current();
     piece.first_index = first_indices_.empty() ? records_before_ : first_indices_[current()];
     piece.reader = input.reader;
     input.records += piece.raw.records();
+    records_read_ += piece.raw.records();
     return true;
   }
   return false;
 }
 
-void PieceSequence::finish_input() {
-  const PointHeader& header = header_of(current());
-  Input& input = inputs_[current()];
+void PieceSequence::end_turn() {
+  const std::size_t number = current();
+  const PointHeader& header = header_of(number);
+  Input& input = inputs_[number];
+  turn_begun_ = false;
   ++turn_;
+  if (--input.turns_left > 0) return;
   options_.detail(fmt::format("{}: {}{}{}, {} records read", header.name, header.format,
                               header.version.empty() ? "" : " ", header.version, input.records));
   records_before_ += header.count.value_or(input.records);
   input.reader.reset();
+  std::erase(open_, number);
 }
 
 std::optional<double> PieceSequence::fraction_read() const {
-  if (turn_ == inputs_.size()) return 1;
+  if (turn_ == turns_.size()) return 1;
+  if (!first_indices_.empty()) {
+    return static_cast<double>(records_read_) /
+           static_cast<double>(std::max(*records_, std::uint64_t{1}));
+  }
   std::optional<double> fraction = 0;
   const Input& input = inputs_[current()];
   if (input.reader) fraction = input.reader->fraction_read();

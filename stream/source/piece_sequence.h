@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -24,6 +25,12 @@ struct PieceSequenceOptions {
   std::function<void(std::string_view)> detail = [](std::string_view) {};
 };
 
+/// What is read without a break: an input, or one piece of it (PointReader::pieces).
+struct ReadingTurn {
+  std::size_t input = 0;
+  std::optional<std::uint64_t> piece{};
+};
+
 /// What has been read of all inputs and is still to be decoded: one input after the other, each
 /// from front to back, or one piece of one input. A file is opened when its turn has come.
 class PieceSequence {
@@ -37,9 +44,9 @@ class PieceSequence {
   /// too, but see begin_piece().
   bool fetch(SourcePiece& piece);
 
-  /// Inputs come in another order; indices are as ever. To be called before anything is read, where
-  /// all headers tell their counts.
-  void read_in_order(std::vector<std::size_t> inputs);
+  /// All inputs come in another order, by pieces where that is said; indices are as ever. To be
+  /// called before anything is read, where all headers tell their counts.
+  void read_in_order(std::vector<ReadingTurn> turns);
 
   /// From now on fetch() gives a piece of one input, or one whole input, and then false. Indices
   /// count through all inputs where all headers tell their counts, else from the piece's beginning.
@@ -56,29 +63,34 @@ class PieceSequence {
   struct Input {
     std::string path;
     std::shared_ptr<PointReader> reader;
-    bool same_file;             ///< as was looked at, or not to be compared
-    std::uint64_t records = 0;  ///< fetched so far
+    bool same_file;              ///< as was looked at, or not to be compared
+    std::uint64_t records = 0;   ///< fetched so far
+    std::size_t turns_left = 1;  ///< that are not ended
   };
 
-  [[nodiscard]] std::size_t current() const { return order_[turn_]; }
+  [[nodiscard]] std::size_t current() const { return turns_[turn_].input; }
   [[nodiscard]] const PointHeader& header_of(std::size_t input) const {
     return facts_.inputs[input].header;
   }
   void open_current();
+  void begin_turn();
   void check_same_file();
   bool fetch_of_piece(SourcePiece& piece);
   [[nodiscard]] std::uint64_t first_index_of(std::size_t input) const;
-  void finish_input();
+  void end_turn();
 
   FileSystem& files_;
   const SourceFacts& facts_;
   PieceSequenceOptions options_;
   std::optional<std::uint64_t> records_;  ///< in all inputs, where all headers tell
   std::vector<Input> inputs_;
-  std::vector<std::size_t> order_;               ///< in which inputs are read
-  std::vector<std::uint64_t> first_indices_;     ///< by input, if the order is not the inputs' own
-  std::size_t turn_ = 0;                         ///< of `order_`: the input that is being read
-  std::uint64_t records_before_ = 0;             ///< of all inputs that were read before it
+  std::vector<ReadingTurn> turns_;
+  std::vector<std::uint64_t> first_indices_;  ///< by input, if the order is not the inputs' own
+  std::size_t turn_ = 0;                      ///< that is being read
+  bool turn_begun_ = false;
+  std::deque<std::size_t> open_;                 ///< inputs with an open reader, the latest last
+  std::uint64_t records_read_ = 0;               ///< of all inputs
+  std::uint64_t records_before_ = 0;             ///< of all inputs before the current one
   bool by_pieces_ = false;                       ///< fetch() ends with the piece that was begun
   std::optional<std::uint64_t> first_of_piece_;  ///< number of its first record, where that counts
 };

@@ -81,7 +81,9 @@ bool PointSource::any_order() const {
 void PointSource::keep_to(const RegionPlan& plan) {
   positions_.resize(plan.regions.size());
   for (std::size_t p = 0; p < positions_.size(); ++p) positions_[plan.regions[p]] = p;
-  pieces_.read_in_order(plan.inputs);
+  std::vector<ReadingTurn> turns;
+  for (const std::size_t unit : plan.units) turns.push_back(regions_.turns()[unit]);
+  pieces_.read_in_order(std::move(turns));
 }
 
 std::vector<PointHeader> PointSource::headers() const {

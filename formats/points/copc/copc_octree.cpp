@@ -77,8 +77,8 @@ class Hierarchy {
     }
   }
 
-  /// Of the nodes that are wanted.
-  std::vector<LazChunk> chunks() && {
+  /// The nodes that are wanted.
+  std::vector<CopcNode> nodes() && {
     std::sort(nodes_.begin(), nodes_.end(),
               [](const Node& a, const Node& b) { return a.key < b.key; });
     const auto same_key = [](const Node& a, const Node& b) { return a.key == b.key; };
@@ -87,14 +87,15 @@ class Hierarchy {
       fail(fmt::format("the node {} is described twice", text_of(twice->key)),
            at_byte(twice->chunk.offset));
     }
-    std::vector<LazChunk> chunks;
-    chunks.reserve(nodes_.size());
-    for (const Node& node : nodes_) chunks.push_back(node.chunk);
-    std::sort(chunks.begin(), chunks.end(),
-              [](const LazChunk& a, const LazChunk& b) { return a.offset < b.offset; });
+    std::sort(nodes_.begin(), nodes_.end(),
+              [](const Node& a, const Node& b) { return a.chunk.offset < b.chunk.offset; });
+    std::vector<CopcNode> nodes;
+    nodes.reserve(nodes_.size());
     std::uint64_t end = 0;
     std::uint64_t points = 0;
-    for (const LazChunk& chunk : chunks) {
+    for (const Node& node : nodes_) {
+      const LazChunk& chunk = node.chunk;
+      nodes.push_back({chunk, cube_of(node.key)});
       if (chunk.offset < end) {
         fail(fmt::format("two nodes share the byte {}", chunk.offset), at_byte(chunk.offset));
       }
@@ -105,7 +106,7 @@ class Hierarchy {
       fail(fmt::format("its nodes hold {} points, but the file has {}", points, las_.count),
            at_byte(info_.root_offset));
     }
-    return chunks;
+    return nodes;
   }
 
  private:
@@ -194,15 +195,25 @@ class Hierarchy {
   [[nodiscard]] bool is_wanted(const NodeKey& key) const {
     if (key.level > deepest_) return false;
     if (!selection_.bounds) return true;
-    const double side = std::ldexp(2 * info_.halfsize, -key.level);
+    const Box<3> cube = cube_of(key);
     for (int k = 0; k < 3; ++k) {
       const double step = las_.lattice.scale[k];
-      const double low = info_.centre[k] - info_.halfsize + key.cell[k] * side;
-      if (low - step > selection_.bounds->hi[k] || low + side + step < selection_.bounds->lo[k]) {
+      if (cube.lo[k] - step > selection_.bounds->hi[k] ||
+          cube.hi[k] + step < selection_.bounds->lo[k]) {
         return false;
       }
     }
     return true;
+  }
+
+  [[nodiscard]] Box<3> cube_of(const NodeKey& key) const {
+    const double side = std::ldexp(2 * info_.halfsize, -key.level);
+    Box<3> cube;
+    for (int k = 0; k < 3; ++k) {
+      cube.lo[k] = info_.centre[k] - info_.halfsize + key.cell[k] * side;
+      cube.hi[k] = cube.lo[k] + side;
+    }
+    return cube;
   }
 
   InputBytes& source_;
@@ -218,11 +229,11 @@ class Hierarchy {
 
 }  // namespace
 
-std::vector<LazChunk> select_copc_chunks(InputBytes& source, const LasHeader& las,
-                                         const CopcSelection& selection) {
+std::vector<CopcNode> select_copc_nodes(InputBytes& source, const LasHeader& las,
+                                        const CopcSelection& selection) {
   Hierarchy hierarchy(source, las, selection);
   hierarchy.read();
-  return std::move(hierarchy).chunks();
+  return std::move(hierarchy).nodes();
 }
 
 }  // namespace spillway::detail

@@ -16,10 +16,15 @@ struct CopcSelection {
   double resolution = 0;         ///< levels down to this spacing of points; 0: all
 };
 
-/// The chunks of the nodes that are wanted, in file order, in a file that can be read from any byte
-/// on (`source` is left somewhere). Reads the pages of the hierarchy that it needs. Throws Error
-/// for an octree that cannot be.
-std::vector<LazChunk> select_copc_chunks(InputBytes& source, const LasHeader& las,
-                                         const CopcSelection& selection);
+struct CopcNode {
+  LazChunk chunk;  ///< that has its points
+  Box<3> cube;     ///< in which they lie
+};
+
+/// The nodes that are wanted and have points, in file order, in a file that can be read from any
+/// byte on (`source` is left somewhere). Reads the pages of the hierarchy that it needs. Throws
+/// Error for an octree that cannot be.
+std::vector<CopcNode> select_copc_nodes(InputBytes& source, const LasHeader& las,
+                                        const CopcSelection& selection);
 
 }  // namespace spillway::detail

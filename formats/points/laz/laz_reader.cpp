@@ -41,16 +41,17 @@ class MemoryBytes : public LazBytes {
 class LazReader : public PointReader {
  public:
   LazReader(std::unique_ptr<InputBytes> source, const LasHeader& las, const std::string& path,
-            const PointReaderOptions& options, std::optional<std::vector<LazChunk>> chosen)
+            const PointReaderOptions& options, std::optional<LazChoice> chosen)
       : source_(std::move(source)),
         las_(las),
         header_(las_point_header(las, path)),
         attributes_(options.attributes),
         withheld_flag_(options.keep_withheld ? 0U : PointAttributes::kWithheld),
         count_(las.count),
-        chunks_(std::move(chosen)),
         stream_(*source_) {
-    if (chunks_) {
+    if (chosen) {
+      chunks_ = std::move(chosen->chunks);
+      header_.regions = std::move(chosen->regions);
       count_chosen(options);
     } else {
       find_chunks();
@@ -73,6 +74,7 @@ class LazReader : public PointReader {
       }
     }
     if (raw.count == 0) decode_in_order(raw.decoded);
+    if (!header_.regions.empty()) raw.region = next_chunk_ - 1;
     return true;
   }
 
@@ -412,7 +414,7 @@ class LazReader : public PointReader {
 std::unique_ptr<PointReader> open_laz_reader(std::unique_ptr<InputBytes> source,
                                              const LasHeader& las, const std::string& path,
                                              const PointReaderOptions& options,
-                                             std::optional<std::vector<LazChunk>> chosen) {
+                                             std::optional<LazChoice> chosen) {
   return std::make_unique<LazReader>(std::move(source), las, path, options, std::move(chosen));
 }
 

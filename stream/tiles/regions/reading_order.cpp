@@ -17,8 +17,8 @@ class Reading {
         missing_(cells.size()),
         enabled_(cells.size()) {
     for (std::size_t c = 0; c < cells.size(); ++c) {
-      missing_[c] = cells[c].inputs.size();
-      for (const std::size_t input : cells[c].inputs) cells_of_[input].push_back(c);
+      missing_[c] = cells[c].units.size();
+      for (const std::size_t unit : cells[c].units) cells_of_[unit].push_back(c);
     }
   }
 
@@ -28,17 +28,16 @@ class Reading {
       complete(next);
       while (!begun_.empty()) complete(cheapest());
     }
-    for (std::size_t input = 0; input < points_.size(); ++input)
-      read(input);  // those without cells
+    for (std::size_t unit = 0; unit < points_.size(); ++unit) read(unit);  // those without cells
     return std::move(order_);
   }
 
  private:
-  void read(std::size_t input) {
-    if (is_read_[input]) return;
-    is_read_[input] = true;
-    order_.push_back(input);
-    for (const std::size_t c : cells_of_[input]) {
+  void read(std::size_t unit) {
+    if (is_read_[unit]) return;
+    is_read_[unit] = true;
+    order_.push_back(unit);
+    for (const std::size_t c : cells_of_[unit]) {
       if (--missing_[c] == 0) {
         begun_.erase(c);
       } else {
@@ -48,7 +47,7 @@ class Reading {
   }
 
   void complete(std::size_t cell) {
-    for (const std::size_t input : cells_[cell].inputs) read(input);
+    for (const std::size_t unit : cells_[cell].units) read(unit);
   }
 
   /// Of the cells that are begun.
@@ -62,10 +61,10 @@ class Reading {
   double cost(std::size_t cell) {
     double cost = 0;
     touched_.clear();
-    for (const std::size_t input : cells_[cell].inputs) {
-      if (is_read_[input]) continue;
-      cost += points_[input];
-      for (const std::size_t c : cells_of_[input]) {
+    for (const std::size_t unit : cells_[cell].units) {
+      if (is_read_[unit]) continue;
+      cost += points_[unit];
+      for (const std::size_t c : cells_of_[unit]) {
         if (++enabled_[c] == missing_[c]) cost -= cells_[c].points;
         touched_.push_back(c);
       }
@@ -76,12 +75,12 @@ class Reading {
 
   std::span<const WaitingCell> cells_;
   std::span<const double> points_;
-  std::vector<std::vector<std::size_t>> cells_of_;  ///< by input
+  std::vector<std::vector<std::size_t>> cells_of_;  ///< by unit
   std::vector<bool> is_read_;
-  std::vector<std::size_t> missing_;  ///< by cell: inputs that are not read
+  std::vector<std::size_t> missing_;  ///< by cell: units that are not read
   std::vector<std::size_t> enabled_;  ///< by cell: of these, those that cost() looks at
   std::vector<std::size_t> touched_;
-  std::set<std::size_t> begun_;  ///< cells of which some inputs are read, and some not
+  std::set<std::size_t> begun_;  ///< cells of which some units are read, and some not
   std::vector<std::size_t> order_;
 };
 

@@ -164,37 +164,37 @@ class Planner {
   CutTree cuts_{dimension_};
 };
 
-/// Inputs in their own order, or so that few points wait.
-std::vector<std::size_t> order_inputs(std::span<const InputRegion> regions, const Planner& planner,
-                                      bool any_order) {
-  std::vector<double> points;  // by input
+/// Units in their own order, or so that few points wait.
+std::vector<std::size_t> order_units(std::span<const InputRegion> regions, const Planner& planner,
+                                     bool any_order) {
+  std::vector<double> points;  // by unit
   for (const InputRegion& region : regions) {
-    points.resize(std::max(points.size(), region.input + 1));
-    points[region.input] += static_cast<double>(region.count);
+    points.resize(std::max(points.size(), region.unit + 1));
+    points[region.unit] += static_cast<double>(region.count);
   }
   if (!any_order) {
-    std::vector<std::size_t> inputs(points.size());
-    std::iota(inputs.begin(), inputs.end(), std::size_t{0});
-    return inputs;
+    std::vector<std::size_t> units(points.size());
+    std::iota(units.begin(), units.end(), std::size_t{0});
+    return units;
   }
   std::vector<WaitingCell> cells;
   for (const std::uint32_t c : planner.in_order) {
     WaitingCell& cell = cells.emplace_back();
     for (const Portion& portion : planner.by_cell[c]) {
       cell.points += portion.points;
-      const std::size_t input = regions[portion.region].input;
-      if (cell.inputs.empty() || cell.inputs.back() != input) cell.inputs.push_back(input);
+      const std::size_t unit = regions[portion.region].unit;
+      if (cell.units.empty() || cell.units.back() != unit) cell.units.push_back(unit);
     }
   }
   return reading_order(cells, points);
 }
 
-/// The order in which regions come, if their inputs are read as planned.
+/// The order in which regions come, if their units are read as planned.
 void order_regions(std::span<const InputRegion> regions, RegionPlan& plan) {
-  std::vector<std::vector<std::size_t>> of_input(plan.inputs.size());
-  for (std::size_t r = 0; r < regions.size(); ++r) of_input[regions[r].input].push_back(r);
-  for (const std::size_t input : plan.inputs) {
-    plan.regions.insert(plan.regions.end(), of_input[input].begin(), of_input[input].end());
+  std::vector<std::vector<std::size_t>> of_unit(plan.units.size());
+  for (std::size_t r = 0; r < regions.size(); ++r) of_unit[regions[r].unit].push_back(r);
+  for (const std::size_t unit : plan.units) {
+    plan.regions.insert(plan.regions.end(), of_unit[unit].begin(), of_unit[unit].end());
   }
 }
 
@@ -220,11 +220,18 @@ void expect_waiting(std::span<const InputRegion> regions, RegionPlan& plan) {
   double all = 0;
   double done = 0;
   double read = 0;
-  for (const InputRegion& region : regions) all += static_cast<double>(region.count);
+  std::size_t last = 0;
   for (std::size_t p = 0; p < plan.regions.size(); ++p) {
-    read += static_cast<double>(regions[plan.regions[p]].count);
+    const InputRegion& region = regions[plan.regions[p]];
+    if (region.box.empty()) continue;
+    all += static_cast<double>(region.count);
+    last = p;
+  }
+  for (std::size_t p = 0; p < plan.regions.size(); ++p) {
+    const InputRegion& region = regions[plan.regions[p]];
+    if (!region.box.empty()) read += static_cast<double>(region.count);
     plan.most_waiting = std::max(plan.most_waiting, read - done);
-    if (p + 1 == plan.regions.size()) break;
+    if (p == last) break;
     for (const std::uint32_t cell : plan.done_after[p]) done += plan.cells[cell].expected;
   }
   plan.done_early = all > 0 ? done / all : 0;
@@ -242,7 +249,7 @@ RegionPlan plan_regions(std::span<const InputRegion> regions, const RegionPlanOp
   }
   planner.cut(0, std::move(all));
   RegionPlan plan{.cuts = planner.take_cuts()};
-  plan.inputs = order_inputs(regions, planner, options.any_order);
+  plan.units = order_units(regions, planner, options.any_order);
   order_regions(regions, plan);
   tell_when_done(planner, plan);
   expect_waiting(regions, plan);

@@ -11,10 +11,10 @@
 
 namespace spillway::detail {
 
-/// A part of the points to come, all of which lie in a box. Regions of one input come one after the
-/// other.
+/// A part of the points to come, all of which lie in a box. Regions of one unit come one after the
+/// other: those of an input that can only be read from front to back.
 struct InputRegion {
-  std::size_t input = 0;
+  std::size_t unit = 0;
   Box<3> box;  ///< in the coordinates in which points are dealt
   std::uint64_t count = 0;
 };
@@ -29,18 +29,18 @@ struct RegionPlan {
   };
   CutTree cuts;                        ///< its tiles are the cells
   std::vector<Cell> cells{};           ///< by tile
-  std::vector<std::size_t> inputs{};   ///< in the order in which to read them
+  std::vector<std::size_t> units{};    ///< in the order in which to read them
   std::vector<std::size_t> regions{};  ///< in the order in which they come then
   /// By position in `regions`: the cells that are complete when that region has been read.
   std::vector<std::vector<std::uint32_t>> done_after{};
   double most_waiting = 0;  ///< points of cells that are not complete, at the most, as expected
-  double done_early = 0;    ///< share of points in cells that are complete before the last region
+  double done_early = 0;    ///< share of points in cells that are complete before the last points
 };
 
 struct RegionPlanOptions {
   int dimension = 2;       ///< only the first axes are looked at
   double most_points = 0;  ///< that a cell expects
-  bool any_order = true;   ///< inputs may be read in any order
+  bool any_order = true;   ///< units may be read in any order
 };
 
 /// The plan for regions that are spread evenly over their boxes. Regions with an empty box have no

@@ -96,10 +96,10 @@ TEST(RegionPlan, CutsWhereFilesMeet) {
   for (const RegionPlan::Cell& cell : plan.cells) EXPECT_NEAR(cell.expected, 1000, 1e-6);
 }
 
-TEST(RegionPlan, InputsComeSoThatFewPointsWait) {
+TEST(RegionPlan, UnitsComeSoThatFewPointsWait) {
   auto regions = squares(16, 1000, 0.05);
   std::shuffle(regions.begin(), regions.end(), std::mt19937(2));
-  for (std::size_t r = 0; r < regions.size(); ++r) regions[r].input = r;
+  for (std::size_t r = 0; r < regions.size(); ++r) regions[r].unit = r;
   const RegionPlan plan = plan_regions(regions, {.most_points = 2000});
   expect_to_hold(plan, regions, 2);
   EXPECT_TRUE(pays(plan));
@@ -107,16 +107,16 @@ TEST(RegionPlan, InputsComeSoThatFewPointsWait) {
   const RegionPlan as_named = plan_regions(regions, {.most_points = 2000, .any_order = false});
   expect_to_hold(as_named, regions, 2);
   EXPECT_THAT(as_named.most_waiting, Gt(120'000));
-  EXPECT_THAT(as_named.inputs.front(), 0U);
-  EXPECT_TRUE(std::ranges::is_sorted(as_named.inputs));
+  EXPECT_THAT(as_named.units.front(), 0U);
+  EXPECT_TRUE(std::ranges::is_sorted(as_named.units));
 }
 
-TEST(RegionPlan, KeepsTheRegionsOfOneInputInTheirOrder) {
+TEST(RegionPlan, KeepsTheRegionsOfOneUnitInTheirOrder) {
   auto regions = squares(8, 1000);
-  for (InputRegion& region : regions) region.input = 0;
+  for (InputRegion& region : regions) region.unit = 0;
   const RegionPlan plan = plan_regions(regions, {.most_points = 1500});
   expect_to_hold(plan, regions, 2);
-  EXPECT_THAT(plan.inputs, ElementsAre(0U));
+  EXPECT_THAT(plan.units, ElementsAre(0U));
   EXPECT_TRUE(std::ranges::is_sorted(plan.regions));
   EXPECT_TRUE(pays(plan));
 }
@@ -134,7 +134,7 @@ TEST(RegionPlan, OfRegionsWithoutPointsHasOneCell) {
   const RegionPlan plan = plan_regions(regions, {.most_points = 10});
   EXPECT_EQ(plan.cells.size(), 1U);
   EXPECT_TRUE(plan.cells[0].box.empty());
-  EXPECT_THAT(plan.inputs, ElementsAre(0U, 1U));
+  EXPECT_THAT(plan.units, ElementsAre(0U, 1U));
   EXPECT_FALSE(pays(plan));
 }
 
@@ -144,7 +144,7 @@ TEST(RegionPlan, TakesFlatBoxesAndEqualOnes) {
     regions.push_back({9 + i, box_between({1, 1, 1}, {1, 1, 1}), 5000});
     regions.push_back({18 + i, box_between({0, 2, 0}, {3, 2, 0}), 5000});
   }
-  for (std::size_t r = 0; r < regions.size(); ++r) regions[r].input = r;
+  for (std::size_t r = 0; r < regions.size(); ++r) regions[r].unit = r;
   const RegionPlan plan = plan_regions(regions, {.most_points = 2000});
   expect_to_hold(plan, regions, 2);
 }
