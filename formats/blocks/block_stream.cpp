@@ -44,13 +44,17 @@ std::uint32_t BlockStream::next() {
   return head.kind;
 }
 
-void BlockStream::take_version() {
+std::uint32_t BlockStream::take_version() {
   const auto version = take<std::uint32_t>();
-  if (version == format_.version) return;
+  const std::uint32_t newest = format_.version;
+  const std::uint32_t oldest = format_.oldest_version == 0 ? newest : format_.oldest_version;
+  if (version >= oldest && version <= newest) return version;
+  const std::string known = oldest == newest ? fmt::format("only {} is", newest)
+                                             : fmt::format("only {} to {} are", oldest, newest);
   throw BadInput(source_->name(),
-                 fmt::format("version {} of {} is not known, only {} is; use the program that "
-                             "wrote it, or a newer one",
-                             version, format_.name, format_.version),
+                 fmt::format("version {} of {} is not known, {}; use the program that wrote it, "
+                             "or a newer one",
+                             version, format_.name, known),
                  at_byte(block_begin_));
 }
 

@@ -20,11 +20,12 @@ namespace spillway::detail {
 
 /// What streams of Spillway's own have in common.
 struct BlockStreamFormat {
-  std::string_view name;   ///< "spm", "spp"
-  std::string_view magic;  ///< the first bytes
-  std::uint32_t version = 0;
+  std::string_view name;                      ///< "spm", "spp"
+  std::string_view magic;                     ///< the first bytes
+  std::uint32_t version = 0;                  ///< the newest that is known
   std::string_view contents = "stream";       ///< what messages call it
   std::size_t largest_block = kLargestBlock;  ///< bytes of content; what claims more is corrupt
+  std::uint32_t oldest_version = 0;           ///< 0: that is the only one
 };
 
 /// Reads a stream of blocks, one after the other, and takes values off the front of each. All
@@ -39,8 +40,8 @@ class BlockStream {
   /// Reads the next block and returns its kind. Memory grows as bytes come.
   std::uint32_t next();
 
-  /// Takes the version off the front, which must be the one that is known.
-  void take_version();
+  /// Takes the version off the front, which must be one that is known.
+  std::uint32_t take_version();
 
   /// Takes the lowest and the highest corner of a box off the front: finite and in this order.
   Box<3> take_extent();

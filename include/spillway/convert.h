@@ -25,10 +25,16 @@ struct PointConversion {
   double farthest = 0;
   bool adds_heights = false;        ///< z is 0, since the points have none and the format wants one
   std::vector<std::string> lost{};  ///< what the source has and the format does not hold, in words
+  /// Of points that were sorted: cells; points and bytes that were written to scratch files.
+  std::uint64_t cells = 0;
+  std::uint64_t spilled_points = 0;
+  std::uint64_t spilled_bytes = 0;
 };
 
-/// Gives all points of the source to the sink, which it begins and finishes. Throws what source and
-/// sink throw, and Error(kInvalidArgument) for a point that the lattice of the output cannot hold.
+/// Gives all points of the source to the sink, which it begins and finishes. A sink that is a
+/// sorted file gets them in its order, for which all are read first, within the context's memory.
+/// Throws what source and sink throw, and Error(kInvalidArgument) for a point that the lattice of
+/// the output cannot hold.
 SPILLWAY_API PointConversion convert(PointSource& source, PointSink& sink, const Context& context);
 
 /// Passes a mesh on, to a file of another format, a raster, contours, a picture, block by block

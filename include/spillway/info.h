@@ -33,6 +33,8 @@ struct PointsInfo {
   std::string crs{};
   std::string crs_note{};  ///< why there is no coordinate system, where that is worth a word
   std::string software{};  ///< that has written it
+  /// Into how many cells the points are sorted, of a file that tells where they lie.
+  std::optional<std::uint64_t> cells{};
 };
 
 /// Reads all points of a file that the options ask for, so that counts and extent are exact

@@ -96,6 +96,15 @@ class SPILLWAY_API PointSink {
   virtual void finish();
 };
 
+/// How points are sorted: they come cell by cell, and the file tells beforehand where each cell
+/// lies and how many points it has. Points of one cell keep the order of the input.
+struct SortOptions {
+  int dimension = 2;  ///< 2: cells reach through all heights; 3: z is divided, too
+  /// Most points of a cell, places with more equal points apart. 0: 65,536, or more where that
+  /// would be too many cells for the memory. As many as the memory suffices for at most.
+  std::uint64_t cell_points = 0;
+};
+
 /// How a point file is written.
 struct PointFileOptions {
   std::string format{};       ///< "las", "text", "npy", "spp"; empty: by the extension
@@ -103,8 +112,9 @@ struct PointFileOptions {
   /// Round coordinates to multiples of this, counted from `offset`: no number, one for all axes, or
   /// three. LAS, which holds integers, is rounded to a lattice of its own choice without.
   std::vector<double> scale{};
-  std::vector<double> offset{};  ///< likewise
-  bool exact = false;            ///< refuse to round by a choice of its own
+  std::vector<double> offset{};         ///< likewise
+  bool exact = false;                   ///< refuse to round by a choice of its own
+  std::optional<SortOptions> sorted{};  ///< of spp, by convert() only
 };
 
 /// A point file; "-" is standard output, as spp. It gets its name when it is complete. Throws

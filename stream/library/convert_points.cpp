@@ -12,6 +12,7 @@
 #include "stream/library/points/point_file.h"
 #include "stream/library/points/program_points.h"
 #include "stream/library/points/public_points.h"
+#include "stream/library/sort_points.h"
 
 namespace spillway::detail {
 namespace {
@@ -77,8 +78,9 @@ PointConversion convert(PointSource& source, PointSink& sink, const Context& con
   auto* points = dynamic_cast<EnginePoints*>(&source);
   if (points == nullptr) points = &program_points.emplace(source);
   const RunPoints run = points->begin(watch, true);
-  watch.begin(points->phase(), "points");
   auto* const file = dynamic_cast<PointFile*>(&sink);
+  if (file != nullptr && file->sorted()) return sort_points(run, *file, context, watch);
+  watch.begin(points->phase(), "points");
   PointConversion done = file != nullptr ? to_file(run, *file, context.threads(), watch)
                                          : to_program(run, sink, context.threads(), watch);
   watch.end(run.stream->points_read());

@@ -3,6 +3,7 @@ spillway_test(blocks_test unit
     formats/blocks/block_test.cpp
     formats/blocks/columns_test.cpp
     formats/disk/scratch_folder_test.cpp
+    formats/points/spp/spp_sorted_test.cpp
     formats/points/spp/spp_test.cpp
   LIBS spillway_formats fmt::fmt)
 spillway_test(json_test unit

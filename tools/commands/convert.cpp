@@ -19,6 +19,7 @@
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 #include "tools/options/point_output.h"
+#include "tools/options/triangulation_options.h"
 #include "tools/report/usage_error.h"
 
 namespace spillway::detail {
@@ -29,10 +30,11 @@ constexpr const char* kExamples =
     "  spillway convert tile.laz -o tile.las\n"
     "  spillway convert 'tiles/*.laz' -o ground.spp --keep-class 2\n"
     "  spillway convert survey.xyz.gz -o survey.las --scale 0.01\n"
+    "  spillway convert 'tiles/*.laz' --sorted -o - | spillway triangulate - -o tin.spm\n"
     "  spillway convert tin.spm -o tin.ply\n"
     "  spillway triangulate survey.las -o - | spillway convert - -o tin.obj\n"
     "Points and spm streams are converted as they come, in little memory; other meshes are read as "
-    "a whole.";
+    "a whole. Sorted points are all read first, within the memory limit.";
 
 struct ConvertCommandOptions {
   const CommandLine* app = nullptr;
@@ -42,6 +44,8 @@ struct ConvertCommandOptions {
   PointOutput output;
   std::vector<double> scale;   ///< none, one for all axes, or three
   std::vector<double> offset;  ///< likewise
+  bool sorted = false;
+  SortOptions sorting;
   MemoryOptions memory;
   ReportOptions report;
 };
@@ -90,6 +94,10 @@ void check_points_output(const ConvertCommandOptions& options) {
                     options.inputs.front(), output.name()));
   }
   check_las_version(output, format->has_versions);
+  if (options.sorted && !format->holds_regions) {
+    throw UsageError(fmt::format("--sorted is for spp, and {} is {}: leave it out, or write spp",
+                                 output.name(), format->title));
+  }
   static_cast<void>(format_name_of(output));
 }
 
@@ -115,19 +123,31 @@ void tell_changes(const PointConversion& done, Progress& progress) {
 void run_points(const ConvertCommandOptions& options, const Context& context, Progress& progress) {
   check_points_output(options);
   const PointOutput& output = options.output;
-  const auto file = create_points(output.path,
-                                  {.format = format_name_of(output),
-                                   .las_version = output.las_version,
-                                   .scale = options.scale,
-                                   .offset = options.offset},
-                                  context);
+  PointFileOptions written{.format = format_name_of(output),
+                           .las_version = output.las_version,
+                           .scale = options.scale,
+                           .offset = options.offset};
+  if (options.sorted) {
+    written.sorted = options.sorting;
+    reuse_freed_memory(std::size_t{4} << 20);
+  }
+  const auto file = create_points(output.path, written, context);
   PointOptions how = point_options(options.input, 2);
   how.attributes = true;
   const auto points = open_points(options.inputs, how, context);
   const PointConversion done = convert(*points, *file, context);
   tell_changes(done, progress);
   progress.detail(fmt::format("peak memory {} bytes", peak_memory()));
-  progress.say(fmt::format("{} points in {}", done.written, output.name()));
+  if (!options.sorted) {
+    progress.say(fmt::format("{} points in {}", done.written, output.name()));
+    return;
+  }
+  if (done.spilled_points > 0) {
+    progress.detail(fmt::format("{} points written to scratch files, {} bytes", done.spilled_points,
+                                done.spilled_bytes));
+  }
+  progress.say(fmt::format("{} points in {}, sorted in {} cell{}", done.written, output.name(),
+                           done.cells, done.cells == 1 ? "" : "s"));
 }
 
 /// Throws if the output is of a point format, and of no mesh format.
@@ -156,7 +176,8 @@ void run_mesh(const ConvertCommandOptions& options, const Context& context, Prog
     throw UsageError("several meshes do not become one: convert them one by one");
   }
   std::vector<std::string_view> of_points(kInputOptionNames.begin(), kInputOptionNames.end());
-  of_points.insert(of_points.end(), {"--scale", "--offset", "--las-version"});
+  of_points.insert(of_points.end(),
+                   {"--scale", "--offset", "--las-version", "--sorted", "--cell-points", "--dim"});
   refuse_given(*options.app, of_points, fmt::format("on {}, which is a mesh", input));
   check_mesh_output(options);
   const PointOutput& output = options.output;
@@ -182,6 +203,9 @@ void check_axes(std::string_view option, const std::vector<double>& values) {
 int run(const ConvertCommandOptions& options) {
   check_axes("--scale", options.scale);
   check_axes("--offset", options.offset);
+  if (!options.sorted) {
+    refuse_given(*options.app, {"--cell-points", "--dim"}, "without --sorted");
+  }
   const bool reads_pipe = std::ranges::find(options.inputs, "-") != options.inputs.end();
   Progress progress = make_progress(options.report, reads_pipe);
   const Context context(context_options(options.memory, 0, progress));
@@ -217,6 +241,14 @@ Subcommand add_convert(CommandLine& root) {
       .value_name("N[,N,N]");
   add_number_list(app, "--offset", options->offset, "Count these multiples from here on; likewise")
       .value_name("N[,N,N]");
+  app.add_flag("--sorted", options->sorted,
+               "Write the points cell by cell, so that who reads them can begin at once");
+  take_whole_number(app.add_option("--cell-points", options->sorting.cell_points,
+                                   "Most points of a cell; usually 65536")
+                        .value_name("N"),
+                    1);
+  add_dimension(app, options->sorting.dimension,
+                "Cells that divide the plane, or space, for tetrahedra");
   add_input_options(app, options->input);
   add_memory_options(app, options->memory);
   add_report_options(app, options->report);

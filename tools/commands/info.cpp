@@ -83,6 +83,7 @@ Json points_json(const std::string& path, const PointsInfo& info, bool filtered)
   json["crs"] = text_or_null(info.crs);
   json["crs_note"] = text_or_null(info.crs_note);
   json["software"] = text_or_null(info.software);
+  if (info.cells) json["cells"] = *info.cells;
   return json;
 }
 

@@ -38,8 +38,9 @@ struct PointFormat {
   bool holds_attributes = false;  ///< PointAttributes
   bool needs_heights = false;     ///< points without z get 0
   bool needs_lattice = false;
-  bool has_versions = false;  ///< PointWriterOptions::version chooses
-  bool has_levels = false;    ///< PointReaderOptions::resolution chooses
+  bool holds_regions = false;  ///< PointWriterOptions::by_regions
+  bool has_versions = false;   ///< PointWriterOptions::version chooses
+  bool has_levels = false;     ///< PointReaderOptions::resolution chooses
   /// No integer of a lattice in such a file is larger, signs aside.
   double largest_integer = 0x1p31;
 

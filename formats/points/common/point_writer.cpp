@@ -6,6 +6,10 @@
 
 namespace spillway::detail {
 
+void PointWriter::set_regions(std::span<const PointRegion> /*regions*/) {
+  throw InvalidArgument("this format of points has no regions");
+}
+
 void check_written(const OutputFile& file, std::optional<std::uint64_t> promised,
                    std::uint64_t written) {
   if (promised && written != *promised) {

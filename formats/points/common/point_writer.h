@@ -26,6 +26,9 @@ struct PointWriterOptions {
   std::string crs{};                 ///< as in PointHeader; told by LAS and spp
   /// `crs` as WKT where it is a code and the caller knows; without, LAS tells the code.
   std::string crs_wkt{};
+  /// Points come region by region, as set_regions() tells; for formats that hold regions. Count and
+  /// extent follow from these.
+  bool by_regions = false;
   bool attributes = false;  ///< attributes will come too; LAS holds them, the others drop them
   std::string version{};    ///< of LAS, "1.2" or "1.4"; empty: 1.2 unless `count` needs 1.4
   /// Where an output that cannot go back to its header waits until the header is known; the folder
@@ -37,6 +40,10 @@ struct PointWriterOptions {
 class PointWriter {
  public:
   virtual ~PointWriter() = default;
+
+  /// Tells the regions of all points, in their order: counts above 0, and boxes in the coordinates
+  /// in which points come. To be called once, before any point, where the options say `by_regions`.
+  virtual void set_regions(std::span<const PointRegion> regions);
 
   /// Appends points: integers if the options have a lattice, else output coordinates; with one
   /// value of `attributes` each, or none at all: single returns of no class.

@@ -10,6 +10,7 @@
 
 #include "formats/blocks/block_stream.h"
 #include "formats/blocks/columns.h"
+#include "formats/points/spp/spp_cells.h"
 #include "formats/points/spp/spp_coordinates.h"
 #include "formats/points/spp/spp_format.h"
 
@@ -24,7 +25,12 @@ bool all_finite(const Values& values) {
 class SppReader : public PointReader {
  public:
   SppReader(std::unique_ptr<InputBytes> source, const std::string& path)
-      : stream_(std::move(source), {"spp", kSppMagic, kSppVersion, "stream", kSppLargestBlock},
+      : stream_(std::move(source),
+                {.name = "spp",
+                 .magic = kSppMagic,
+                 .version = kSppSortedVersion,
+                 .largest_block = kSppLargestBlock,
+                 .oldest_version = kSppVersion},
                 [this] { return fmt::format("{} points", points_); }) {
     header_.name = path;
     header_.format = "spp";
@@ -35,20 +41,20 @@ class SppReader : public PointReader {
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
   bool fetch(RawPoints& raw) override {
-    PointBlock& block = raw.decoded;
-    block.clear();
+    raw.decoded.clear();
     if (ended_) return false;
-    switch (stream_.next()) {
-      case kSppPointBlock:
-        parse_points(block);
-        return true;
-      case kSppTrailer:
-        parse_trailer();
-        ended_ = true;
-        return false;
-      default:
-        stream_.fail("a block is of unknown kind");
+    const std::uint32_t kind = stream_.next();
+    if (kind == kSppTrailer) {
+      parse_trailer();
+      ended_ = true;
+      return false;
     }
+    const bool is_last = kind == kSppLastOfCell;
+    if (cells_ ? !is_last && kind != kSppCellPoints : kind != kSppPointBlock) {
+      stream_.fail("a block is of unknown kind");
+    }
+    parse_points(raw, is_last);
+    return true;
   }
 
   [[nodiscard]] std::optional<double> fraction_read() const override {
@@ -57,14 +63,16 @@ class SppReader : public PointReader {
 
  private:
   void parse_header() {
-    stream_.take_version();
-    header_.version = fmt::format("{}", kSppVersion);
+    const std::uint32_t version = stream_.take_version();
+    header_.version = fmt::format("{}", version);
     const auto coordinates = stream_.take<std::uint32_t>();
     if (coordinates != 2 && coordinates != 3) stream_.fail("points must have 2 or 3 coordinates");
     header_.coordinates = static_cast<int>(coordinates);
     const auto flags = stream_.take<std::uint32_t>();
-    if (flags > (kSppHasLattice | kSppHasCount | kSppHasExtent))
+    const bool is_sorted = version == kSppSortedVersion;
+    if (flags > (is_sorted ? kSppHasLattice : kSppHasLattice | kSppHasCount | kSppHasExtent)) {
       stream_.fail("unknown flags are set");
+    }
     if ((flags & kSppHasLattice) != 0) {
       Lattice& lattice = header_.lattice.emplace();
       lattice.scale = stream_.take<std::array<double, 3>>();
@@ -76,12 +84,39 @@ class SppReader : public PointReader {
     }
     if ((flags & kSppHasCount) != 0) header_.count = stream_.take<std::uint64_t>();
     if ((flags & kSppHasExtent) != 0) header_.extent = stream_.take_extent();
+    const auto cells = is_sorted ? stream_.take<std::uint64_t>() : 0;
     header_.crs = as_text(stream_.left());
+    if (is_sorted) parse_cells(cells);
   }
 
-  void parse_points(PointBlock& block) {
+  void parse_cells(std::uint64_t count) {
+    cells_.emplace(stream_, header_.coordinates, header_.lattice.has_value()).read_table(count);
+    Box<3> extent;
+    header_.regions = cells_->all();
+    for (PointRegion& region : header_.regions) {
+      if (header_.lattice) region.box = world_box(region.box);
+      extent.expand(region.box);
+    }
+    header_.count = cells_->points();
+    if (count > 0) header_.extent = extent;
+  }
+
+  /// The box of the same points in output coordinates.
+  Box<3> world_box(const Box<3>& box) const {
+    Box<3> world;
+    world.expand(header_.lattice->to_world(LatticePoint(box.lo)));
+    world.expand(header_.lattice->to_world(LatticePoint(box.hi)));
+    if (!all_finite(world.lo) || !all_finite(world.hi)) {
+      stream_.fail("a cell lies beyond all numbers");
+    }
+    return world;
+  }
+
+  void parse_points(RawPoints& raw, bool is_last) {
+    PointBlock& block = raw.decoded;
     const auto size = stream_.take<std::uint32_t>();
     if (size == 0 || size > kSppBlockPoints) stream_.fail("a block's number of points is invalid");
+    if (cells_) raw.region = cells_->begin_block(size, is_last);
     ColumnReader columns(stream_.left(), stream_.where());
     block.points.resize(size);
     for (int axis = 0; axis < header_.coordinates; ++axis) {
@@ -92,6 +127,7 @@ class SppReader : public PointReader {
                                  points_ + invalid,
                                  header_.lattice ? "an integer up to 2^53" : "finite"));
       }
+      if (cells_) cells_->check_inside(column_, axis, points_);
       for (std::size_t i = 0; i < size; ++i) block.points[i][axis] = column_[i];
     }
     columns.expect_end();
@@ -101,6 +137,7 @@ class SppReader : public PointReader {
   }
 
   void parse_trailer() {
+    if (cells_) cells_->expect_end();
     const auto total = stream_.take<std::uint64_t>();
     if (!stream_.left().empty() || total != points_ || (header_.count && *header_.count != total)) {
       stream_.fail(fmt::format("the numbers of points do not agree: {} came, but the end says {}",
@@ -111,6 +148,7 @@ class SppReader : public PointReader {
 
   BlockStream stream_;
   PointHeader header_;
+  std::optional<SppCells> cells_;  // if the stream is sorted
   std::vector<double> column_;
   std::uint64_t points_ = 0;  // given out so far
   bool ended_ = false;

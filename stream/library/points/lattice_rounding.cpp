@@ -74,6 +74,7 @@ void LatticeRounding::check_target(const Box<3>& integers) const {
 
 void LatticeRounding::round(std::span<LatticePoint> points, std::span<const std::uint64_t> index) {
   Box<3> integers;
+  double farthest = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     LatticePoint& p = points[i];
     const WorldPoint world = in_world(source_, p);
@@ -89,9 +90,12 @@ void LatticeRounding::round(std::span<LatticePoint> points, std::span<const std:
                         target_.to_world(axis, kMost)),
             ErrorCode::kInvalidArgument, at_record(index[i]), Remedy::kPointLattice);
       }
-      farthest_ = std::max(farthest_, std::abs(target_.to_world(axis, p[axis]) - world[axis]));
+      farthest = std::max(farthest, std::abs(target_.to_world(axis, p[axis]) - world[axis]));
     }
     integers.expand(p);
+  }
+  double before = farthest_;
+  while (before < farthest && !farthest_.compare_exchange_weak(before, farthest)) {
   }
   check_target(integers);
 }

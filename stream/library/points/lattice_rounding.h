@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -38,7 +39,8 @@ class LatticeRounding {
 
   /// Replaces points by integers of the target lattice. Throws Error that names the first point
   /// whose integers would take more than 32 bits; `index` has the points' numbers in the input.
-  /// Likewise if the target lattice does not keep them apart from their neighbours.
+  /// Likewise if the target lattice does not keep them apart from their neighbours. Safe for many
+  /// threads at a time.
   void round(std::span<LatticePoint> points, std::span<const std::uint64_t> index);
 
   /// How far a coordinate has moved at most; in output units.
@@ -52,7 +54,7 @@ class LatticeRounding {
   std::string output_;
   Lattice target_;
   std::optional<Lattice> source_;
-  double farthest_ = 0;
+  std::atomic<double> farthest_ = 0;
 };
 
 }  // namespace spillway::detail

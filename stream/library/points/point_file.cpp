@@ -75,6 +75,14 @@ void PointFile::check(const PointFileOptions& options) const {
     throw InvalidArgument(
         fmt::format("version {} of LAS is not written: choose 1.2 or 1.4", version));
   }
+  if (options.sorted && !format_.holds_regions) {
+    throw InvalidArgument(
+        fmt::format("only spp can be sorted, and {} is {}", path_, format_.title));
+  }
+  if (options.sorted && options.sorted->dimension != 2 && options.sorted->dimension != 3) {
+    throw InvalidArgument(
+        fmt::format("points are sorted in 2 or 3 dimensions, not {}", options.sorted->dimension));
+  }
   check_axes("scale", options.scale);
   check_axes("offset", options.offset);
   for (const double scale : options.scale) {
@@ -97,6 +105,7 @@ void PointFile::start(const RunPoints& points) {
   how_.coordinates = !points.has_heights && !adds_heights_ ? 2 : 3;
   how_.crs = points.crs;
   how_.scratch = scratch_.get();
+  how_.by_regions = options_.sorted.has_value();
   // Points may be left out of LAS, since they are flagged as withheld.
   if (std::ranges::none_of(points.headers, is_las)) how_.count = points.records;
   if (points.stream != nullptr) source_ = points.stream->lattice();
@@ -126,6 +135,13 @@ void PointFile::open(const Box<3>& extent) {
 
 void PointFile::append(PointBlock& block) {
   if (block.size() == 0) return;
+  place(block);
+  writer_->write(block.points, block.attributes);
+  written_ += block.size();
+}
+
+void PointFile::place(PointBlock& block) {
+  if (block.size() == 0) return;
   if (!writer_) open(world_box(block));
   if (rounding_) {
     rounding_->round(block.points, block.index);
@@ -134,8 +150,16 @@ void PointFile::append(PointBlock& block) {
       point = LatticePoint(in_world(source_, point).numbers());
     }
   }
-  writer_->write(block.points, block.attributes);
-  written_ += block.size();
+}
+
+void PointFile::append_regions(std::span<const PointRegion> regions) {
+  if (!writer_) open({});
+  writer_->set_regions(regions);
+}
+
+void PointFile::append_placed(std::span<const LatticePoint> points) {
+  writer_->write(points, {});
+  written_ += points.size();
 }
 
 Box<3> PointFile::world_box(const PointBlock& block) const {
@@ -164,6 +188,7 @@ PointConversion PointFile::complete() {
 }
 
 void PointFile::begin(const PointsHeader& header) {
+  if (options_.sorted) throw InvalidArgument("a file is sorted by convert() only");
   RunPoints points;
   points.has_heights = header.coordinates != 2;
   points.extent = checked_box(header);

@@ -37,6 +37,20 @@ class PointFile final : public spillway::PointSink {
   void start(const RunPoints& points);
   /// The next points, as `points.stream` gives them, with their index; they are changed.
   void append(PointBlock& block);
+
+  /// How the points are to be sorted, if they are. Then place(), append_regions() and
+  /// append_placed() stand for append().
+  [[nodiscard]] const std::optional<SortOptions>& sorted() const { return options_.sorted; }
+  /// Whether it is decided how coordinates are written.
+  [[nodiscard]] bool decided() const { return writer_ != nullptr; }
+  /// Makes points of `points.stream` those of the file; by many threads at a time if it is decided
+  /// how.
+  void place(PointBlock& block);
+  /// Tells the regions of all points, as PointWriter::set_regions().
+  void append_regions(std::span<const PointRegion> regions);
+  /// The next points, after place().
+  void append_placed(std::span<const LatticePoint> points);
+
   /// Returns what became of the points, counts apart.
   PointConversion complete();
 

@@ -121,6 +121,7 @@ PointsInfo describe_points(const std::string& path, const PointOptions& options,
   info.crs = header.crs;
   info.crs_note = header.crs_note;
   info.software = header.software;
+  if (!header.regions.empty()) info.cells = header.regions.size();
   return info;
 }
 

@@ -204,7 +204,7 @@ TEST(Spp, BlocksThatMakeNoSense) {
     return error_of_content("a.spp", stream_of_blocks({{kSppHeader, header}, {kind, content}}));
   };
   const std::string good = header_content(1, 3, 0);
-  EXPECT_THAT(error(header_content(2, 3, 0), kSppTrailer, ""), HasSubstr("version 2 of spp"));
+  EXPECT_THAT(error(header_content(3, 3, 0), kSppTrailer, ""), HasSubstr("version 3 of spp"));
   EXPECT_THAT(error(header_content(1, 4, 0), kSppTrailer, ""), HasSubstr("2 or 3 coordinates"));
   EXPECT_THAT(error(header_content(1, 3, 8), kSppTrailer, ""), HasSubstr("unknown flags"));
   EXPECT_THAT(error(header_content(1, 3, kSppHasCount), kSppTrailer, ""), HasSubstr("ends early"));

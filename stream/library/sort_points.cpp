@@ -1,0 +1,201 @@
+#include "stream/library/sort_points.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "src/parallel/parallel.h"
+#include "stream/library/context/context_state.h"
+#include "stream/plan/memory_plan.h"
+#include "stream/tiles/tile_tree.h"
+
+namespace spillway::detail {
+namespace {
+
+/// The usual number of points of a cell: one block of the file.
+constexpr std::size_t kCellPoints = 65536;
+/// Each cell should have room for so many points that wait, so that few are spilled at a time.
+constexpr std::size_t kLeastBuffer = 512;
+/// Bytes of a point on its way from its cell to the file: encoded, and decoded.
+constexpr std::size_t kPointBytes = 56;
+/// Share of the memory for those.
+constexpr double kWrittenShare = 0.4;
+constexpr std::size_t kMostUnderWay = 6;
+
+/// Points that wait in memory: fewer than where tiles are triangulated, as what a batch spills
+/// counts, too, while it is written.
+std::size_t buffered_points(const MemoryPlan& plan) { return plan.buffered_points / 2; }
+
+/// The most points of a cell.
+std::size_t cell_capacity(const SortOptions& options, const MemoryPlan& plan,
+                          std::optional<std::uint64_t> expected) {
+  std::uint64_t wanted = options.cell_points;
+  if (wanted == 0) {
+    const std::uint64_t most_cells =
+        std::max<std::uint64_t>(1, buffered_points(plan) / kLeastBuffer);
+    wanted = std::max<std::uint64_t>(kCellPoints, expected.value_or(0) / most_cells);
+  }
+  return static_cast<std::size_t>(std::min<std::uint64_t>(wanted, plan.tile_capacity));
+}
+
+/// Calls `take` for the points of a tile, some thousand at a time, in the order in which they came.
+void visit_points(StoredTile& stored,
+                  const std::function<void(std::span<const LatticePoint>)>& take) {
+  for (StoredTile::Segment& segment : stored.segments) {
+    PointBlock points;
+    for (const TileBlock& block : find_blocks(segment.bytes, segment.where)) {
+      decode_points(std::span<const std::byte>(segment.bytes).subspan(block.offset, block.size),
+                    segment.where, points);
+      take(points.points);
+    }
+    segment.bytes = {};
+    segment.buffer.drain([&](std::span<const LatticePoint> waiting,
+                             std::span<const std::uint64_t> /*index*/) { take(waiting); });
+  }
+}
+
+/// Appends the tiles below a node in the order of the tree: whoever divides the same cells likewise
+/// gets each part of them in one stretch. docs/formats-blocks.md compares it with other orders.
+void append_cells(const TileNode<3>& node, std::vector<const TileNode<3>*>& cells) {
+  if (node.leaf()) cells.push_back(&node);
+  for (const TileNode<3>& side : node.children) append_cells(side, cells);
+}
+
+class Sorting {
+ public:
+  Sorting(const RunPoints& points, PointFile& file, const Context& context, RunWatch& watch)
+      : points_(*points.stream),
+        file_(file),
+        watch_(watch),
+        memory_(context.memory()),
+        plan_(plan_memory(memory_, 2, context.threads())),
+        capacity_(cell_capacity(*file.sorted(), plan_, points_.expected())),
+        scratch_(context.state().scratch(context)),
+        tree_({.dimension = file.sorted()->dimension,
+               .capacity = capacity_,
+               .buffered_points = buffered_points(plan_),
+               .expected = points_.expected(),
+               .batches = plan_.batches},
+              *scratch_, times_) {}
+
+  PointConversion run() {
+    watch_.begin("read", "points");
+    deal();
+    watch_.end(points_.points_read());
+    if (tree_.points_to_divide() > 0) {
+      watch_.begin("divide", "points");
+      watch_.end(tree_.divide_large(
+          [&](std::uint64_t points, double fraction) { watch_.tell(points, fraction); }));
+    }
+    watch_.begin("write", "points");
+    write();
+    watch_.end(tree_.points());
+    PointConversion done = file_.complete();
+    done.points = points_.counts();
+    done.cells = cells_;
+    done.spilled_points = tree_.points_written();
+    done.spilled_bytes = tree_.bytes_written();
+    return done;
+  }
+
+ private:
+  /// Deals the points as the file will have them, so that points that rounding makes equal stay
+  /// together.
+  void deal() {
+    const auto fetch = [this](SourcePiece& piece) {
+      watch_.tell(points_.points_read(), points_.fraction_read());
+      return points_.fetch(piece);
+    };
+    const auto decode = [this](SourcePiece& piece, PointBlock& block) {
+      points_.decode(piece, block);
+      file_.place(block);
+    };
+    if (file_.decided()) {
+      tree_.fill({.fetch = fetch, .decode = decode});
+      return;
+    }
+    SourcePiece piece;  // the first points decide, so they come before others
+    tree_.fill([&](PointBlock& block) {
+      block.clear();
+      while (block.size() == 0 && fetch(piece)) decode(piece, block);
+      return block.size() > 0;
+    });
+  }
+
+  void write() {
+    // Boxes have z even where that was not divided.
+    const std::optional<TileNode<3>> root = tree_.nodes<3>();
+    std::vector<const TileNode<3>*> cells;
+    if (root) append_cells(*root, cells);
+    cells_ = cells.size();
+    std::vector<PointRegion> regions;
+    for (const TileNode<3>* const cell : cells) regions.push_back({cell->box, cell->points});
+    file_.append_regions(regions);
+    write_points(cells);
+  }
+
+  void write_points(std::span<const TileNode<3>* const> cells) {
+    struct Slot {
+      StoredTile stored;
+      std::vector<LatticePoint> points;
+    };
+    const auto room = static_cast<std::size_t>(static_cast<double>(memory_) * kWrittenShare);
+    std::vector<Slot> slots(
+        std::clamp<std::size_t>(room / (kPointBytes * capacity_), 1, kMostUnderWay));
+    std::size_t taken = 0;
+    const auto read = [&](std::size_t slot) {
+      if (taken == cells.size()) return false;
+      slots[slot].stored = tree_.read(*cells[taken++]);
+      return true;
+    };
+    const auto decode = [&](std::size_t slot) {
+      auto& [stored, points] = slots[slot];
+      points.clear();
+      if (stored.points > capacity_) return;  // equal points, which may be too many for the memory
+      visit_points(stored, [&](std::span<const LatticePoint> some) {
+        points.insert(points.end(), some.begin(), some.end());
+      });
+    };
+    const auto append = [&](std::size_t slot) {
+      auto& [stored, points] = slots[slot];
+      file_.append_placed(points);
+      if (stored.points > capacity_) {
+        visit_points(stored,
+                     [&](std::span<const LatticePoint> some) { file_.append_placed(some); });
+      }
+      written_ += stored.points;
+      watch_.tell(written_, static_cast<double>(written_) / static_cast<double>(tree_.points()));
+    };
+    run_pipeline(slots.size(), read,
+                 std::vector<PipelineStep>{{.in_order = false, .work = decode},
+                                           {.in_order = true, .work = append}});
+  }
+
+  PointStream& points_;
+  PointFile& file_;
+  RunWatch& watch_;
+  std::uint64_t memory_;
+  MemoryPlan plan_;
+  std::size_t capacity_;
+  std::shared_ptr<ScratchFolder> scratch_;
+  StageTimes times_;
+  TileTree tree_;
+  std::uint64_t cells_ = 0;
+  std::uint64_t written_ = 0;
+};
+
+}  // namespace
+
+PointConversion sort_points(const RunPoints& points, PointFile& file, const Context& context,
+                            RunWatch& watch) {
+  file.start(points);
+  Sorting sorting(points, file, context, watch);
+  PointConversion done;
+  with_threads(context.threads(), [&] { done = sorting.run(); });
+  return done;
+}
+
+}  // namespace spillway::detail
