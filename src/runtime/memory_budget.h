@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "src/runtime/freed_memory.h"
+
 namespace spillway::detail {
 
 /// The smaller of 2 GiB and a quarter of the memory that this process may use: the machine's, or
@@ -26,7 +28,8 @@ class MemoryBudget {
   explicit MemoryBudget(std::uint64_t limit) : MemoryBudget(limit, limit) {}
   /// A budget of `limit` bytes that is a part of the `whole` that the user gave: errors speak of
   /// the whole.
-  MemoryBudget(std::uint64_t limit, std::uint64_t whole) : limit_(limit), whole_(whole) {}
+  MemoryBudget(std::uint64_t limit, std::uint64_t whole)
+      : limit_(limit), whole_(whole), freed_(limit) {}
 
   [[nodiscard]] std::uint64_t limit() const { return limit_; }
   /// What the user gave, of which limit() is a part.
@@ -48,12 +51,17 @@ class MemoryBudget {
   void take(std::uint64_t bytes, const char* purpose);
   void give_back(std::uint64_t bytes) { used_ -= bytes; }
 
+  /// For whoever is about to use much memory, leased or not: gives the system what has been freed,
+  /// if the process has outgrown the limit by it.
+  void give_back_freed() { freed_.give_back(); }
+
  private:
   const std::uint64_t limit_;
   const std::uint64_t whole_;
   std::atomic<std::uint64_t> enough_ = 0;
   std::function<std::uint64_t(std::uint64_t, std::uint64_t)> estimate_;
   std::atomic<std::uint64_t> used_ = 0;
+  FreedMemory freed_;
 };
 
 /// A share of a budget, held as long as the object lives.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "src/distributed/packing.h"
-#include "src/runtime/peak_memory.h"
+#include "src/runtime/process_memory.h"
 #include "src/runtime/stage_times.h"
 #include "stream/triangulate/task_sums.h"
 

@@ -115,7 +115,7 @@ void PointSource::decode(SourcePiece& piece, PointBlock& block) {
   } else {
     std::swap(piece.raw.decoded, block);
   }
-  if (!options_.index) block.index.clear();
+  if (!options_.index) block.index = {};
 }
 
 bool PointSource::read(PointBlock& block) {

@@ -145,10 +145,16 @@ void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
       {.in_order = false,
        .work =
            [&](std::size_t slot) {
-             PointBlock points = spare.take();
+             PointBlock& read = batches[slot].piece.raw.decoded;
+             const bool is_decoded = read.size() > 0;  // then decode() only moves it
+             PointBlock points = is_decoded ? PointBlock() : spare.take();
              decode(batches[slot], points);
              deal(batches[slot], points);
-             spare.put_back(std::move(points));
+             if (is_decoded) {
+               read = std::move(points);
+             } else {
+               spare.put_back(std::move(points));
+             }
            }},
       {.in_order = true, .work = [&](std::size_t slot) { append(batches[slot]); }},
       {.in_order = false, .work = [&](std::size_t slot) { encode(batches[slot]); }},
@@ -176,7 +182,7 @@ void TileTree::append(Batch& batch) {
   ++batches_;
   if (options_.plan != nullptr && !filled_) begin_region(batch.region, batch);
   if (!filled_) points_ += batch.dealt.points.size();
-  append_dealt(batch.dealt, batch);
+  append_dealt(std::exchange(batch.dealt, {}), batch);
   if (room_ <= most_room()) return;
   if (!divided_) divide_first(batch);
   if (room_ > most_room()) spill_some(batch);

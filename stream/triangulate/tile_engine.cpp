@@ -88,6 +88,7 @@ void TileEngine<D>::spill(const PointFeed& feed) {
                             "points that wait to be spilled");
   const PointFeed spanned = {.fetch = feed.fetch,
                              .decode = [&](SourcePiece& piece, PointBlock& block) {
+                               budget_.give_back_freed();
                                feed.decode(piece, block);
                                span_.add(block.points);
                              }};
@@ -111,7 +112,11 @@ std::uint64_t TileEngine<D>::divide_large() {
   const Stopwatch watch(figures_.divide_seconds);
   const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(LatticePoint),
                             "points that wait to be spilled");
-  return figures_.divided_points = tree_.divide_large(options_.progress);
+  return figures_.divided_points =
+             tree_.divide_large([this](std::uint64_t points, double fraction) {
+               budget_.give_back_freed();
+               options_.progress(points, fraction);
+             });
 }
 
 template <int D>

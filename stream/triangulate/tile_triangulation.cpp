@@ -58,6 +58,7 @@ MergedBorder<D> merge_resident(const TileContext<D>& context, std::span<Border<D
   }
   std::vector<const Tree*> of_children;
   for (const Tree& tree : node.children) of_children.push_back(&tree);
+  context.budget.give_back_freed();
   const StageTimer timer(context.counts.times, Stage::kMerge);
   MergedBorder<D> merged =
       merge_borders<D, Tree>(children, of_children, context.budget, task, context.options.kernel);
@@ -168,6 +169,7 @@ class TileRun {
 
   Border<D> triangulate_leaf(Node& node) {
     const Stopwatch watch(node.task.seconds);
+    context_.budget.give_back_freed();
     const Part<D>& part = *node.tree;
     const auto points = std::span(tile_.points).subspan(part.begin, part.size());
     BaseCase<D> leaf = base_case(node, points);
@@ -324,6 +326,7 @@ template <int D>
 Settled<D> merge_borders_of(const TileContext<D>& context, const MergeInput<D>& input, Task& task) {
   MergedBorder<D> merged = merge_resident<D>(context, input.children, input.node, task);
   if (input.outside_shrank) merged.tested = 0;
+  context.budget.give_back_freed();
   Settled<D> settled;
   if (merged.border.open()) {
     settled.border = std::move(merged.border);

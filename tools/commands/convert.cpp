@@ -14,7 +14,7 @@
 #include "formats/meshes/mesh_formats.h"
 #include "formats/points/create_points.h"
 #include "src/error.h"
-#include "src/runtime/peak_memory.h"
+#include "src/runtime/process_memory.h"
 #include "tools/commands/command.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"

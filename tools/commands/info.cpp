@@ -14,7 +14,7 @@
 
 #include "src/error.h"
 #include "src/geometry/canonical_hash.h"
-#include "src/runtime/peak_memory.h"
+#include "src/runtime/process_memory.h"
 #include "tools/commands/command.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "src/geometry/canonical_hash.h"
-#include "src/runtime/peak_memory.h"
+#include "src/runtime/process_memory.h"
 #include "tools/report/task_json.h"
 
 namespace spillway::detail {

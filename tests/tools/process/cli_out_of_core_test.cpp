@@ -184,6 +184,23 @@ TEST_F(OutOfCore, ResidentMemoryStaysWithinTheBudget) {
   EXPECT_EQ(work_.info("mesh.ply")["canonical_hash"], stream["canonical_hash"]);
 }
 
+TEST_F(OutOfCore, AProcessHoldsTheLeastLimitAndWhatAnEmptyRunTakes) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer's own memory is not in the budget";
+#endif
+  constexpr double kEmptyRun = 16;  // MiB, as docs/cli.md states
+  const auto peak = [](const nlohmann::json& stats) {
+    return stats["peak_rss_bytes"].get<double>() / (1 << 20);
+  };
+  work_.write("three.txt", "0 0 1\n1 0 2\n0 1 3\n");
+  EXPECT_LE(peak(triangulate("--memory 32M - -o mesh.spm < three.txt")), kEmptyRun);
+  for (const std::string family : {"terrain", "uniform"}) {
+    const std::string source = fmt::format("spillway generate -q {} -n 2e6 | ", family);
+    const auto stats = spill("--threads 2 - -o mesh.spm", source);
+    EXPECT_LE(peak(stats), 32 + kEmptyRun) << family;
+  }
+}
+
 /// The doubles or 64-bit integers of an array file, row after row.
 template <typename T>
 std::vector<T> array_of(const std::string& npy) {

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+
+namespace spillway::detail {
+
+/// What the allocator keeps of freed memory, for the next who asks. Pages that one stage of a run
+/// has used in pieces do not fit what the next one wants, so they would add up.
+class FreedMemory {
+ public:
+  /// The process may hold so many bytes more than it does now.
+  explicit FreedMemory(std::uint64_t limit);
+
+  /// Gives the system all that is free, if the process holds more than it may. Takes about a
+  /// microsecond if not; what is given back costs as much a page when it is used again, so it is
+  /// done again only when the process has grown by some of the limit. For any thread.
+  void give_back();
+
+ private:
+  const std::uint64_t step_;              ///< bytes
+  const std::uint64_t most_;              ///< bytes that the process may hold
+  std::atomic<std::uint64_t> next_most_;  ///< the same, or more when not that much was free
+  std::mutex mutex_;                      ///< held while memory is given back
+};
+
+}  // namespace spillway::detail
