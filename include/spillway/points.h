@@ -100,8 +100,8 @@ class SPILLWAY_API PointSink {
 /// lies and how many points it has. Points of one cell keep the order of the input.
 struct SortOptions {
   int dimension = 2;  ///< 2: cells reach through all heights; 3: z is divided, too
-  /// Most points of a cell, places with more equal points apart. 0: 65,536, or more where that
-  /// would be too many cells for the memory. As many as the memory suffices for at most.
+  /// Most points of a cell, places with more equal points apart; 0: 65,536. More where that would
+  /// be too many cells for the memory, and less where it does not suffice for such a cell.
   std::uint64_t cell_points = 0;
 };
 

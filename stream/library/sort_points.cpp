@@ -16,7 +16,7 @@ namespace spillway::detail {
 namespace {
 
 /// The usual number of points of a cell: one block of the file.
-constexpr std::size_t kCellPoints = 65536;
+constexpr std::uint64_t kCellPoints = 65536;
 /// Each cell should have room for so many points that wait, so that few are spilled at a time.
 constexpr std::size_t kLeastBuffer = 512;
 /// Bytes of a point on its way from its cell to the file: encoded, and decoded.
@@ -29,15 +29,14 @@ constexpr std::size_t kMostUnderWay = 6;
 /// counts, too, while it is written.
 std::size_t buffered_points(const MemoryPlan& plan) { return plan.buffered_points / 2; }
 
-/// The most points of a cell.
+/// The most points of a cell: what is wanted, unless that is more cells than there is memory for,
+/// or more points than can be loaded.
 std::size_t cell_capacity(const SortOptions& options, const MemoryPlan& plan,
                           std::optional<std::uint64_t> expected) {
-  std::uint64_t wanted = options.cell_points;
-  if (wanted == 0) {
-    const std::uint64_t most_cells =
-        std::max<std::uint64_t>(1, buffered_points(plan) / kLeastBuffer);
-    wanted = std::max<std::uint64_t>(kCellPoints, expected.value_or(0) / most_cells);
-  }
+  const std::uint64_t most_cells = std::max<std::uint64_t>(1, buffered_points(plan) / kLeastBuffer);
+  const std::uint64_t least = expected.value_or(0) / most_cells;
+  const std::uint64_t wanted =
+      std::max(options.cell_points == 0 ? kCellPoints : options.cell_points, least);
   return static_cast<std::size_t>(std::min<std::uint64_t>(wanted, plan.tile_capacity));
 }
 
