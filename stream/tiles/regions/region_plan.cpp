@@ -14,6 +14,9 @@ namespace {
 /// The lower side of a cut gets this share of the points, at the least and at the most.
 constexpr double kLeastShare = 0.4;
 constexpr double kMostShare = 0.6;
+/// A cell is not cut where one side would have less than this share of its points: then most of
+/// them lie at one place, and only they can show how to cut it.
+constexpr double kLeastSide = 0.1;
 /// What uneven sides cost, against points of regions that lie on both sides.
 constexpr double kUnevenCost = 0.5;
 /// Most values that are looked at for a cut.
@@ -50,15 +53,6 @@ double points_of(const std::vector<Portion>& portions) {
   return points;
 }
 
-/// Points of regions that have some on both sides.
-double points_parted(const std::vector<Portion>& portions, int axis, double value) {
-  double points = 0;
-  for (const Portion& portion : portions) {
-    if (portion.box.lo[axis] < value && value <= portion.box.hi[axis]) points += portion.points;
-  }
-  return points;
-}
-
 Box<3> box_around(const std::vector<Portion>& portions) {
   Box<3> box;
   for (const Portion& portion : portions) box.expand(portion.box);
@@ -76,31 +70,58 @@ double quantile(const std::vector<Portion>& portions, int axis, const Box<3>& bo
   return hi;
 }
 
+/// A value where a cell could be cut.
+struct CutValue {
+  double value = 0;
+  double parted = 0;  ///< points of regions that have some on both sides
+
+  bool operator<(const CutValue& other) const {
+    return std::pair(parted, value) < std::pair(other.parted, other.value);
+  }
+};
+
+/// The sides of regions between two values, and one value more.
+std::vector<CutValue> cut_values(const std::vector<Portion>& portions, int axis, double least,
+                                 double most, double middle) {
+  std::vector<std::pair<double, double>> begins;  // points begin to be parted above the side ...
+  std::vector<std::pair<double, double>> ends;    // ... and are not any more above this one
+  std::vector<CutValue> values = {{middle}};
+  for (const Portion& portion : portions) {
+    begins.emplace_back(portion.box.lo[axis], portion.points);
+    ends.emplace_back(portion.box.hi[axis], portion.points);
+    for (const double value : {portion.box.lo[axis], portion.box.hi[axis]}) {
+      if (value > least && value < most) values.push_back({value});
+    }
+  }
+  std::ranges::sort(begins);
+  std::ranges::sort(ends);
+  std::ranges::sort(values, {}, &CutValue::value);
+  auto begin = begins.begin();
+  auto end = ends.begin();
+  double parted = 0;
+  for (CutValue& value : values) {
+    for (; begin != begins.end() && begin->first < value.value; ++begin) parted += begin->second;
+    for (; end != ends.end() && end->first < value.value; ++end) parted -= end->second;
+    value.parted = parted;
+  }
+  return values;
+}
+
 /// Where to cut a cell: at the sides of regions, if that parts the points evenly enough.
 double best_value(const std::vector<Portion>& portions, int axis, const Box<3>& box) {
   const double all = points_of(portions);
-  const double least = quantile(portions, axis, box, kLeastShare * all);
-  const double most = quantile(portions, axis, box, kMostShare * all);
-  std::vector<double> values;
-  for (const Portion& portion : portions) {
-    for (const double value : {portion.box.lo[axis], portion.box.hi[axis]}) {
-      if (value > least && value < most) values.push_back(value);
-    }
-  }
-  std::ranges::sort(values);
-  const auto [first, last] = std::ranges::unique(values);
-  values.erase(first, last);
-  const std::size_t stride = values.size() / kMostValues + 1;
-  double best = quantile(portions, axis, box, all / 2);
-  double least_cost = points_parted(portions, axis, best) / all;
-  for (std::size_t i = 0; i < values.size(); i += stride) {
-    const double uneven = std::abs(points_below(portions, axis, values[i]) / all - 0.5);
-    const double cost = points_parted(portions, axis, values[i]) / all + kUnevenCost * uneven;
-    if (cost >= least_cost) continue;
-    least_cost = cost;
-    best = values[i];
-  }
-  return best;
+  const auto at = [&](double share) { return quantile(portions, axis, box, share * all); };
+  std::vector<CutValue> values =
+      cut_values(portions, axis, at(kLeastShare), at(kMostShare), at(0.5));
+  const std::size_t looked_at = std::min(values.size(), kMostValues);
+  std::partial_sort(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(looked_at),
+                    values.end());
+  values.resize(looked_at);
+  const auto cost = [&](const CutValue& value) {
+    const double uneven = std::abs(points_below(portions, axis, value.value) / all - 0.5);
+    return value.parted / all + kUnevenCost * uneven;
+  };
+  return std::ranges::min_element(values, {}, cost)->value;
 }
 
 /// Cuts the plane or space into cells, and keeps what each has of the regions.
@@ -117,7 +138,8 @@ class Planner {
     }
     if (points > most_points_ && box.extent(axis) > 0) {
       const double value = best_value(portions, axis, box);
-      if (value > box.lo[axis] && value <= box.hi[axis]) {
+      const double below = points_below(portions, axis, value);
+      if (std::min(below, points - below) >= kLeastSide * points) {
         return cut_at(tile, std::move(portions), axis, value);
       }
     }
