@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/inputs/open_points.h"
+#include "formats/points/create_points.h"
 #include "src/error.h"
 #include "stream/source/header_survey.h"
 #include "tests/formats/inputs/temporary_files.h"
@@ -97,6 +98,51 @@ TEST_F(PieceSequenceTest, PiecesMayBeginInAnyOrder) {
   EXPECT_THAT(fetch_all(all).x, ElementsAre(0, 1, 2));
   all.begin_piece(0, 0);
   EXPECT_THAT(fetch_all(all).x, ElementsAre(0, 1, 2));
+}
+
+TEST_F(PieceSequenceTest, InputsMayComeInAnotherOrderWithTheIndicesOfTheirOwn) {
+  know_counts();
+  PieceSequence all = sequence();
+  all.read_in_order({{3}, {2}, {0}, {1}});
+  SourcePiece piece;
+  all.fetch(piece);
+  EXPECT_DOUBLE_EQ(all.fraction_read().value(), 2.0 / 6);
+  PieceSequence again = sequence();
+  again.read_in_order({{3}, {2}, {0}, {1}});
+  const Fetched fetched = fetch_all(again);
+  EXPECT_THAT(fetched.x, ElementsAre(20, 21, 0, 1, 2, 10));
+  EXPECT_THAT(fetched.index, ElementsAre(4, 5, 0, 1, 2, 3));
+  EXPECT_THAT(fetched.inputs, ElementsAre(3, 0, 1));
+  EXPECT_THAT(said_, HasSubstr("c.txt: text, 2 records read\n"));
+}
+
+TEST_F(PieceSequenceTest, PiecesOfSeveralInputsMayComeByTurns) {
+  constexpr std::uint64_t kRecords = 100'000;  // two pieces
+  paths_.clear();
+  for (const char* name : {"p.npy", "q.npy"}) {
+    const std::string path = files_.put(name, "");
+    PointWriterOptions options;
+    options.coordinates = 2;
+    options.count = kRecords;
+    const auto writer = open_point_writer(disk(), path, options);
+    std::vector<LatticePoint> points(kRecords);
+    for (std::uint64_t i = 0; i < kRecords; ++i) points[i] = {static_cast<double>(i), 1, 0};
+    writer->write(points, {});
+    writer->finish();
+    paths_.push_back(path);
+  }
+  look();
+  ASSERT_EQ(facts_.inputs[0].pieces, 2U);
+  PieceSequence all = sequence();
+  all.read_in_order({{1, 1}, {0, 0}, {1, 0}, {0, 1}});
+  const Fetched fetched = fetch_all(all);
+  ASSERT_EQ(fetched.index.size(), 2 * kRecords);
+  EXPECT_THAT(fetched.inputs, ElementsAre(1, 0, 1, 0));
+  EXPECT_EQ(fetched.index[0], kRecords + 65'536);
+  for (std::size_t i = 0; i < fetched.x.size(); ++i) {
+    ASSERT_EQ(fetched.x[i], static_cast<double>(fetched.index[i] % kRecords));
+  }
+  EXPECT_EQ(all.fraction_read(), 1);
 }
 
 TEST_F(PieceSequenceTest, TheShareThatIsReadGoesByRecordsWhereTheseAreKnown) {

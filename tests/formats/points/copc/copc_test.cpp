@@ -2,6 +2,7 @@
 #include <limits>
 #include <random>
 
+#include "tests/formats/inputs/temporary_files.h"
 #include "tests/formats/points/copc/copc_file.h"
 #include "tests/formats/shared_data.h"
 
@@ -101,6 +102,31 @@ std::size_t expect_selection(const std::string& file, const std::optional<Box<3>
   return points.size();
 }
 
+/// The nodes are the regions of the file: with their counts, and all of their points in their cube.
+void expect_regions(const std::string& file) {
+  testing::TemporaryFiles files;
+  const auto reader = open_point_reader(disk(), files.put("regions.copc.laz", file), {});
+  const std::vector<PointRegion>& regions = reader->header().regions;
+  ASSERT_EQ(regions.size(), reader->pieces());
+  std::vector<std::uint64_t> counts(regions.size());
+  RawPoints raw;
+  PointBlock block;
+  for (raw.clear(); reader->fetch(raw); raw.clear()) {
+    ASSERT_LT(raw.region, regions.size());
+    const PointRegion& region = regions[raw.region];
+    counts[raw.region] += raw.records();
+    reader->decode(raw, block);
+    for (const LatticePoint& point : block.points) {
+      const WorldPoint world = reader->header().lattice->to_world(point);
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_GE(world[k], region.box.lo[k] - 0.01);
+        EXPECT_LE(world[k], region.box.hi[k] + 0.01);
+      }
+    }
+  }
+  for (std::size_t r = 0; r < regions.size(); ++r) EXPECT_EQ(counts[r], regions[r].count);
+}
+
 /// Selections of all sizes.
 void expect_random_selections(const std::string& file, const Box<3>& extent, double spacing) {
   std::mt19937 random(5);
@@ -164,6 +190,20 @@ TEST(Copc, IsReadWholeWithoutSelection) {
   EXPECT_EQ(all.points.size(), count);
 }
 
+TEST(Copc, NodesAreTheRegionsOfAFile) { expect_regions(deep_file().bytes()); }
+
+/// Who reads all of it needs no octree.
+TEST(Copc, AnOctreeThatHasNotAllPointsTellsNoRegions) {
+  CopcFile file = deep_file();
+  const auto entry = std::ranges::find_if(file.pages.front().entries,
+                                          [](const CopcFile::Entry& e) { return e.count > 1; });
+  ASSERT_NE(entry, file.pages.front().entries.end());
+  entry->count = 0;
+  const AllPoints all = read_content("a.copc.laz", file.bytes(), selection({}, 0));
+  EXPECT_TRUE(all.header.regions.empty());
+  EXPECT_EQ(all.header.count, all.points.size());
+}
+
 TEST(Copc, BoundsAndResolutionSelectNodes) {
   expect_random_selections(deep_file().bytes(), {{500000, 4000000, 0}, {500064, 4000064, 64}}, 4);
 }
@@ -176,6 +216,7 @@ TEST(Copc, SharedFile) {
   EXPECT_EQ(header.format, "copc");
   EXPECT_THAT(header.crs, HasSubstr("PROJCS["));
   EXPECT_EQ(expect_selection(content, std::nullopt, 1e-9), 1065U);
+  expect_regions(content);
   expect_random_selections(content, header.extent.value(), value_at<double>(content, 461));
 }
 

@@ -1,0 +1,116 @@
+// What headers tell of where points lie, and what does not lie there.
+
+#include "stream/source/input_regions.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+PointHeader header(const std::string& name, std::uint64_t count, double lo, double hi) {
+  PointHeader header;
+  header.name = name;
+  header.format = "las";
+  header.count = count;
+  header.lattice = Lattice{{0.01, 0.01, 0.01}, {0, 0, 0}};
+  header.extent.emplace();
+  header.extent->expand(Point<3>{lo, lo, lo});
+  header.extent->expand(Point<3>{hi, hi, hi});
+  return header;
+}
+
+/// Regions of some inputs, and all they refer to.
+struct Regions {
+  explicit Regions(std::vector<PointHeader> headers, const PointFilter& filter = {}) {
+    for (PointHeader& header : headers) facts.inputs.push_back({std::move(header), std::nullopt});
+    coordinates.emplace(facts, 2, filter, [](std::string_view) {});
+    regions.emplace(facts, *coordinates, filter);
+  }
+
+  [[nodiscard]] const std::vector<InputRegion>& all() const { return regions->all(); }
+
+  SourceFacts facts;
+  std::optional<SourceCoordinates> coordinates;
+  std::optional<InputRegions> regions;
+};
+
+TEST(InputRegions, AreFilesWithTheirExtentOnTheCommonLattice) {
+  const Regions two({header("a.las", 10, 1, 2), header("b.las", 20, 5, 8)});
+  ASSERT_THAT(two.all(), SizeIs(2));
+  EXPECT_EQ(two.all()[0].unit, 0U);
+  EXPECT_EQ(two.all()[1].unit, 1U);
+  EXPECT_EQ(two.all()[1].count, 20U);
+  EXPECT_NEAR(two.all()[1].box.lo[0], 499, 1e-6) << "a step of the lattice less";
+  EXPECT_NEAR(two.all()[1].box.hi[1], 801, 1e-6);
+  EXPECT_EQ(two.regions->turns()[1].input, 1U);
+  EXPECT_EQ(two.regions->turns()[1].piece, std::nullopt);
+}
+
+TEST(InputRegions, ThereAreNoneIfAnyInputDoesNotTell) {
+  PointHeader silent = header("b.txt", 20, 5, 8);
+  silent.extent.reset();
+  EXPECT_THAT(Regions({header("a.las", 10, 1, 2), silent}).all(), IsEmpty());
+  PointHeader not_filled_in = header("c.las", 20, 0, 0);
+  EXPECT_THAT(Regions({header("a.las", 10, 1, 2), not_filled_in}).all(), IsEmpty());
+  PointHeader empty = header("d.las", 0, 0, 0);
+  empty.extent.reset();
+  const Regions with_empty({header("a.las", 10, 1, 2), empty});
+  ASSERT_THAT(with_empty.all(), SizeIs(2));
+  EXPECT_TRUE(with_empty.all()[1].box.empty());
+}
+
+TEST(InputRegions, AreThePartsThatAHeaderTells) {
+  PointHeader parts = header("a.spp", 30, 1, 9);
+  parts.regions = {{*header("", 0, 1, 4).extent, 10}, {*header("", 0, 4, 9).extent, 20}};
+  const Regions in_order({header("b.las", 5, 0, 1), parts});
+  ASSERT_THAT(in_order.all(), SizeIs(3));
+  EXPECT_EQ(in_order.all()[1].unit, in_order.all()[2].unit);
+  EXPECT_EQ(in_order.regions->number(1, 1), 2U);
+  Regions by_pieces({parts});
+  by_pieces.facts.inputs[0].pieces = 2;
+  const InputRegions nodes(by_pieces.facts, *by_pieces.coordinates, {});
+  EXPECT_NE(nodes.all()[0].unit, nodes.all()[1].unit);
+  EXPECT_EQ(nodes.turns()[1].piece, 1U);
+}
+
+TEST(InputRegions, AFilterLeavesAPartOfThem) {
+  PointFilter filter;
+  filter.every = 5;
+  filter.bounds = *header("", 0, 1.5, 4).extent;
+  const Regions some({header("a.las", 10, 1, 2), header("b.las", 20, 5, 8)}, filter);
+  EXPECT_EQ(some.all()[0].count, 2U);
+  EXPECT_NEAR(some.all()[0].box.lo[0], 149, 1e-6);
+  EXPECT_TRUE(some.all()[1].box.empty());
+}
+
+TEST(InputRegions, APointOutsideIsAnErrorThatNamesFileAndPoint) {
+  const Regions two({header("a.las", 10, 1, 2), header("b.las", 20, 5, 8)});
+  PointBlock block;
+  block.points = {{500, 600, 0}, {801, 800, 1e9}, {499, 700, -1e9}};
+  block.index = {7, 8, 9};
+  EXPECT_NO_THROW(two.regions->check(block, 1))
+      << "a step is no lie, and heights are not looked at";
+  block.points.push_back({802, 700, 0});
+  block.index.push_back(12);
+  try {
+    two.regions->check(block, 1);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("b.las: point 12 at (8.02, 7)"), HasSubstr("outside")));
+    EXPECT_EQ(error.facts().remedy, Remedy::kDistrustHeaders);
+    EXPECT_EQ(error.facts().place.number, 12U);
+  }
+  EXPECT_NO_THROW(two.regions->check({}, 0));
+}
+
+}  // namespace
+}  // namespace spillway::detail
