@@ -9,6 +9,8 @@ namespace {
 
 /// Bytes that are read at a time, if a block is not larger.
 constexpr std::size_t kReadBytes = std::size_t{256} << 10;
+/// ... of which at most so many points are taken, as equal ones take next to no bytes.
+constexpr std::size_t kReadPoints = 65'536;
 
 }  // namespace
 
@@ -40,12 +42,13 @@ void SegmentReader::read(const FileStretch& stretch, StoredBlocks& blocks) {
       throw BadInput(blocks.where, "the block is cut short");
     }
   }
-  blocks.bytes.resize(found.back().offset + found.back().size);
+  std::size_t points = 0;
+  std::size_t taken = 0;
+  for (; taken < found.size() && points < kReadPoints; ++taken) points += found[taken].points;
+  blocks.bytes.resize(found[taken - 1].offset + found[taken - 1].size);
   done_ += blocks.bytes.size();
-  for (const TileBlock& block : found) {
-    points_done_ += block.points;
-    points_ += block.points;
-  }
+  points_done_ += points;
+  points_ += points;
 }
 
 }  // namespace spillway::detail

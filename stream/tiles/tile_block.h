@@ -23,6 +23,7 @@ struct TilePoints {
   std::vector<Point<D>> points;
   std::vector<double> heights;       ///< D = 2: z, one a point
   std::vector<std::uint64_t> index;  ///< one a point, or none
+  std::uint64_t left_out = 0;        ///< points equal to one of these that are not among them
 
   void resize(std::size_t count, bool with_index) {
     resize(points, count);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "src/parallel/parallel.h"
+#include "stream/tiles/equal_points.h"
 #include "stream/tiles/tile_tree.h"
 
 namespace spillway::detail {
@@ -136,9 +137,45 @@ void TileTree::append_stored(Tile tile, std::vector<StoredTile::Segment>& stored
   append_held_before(kLast);
 }
 
+/// Makes one point of a tile of points that are one vertex.
+StoredTile TileTree::one_of(Tile tile) const {
+  EqualPoints all(options_.dimension, *options_.one_of_equal);
+  std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
+  std::ranges::stable_sort(tile.held, {}, arrival_of<HeldPoints>);
+  auto held = tile.held.begin();
+  const auto add_held_before = [&](std::uint64_t arrival) {
+    for (; held != tile.held.end() && arrival_of(*held) < arrival; ++held) {
+      held->buffer.drain([&](std::span<const LatticePoint> points,
+                             std::span<const std::uint64_t> index) { all.add(points, index); });
+    }
+  };
+  for (TileSegment& segment : tile.segments) {
+    add_held_before(segment.arrival);
+    SegmentReader reader({std::move(segment)});
+    StoredBlocks blocks;
+    PointBlock points;
+    while (reader.fetch(blocks)) {
+      decode_all_points(blocks.bytes, blocks.where, points);
+      all.add(points.points, points.index);
+    }
+  }
+  add_held_before(kLast);
+  StoredTile stored;
+  stored.points = 1;
+  stored.left_out = all.count() - 1;
+  const EqualPoints::Chosen chosen = all.choose();
+  stored.segments.emplace_back().buffer.append(
+      std::span(&chosen.point, 1),
+      options_.index ? std::span(&chosen.index, 1) : std::span<const std::uint64_t>());
+  return stored;
+}
+
 template <int D>
 StoredTile TileTree::read(const TileNode<D>& node) {
   const StageTimer timer(times_, Stage::kLoad);
+  if (options_.one_of_equal && node.points > options_.capacity && node.box.lo == node.box.hi) {
+    return one_of(take(node.stored.front()));
+  }
   StoredTile stored;
   stored.points = node.points;
   for (const std::uint32_t number : node.stored) append_stored(take(number), stored.segments);
@@ -148,6 +185,7 @@ StoredTile TileTree::read(const TileNode<D>& node) {
 template <int D>
 TilePoints<D> TileTree::decode(StoredTile stored) const {
   TilePoints<D> result;
+  result.left_out = stored.left_out;
   result.resize(stored.points, options_.index);
   std::size_t position = 0;
   const auto put = [&](std::size_t first, std::span<const LatticePoint> points,

@@ -13,6 +13,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include <spillway/choices.h>
+
 #include "formats/disk/scratch_folder.h"
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
@@ -39,6 +41,9 @@ struct TileTreeOptions {
   bool index = false;                       ///< points keep their index; that of others is dropped
   std::size_t batches = 6;                  ///< most of them under way at a time
   const RegionPlan* plan = nullptr;         ///< that the feed keeps to; outlives the tree
+  /// If set, read() makes one point of a tile of points that are one vertex, where they are more
+  /// than a tile may have: which one, in the plane, this tells.
+  std::optional<Heights> one_of_equal{};
 };
 
 /// A tile's points as they lay in the tree: on the disk, encoded, and in memory.
@@ -50,6 +55,9 @@ struct StoredTile {
   };
   std::vector<Segment> segments;
   std::uint64_t points = 0;
+  /// Of points that are one vertex, and more than a tile has memory for, all but one: they are not
+  /// among the points.
+  std::uint64_t left_out = 0;
 };
 
 /// Points of any number and order, dealt into tiles that fit into memory. Points wait in memory;
@@ -204,6 +212,7 @@ class TileTree {
   void take_below(CutTree::NodeRef ref);
   [[nodiscard]] Tile take(std::uint32_t number);
   static void append_stored(Tile tile, std::vector<StoredTile::Segment>& stored);
+  [[nodiscard]] StoredTile one_of(Tile tile) const;
 
   TileTreeOptions options_;
   ScratchFolder& folder_;

@@ -78,7 +78,8 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
           .extent = expected.extent,
           .index = index,
           .batches = plan_.batches,
-          .plan = expected.plan};
+          .plan = expected.plan,
+          .one_of_equal = options_.heights};
 }
 
 template <int D>

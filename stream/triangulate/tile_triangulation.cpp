@@ -126,6 +126,8 @@ class TileRun {
       root_ = divide<D>(tile_.points, input_index_,
                         {options.leaf_size, options.division, options.children}, division.data());
     }
+    counts_.points += tile_.left_out;
+    counts_.duplicates += tile_.left_out;
     context_.sequencer.open_slot(slot_, root_.list + 1);
     tree_.emplace(root_);
     const std::vector<Node*>& leaves = tree_->leaves();

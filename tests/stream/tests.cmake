@@ -3,7 +3,7 @@ spillway_test(stream_unit_test unit
           stream/output/sequencer_test.cpp stream/plan/memory_plan_test.cpp
           stream/sinks/contour_test.cpp stream/sinks/raster_store_test.cpp
           stream/sinks/tetrahedron_writers_test.cpp
-          stream/tiles/point_buffer_test.cpp stream/tiles/point_sample_test.cpp
+          stream/tiles/equal_points_test.cpp stream/tiles/point_buffer_test.cpp stream/tiles/point_sample_test.cpp
           stream/tiles/point_span_test.cpp stream/tiles/segment_reader_test.cpp
           stream/tiles/tile_block_test.cpp stream/tiles/tile_cut_test.cpp
           stream/tiles/tile_node_test.cpp stream/tiles/tile_segment_test.cpp

@@ -199,6 +199,13 @@ TEST_F(OutOfCore, AProcessHoldsTheLeastLimitAndWhatAnEmptyRunTakes) {
     const auto stats = spill("--threads 2 - -o mesh.spm", source);
     EXPECT_LE(peak(stats), 32 + kEmptyRun) << family;
   }
+  const std::string equal =
+      "awk 'BEGIN {for (i = 0; i < 1500000; ++i) print 5, 7, i % 1000; print \"0 0 0\\n9 0 1\"}' "
+      "| ";
+  const auto stats = spill("--threads 2 --duplicates highest - -o mesh.obj", equal);
+  EXPECT_EQ(stats["duplicates"], 1'499'999);
+  EXPECT_LE(peak(stats), 32 + kEmptyRun);
+  EXPECT_THAT(work_.read("mesh.obj"), HasSubstr("v 5 7 999\n"));
 }
 
 /// The doubles or 64-bit integers of an array file, row after row.

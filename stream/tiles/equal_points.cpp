@@ -1,0 +1,39 @@
+#include "stream/tiles/equal_points.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace spillway::detail {
+
+EqualPoints::EqualPoints(int dimension, Heights choice)
+    : mean_(dimension == 2 && choice == Heights::kMean) {
+  if (dimension != 2) return;
+  if (choice == Heights::kLowest) sign_ = 1;
+  if (choice == Heights::kHighest) sign_ = -1;
+}
+
+EqualPoints::Rank EqualPoints::rank_of(const LatticePoint& point, std::uint64_t place) const {
+  return {sign_ == 0 ? 0 : sign_ * point[2], place};
+}
+
+void EqualPoints::add(std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
+  for (std::size_t i = 0; i < points.size(); ++i, ++count_) {
+    const Rank rank = rank_of(points[i], index.empty() ? count_ : index[i]);
+    if (count_ == 0 || rank < least_) {
+      least_ = rank;
+      chosen_ = {points[i], index.empty() ? 0 : index[i]};
+    }
+    if (mean_) heights_.push_back(points[i][2]);
+  }
+}
+
+EqualPoints::Chosen EqualPoints::choose() {
+  if (mean_) {
+    std::sort(heights_.begin(), heights_.end());
+    chosen_.point[2] = std::accumulate(heights_.begin(), heights_.end(), 0.0) /
+                       static_cast<double>(heights_.size());
+  }
+  return chosen_;
+}
+
+}  // namespace spillway::detail

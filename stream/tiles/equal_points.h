@@ -1,0 +1,51 @@
+#pragma once
+
+#include <spillway/choices.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "src/geometry/framed_point.h"
+
+namespace spillway::detail {
+
+/// Makes one point of any number of points that are one vertex: the same as choose_heights() (in
+/// space keep_first()) would make of them, without having all in memory. Only the mean takes 8
+/// bytes for each of them.
+class EqualPoints {
+ public:
+  EqualPoints(int dimension, Heights choice);
+
+  /// The next points, in the order in which they came. `index` has numbers that ascend in the order
+  /// of the input; none if that is the order in which they come.
+  void add(std::span<const LatticePoint> points, std::span<const std::uint64_t> index);
+
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+
+  struct Chosen {
+    LatticePoint point{};
+    std::uint64_t index = 0;  ///< if points have one
+  };
+  /// Of at least one point; to be called once.
+  Chosen choose();
+
+ private:
+  /// What is least is chosen.
+  struct Rank {
+    double height = 0;
+    std::uint64_t place = 0;
+
+    auto operator<=>(const Rank&) const = default;
+  };
+  [[nodiscard]] Rank rank_of(const LatticePoint& point, std::uint64_t place) const;
+
+  double sign_ = 0;  ///< of heights in ranks: 1 for the lowest, -1 for the highest
+  bool mean_;
+  std::uint64_t count_ = 0;
+  Rank least_{};
+  Chosen chosen_;
+  std::vector<double> heights_;  ///< for their mean
+};
+
+}  // namespace spillway::detail
