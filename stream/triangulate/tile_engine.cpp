@@ -12,11 +12,10 @@
 namespace spillway::detail {
 namespace {
 
-/// Tiles that are triangulated at the same time. Two, so that there is something to do while the
-/// last merges of one tile leave threads idle; the next one is being read meanwhile.
+/// Full tiles that there is memory for at the same time, or more smaller ones. Two, so that there
+/// is something to do while the last merges of one tile leave threads idle; the next one is being
+/// read meanwhile.
 constexpr std::size_t kTilesAtATime = 2;
-/// Tiles and merges that may be ready before the thread that reads lends a hand.
-constexpr std::size_t kMostReady = 1;
 
 template <int D>
 void count_shape(const Box<D>& box, TileShapes& shapes) {
@@ -95,15 +94,15 @@ void TileEngine<D>::spill(const PointFeed& feed) {
                              }};
   if (!cells_) return tree_.fill(spanned);
   begin_triangulating(expected_points_, expected_points_);
-  TaskGroup lanes;
+  TaskGroup beside;
   try {
     tree_.fill(spanned, [&](std::uint32_t cell) {
       add_cell(cell);
-      triangulate_ahead(lanes);
+      lanes_.work_beside(beside);
     });
-    lanes.wait();
+    beside.wait();
   } catch (...) {
-    give_up();
+    lanes_.give_up();
     throw;
   }
 }
@@ -136,7 +135,7 @@ Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& 
   begin_triangulating(tree_.points(), all_points);
   tells_progress_ = true;
   Node* const top = add_nodes(root, outside, nullptr);
-  work_off_all();
+  lanes_.work_off();
   return std::move(top->border);
 }
 
@@ -145,7 +144,7 @@ void TileEngine<D>::triangulate_rest() {
   const Stopwatch watch(figures_.triangulate_seconds);
   tells_progress_ = true;
   for (const std::uint32_t cell : tree_.finish()) add_cell(cell);
-  work_off_all();
+  lanes_.work_off();
 }
 
 /// From now on refusals tell what will do for so many points.
@@ -211,82 +210,49 @@ template <int D>
 typename TileEngine<D>::Node* TileEngine<D>::add_node(State state, std::vector<Node*> children) {
   for (const Node* child : children) state.level = std::max(state.level, child->level + 1);
   const auto [node, ready] = forest_.add(std::move(state), std::move(children));
-  if (ready) {
-    const std::lock_guard lock(take_mutex_);
-    ready_.push_back(node);
-  }
+  if (ready) lanes_.add(*node);
   return node;
 }
 
-/// While points are being read: as many tiles as there may be are worked off beside that, and if
-/// more are ready, this thread, which would bring still more, lends a hand.
 template <int D>
-void TileEngine<D>::triangulate_ahead(TaskGroup& lanes) {
-  if (failed_) lanes.wait();  // throws what a lane has thrown
-  bool more_lanes = false;
-  {
-    const std::lock_guard lock(take_mutex_);
-    more_lanes = !ready_.empty() && lanes_ + 1 < kTilesAtATime;
-    if (more_lanes) ++lanes_;
-  }
-  if (more_lanes) {
-    lanes.run([this] { isolated([this] { work_off_ready(); }); });
-  }
-  const auto too_many = [this] {
-    const std::lock_guard lock(take_mutex_);
-    return ready_.size() > kMostReady;
-  };
-  while (too_many()) isolated([this] { work_off_one(); });
+typename TileEngine<D>::Lanes TileEngine<D>::make_lanes() {
+  return {plan_.threads,
+          kTilesAtATime * planned_tile_,
+          {.weight = [this](const Node& node) { return loaded_points(node); },
+           .begin = [this](Node& node, const Node* next) { load(node, next); },
+           .finish = [this](Node& node) { work_off(node); },
+           .give_up = [this] { give_up(); }}};
 }
 
-/// All that is ready, and all above it.
+/// Points that are loaded for a node, of what others may have, too: a tile may be larger than
+/// planned by --tile.
 template <int D>
-void TileEngine<D>::work_off_all() {
-  TaskGroup group;
-  // Isolated, since a merge that took up the other lane while it waits could end up waiting for
-  // room in the sequencer, which only it can make.
-  const auto lane = [this] { isolated([this] { work_off_ready(); }); };
-  lanes_ = kTilesAtATime;
-  for (std::size_t other = 1; other < kTilesAtATime; ++other) group.run(lane);
-  lane();
-  group.wait();
+std::uint64_t TileEngine<D>::loaded_points(const Node& node) const {
+  return node.children.empty() ? std::min<std::uint64_t>(node.tree->size(), planned_tile_) : 0;
 }
 
-/// A lane: until nothing is ready.
+/// Takes what a tile has of the tree. What is on the disk of it has been read ahead, and the
+/// reading of the one after it begins.
 template <int D>
-void TileEngine<D>::work_off_ready() {
-  while (work_off_one()) {
-  }
-  const std::lock_guard lock(take_mutex_);
-  --lanes_;
+void TileEngine<D>::load(Node& node, const Node* next) {
+  if (!node.children.empty()) return;
+  sequencer_.wait_for_room(plan_.waiting_bytes, node.number);
+  const std::lock_guard lock(load_mutex_);
+  node.stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.read(*node.tree);
+  if (next == nullptr || !next->children.empty() || !tree_.on_disk(*next->tree)) return;
+  reading_ahead_ =
+      std::async(std::launch::async, [this, tile = next->tree] { return tree_.read(*tile); });
 }
 
-/// Takes what is next; after the last child of a merge, does that too. False if nothing is ready.
+/// Triangulates a tile or merges; after the last child of a merge, does that too.
 template <int D>
-bool TileEngine<D>::work_off_one() {
-  try {
-    StoredTile stored;
-    Node* const node = take_ready(stored);
-    if (node == nullptr) return false;
-    work_off(*node, std::move(stored));
-    return true;
-  } catch (...) {
-    give_up();
-    throw;
-  }
-}
-
-/// Of a tile that is larger than planned, of equal points or by --tile, only what others may have
-/// is leased.
-template <int D>
-void TileEngine<D>::work_off(Node& node, StoredTile stored) {
+void TileEngine<D>::work_off(Node& node) {
   if (node.children.empty()) {
-    TilePoints<D> points = tree_.template decode<D>(std::move(stored));
+    TilePoints<D> points = tree_.template decode<D>(std::move(node.stored));
     if (replace_indices_) replace_indices_(points.index);
     Task task;
     {
-      const MemoryLease lease(
-          budget_, std::min(points.points.size(), planned_tile_) * kLoadedPointBytes, "a tile");
+      const MemoryLease lease(budget_, loaded_points(node) * kLoadedPointBytes, "a tile");
       node.border =
           triangulate_tile<D>(context_, {std::move(points), node.outside, node.number}, task);
     }
@@ -304,31 +270,9 @@ void TileEngine<D>::work_off(Node& node, StoredTile stored) {
 
 template <int D>
 void TileEngine<D>::give_up() {
-  failed_ = true;
   sequencer_.give_up();
-  const std::lock_guard lock(take_mutex_);
+  const std::lock_guard lock(load_mutex_);
   if (reading_ahead_.valid()) reading_ahead_.wait();  // the tree that it reads from may go now
-}
-
-/// The next tile and its points, or the next merge; null if nothing is ready, or if the run has
-/// failed. What is on the disk of a tile has been read ahead, and the reading of the one after it
-/// begins.
-template <int D>
-typename TileEngine<D>::Node* TileEngine<D>::take_ready(StoredTile& stored) {
-  const std::lock_guard lock(take_mutex_);
-  if (ready_.empty() || failed_) return nullptr;
-  Node* const node = ready_.front();
-  ready_.pop_front();
-  if (!node->children.empty()) return node;
-  sequencer_.wait_for_room(plan_.waiting_bytes, node->number);
-  stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.read(*node->tree);
-  const auto next =
-      std::ranges::find_if(ready_, [](const Node* other) { return other->children.empty(); });
-  if (next != ready_.end() && tree_.on_disk(*(*next)->tree)) {
-    reading_ahead_ =
-        std::async(std::launch::async, [this, tree = (*next)->tree] { return tree_.read(*tree); });
-  }
-  return node;
 }
 
 template <int D>

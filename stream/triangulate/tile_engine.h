@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <deque>
 #include <functional>
 #include <future>
 #include <memory>
@@ -26,6 +25,7 @@
 #include "stream/triangulate/merge_forest.h"
 #include "stream/triangulate/task_sums.h"
 #include "stream/triangulate/tile_triangulation.h"
+#include "stream/triangulate/work_lanes.h"
 
 namespace spillway::detail {
 
@@ -121,24 +121,24 @@ class TileEngine {
     std::shared_ptr<const Surroundings> surroundings;  ///< that the two point to, or none
     bool outside_shrank = false;                       ///< as in MergeInput
     std::uint32_t level = 0;                           ///< merges below, at most
+    StoredTile stored{};                               ///< of a tile that is being worked off
     Border<D> border{};                                ///< once it is done
   };
   using Forest = MergeForest<State>;
   using Node = typename Forest::Node;
+  using Lanes = WorkLanes<Node>;
 
   [[nodiscard]] TileOptions tile_options(const std::optional<Lattice>& lattice) const;
   TileTreeOptions tree_options(const ExpectedPoints& expected);
   void begin_triangulating(std::uint64_t points, std::uint64_t all_points);
   void add_cell(std::uint32_t cell);
-  void triangulate_ahead(TaskGroup& lanes);
   Node* add_nodes(const TileNode<D>& tree, const Outside<D>& outside,
                   const std::shared_ptr<const Surroundings>& surroundings);
   Node* add_node(State state, std::vector<Node*> children);
-  void work_off_all();
-  void work_off_ready();
-  bool work_off_one();
-  void work_off(Node& node, StoredTile stored);
-  Node* take_ready(StoredTile& stored);
+  [[nodiscard]] Lanes make_lanes();
+  [[nodiscard]] std::uint64_t loaded_points(const Node& node) const;
+  void load(Node& node, const Node* next);
+  void work_off(Node& node);
   void give_up();
   void merge_node(Node& node);
   void tell_done(const Node& node, Task task);
@@ -156,15 +156,13 @@ class TileEngine {
   Sequencer<D> sequencer_;
   TileContext<D> context_;
   Forest forest_;
+  Lanes lanes_ = make_lanes();
   std::optional<CellTree<D>> cells_;          ///< with a plan
   std::vector<Node*> parts_;                  ///< of these, by number, as far as they are complete
   std::atomic<bool> tells_progress_ = false;  ///< of triangulating: reading has ended
   std::function<void(std::span<std::uint64_t>)> replace_indices_;
-  std::mutex take_mutex_;    ///< guards the next four
-  std::deque<Node*> ready_;  ///< tiles, and merges whose children are done, in order
-  unsigned lanes_ = 0;       ///< that work off what is ready, beside the reading
+  std::mutex load_mutex_;  ///< guards the next one
   std::future<StoredTile> reading_ahead_;
-  std::atomic<bool> failed_ = false;
   TaskSums tasks_;
   BorderGrowth<D> growth_;
   std::mutex tell_mutex_;     ///< held while options_.task_done is called
