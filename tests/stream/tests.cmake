@@ -15,6 +15,7 @@ spillway_test(stream_unit_test unit
           stream/triangulate/settle_test.cpp stream/triangulate/task_sums_test.cpp
           stream/triangulate/tile_engine_test.cpp
           stream/triangulate/tile_triangulation_test.cpp
+          stream/triangulate/work_lanes_test.cpp
   LIBS spillway_stream)
 
 spillway_test(stream_property_test property

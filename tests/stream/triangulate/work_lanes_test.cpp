@@ -1,0 +1,126 @@
+#include "stream/triangulate/work_lanes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+namespace spillway::detail {
+namespace {
+
+using ::testing::Each;
+using ::testing::Le;
+
+struct Item {
+  std::uint64_t weight = 1;
+  int finished = 0;
+};
+
+/// Items that are worked off, and what was seen of it.
+class WorkLanesTest : public ::testing::TestWithParam<unsigned> {
+ protected:
+  static constexpr std::uint64_t kRoom = 5;
+
+  WorkLanesTest() : items_(200) {
+    for (std::size_t i = 0; i < items_.size(); ++i)
+      items_[i].weight = i % 4 + (i % 50 == 0 ? 9 : 0);
+  }
+
+  void begin(Item& item, const Item* next) {
+    begun_.push_back(&item - items_.data());
+    nexts_.push_back(next == nullptr ? -1 : next - items_.data());
+    if (item.weight <= kRoom) most_ = std::max(most_.load(), under_way_ += item.weight);
+  }
+  void finish(Item& item) {
+    // As tiles do, which wait for parts of their own work.
+    std::atomic<int> sum = 0;
+    parallel_for(100, 7, [&](std::size_t, std::size_t first, std::size_t last) {
+      sum += static_cast<int>(last - first);
+    });
+    EXPECT_EQ(sum, 100);
+    if (item.weight <= kRoom) under_way_ -= item.weight;
+    if (&item == fails_at_) throw std::runtime_error("it fails");
+    ++item.finished;
+  }
+  WorkLanes<Item> lanes() {
+    return {GetParam(),
+            kRoom,
+            {.weight = [](const Item& item) { return item.weight; },
+             .begin = [this](Item& item, const Item* next) { begin(item, next); },
+             .finish = [this](Item& item) { finish(item); },
+             .give_up = [this] { given_up_ = true; }}};
+  }
+  void run(const std::function<void()>& work) { with_threads(GetParam(), work); }
+
+  [[nodiscard]] std::vector<int> times_finished() const {
+    std::vector<int> times;
+    for (const Item& item : items_) times.push_back(item.finished);
+    return times;
+  }
+  void expect_all_in_order() const {
+    std::vector<std::ptrdiff_t> order(items_.size());
+    std::iota(order.begin(), order.end(), 0);
+    EXPECT_EQ(begun_, order);
+    EXPECT_THAT(times_finished(), Each(1));
+    EXPECT_THAT(most_.load(), Le(kRoom));
+  }
+
+  std::vector<Item> items_;
+  std::vector<std::ptrdiff_t> begun_;
+  std::vector<std::ptrdiff_t> nexts_;
+  std::atomic<std::uint64_t> under_way_ = 0;
+  std::atomic<std::uint64_t> most_ = 0;
+  Item* fails_at_ = nullptr;
+  std::atomic<bool> given_up_ = false;
+};
+
+TEST_P(WorkLanesTest, BeginsAllInOrderAndKeepsToItsRoom) {
+  WorkLanes<Item> lanes = this->lanes();
+  for (Item& item : items_) lanes.add(item);
+  run([&] { lanes.work_off(); });
+  expect_all_in_order();
+  EXPECT_EQ(nexts_.back(), -1);
+  EXPECT_EQ(nexts_.front(), 1);
+}
+
+TEST_P(WorkLanesTest, WorksBesideWhoBringsMore) {
+  WorkLanes<Item> lanes = this->lanes();
+  run([&] {
+    TaskGroup group;
+    for (Item& item : items_) {
+      lanes.add(item);
+      lanes.work_beside(group);
+    }
+    group.wait();
+    lanes.work_off();
+  });
+  expect_all_in_order();
+}
+
+TEST_P(WorkLanesTest, ThrowsWhatFailsAndBeginsNothingMore) {
+  for (const bool beside : {false, true}) {
+    fails_at_ = &items_[20];
+    begun_.clear();
+    WorkLanes<Item> lanes = this->lanes();
+    const auto all = [&] {
+      TaskGroup group;
+      for (Item& item : items_) {
+        lanes.add(item);
+        if (beside) lanes.work_beside(group);
+      }
+      if (beside) group.wait();
+      lanes.work_off();
+    };
+    EXPECT_THROW(run(all), std::runtime_error);
+    EXPECT_TRUE(given_up_);
+    EXPECT_LT(begun_.size(), items_.size());
+    EXPECT_EQ(items_[20].finished, 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, WorkLanesTest, ::testing::Values(1, 2, 3, 8));
+
+}  // namespace
+}  // namespace spillway::detail
