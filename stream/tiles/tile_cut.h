@@ -7,7 +7,7 @@
 
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
-#include "stream/tiles/tile_segment.h"
+#include "stream/tiles/storage/tile_segment.h"
 
 namespace spillway::detail {
 

@@ -21,14 +21,14 @@
 #include "src/runtime/stage_times.h"
 #include "stream/tiles/cuts/cut_tree.h"
 #include "stream/tiles/cuts/dealt_points.h"
-#include "stream/tiles/point_buffer.h"
 #include "stream/tiles/point_feed.h"
 #include "stream/tiles/regions/region_plan.h"
-#include "stream/tiles/segment_reader.h"
-#include "stream/tiles/tile_block.h"
+#include "stream/tiles/storage/point_buffer.h"
+#include "stream/tiles/storage/segment_reader.h"
+#include "stream/tiles/storage/tile_block.h"
+#include "stream/tiles/storage/tile_segment.h"
 #include "stream/tiles/tile_cut.h"
 #include "stream/tiles/tile_node.h"
-#include "stream/tiles/tile_segment.h"
 
 namespace spillway::detail {
 

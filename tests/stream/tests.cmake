@@ -3,15 +3,15 @@ spillway_test(stream_unit_test unit
           stream/output/sequencer_test.cpp stream/plan/memory_plan_test.cpp
           stream/sinks/contour_test.cpp stream/sinks/raster_store_test.cpp
           stream/sinks/tetrahedron_writers_test.cpp
-          stream/tiles/equal_points_test.cpp stream/tiles/point_buffer_test.cpp stream/tiles/point_sample_test.cpp
-          stream/tiles/point_span_test.cpp stream/tiles/segment_reader_test.cpp
-          stream/tiles/tile_block_test.cpp stream/tiles/tile_cut_test.cpp
-          stream/tiles/tile_node_test.cpp stream/tiles/tile_segment_test.cpp
+          stream/tiles/equal_points_test.cpp stream/tiles/storage/point_buffer_test.cpp stream/tiles/point_sample_test.cpp
+          stream/tiles/point_span_test.cpp stream/tiles/storage/segment_reader_test.cpp
+          stream/tiles/storage/tile_block_test.cpp stream/tiles/tile_cut_test.cpp
+          stream/tiles/tile_node_test.cpp stream/tiles/storage/tile_segment_test.cpp
           stream/tiles/tile_tree_test.cpp stream/tiles/cuts/cut_lookup_test.cpp
-          stream/tiles/cuts/cut_tree_test.cpp stream/tiles/regions/cell_tree_test.cpp
+          stream/tiles/cuts/cut_tree_test.cpp
           stream/tiles/regions/reading_order_test.cpp stream/tiles/regions/region_plan_test.cpp
           stream/triangulate/border_growth_test.cpp stream/triangulate/border_test.cpp
-          stream/triangulate/merge_forest_test.cpp stream/triangulate/merge_tree_test.cpp
+          stream/triangulate/cell_tree_test.cpp stream/triangulate/merge_forest_test.cpp stream/triangulate/merge_tree_test.cpp
           stream/triangulate/settle_test.cpp stream/triangulate/task_sums_test.cpp
           stream/triangulate/tile_engine_test.cpp
           stream/triangulate/tile_triangulation_test.cpp

@@ -10,7 +10,7 @@
 #include "stream/checker/checker.h"
 #include "stream/library/context/run_watch.h"
 #include "stream/source/point_stream.h"
-#include "stream/tiles/tile_block.h"
+#include "stream/tiles/storage/tile_block.h"
 
 namespace spillway::detail {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "stream/tiles/tile_block.h"
+#include "stream/tiles/storage/tile_block.h"
 
 namespace spillway::detail {
 

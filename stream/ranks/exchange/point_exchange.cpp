@@ -9,7 +9,7 @@
 #include "src/distributed/packing.h"
 #include "src/parallel/parallel.h"
 #include "stream/tiles/cuts/dealt_points.h"
-#include "stream/tiles/tile_block.h"
+#include "stream/tiles/storage/tile_block.h"
 
 namespace spillway::detail {
 namespace {

@@ -15,8 +15,8 @@
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 #include "stream/source/thinning/point_runs.h"
-#include "stream/tiles/point_buffer.h"
-#include "stream/tiles/tile_block.h"
+#include "stream/tiles/storage/point_buffer.h"
+#include "stream/tiles/storage/tile_block.h"
 
 namespace spillway::detail {
 

@@ -10,8 +10,8 @@
 
 #include "formats/disk/scratch_folder.h"
 #include "src/error.h"
-#include "stream/tiles/tile_block.h"
-#include "stream/tiles/tile_segment.h"
+#include "stream/tiles/storage/tile_block.h"
+#include "stream/tiles/storage/tile_segment.h"
 
 namespace spillway::detail {
 

@@ -1,4 +1,4 @@
-#include "stream/tiles/tile_segment.h"
+#include "stream/tiles/storage/tile_segment.h"
 
 #include <algorithm>
 #include <optional>

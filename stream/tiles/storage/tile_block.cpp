@@ -1,4 +1,4 @@
-#include "stream/tiles/tile_block.h"
+#include "stream/tiles/storage/tile_block.h"
 
 #include <fmt/format.h>
 

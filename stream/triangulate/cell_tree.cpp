@@ -1,4 +1,4 @@
-#include "stream/tiles/regions/cell_tree.h"
+#include "stream/triangulate/cell_tree.h"
 
 #include <algorithm>
 #include <cmath>

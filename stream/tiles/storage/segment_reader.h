@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "src/error.h"
-#include "stream/tiles/tile_segment.h"
+#include "stream/tiles/storage/tile_segment.h"
 
 namespace spillway::detail {
 

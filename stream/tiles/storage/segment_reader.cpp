@@ -1,8 +1,8 @@
-#include "stream/tiles/segment_reader.h"
+#include "stream/tiles/storage/segment_reader.h"
 
 #include <algorithm>
 
-#include "stream/tiles/tile_block.h"
+#include "stream/tiles/storage/tile_block.h"
 
 namespace spillway::detail {
 namespace {

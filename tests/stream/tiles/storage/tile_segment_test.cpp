@@ -1,6 +1,6 @@
 // Where spilled points lie, also where stretches of a file become one before they are written.
 
-#include "stream/tiles/tile_segment.h"
+#include "stream/tiles/storage/tile_segment.h"
 
 #include <gtest/gtest.h>
 

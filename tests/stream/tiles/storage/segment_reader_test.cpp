@@ -1,6 +1,6 @@
 // Segments come back from their files block by block; corrupt ones are refused.
 
-#include "stream/tiles/segment_reader.h"
+#include "stream/tiles/storage/segment_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

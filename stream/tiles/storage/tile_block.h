@@ -13,7 +13,7 @@
 #include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
 #include "src/geometry/point.h"
-#include "stream/tiles/point_buffer.h"
+#include "stream/tiles/storage/point_buffer.h"
 
 namespace spillway::detail {
 
