@@ -1,6 +1,8 @@
 #include "stream/triangulate/settle.h"
 
+#include <algorithm>
 #include <memory>
+#include <type_traits>
 
 #include "src/geometry/longest_edge.h"
 
@@ -18,6 +20,7 @@ constexpr VertexId kAhead = 16;
 template <int D, typename Part>
 class Settlement {
   using Corners = std::array<VertexId, D + 1>;
+  static constexpr bool kOfLeaf = std::is_same_v<Part, LeafToSettle<D>>;
 
  public:
   Settlement(const Part& part, const OutputOptions& output)
@@ -37,9 +40,16 @@ class Settlement {
   }
 
  private:
+  void mark_uses() {
+    if constexpr (kOfLeaf) {
+      if (!output_.max_edge) return mark_uses_from_border();
+    }
+    mark_all_uses();
+  }
+
   /// Too long simplices count as uses: their vertices belong to the mesh. Infinite ones that are
   /// final do not: nothing of them is in the mesh, and each of their vertices has finite ones.
-  void mark_uses() {
+  void mark_all_uses() {
     for (std::size_t s = 0; s < part_.simplex_count(); ++s) {
       if (part_.fates[s] == Fate::kFinal) {
         const Corners corners = part_.finite_simplex(s);
@@ -54,32 +64,64 @@ class Settlement {
     }
   }
 
+  /// The same where nothing is left out, without a look at most simplices. A vertex without kept
+  /// ones has final ones. Of a vertex with kept ones, a final one is the neighbour of a kept one,
+  /// as its finite simplices are connected, and each of its infinite ones is beside a finite one.
+  void mark_uses_from_border() {
+    std::fill(use_.begin(), use_.end(), kByFinal | kByEmitted);
+    for (const Duplicate& duplicate : part_.duplicates) {
+      use_[duplicate.dropped - part_.first_vertex] = 0;
+    }
+    part_.for_each_open([&](std::size_t s) {
+      if (part_.fates[s] != Fate::kKept) return;
+      ++kept_;
+      for (const VertexId v : part_.simplex(s)) {
+        if (v != kInfiniteVertex) use_[v] = kByBorder;
+      }
+    });
+    part_.for_each_open([&](std::size_t s) {
+      if (part_.fates[s] != Fate::kKept) return;
+      const Corners corners = part_.simplex(s);
+      for (int i = 0; i <= D; ++i) {
+        if (part_.fates[part_.simplices[s].neighbours[i]] != Fate::kFinal) continue;
+        for (int k = 0; k <= D; ++k) {
+          if (k != i) use_[corners[k]] |= kByFinal | kByEmitted;
+        }
+      }
+    });
+  }
+
   void announce_vertices() {
     MeshBlock& mesh = result_.mesh;
-    mesh.vertices.reserve(use_.size());
-    hashes_.reserve(use_.size());
-    if (output_.input_index) mesh.input_index.reserve(use_.size());
+    mesh.vertices.resize(use_.size());
+    hashes_.resize(use_.size());
+    if (output_.input_index) mesh.input_index.resize(use_.size());
+    std::uint32_t count = 0;
     for (VertexId v = 0; v < use_.size(); ++v) {
       part_.expect(v + kAhead);
       if ((use_[v] & kByFinal) == 0 || part_.place(v).announced()) continue;
       const BorderVertex<D>& vertex = part_.vertex(v);
-      short_number_[v] = static_cast<std::uint32_t>(mesh.vertices.size());
-      mesh.vertices.push_back(output_point(vertex));
-      if (output_.input_index) mesh.input_index.push_back(vertex.input_index);
-      hashes_.push_back(vertex_hash<D>(world(vertex.position)));
+      mesh.vertices[count] = output_point(vertex);
+      if (output_.input_index) mesh.input_index[count] = vertex.input_index;
+      hashes_[count] = vertex_hash<D>(world(vertex.position));
+      short_number_[v] = count++;
     }
+    mesh.vertices.resize(count);
+    hashes_.resize(count);
+    if (output_.input_index) mesh.input_index.resize(count);
   }
 
   void import_and_finalize() {
     MeshBlock& mesh = result_.mesh;
     result_.border.dimension = part_.dimension();
-    mesh.finalized.reserve(mesh.vertices.size());
+    mesh.finalized.resize(use_.size());
+    std::uint32_t* finalized = mesh.finalized.data();
     for (VertexId v = 0; v < use_.size(); ++v) {
       const StreamPlace place = part_.place(v);
       const bool kept = (use_[v] & kByBorder) != 0;
       if (place.announced() && ((use_[v] & kByEmitted) != 0 || !kept)) import(v);
       if (!kept) {
-        if (use_[v] != 0 || place.announced()) mesh.finalized.push_back(short_number_[v]);
+        if (use_[v] != 0 || place.announced()) *finalized++ = short_number_[v];
         continue;
       }
       kept_number_[v] = static_cast<VertexId>(result_.border.vertices.size());
@@ -88,6 +130,7 @@ class Settlement {
         result_.border.vertices.back().place = {part_.block, short_number_[v]};
       }
     }
+    mesh.finalized.resize(static_cast<std::size_t>(finalized - mesh.finalized.data()));
   }
 
   void import(VertexId v) {
@@ -106,20 +149,29 @@ class Settlement {
     result_.border.simplices.reserve(kept_);
     result_.mesh.corners.resize((D + 1) * (count - kept_));
     std::uint32_t* end = result_.mesh.corners.data();
-    for (std::size_t s = 0; s < count; ++s) {
-      if (part_.fates[s] == Fate::kFinal) {
+    std::size_t s = 0;
+    // Most are final; those that may not be are few, if they are known.
+    const auto list_final = [&](std::size_t until) {
+      for (; s < until; ++s) {
         const Corners corners = part_.finite_simplex(s);
         if (is_left_out(corners)) {
           ++result_.left_out;
         } else {
           for (const VertexId v : corners) *end++ = short_number_[v];
         }
-      } else if (part_.fates[s] == Fate::kKept) {
-        keep(part_.simplex(s));
+      }
+    };
+    part_.for_each_open([&](std::size_t open) {
+      if (part_.fates[open] == Fate::kFinal) return;
+      list_final(open);
+      if (part_.fates[open] == Fate::kKept) {
+        keep(part_.simplex(open));
       } else {
         ++result_.hull_facets;
       }
-    }
+      s = open + 1;
+    });
+    list_final(count);
     result_.mesh.corners.resize(static_cast<std::size_t>(end - result_.mesh.corners.data()));
   }
 

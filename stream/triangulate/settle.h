@@ -57,6 +57,11 @@ struct MergeToSettle {
   [[nodiscard]] const Point<D>& position(VertexId v) const { return merged.vertices[v].position; }
   void expect(VertexId /*v*/) const {}
   [[nodiscard]] StreamPlace place(VertexId v) const { return merged.vertices[v].place; }
+  /// Calls visit(s) for all simplices whose fate may be another one than kFinal, in order.
+  template <typename Visit>
+  void for_each_open(const Visit& visit) const {
+    for (std::size_t s = 0; s < fates.size(); ++s) visit(s);
+  }
 };
 
 /// The state of a leaf of a tile: its kernel's simplices and the tile's points, as they are.
@@ -65,7 +70,9 @@ struct LeafToSettle {
   BlockPlace block;
   std::span<const Simplex<D>> simplices;
   VertexId first_vertex = 0;              ///< the number that its first vertex has in `simplices`
+  std::span<const Duplicate> duplicates;  ///< vertices without simplices, by the same numbers
   std::span<const Fate> fates;            ///< by simplex
+  std::span<const std::uint32_t> open;    ///< ascending; the fates of all others are kFinal
   std::span<const Point<D>> points;       ///< by vertex
   std::span<const VertexId> input_index;  ///< by vertex: its place in the two that follow
   std::span<const double> heights;        ///< D = 2
@@ -99,6 +106,10 @@ struct LeafToSettle {
   }
   /// Nothing of a leaf is in the stream yet.
   [[nodiscard]] StreamPlace place(VertexId /*v*/) const { return {}; }
+  template <typename Visit>
+  void for_each_open(const Visit& visit) const {
+    for (const std::uint32_t s : open) visit(s);
+  }
 };
 
 /// Announces the vertices of final simplices where that has not been done yet, finalizes those that

@@ -197,7 +197,11 @@ class TileRun {
     const StageTimer timer(counts_.times, Stage::kFinality);
     LeafToSettle<D> leaf = leaf_of(*node.tree);
     leaf.simplices = {base_case.simplices.data(), base_case.simplices.size()};
-    const std::vector<Fate> fates = fates_in_leaf(node, leaf, base_case.not_inside);
+    leaf.duplicates = base_case.duplicates;
+    std::vector<std::uint32_t> asked;
+    if (!base_case.not_inside) asked = open_questions(node, leaf);
+    leaf.open = base_case.not_inside ? *base_case.not_inside : asked;
+    const std::vector<Fate> fates = fates_in_leaf(node, leaf);
     leaf.fates = fates;
     return settle<D>(leaf, context_.options.output);
   }
@@ -276,14 +280,10 @@ class TileRun {
     return open;
   }
 
-  /// `not_inside` is that of the leaf's base case.
-  [[nodiscard]] std::vector<Fate> fates_in_leaf(
-      const Node& node, const LeafToSettle<D>& leaf,
-      const std::optional<std::vector<std::uint32_t>>& not_inside) const {
+  [[nodiscard]] std::vector<Fate> fates_in_leaf(const Node& node,
+                                                const LeafToSettle<D>& leaf) const {
     const auto may_be_changed = change_test(tree_->siblings_up(node));
-    std::vector<std::uint32_t> asked;
-    if (!not_inside) asked = open_questions(node, leaf);
-    const std::span<const std::uint32_t> open = not_inside ? *not_inside : asked;
+    const std::span<const std::uint32_t> open = leaf.open;
     std::vector<Fate> fates(leaf.simplex_count(), Fate::kFinal);
     for_each_region<D>(
         open.size(), [&](std::size_t i) { return leaf.simplex(open[i]); }, leaf.points,
