@@ -270,12 +270,14 @@ void read_integers(std::span<const std::byte>& left, const FileSpot& where, std:
 
 }  // namespace
 
-void append_column(std::vector<std::byte>& out, std::span<const double> values) {
-  if (all_integers(values)) {
+bool append_column(std::vector<std::byte>& out, std::span<const double> values) {
+  const bool integers = all_integers(values);
+  if (integers) {
     encode<IntegerDoubles>(out, values, kIntegers);
   } else {
     encode<BitDoubles>(out, values, kBits);
   }
+  return integers;
 }
 
 void append_column(std::vector<std::byte>& out, std::span<const std::uint64_t> values) {

@@ -13,8 +13,9 @@
 
 namespace spillway::detail {
 
-/// Appends a column. Values are restored to the bit, negative zero included.
-void append_column(std::vector<std::byte>& out, std::span<const double> values);
+/// Appends a column. Values are restored to the bit, negative zero included. For doubles it tells
+/// whether they went as integers, of less than 2^51 then.
+bool append_column(std::vector<std::byte>& out, std::span<const double> values);
 void append_column(std::vector<std::byte>& out, std::span<const std::uint64_t> values);
 void append_column(std::vector<std::byte>& out, std::span<const std::uint32_t> values);
 

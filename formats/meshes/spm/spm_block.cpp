@@ -27,6 +27,17 @@ const char* demand(bool integer) { return integer ? "an integer up to 2^53" : "f
   throw Error(what, ErrorCode::kInvalidArgument);
 }
 
+/// 0 if there is none. Compared with their highest bits turned, as the least that vectors can do
+/// compares signed numbers.
+std::uint32_t largest_of(std::span<const std::uint32_t> numbers) {
+  constexpr std::uint32_t kHighest = std::uint32_t{1} << 31U;
+  auto largest = static_cast<std::int32_t>(kHighest);
+  for (const std::uint32_t number : numbers) {
+    largest = std::max(largest, static_cast<std::int32_t>(number ^ kHighest));
+  }
+  return static_cast<std::uint32_t>(largest) ^ kHighest;
+}
+
 SpmCounts counts_of(const MeshStreamHeader& header, const MeshBlock& block) {
   const std::size_t corners = header.dimension + 1;
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
@@ -41,9 +52,7 @@ SpmCounts counts_of(const MeshStreamHeader& header, const MeshBlock& block) {
     fail_to_write(fmt::format("a block has {} vertices with {} input indices",
                               block.vertices.size(), block.input_index.size()));
   }
-  std::uint32_t largest = 0;
-  for (const std::uint32_t number : block.corners) largest = std::max(largest, number);
-  for (const std::uint32_t number : block.finalized) largest = std::max(largest, number);
+  const std::uint32_t largest = std::max(largest_of(block.corners), largest_of(block.finalized));
   if (largest > block.vertices.size() + block.corners.size() + block.imported.size() +
                     block.finalized.size()) {
     fail_to_write(fmt::format("a block has a short number {} without a vertex", largest));
@@ -56,19 +65,30 @@ SpmCounts counts_of(const MeshStreamHeader& header, const MeshBlock& block) {
   return counts;
 }
 
+/// Sets the bits of these numbers. Most follow on one another, so that those of a byte are put
+/// together before it is written.
+void set_bits(std::byte* bytes, std::span<const std::uint32_t> numbers) {
+  for (std::size_t i = 0; i < numbers.size();) {
+    const std::uint32_t at = numbers[i] / 8;
+    std::uint32_t bits = 0;
+    for (; i < numbers.size() && numbers[i] / 8 == at; ++i) bits |= 1U << (numbers[i] % 8);
+    bytes[at] |= static_cast<std::byte>(bits);
+  }
+}
+
 void append_coordinates(std::vector<std::byte>& out, const MeshStreamHeader& header,
                         std::span<const LatticePoint> vertices) {
   std::vector<double> column(vertices.size());
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < column.size(); ++i) column[i] = vertices[i][axis];
     const bool integer = is_integer_axis(header, axis);
+    if (append_column(out, column)) continue;
     const std::size_t invalid = first_invalid_coordinate(column, integer);
     if (invalid < column.size()) {
       fail_to_write(
           fmt::format("coordinate {} of vertex {} of a block is not {}; repair the points",
                       column[invalid], invalid, demand(integer)));
     }
-    append_column(out, column);
   }
 }
 
@@ -101,9 +121,7 @@ SpmCounts append_spm_content(std::vector<std::byte>& out, const MeshStreamHeader
   store(out.data() + begin, counts.vertices);
   store(out.data() + begin + 4, counts.numbers);
   store(out.data() + begin + 8, counts.simplices);
-  for (const std::uint32_t number : block.finalized) {
-    out[bits + number / 8] |= std::byte{1} << (number % 8);
-  }
+  set_bits(out.data() + bits, block.finalized);
   append_corners(out, header.dimension, counts.numbers, block.corners);
   append_coordinates(out, header, block.vertices);
   append_column(out, block.input_index);

@@ -33,31 +33,44 @@ constexpr std::uint32_t kUnusualFan = 7;
 template <int D>
 using Rest = std::array<std::uint32_t, D>;  // the corners of a simplex but the first, less that
 
-// Which corner of a simplex is the smallest. Without a branch, as nobody can tell.
-unsigned smallest_corner(const std::uint32_t* s, std::integral_constant<int, 2> /*dimension*/) {
-  const unsigned second = static_cast<unsigned>(s[1] < s[0]) & static_cast<unsigned>(s[1] <= s[2]);
-  const unsigned third = static_cast<unsigned>(s[2] < s[0]) & static_cast<unsigned>(s[2] < s[1]);
-  return second + 2 * third;
-}
-
-unsigned smallest_corner(const std::uint32_t* s, std::integral_constant<int, 3> /*dimension*/) {
-  const unsigned low = static_cast<unsigned>(s[1] < s[0]);
-  const unsigned high = 2 + static_cast<unsigned>(s[3] < s[2]);
-  return s[high] < s[low] ? high : low;
-}
-
-/// The numbers of the other corners, by that of the smallest, so that the whole is an even
-/// permutation.
+/// A simplex with its smallest corner in front, by an even permutation.
 template <int D>
-constexpr auto kOtherCorners = [] {
-  std::array<std::array<std::uint8_t, D>, D + 1> others{};
-  for (unsigned first = 0; first <= D; ++first) {
-    for (unsigned k = 0; k < D; ++k) {
-      others[first][k] = static_cast<std::uint8_t>(D == 2 ? (first + k + 1) % 3 : first ^ (k + 1));
-    }
-  }
-  return others;
-}();
+struct Turned {
+  std::uint32_t first;
+  Rest<D> rest;
+};
+
+// Two corners in one word, for no branch: nobody can tell which corner is the smallest.
+using CornerPair = std::uint64_t;
+
+// The smallest corner is the upper half of the smallest of three words.
+Turned<2> turn(const std::uint32_t* s, std::integral_constant<int, 2> /*dimension*/) {
+  const auto pair = [](std::uint32_t a, std::uint32_t b) { return CornerPair{a} << 32U | b; };
+  const CornerPair smallest =
+      std::min(std::min(pair(s[0], s[1]), pair(s[1], s[2])), pair(s[2], s[0]));
+  const auto first = static_cast<std::uint32_t>(smallest >> 32U);
+  const auto second = static_cast<std::uint32_t>(smallest);
+  return {first, {second - first, s[0] + s[1] + s[2] - second - 2 * first}};
+}
+
+// First the pair that has the smallest corner, then that corner in its lower half.
+Turned<3> turn(const std::uint32_t* s, std::integral_constant<int, 3> /*dimension*/) {
+  const auto pair = [](std::uint32_t a, std::uint32_t b) { return CornerPair{b} << 32U | a; };
+  const auto upper = [](CornerPair p) { return static_cast<std::uint32_t>(p >> 32U); };
+  const auto lower = [](CornerPair p) { return static_cast<std::uint32_t>(p); };
+  CornerPair front = pair(s[0], s[1]);
+  CornerPair back = pair(s[2], s[3]);
+  const bool behind = std::min(s[2], s[3]) < std::min(s[0], s[1]);
+  const CornerPair difference = (front ^ back) & (0 - CornerPair{behind});
+  front ^= difference;
+  back ^= difference;
+  // To swap the corners of both pairs is even, too.
+  const int turns = static_cast<int>(upper(front) < lower(front)) * 32;
+  front = std::rotl(front, turns);
+  back = std::rotl(back, turns);
+  const std::uint32_t first = lower(front);
+  return {first, {upper(front) - first, lower(back) - first, upper(back) - first}};
+}
 
 /// Rows of numbers, most of them small.
 class NumberRows {
@@ -141,16 +154,14 @@ Sorted<D> sort_by_first(std::uint32_t numbers, std::span<const std::uint32_t> co
                    std::make_unique_for_overwrite<Rest<D>[]>(count)};
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t* const simplex = &corners[(D + 1) * i];
-    ++sorted.ends[simplex[smallest_corner(simplex, kDimension)] + 1];
+    ++sorted.ends[*std::min_element(simplex, simplex + D + 1) + 1];
   }
   std::partial_sum(sorted.ends.begin(), sorted.ends.end(), sorted.ends.begin());
   // Now these are the begins of the simplices, which putting them there makes ends.
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t* const simplex = &corners[(D + 1) * i];
-    const unsigned smallest = smallest_corner(simplex, kDimension);
-    const std::uint32_t first = simplex[smallest];
-    Rest<D>& rest = sorted.rests[sorted.ends[first]++];
-    for (int k = 0; k < D; ++k) rest[k] = simplex[kOtherCorners<D>[smallest][k]] - first;
+    const Turned<D> simplex = turn(&corners[(D + 1) * i], kDimension);
+    std::uint32_t* const rest = sorted.rests[sorted.ends[simplex.first]++].data();
+    for (int k = 0; k < D; ++k) rest[k] = simplex.rest[k];
   }
   return sorted;
 }
