@@ -1,6 +1,7 @@
 #include "stream/source/input_regions.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -97,13 +98,14 @@ void InputRegions::check(const PointBlock& block, std::size_t region) const {
 
 void InputRegions::refuse(const PointBlock& block, std::size_t point, std::size_t region) const {
   const PointHeader& header = facts_.inputs[turns_[regions_[region].unit].input].header;
-  const auto world = in_world(coordinates_.lattice(), block.points[point]);
+  const auto place = in_world(coordinates_.lattice(), block.points[point]).numbers();
   const std::uint64_t number = block.index[point];
-  throw BadInput(header.name,
-                 fmt::format("point {} at ({}, {}) lies outside of the box that the {} tells",
-                             number, world[0], world[1],
-                             header.regions.empty() ? "header" : "file's division into parts"),
-                 {PlaceUnit::kRecord, number}, Remedy::kDistrustHeaders);
+  throw BadInput(
+      header.name,
+      fmt::format("point {} at ({}) lies outside of the box that the {} tells", number,
+                  fmt::join(place.begin(), place.begin() + coordinates_.dimension(), ", "),
+                  header.regions.empty() ? "header" : "file's division into parts"),
+      {PlaceUnit::kRecord, number}, Remedy::kDistrustHeaders);
 }
 
 }  // namespace spillway::detail

@@ -47,6 +47,7 @@ class Merge {
     for (const Border<D>& child : children_) bytes += child.bytes();
     const MemoryLease copy(budget_, bytes, "the merge of borders");
     find_exposed(task.after[0]);
+    if (border_vertices_.empty()) return std::move(result_);  // one child, with nothing beside it
     const MemoryLease lease(budget_, merge_bytes<D>(border_vertices_.size(), points_below()),
                             "the triangulation of a border");
     triangulate(task.after[1]);

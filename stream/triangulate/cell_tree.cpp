@@ -13,6 +13,8 @@ CellTree<D>::CellTree(const RegionPlan& plan)
       sides_(static_cast<std::size_t>(plan.cuts.cuts())),
       nodes_(parents_.size()),
       complete_(parents_.size()),
+      surrounded_(parents_.size()),
+      root_(number_of(plan.cuts.root())),
       part_of_(parents_.size()) {
   for (std::size_t c = 0; c < cells_; ++c) {
     const RegionPlan::Cell& cell = plan.cells[c];
@@ -80,6 +82,7 @@ typename CellTree<D>::Completion CellTree<D>::complete(std::uint32_t cell,
   complete_[cell] = true;
   if (nodes_[cell]) part_of_[cell] = cell;
   Completion done{.part = cell, .node = nodes_[cell], .outside = outside_of(cell), .joins = {}};
+  surrounded_[cell] = !done.outside.empty();
   for (auto above = parents_[cell]; above; above = parents_[*above]) {
     const auto& sides = sides_[*above - cells_];
     if (!complete_[sides[0]] || !complete_[sides[1]]) break;
@@ -89,11 +92,25 @@ typename CellTree<D>::Completion CellTree<D>::complete(std::uint32_t cell,
     if (below && beyond) {
       part_of_[*above] = *above;
       done.joins.push_back({*above, {*below, *beyond}, nodes_[*above], outside_of(*above)});
+      surrounded_[*above] = !done.joins.back().outside.empty();
     } else {
       part_of_[*above] = below ? below : beyond;
     }
   }
+  if (complete_[root_]) add_last_join(done);
   return done;
+}
+
+/// The last cells had no points: what was kept because of their boxes is final now.
+template <int D>
+void CellTree<D>::add_last_join(Completion& done) {
+  const auto all = part_of_[root_];
+  if (!all || !surrounded_[*all]) return;
+  auto node = std::make_shared<TileNode<D>>();
+  node->box = nodes_[root_]->box;
+  node->points = nodes_[root_]->points;
+  node->children.push_back(nodes_[root_]);
+  done.joins.push_back({parents_.size(), {*all}, node, {}});
 }
 
 template class CellTree<2>;

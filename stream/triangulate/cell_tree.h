@@ -22,10 +22,11 @@ class CellTree {
 
   explicit CellTree(const RegionPlan& plan);
 
-  /// Two parts of the tree whose cells are all complete, and the part that they make up.
+  /// Parts of the tree whose cells are all complete, and the part that they make up: two, or at the
+  /// end the one that has all points, if it was taken for a part of them when it was made.
   struct Join {
     std::size_t part = 0;  ///< a number of its own
-    std::array<std::size_t, 2> below{};
+    std::vector<std::size_t> below;
     Node node;
     std::vector<Node> outside;  ///< everything else
   };
@@ -40,19 +41,22 @@ class CellTree {
   Completion complete(std::uint32_t cell, std::optional<TileNode<D>> tiles);
 
   /// How many parts there may be: their numbers are below that.
-  [[nodiscard]] std::size_t parts() const { return parents_.size(); }
+  [[nodiscard]] std::size_t parts() const { return parents_.size() + 1; }
 
  private:
   void add(const CutTree& cuts, CutTree::NodeRef ref, std::optional<std::size_t> parent);
   [[nodiscard]] std::size_t number_of(CutTree::NodeRef ref) const;
   [[nodiscard]] Node joined(std::size_t part) const;
   [[nodiscard]] std::vector<Node> outside_of(std::size_t part) const;
+  void add_last_join(Completion& done);
 
   std::size_t cells_;  ///< which come first by number, then cuts
   std::vector<std::optional<std::size_t>> parents_;
   std::vector<std::array<std::size_t, 2>> sides_;  ///< by cut
   std::vector<Node> nodes_;                        ///< null: certainly without points
   std::vector<bool> complete_;
+  std::vector<bool> surrounded_;  ///< by part: there was something outside when it was made
+  std::size_t root_ = 0;
   /// Of what is complete: the part that has all of its points; none if there are none.
   std::vector<std::optional<std::size_t>> part_of_;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "src/delaunay/base_case.h"
@@ -145,6 +146,9 @@ void TileEngine<D>::triangulate_rest() {
   tells_progress_ = true;
   for (const std::uint32_t cell : tree_.finish()) add_cell(cell);
   lanes_.work_off();
+  if (!top_->border.simplices.empty()) {
+    throw std::logic_error("not all that is final was found to be so: a fault of the program");
+  }
 }
 
 /// From now on refusals tell what will do for so many points.
@@ -174,14 +178,18 @@ void TileEngine<D>::add_cell(std::uint32_t cell) {
   if (complete.node) {
     const auto surroundings = surrounded(complete);
     parts_[complete.part] = add_nodes(*surroundings->root, outside_of(*surroundings), surroundings);
+    top_ = parts_[complete.part];
   }
   for (const auto& join : complete.joins) {
     const auto surroundings = surrounded(join);
+    std::vector<Node*> below;
+    for (const std::size_t part : join.below) below.push_back(parts_[part]);
     parts_[join.part] = add_node({.tree = surroundings->root.get(),
                                   .outside = outside_of(*surroundings),
                                   .surroundings = surroundings,
                                   .outside_shrank = true},
-                                 {parts_[join.below[0]], parts_[join.below[1]]});
+                                 std::move(below));
+    top_ = parts_[join.part];
   }
 }
 

@@ -157,8 +157,9 @@ class TileEngine {
   TileContext<D> context_;
   Forest forest_;
   Lanes lanes_ = make_lanes();
-  std::optional<CellTree<D>> cells_;          ///< with a plan
-  std::vector<Node*> parts_;                  ///< of these, by number, as far as they are complete
+  std::optional<CellTree<D>> cells_;  ///< with a plan
+  std::vector<Node*> parts_;          ///< of these, by number, as far as they are complete
+  Node* top_ = nullptr;  ///< the part that was added last: at the end that of all points
   std::atomic<bool> tells_progress_ = false;  ///< of triangulating: reading has ended
   std::function<void(std::span<std::uint64_t>)> replace_indices_;
   std::mutex load_mutex_;  ///< guards the next one

@@ -192,6 +192,43 @@ TEST(EarlyTriangulation, TakesBoxesThatAreEmptyInPart) {
   EXPECT_EQ(simplices_of<2>(early.mesh), expected_of<2>(regions));
 }
 
+/// What is kept because of the box of a cell that turns out to have no points is final in the end,
+/// wherever the cell is, and also if it is the last one.
+TEST(EarlyTriangulation, TakesCellsThatEndWithoutPoints) {
+  for (unsigned seed = 20; seed < 32; ++seed) {
+    Regions regions = survey(5, 6'000, seed);
+    std::mt19937 random(seed);
+    RegionStream boxes(regions);
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+      if (random() % 3 == 0) regions[r].clear();
+    }
+    RegionStream source(regions);
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+      source.told()[r].box = boxes.told()[r].box;
+      source.told()[r].count = boxes.told()[r].count;
+    }
+    const EarlyRun early = run<2>(std::move(source));
+    EXPECT_TRUE(early.is_early);
+    EXPECT_EQ(simplices_of<2>(early.mesh), expected_of<2>(regions)) << seed;
+  }
+}
+
+TEST(EarlyTriangulation, OfOneRegionWithPointsAmongEmptyOnesIsComplete) {
+  for (std::size_t only = 0; only < 9; ++only) {
+    const Regions all = survey(3, 9'000, 40);
+    Regions regions(9);
+    regions[only] = all[only];
+    RegionStream boxes(all);
+    RegionStream source(regions);
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+      source.told()[r].box = boxes.told()[r].box;
+      source.told()[r].count = 1'000;
+    }
+    const EarlyRun early = run<2>(std::move(source));
+    EXPECT_EQ(simplices_of<2>(early.mesh), expected_of<2>(regions)) << only;
+  }
+}
+
 TEST(EarlyTriangulation, ReadsAllFirstWhereThatIsNoGain) {
   const Regions regions = {survey(1, 5'000, 15)[0], survey(1, 5'000, 16)[0]};
   const EarlyRun late = run<2>(RegionStream(regions));

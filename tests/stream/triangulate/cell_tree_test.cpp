@@ -80,5 +80,30 @@ TEST(CellTree, CellsWithoutPointsDropOut) {
   EXPECT_THAT(last.joins[0].below, ElementsAre(first.part, last.part));
 }
 
+TEST(CellTree, WhatIsLeftAloneIsSettledOnceMore) {
+  const RegionPlan plan = four_cells();
+  CellTree<2> tree(plan);
+  tree.complete(cell_at(plan, 0.5), tile(0.2));
+  const auto second = tree.complete(cell_at(plan, 1.5), tile(1.2));
+  ASSERT_THAT(second.joins, SizeIs(1));
+  EXPECT_THAT(second.joins[0].outside, SizeIs(1));
+  tree.complete(cell_at(plan, 2.5), std::nullopt);
+  const auto last = tree.complete(cell_at(plan, 3.5), std::nullopt);
+  ASSERT_THAT(last.joins, SizeIs(1));
+  EXPECT_THAT(last.joins[0].below, ElementsAre(second.joins[0].part));
+  EXPECT_THAT(last.joins[0].node->children, SizeIs(1));
+  EXPECT_THAT(last.joins[0].outside, IsEmpty());
+  EXPECT_LT(last.joins[0].part, tree.parts());
+}
+
+TEST(CellTree, WhatKnewThatItIsAloneIsNotSettledAgain) {
+  const RegionPlan plan = four_cells();
+  CellTree<2> tree(plan);
+  for (const double x : {0.5, 1.5, 2.5}) tree.complete(cell_at(plan, x), std::nullopt);
+  const auto last = tree.complete(cell_at(plan, 3.5), tile(3.2));
+  EXPECT_THAT(last.outside, IsEmpty());
+  EXPECT_THAT(last.joins, IsEmpty());
+}
+
 }  // namespace
 }  // namespace spillway::detail
