@@ -34,6 +34,9 @@ class CutTree {
 
   /// Cuts a tile in two: it keeps its number for what is below `value` on `axis`. Returns the cut.
   NodeRef cut(std::uint32_t tile, int axis, double value);
+  /// The same for one of many cuts: find_tiles() works again after renew_lookup().
+  NodeRef make_cut(std::uint32_t tile, int axis, double value);
+  void renew_lookup();
 
   /// Number of cuts; the next one gets it as its reference.
   [[nodiscard]] NodeRef cuts() const { return static_cast<NodeRef>(cuts_.size()); }
@@ -48,9 +51,7 @@ class CutTree {
   [[nodiscard]] std::array<NodeRef, 2> sides(NodeRef ref) const { return cuts_[ref].sides; }
 
  private:
-  NodeRef make_cut(std::uint32_t tile, int axis, double value);
   void split_sample(std::uint32_t tile, LatticePoint* begin, LatticePoint* end, std::size_t parts);
-  void renew_lookup();
   [[nodiscard]] bool in_cell(const LatticePoint& point, std::uint32_t tile) const;
   [[nodiscard]] std::uint32_t find_tile(const LatticePoint& point) const;
 

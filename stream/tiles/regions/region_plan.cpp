@@ -148,7 +148,10 @@ class Planner {
     by_cell[tile] = std::move(portions);
   }
 
-  [[nodiscard]] CutTree take_cuts() { return std::move(cuts_); }
+  [[nodiscard]] CutTree take_cuts() {
+    cuts_.renew_lookup();
+    return std::move(cuts_);
+  }
 
   std::vector<std::vector<Portion>> by_cell;
   std::vector<std::uint32_t> in_order;  ///< cells, neighbours soon after each other
@@ -156,7 +159,7 @@ class Planner {
  private:
   void cut_at(std::uint32_t tile, std::vector<Portion> portions, int axis, double value) {
     const std::uint32_t other = cuts_.tiles();
-    cuts_.cut(tile, axis, value);
+    cuts_.make_cut(tile, axis, value);
     std::vector<Portion> below;
     std::vector<Portion> above;
     for (const Portion& portion : portions) {
