@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <mutex>
+#include <utility>
+
 #include "src/delaunay/base_case.h"
 #include "src/error.h"
+#include "src/geometry/lattice_check.h"
 #include "src/parallel/parallel.h"
 #include "stream/plan/memory_plan.h"
 #include "stream/tiles/regions/region_plan.h"
@@ -54,26 +58,57 @@ void run(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
   options.end_phase(engine.points());
 }
 
-/// Triangulates while it reads.
+/// The box around the points of a feed, seen by many threads.
+class SeenExtent {
+ public:
+  [[nodiscard]] PointFeed watched(PointFeed feed) {
+    return {
+        .fetch = std::move(feed.fetch),
+        .decode = [this, decode = std::move(feed.decode)](SourcePiece& piece, PointBlock& block) {
+          decode(piece, block);
+          const Box<2> box = plane_of(box_around(block.points));
+          const std::lock_guard lock(mutex_);
+          box_.expand(box);
+        }};
+  }
+
+  /// When all is read.
+  [[nodiscard]] const Box<2>& box() const { return box_; }
+
+ private:
+  std::mutex mutex_;  ///< guards the next one
+  Box<2> box_;
+};
+
+/// Triangulates while it reads. Returns whether what was taken for the extent of the points has
+/// held; if not, it is set to what it is, and the blocks written so far are void.
 template <int D>
-void run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
-               const StreamOptions& options) {
+bool run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
+               const StreamOptions& options, std::optional<Box<2>>& extent) {
   budget.set_enough(enough_memory<D>(source.expected().value_or(0)));
   options.begin_phase("read");
-  engine.spill(feed_of(source, options, engine.times()));
+  SeenExtent seen;
+  PointFeed feed = feed_of(source, options, engine.times());
+  engine.spill(extent ? seen.watched(std::move(feed)) : std::move(feed));
   options.end_phase(source.points_read());
+  if (engine.points() == 0) refuse_empty_input(source.counts());
+  if (extent && *extent != seen.box() && !options.extent_holds(seen.box())) {
+    extent = seen.box();
+    return false;
+  }
   divide(engine, options);
   options.begin_phase("triangulate");
-  if (engine.points() == 0) refuse_empty_input(source.counts());
   refuse_flat_points(engine.span(), engine.points());
   engine.triangulate_rest();
   options.end_phase(engine.points());
+  return true;
 }
 
 /// The plan by which tiles are complete while other points are still to be read; none if the source
-/// does not tell where its points lie, or if too few tiles would be complete early.
+/// does not tell where its points lie, or if too few tiles would be complete early; or if it does
+/// not tell an `extent` where one is needed.
 std::optional<RegionPlan> early_plan(PointStream& source, int dimension, const MemoryBudget& budget,
-                                     const StreamOptions& options) {
+                                     const StreamOptions& options, std::optional<Box<2>>& extent) {
   if (!options.early || source.regions().empty()) return std::nullopt;
   std::size_t capacity = options.tile_capacity;
   if (capacity == 0) {
@@ -85,8 +120,24 @@ std::optional<RegionPlan> early_plan(PointStream& source, int dimension, const M
                                       .most_points = kMostFill * static_cast<double>(capacity),
                                       .any_order = source.any_order()});
   if (!pays(*plan)) return std::nullopt;
+  if (options.needs_extent) {
+    extent = source.told_extent();
+    if (!extent || !options.extent_told(*extent, source.expected().value_or(0))) {
+      return std::nullopt;
+    }
+  }
   source.keep_to(*plan);
   return plan;
+}
+
+/// Now that the extent is known.
+void begin_again(PointStream& source, const Box<2>& extent, std::uint64_t points,
+                 const StreamOptions& options) {
+  if (!source.read_again()) {
+    throw Error("the points cannot be read again, and headers tell a larger extent than theirs",
+                ErrorCode::kBadInput, {.remedy = Remedy::kDistrustHeaders});
+  }
+  options.extent_known(extent, points);
 }
 
 }  // namespace
@@ -94,21 +145,26 @@ std::optional<RegionPlan> early_plan(PointStream& source, int dimension, const M
 template <int D>
 RunFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
                               MemoryBudget& budget, const StreamOptions& options) {
-  const std::optional<RegionPlan> plan = early_plan(source, D, budget, options);
-  TileEngine<D> engine({.lattice = source.lattice(),
-                        .count = source.expected(),
-                        .extent = source.extent(),
-                        .plan = plan ? &*plan : nullptr},
-                       sink, scratch, budget, options);
-  with_threads(engine.threads(), [&] {
-    if (plan) {
-      run_early(engine, source, budget, options);
-    } else {
-      run(engine, source, budget, options);
-    }
-  });
-  release_base_case_memory();
-  return engine.figures();
+  std::optional<Box<2>> extent;  // on which early blocks rely
+  const std::optional<RegionPlan> plan = early_plan(source, D, budget, options, extent);
+  for (;;) {
+    TileEngine<D> engine({.lattice = source.lattice(),
+                          .count = source.expected(),
+                          .extent = source.extent(),
+                          .plan = plan ? &*plan : nullptr},
+                         sink, scratch, budget, options);
+    bool done = true;
+    with_threads(engine.threads(), [&] {
+      if (plan) {
+        done = run_early(engine, source, budget, options, extent);
+      } else {
+        run(engine, source, budget, options);
+      }
+    });
+    release_base_case_memory();
+    if (done) return engine.figures();
+    begin_again(source, *extent, engine.points(), options);
+  }
 }
 
 void refuse_empty_mesh(const RunFigures& figures, const std::optional<double>& max_edge) {

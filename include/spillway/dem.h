@@ -46,6 +46,7 @@ struct DemReport {
   double north = 0;
   std::vector<std::string> bands{};
   std::uint64_t pixels_with_data = 0;  ///< of the first band
+  std::uint64_t closed_tiles = 0;      ///< of 256 x 256 pixels, complete before all triangles came
   std::uint64_t spilled_bytes = 0;
 };
 

@@ -39,7 +39,12 @@ StreamOptions stream_options(const TriangulateOptions& options, const Context& c
   stream.max_edge = options.max_edge;
   stream.input_index = options.input_index;
   stream.task_done = options.task_done;
-  stream.early = options.trust_headers && !(sink.wants_extent() && options.dimension == 2);
+  stream.early = options.trust_headers;
+  stream.needs_extent = sink.wants_extent() && options.dimension == 2;
+  stream.extent_told = [&sink](const Box<2>& extent, std::uint64_t points) {
+    return sink.extent_told(extent, points);
+  };
+  stream.extent_holds = [&sink](const Box<2>& extent) { return sink.extent_holds(extent); };
   stream.extent_known = [&sink](const Box<2>& extent, std::uint64_t points) {
     sink.extent_known(extent, points);
   };

@@ -30,9 +30,18 @@ struct StreamOptions {
   /// Triangulate while points are being read, where regions of the source tell where they lie.
   bool early = false;
   /// Told the box around all points in x and y, in the coordinates in which the source gives them,
-  /// and how many they are, before the first block is written; not if that is early.
+  /// and how many they are, before the first block is written. Told again after blocks have come,
+  /// all of them are void, and others follow. Not told in early runs, but see needs_extent.
   std::function<void(const Box<2>&, std::uint64_t points)> extent_known = [](const Box<2>&,
                                                                              std::uint64_t) {};
+  /// Whether blocks may only be written when the extent is known. Early runs take what headers tell
+  /// for it then (extent_told), until all is read: if that does not hold, they begin again.
+  bool needs_extent = false;
+  /// Whether blocks may come on the assumption that the points just fill this box; and later on
+  /// whether it makes no difference that they fill this one.
+  std::function<bool(const Box<2>&, std::uint64_t points)> extent_told =
+      [](const Box<2>&, std::uint64_t) { return false; };
+  std::function<bool(const Box<2>&)> extent_holds = [](const Box<2>&) { return false; };
   /// Called when a phase begins: "read", "divide" if there are tiles to be divided again,
   /// "triangulate"; and when it has ended, with all points that have been through it.
   std::function<void(const char* phase)> begin_phase = [](const char*) {};

@@ -140,7 +140,22 @@ void Dem::begin(const PixelGrid& grid) {
   centres_.emplace(grid_, on_lattice_ ? lattice_ : std::nullopt);
   std::vector<PixelRule> rules;
   for (const DemProduct product : options_.products) rules.push_back(rule_of(product));
-  store_.emplace(std::move(rules), options_.memory - index, scratch_);
+  RasterStore::PixelsOfTile wanted;
+  if (closes_tiles()) {
+    wanted = [this](std::uint64_t number) {
+      const auto [rows, columns] = size_of_tile(number);
+      return rows * columns;
+    };
+  }
+  left_out_ = 0;
+  store_.emplace(std::move(rules), options_.memory - index, scratch_, std::move(wanted));
+}
+
+/// Vertices of a pixel may come after all triangles at its centre. Triangles that are mapped to
+/// output coordinates may overlap by roundings.
+bool Dem::closes_tiles() const {
+  return options_.closes_tiles && (on_lattice_ || !lattice_) &&
+         std::ranges::find(options_.products, DemProduct::kDensity) == options_.products.end();
 }
 
 PlacedPoint Dem::placed(const LatticePoint& vertex) const {
@@ -246,8 +261,13 @@ void Dem::paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work)
   const std::span<const double> x = centres_->x();
   for (std::uint32_t begin = run.begin; begin < run.end;) {
     const std::uint32_t end = std::min(run.end, (begin / kRasterTile + 1) * kRasterTile);
-    float* pixels = work.hand.tile(tile_number(run.row, begin)) +
-                    run.row % kRasterTile * kRasterTile + begin % kRasterTile;
+    float* pixels = work.hand.tile(tile_number(run.row, begin));
+    if (pixels == nullptr) {
+      begin = end;
+      continue;
+    }
+    pixels += run.row % kRasterTile * kRasterTile + begin % kRasterTile;
+    if (run.owned) work.hand.decide(end - begin);
     for (std::size_t b = 0; b < options_.products.size(); ++b) {
       const DemProduct product = options_.products[b];
       if (product == DemProduct::kHeight && run.relation == PixelRelation::kInside) {

@@ -31,6 +31,9 @@ struct DemOptions {
   float nodata = -9999;
   std::uint64_t memory = 0;  ///< for pixels; above it they go to the disk
   unsigned threads = 1;      ///< of which each may have a hand on the pixels
+  /// A tile of pixels is closed as soon as each has been painted by the triangle that owns it. For
+  /// triangles that do not overlap, all of which are painted here.
+  bool closes_tiles = false;
   /// Told of every triangle that may be seen, once, corners in output coordinates and in canonical
   /// order; by many threads. Those in whose box no pixel has its centre are passed over.
   std::function<void(const Triangle&)> outline{};
@@ -44,8 +47,8 @@ class Dem {
   Dem(DemOptions options, const std::optional<Lattice>& lattice, ScratchFolder& scratch);
 
   /// Lays the grid, given the box around all vertices (as they come, on the lattice if there is
-  /// one). To be called once, before what follows. Throws InvalidArgument if the raster is too
-  /// large.
+  /// one). To be called before what follows; called again, what was painted is forgotten. Throws
+  /// InvalidArgument if the raster is too large.
   void begin(const Box<2>& extent);
   /// Likewise, with a grid that was chosen elsewhere.
   void begin(const PixelGrid& grid);
@@ -85,6 +88,8 @@ class Dem {
   /// Triangles with too long an edge.
   [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
   [[nodiscard]] std::uint64_t spilled_bytes() const { return store_->spilled_bytes(); }
+  /// Tiles that were closed before write().
+  [[nodiscard]] std::uint64_t closed_tiles() const { return store_->closed_tiles(); }
 
  private:
   struct Work;
@@ -100,6 +105,7 @@ class Dem {
   void paint_large(const Triangle& canonical, const PixelWindow& whole);
   void finish_tile(std::uint64_t number, std::span<const std::vector<std::byte>> others,
                    std::vector<float>& pixels);
+  [[nodiscard]] bool closes_tiles() const;
   [[nodiscard]] TileSize size_of_tile(std::uint64_t number) const;
   [[nodiscard]] std::uint64_t tile_number(std::uint32_t row, std::uint32_t column) const;
 

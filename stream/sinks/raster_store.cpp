@@ -1,21 +1,24 @@
 #include "stream/sinks/raster_store.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "formats/blocks/block.h"
+#include "formats/blocks/columns.h"
 #include "formats/bytes/bytes.h"
 
 namespace spillway::detail {
 namespace {
 
 // Spilled pixels are a block (docs/formats-blocks.md) of this kind: the number of runs; of each,
-// its first pixel and its length; then the pixels of all runs.
+// its first pixel and its length; then the pixels of all runs as a column of their ordinals.
 constexpr std::uint32_t kRasterTile = 0x52545344;
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
@@ -43,16 +46,27 @@ std::vector<Run> runs_of(std::span<const float> pixels) {
   return runs;
 }
 
+/// The bits of a float, such that neighbours among floats are neighbours.
+std::uint32_t ordinal_of(float value) {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  return (bits >> 31) != 0 ? ~bits : bits | 0x80000000;
+}
+float of_ordinal(std::uint32_t ordinal) {
+  return std::bit_cast<float>((ordinal >> 31) != 0 ? ordinal & 0x7FFFFFFF : ~ordinal);
+}
+
 std::vector<std::byte> encode(std::span<const float> pixels, std::span<const Run> runs) {
-  std::vector<std::byte> content;
-  const auto add = [&content](std::span<const std::byte> bytes) {
-    content.insert(content.end(), bytes.begin(), bytes.end());
-  };
-  content.reserve(sizeof(std::uint32_t) + runs.size_bytes() + pixels.size_bytes());
   const auto count = static_cast<std::uint32_t>(runs.size());
-  add(std::as_bytes(std::span(&count, 1)));
-  add(std::as_bytes(runs));
-  for (const Run& run : runs) add(std::as_bytes(pixels.subspan(run.begin, run.length)));
+  std::vector<std::byte> content(sizeof(count) + runs.size_bytes());
+  std::memcpy(content.data(), &count, sizeof(count));
+  std::ranges::copy(std::as_bytes(runs), content.begin() + sizeof(count));
+  std::vector<std::uint32_t> ordinals;
+  ordinals.reserve(pixels.size());
+  for (const Run& run : runs) {
+    std::ranges::transform(pixels.subspan(run.begin, run.length), std::back_inserter(ordinals),
+                           ordinal_of);
+  }
+  append_column(content, ordinals);
   std::vector<std::byte> block;
   append_block(block, kRasterTile, content);
   return block;
@@ -98,34 +112,47 @@ void put_pixel(float& pixel, float value, PixelRule rule, bool preferred) {
   }
 }
 
-RasterStore::RasterStore(std::vector<PixelRule> bands, std::uint64_t memory, ScratchFolder& scratch)
-    : bands_(std::move(bands)),
-      most_tiles_(memory / (tile_floats() * sizeof(float))),
-      scratch_(scratch) {}
+RasterStore::RasterStore(std::vector<PixelRule> bands, std::uint64_t memory, ScratchFolder& scratch,
+                         PixelsOfTile wanted)
+    : bands_(std::move(bands)), memory_(memory), scratch_(scratch), wanted_(std::move(wanted)) {}
 
 std::uint64_t RasterStore::least_memory(std::size_t bands, unsigned threads) {
   return bands * kTilePixels * sizeof(float) * (kTilesInHand * threads + kLeastIdleTiles);
 }
 
 void RasterStore::Hand::release() {
-  for (Held& held : held_) {
-    if (held.pixels != nullptr) store_.let_go(held.number);
-    held = {};
-  }
+  for (Held& held : held_) let_go(held);
+}
+
+void RasterStore::Hand::let_go(Held& held) {
+  const auto [number, pixels, decided] = std::exchange(held, {});
+  if (pixels != nullptr) store_.let_go(number, decided);
 }
 
 float* RasterStore::Hand::take_up(std::uint64_t number) {
-  Held& held = held_[next_++ % kTilesInHand];
-  if (held.pixels != nullptr) store_.let_go(std::exchange(held, {}).number);
+  Held& held = held_[next_ % kTilesInHand];
+  let_go(held);
   held = {number, store_.hold(number)};
+  if (held.pixels == nullptr) return nullptr;
+  ++next_;
+  latest_ = &held;
   return held.pixels;
 }
 
 float* RasterStore::hold(std::uint64_t number) {
   std::unique_lock lock(mutex_);
+  const auto is_closed = [&] {
+    const auto found = tiles_.find(number);
+    return found != tiles_.end() && found->second.closed;
+  };
+  if (is_closed()) return nullptr;
   if (const auto found = tiles_.find(number);
       found == tiles_.end() || found->second.pixels.empty()) {
     std::vector<float> pixels = empty_tile(lock);
+    if (is_closed()) {
+      --in_memory_;
+      return nullptr;
+    }
     Tile& tile = tiles_[number];
     if (tile.pixels.empty()) {
       tile.pixels = std::move(pixels);
@@ -139,16 +166,68 @@ float* RasterStore::hold(std::uint64_t number) {
   return tile.pixels.data();
 }
 
-void RasterStore::let_go(std::uint64_t number) {
+void RasterStore::let_go(std::uint64_t number, std::uint32_t decided) {
   const std::lock_guard lock(mutex_);
   Tile& tile = tiles_[number];
-  if (--tile.hands == 0) tile.place = idle_.insert(idle_.end(), number);
+  tile.decided += decided;
+  if (--tile.hands > 0) return;
+  tile.closed = wanted_ && tile.decided > 0 && tile.decided == wanted_(number);
+  if (!tile.closed) {
+    tile.place = idle_.insert(idle_.end(), number);
+    return;
+  }
+  closed_.push_back(number);
+  ++closed_tiles_;
 }
 
-/// Memory for one more tile, counted: that of the longest unused one if there are enough.
+/// For one more tile.
+bool RasterStore::has_room() const {
+  return in_memory_ * tile_bytes() + packed_bytes_ + tile_bytes() <= memory_;
+}
+
+/// Makes room by what is closed; false if that is not enough.
+bool RasterStore::make_room(std::unique_lock<std::mutex>& lock) {
+  while (!has_room()) {
+    if (!closed_.empty()) {
+      pack_closed(lock);
+    } else if (!packed_.empty()) {
+      write_packed(lock);
+    } else {
+      return false;
+    }
+  }
+  return true;
+}
+
+void RasterStore::pack_closed(std::unique_lock<std::mutex>& lock) {
+  const std::uint64_t number = closed_.front();
+  closed_.pop_front();
+  std::vector<float> pixels = std::exchange(tiles_[number].pixels, {});
+  lock.unlock();
+  std::vector<std::byte> packed = encode(pixels, runs_of(pixels));
+  packed.shrink_to_fit();
+  pixels = {};
+  lock.lock();
+  --in_memory_;
+  packed_bytes_ += packed.size();
+  packed_.push_back(number);
+  tiles_[number].packed = std::move(packed);
+}
+
+void RasterStore::write_packed(std::unique_lock<std::mutex>& lock) {
+  const std::uint64_t number = packed_.front();
+  packed_.pop_front();
+  const std::vector<std::byte> packed = std::exchange(tiles_[number].packed, {});
+  lock.unlock();
+  append_encoded(number, packed);
+  lock.lock();
+  packed_bytes_ -= packed.size();
+}
+
+/// Memory for one more tile, counted: that of the longest unused one if there is no other.
 std::vector<float> RasterStore::empty_tile(std::unique_lock<std::mutex>& lock) {
   std::vector<float> pixels;
-  if (in_memory_ < most_tiles_ || idle_.empty()) {
+  if (make_room(lock) || idle_.empty()) {
     ++in_memory_;
     lock.unlock();
     pixels.assign(tile_floats(), kNothing);
@@ -167,7 +246,10 @@ std::vector<float> RasterStore::empty_tile(std::unique_lock<std::mutex>& lock) {
 void RasterStore::append(std::uint64_t number, std::span<const float> pixels) {
   const std::vector<Run> runs = runs_of(pixels);
   if (runs.empty()) return;
-  const std::vector<std::byte> block = encode(pixels, runs);
+  append_encoded(number, encode(pixels, runs));
+}
+
+void RasterStore::append_encoded(std::uint64_t number, std::span<const std::byte> block) {
   SpilledPixels stored{0, static_cast<std::uint32_t>(block.size())};
   {
     const std::lock_guard lock(file_mutex_);
@@ -182,6 +264,7 @@ void RasterStore::append(std::uint64_t number, std::span<const float> pixels) {
 /// What is provisional stays so.
 void RasterStore::take_as_it_is(std::uint64_t number, std::vector<float>& pixels) {
   std::vector<SpilledPixels> spilled;
+  std::vector<std::byte> packed;
   {
     const std::lock_guard lock(mutex_);
     const auto found = tiles_.find(number);
@@ -190,15 +273,18 @@ void RasterStore::take_as_it_is(std::uint64_t number, std::vector<float>& pixels
     } else {
       Tile& tile = found->second;
       if (!tile.pixels.empty()) {
-        idle_.erase(tile.place);
+        if (!tile.closed) idle_.erase(tile.place);
         --in_memory_;
       }
       pixels = std::move(tile.pixels);
+      packed = std::move(tile.packed);
+      packed_bytes_ -= packed.size();
       spilled = std::move(tile.spilled);
       tiles_.erase(found);
     }
   }
   if (pixels.empty()) pixels.assign(tile_floats(), kNothing);
+  if (!packed.empty()) add_pixels(packed, {"pixels in memory"}, pixels);
   for (const SpilledPixels& stored : spilled) {
     std::vector<std::byte> bytes(stored.bytes);
     file_->read(stored.offset, bytes);
@@ -244,13 +330,23 @@ void RasterStore::add_pixels(std::span<const std::byte> stored, const FileSpot& 
   decode_block(head, stored.subspan(kBlockHeadSize), content, where);
   const auto count = load<std::uint32_t>(content.data());
   const std::byte* run = content.data() + sizeof(count);
-  const std::byte* value = run + count * sizeof(Run);
+  const std::byte* const column = run + count * sizeof(Run);
+  std::size_t values = 0;
+  for (std::uint32_t r = 0; r < count; ++r) values += load<Run>(run + r * sizeof(Run)).length;
+  std::vector<std::uint32_t> ordinals;
+  ColumnReader({column, content.data() + content.size()}, where).read(values, ordinals);
+  auto ordinal = ordinals.begin();
   for (std::uint32_t r = 0; r < count; ++r, run += sizeof(Run)) {
     const auto [begin, length] = load<Run>(run);
-    for (std::uint32_t i = begin; i < begin + length; ++i, value += sizeof(float)) {
-      pixels[i] = combined(pixels[i], load<float>(value), bands_[i / kTilePixels]);
+    for (std::uint32_t i = begin; i < begin + length; ++i) {
+      pixels[i] = combined(pixels[i], of_ordinal(*ordinal++), bands_[i / kTilePixels]);
     }
   }
+}
+
+std::uint64_t RasterStore::closed_tiles() const {
+  const std::lock_guard lock(mutex_);
+  return closed_tiles_;
 }
 
 std::uint64_t RasterStore::spilled_bytes() const {

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -34,10 +36,12 @@ inline void set_pixel(float& pixel, float value) {
   std::atomic_ref<float>(pixel).store(value, std::memory_order_relaxed);
 }
 
-/// A raster in tiles of kSide x kSide pixels, each with all bands. When they take too much memory,
-/// those that have not been used for the longest time go to the disk, with the pixels that they
-/// have so far; used again, they begin empty, and all pixels are put together at the end. So
-/// nothing is read back before, and a pixel is written once as a rule.
+/// A raster in tiles of kSide x kSide pixels, each with all bands. A tile is closed when all of its
+/// pixels are decided, where that can be told: nothing is put there any more. When tiles take too
+/// much memory, closed ones are packed, and then go to the disk. If there are none, those that have
+/// not been used for the longest time go there, with the pixels that they have so far; used again,
+/// they begin empty, and all pixels are put together at the end. So nothing is read back before,
+/// and a pixel is written once as a rule.
 class RasterStore {
  public:
   static constexpr std::uint32_t kSide = 256;
@@ -46,8 +50,13 @@ class RasterStore {
   /// Tiles that one thread holds at a time.
   static constexpr std::size_t kTilesInHand = 4;
 
-  /// Tiles that fit in `memory` bytes are kept; those in hands are, in any case.
-  RasterStore(std::vector<PixelRule> bands, std::uint64_t memory, ScratchFolder& scratch);
+  /// How many pixels of a tile are to be decided. By any thread.
+  using PixelsOfTile = std::function<std::uint32_t(std::uint64_t number)>;
+
+  /// Tiles that fit in `memory` bytes are kept; those in hands are, in any case. Without `wanted`
+  /// no tile is closed.
+  RasterStore(std::vector<PixelRule> bands, std::uint64_t memory, ScratchFolder& scratch,
+              PixelsOfTile wanted = nullptr);
 
   /// The least memory that gives `threads` threads a hand and the store some room.
   static std::uint64_t least_memory(std::size_t bands, unsigned threads);
@@ -61,12 +70,19 @@ class RasterStore {
     Hand& operator=(const Hand&) = delete;
 
     /// The pixels of a tile, row by row, band after band, until kTilesInHand others are asked for.
+    /// Null if it is closed.
     float* tile(std::uint64_t number) {
-      for (const Held& held : held_) {
-        if (held.pixels != nullptr && held.number == number) return held.pixels;
+      for (Held& held : held_) {
+        if (held.pixels == nullptr || held.number != number) continue;
+        latest_ = &held;
+        return held.pixels;
       }
       return take_up(number);
     }
+
+    /// So many pixels of the tile that was asked for last have got their final value, in all bands.
+    /// To be told once of each pixel.
+    void decide(std::uint32_t pixels) { latest_->decided += pixels; }
 
     void release();
 
@@ -74,11 +90,14 @@ class RasterStore {
     struct Held {
       std::uint64_t number = 0;
       float* pixels = nullptr;
+      std::uint32_t decided = 0;  ///< pixels, here
     };
     float* take_up(std::uint64_t number);
+    void let_go(Held& held);
 
     RasterStore& store_;
     std::array<Held, kTilesInHand> held_{};
+    Held* latest_ = nullptr;
     std::size_t next_ = 0;  ///< to be let go of
   };
 
@@ -95,6 +114,7 @@ class RasterStore {
   [[nodiscard]] std::vector<std::uint64_t> tiles() const;
 
   [[nodiscard]] std::uint64_t spilled_bytes() const;
+  [[nodiscard]] std::uint64_t closed_tiles() const;
 
  private:
   struct SpilledPixels {
@@ -104,26 +124,40 @@ class RasterStore {
   struct Tile {
     std::vector<float> pixels;  ///< empty while not in memory
     unsigned hands = 0;
-    std::list<std::uint64_t>::iterator place;  ///< in idle_, while in memory and in no hand
+    std::uint32_t decided = 0;  ///< pixels
+    bool closed = false;
+    std::list<std::uint64_t>::iterator place;  ///< in idle_, while in memory, open and in no hand
+    std::vector<std::byte> packed;             ///< of a closed tile, while in memory
     std::vector<SpilledPixels> spilled;        ///< on the disk
   };
 
   float* hold(std::uint64_t number);
-  void let_go(std::uint64_t number);
+  void let_go(std::uint64_t number, std::uint32_t decided);
   std::vector<float> empty_tile(std::unique_lock<std::mutex>& lock);
+  bool make_room(std::unique_lock<std::mutex>& lock);
+  void pack_closed(std::unique_lock<std::mutex>& lock);
+  void write_packed(std::unique_lock<std::mutex>& lock);
+  [[nodiscard]] bool has_room() const;
   [[nodiscard]] std::size_t tile_floats() const { return bands_.size() * kTilePixels; }
+  [[nodiscard]] std::size_t tile_bytes() const { return tile_floats() * sizeof(float); }
   void append(std::uint64_t number, std::span<const float> pixels);
+  void append_encoded(std::uint64_t number, std::span<const std::byte> block);
   void take_as_it_is(std::uint64_t number, std::vector<float>& pixels);
   void add_pixels(std::span<const std::byte> stored, const FileSpot& where,
                   std::vector<float>& pixels) const;
 
   const std::vector<PixelRule> bands_;
-  const std::size_t most_tiles_;
+  const std::uint64_t memory_;
   ScratchFolder& scratch_;
-  mutable std::mutex mutex_;  ///< guards the next three
+  const PixelsOfTile wanted_;
+  mutable std::mutex mutex_;  ///< guards the next seven
   std::unordered_map<std::uint64_t, Tile> tiles_;
-  std::list<std::uint64_t> idle_;  ///< in memory, in no hand; the longest unused first
-  std::size_t in_memory_ = 0;
+  std::list<std::uint64_t> idle_;     ///< in memory, open, in no hand; the longest unused first
+  std::deque<std::uint64_t> closed_;  ///< in memory as they are
+  std::deque<std::uint64_t> packed_;  ///< in memory
+  std::size_t in_memory_ = 0;         ///< tiles as they are
+  std::uint64_t packed_bytes_ = 0;
+  std::uint64_t closed_tiles_ = 0;
   mutable std::mutex file_mutex_;  ///< guards file_ while it grows; taken without mutex_
   std::unique_ptr<ScratchFile> file_;
 };

@@ -31,10 +31,22 @@ PieceSequence::PieceSequence(FileSystem& files, const std::vector<std::string>& 
 
 void PieceSequence::read_in_order(std::vector<ReadingTurn> turns) {
   turns_ = std::move(turns);
-  for (Input& input : inputs_) input.turns_left = 0;
-  for (const ReadingTurn& turn : turns_) ++inputs_[turn.input].turns_left;
+  count_turns();
   first_indices_.clear();
   for (std::size_t i = 0; i < inputs_.size(); ++i) first_indices_.push_back(first_index_of(i));
+}
+
+void PieceSequence::count_turns() {
+  for (Input& input : inputs_) input.turns_left = 0;
+  for (const ReadingTurn& turn : turns_) ++inputs_[turn.input].turns_left;
+}
+
+void PieceSequence::read_again() {
+  for (Input& input : inputs_) input.records = 0;
+  count_turns();
+  turn_ = 0;
+  records_read_ = 0;
+  records_before_ = 0;
 }
 
 /// Files that are read by turns stay open, but not all of many.

@@ -86,6 +86,32 @@ void PointSource::keep_to(const RegionPlan& plan) {
   pieces_.read_in_order(std::move(turns));
 }
 
+/// Withheld points may be those at the edges: then it takes another look to know the extent.
+std::optional<Box<2>> PointSource::told_extent() const {
+  const auto is_certain = [](const SourceFacts::Input& input) {
+    return !input.header.regions.empty() && !input.has_attributes();
+  };
+  if (!count() || (!any_order() && !std::ranges::all_of(facts_.inputs, is_certain))) {
+    return std::nullopt;
+  }
+  Box<3> extent;
+  for (std::size_t i = 0; i < facts_.inputs.size(); ++i) {
+    const PointHeader& header = facts_.inputs[i].header;
+    if (header.count == 0) continue;
+    if (!header.extent) return std::nullopt;
+    extent.expand(coordinates_.told_extent(i));
+  }
+  return extent.empty() ? std::nullopt : std::optional(plane_of(extent));
+}
+
+bool PointSource::read_again() {
+  if (thins() || !any_order()) return false;
+  pieces_.read_again();
+  const std::lock_guard lock(counts_mutex_);
+  counts_ = {};
+  return true;
+}
+
 std::vector<PointHeader> PointSource::headers() const {
   std::vector<PointHeader> headers;
   for (const SourceFacts::Input& input : facts_.inputs) headers.push_back(input.header);

@@ -116,6 +116,9 @@ class PointSource : public PointStream {
   [[nodiscard]] std::span<const InputRegion> regions() const override { return regions_.all(); }
   [[nodiscard]] bool any_order() const override;
   void keep_to(const RegionPlan& plan) override;
+  /// Nothing if a filter is set; or if it may be too large, and points come from a pipe.
+  [[nodiscard]] std::optional<Box<2>> told_extent() const override;
+  bool read_again() override;
 
   [[nodiscard]] PointCounts counts() const override;
   [[nodiscard]] std::uint64_t points_read() const override;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "formats/points/point_formats.h"
 #include "src/geometry/lattice_check.h"
@@ -143,6 +144,19 @@ Box<3> SourceCoordinates::of_world(const Box<3>& world) const {
   for (int k = 0; k < 3; ++k) {
     box.lo[k] = (world.lo[k] - lattice_->offset[k]) / lattice_->scale[k];
     box.hi[k] = (world.hi[k] - lattice_->offset[k]) / lattice_->scale[k];
+  }
+  return box;
+}
+
+Box<3> SourceCoordinates::told_extent(std::size_t input) const {
+  const PointHeader& header = header_of(input);
+  Box<3> box;
+  for (const Point<3>& told : {header.extent->lo, header.extent->hi}) {
+    LatticePoint corner(told);
+    for (int k = 0; header.lattice && k < 3; ++k) {
+      corner[k] = std::round((corner[k] - header.lattice->offset[k]) / header.lattice->scale[k]);
+    }
+    box.expand(inputs_[input].as_it_is ? corner : placed(input, corner));
   }
   return box;
 }

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
 #include <set>
 
 #include "src/error.h"
 #include "src/parallel/parallel.h"
+#include "tests/error_facts.h"
 #include "tests/stream/region_stream.h"
 #include "tests/stream/stream_runner.h"
 #include "tests/stream/triangulate/indexed_simplices.h"
@@ -234,6 +237,93 @@ TEST(EarlyTriangulation, ReadsAllFirstWhereThatIsNoGain) {
   const EarlyRun late = run<2>(RegionStream(regions));
   EXPECT_FALSE(late.is_early) << "both regions cover all";
   EXPECT_EQ(simplices_of<2>(late.mesh), expected_of<2>(regions));
+}
+
+/// A sink that must know the extent, and what it was told of it; its blocks are void from there on.
+struct ExtentRun {
+  std::vector<Box<2>> told;
+  std::vector<Box<2>> known;
+  int times_read = 0;
+  bool is_early = false;
+  std::optional<KeepingWriter> mesh{2};
+};
+
+ExtentRun run_by_extent(RegionStream source, bool trusts = true, double tolerance = 0) {
+  ExtentRun run;
+  StreamOptions options = small_tiles();
+  options.needs_extent = true;
+  options.extent_told = [&](const Box<2>& extent, std::uint64_t /*points*/) {
+    run.told.push_back(extent);
+    return trusts;
+  };
+  options.extent_holds = [&](const Box<2>& extent) {
+    return std::abs(extent.lo[0] - run.told[0].lo[0]) <= tolerance;
+  };
+  options.extent_known = [&](const Box<2>& extent, std::uint64_t points) {
+    EXPECT_EQ(points, 20'000U);
+    run.known.push_back(extent);
+    run.mesh.emplace(2);
+  };
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  MemoryBudget budget(std::uint64_t{1} << 30);
+  const RunFigures figures = triangulate_stream<2>(source, *run.mesh, *scratch, budget, options);
+  EXPECT_EQ(figures.mesh.points, 20'000U);
+  EXPECT_EQ(budget.used(), 0U);
+  run.times_read = source.times_read;
+  run.is_early = source.kept_to_plan;
+  return run;
+}
+
+RegionStream with_a_wide_region(const Regions& regions) {
+  RegionStream source(regions);
+  for (InputRegion& region : source.told()) {
+    if (region.box.lo[0] < 0.5) region.box.lo[0] -= 0.25;
+  }
+  return source;
+}
+
+TEST(EarlyTriangulation, TakesTheExtentThatHeadersTell) {
+  const Regions regions = survey(8, 20'000, 18);
+  const ExtentRun run = run_by_extent(RegionStream(regions));
+  EXPECT_TRUE(run.is_early);
+  EXPECT_EQ(run.told.size(), 1U);
+  EXPECT_TRUE(run.known.empty());
+  EXPECT_EQ(run.times_read, 1);
+  EXPECT_EQ(simplices_of<2>(*run.mesh), expected_of<2>(regions));
+}
+
+TEST(EarlyTriangulation, BeginsAgainWhereHeadersTellALargerExtent) {
+  const Regions regions = survey(8, 20'000, 19);
+  const ExtentRun run = run_by_extent(with_a_wide_region(regions));
+  EXPECT_TRUE(run.is_early);
+  EXPECT_EQ(run.times_read, 2);
+  ASSERT_EQ(run.known.size(), 1U);
+  EXPECT_EQ(run.known[0], *RegionStream(regions).told_extent());
+  EXPECT_EQ(simplices_of<2>(*run.mesh), expected_of<2>(regions));
+}
+
+TEST(EarlyTriangulation, GoesOnWhereALargerExtentMakesNoDifference) {
+  const Regions regions = survey(8, 20'000, 20);
+  const ExtentRun run = run_by_extent(with_a_wide_region(regions), true, 0.5);
+  EXPECT_EQ(run.times_read, 1);
+  EXPECT_TRUE(run.known.empty());
+  EXPECT_EQ(simplices_of<2>(*run.mesh), expected_of<2>(regions));
+}
+
+TEST(EarlyTriangulation, ReadsAllFirstWhereTheToldExtentWillNotDo) {
+  const Regions regions = survey(8, 20'000, 21);
+  const ExtentRun run = run_by_extent(RegionStream(regions), false);
+  EXPECT_FALSE(run.is_early);
+  ASSERT_EQ(run.known.size(), 1U);
+  EXPECT_EQ(run.known[0], run.told[0]);
+  EXPECT_EQ(simplices_of<2>(*run.mesh), expected_of<2>(regions));
+}
+
+TEST(EarlyTriangulation, SaysThatPointsCannotBeReadAgain) {
+  RegionStream source = with_a_wide_region(survey(8, 20'000, 22));
+  source.most_times_read = 1;
+  const ErrorFacts facts = facts_of([&source] { run_by_extent(source); });
+  EXPECT_EQ(facts.remedy, Remedy::kDistrustHeaders);
 }
 
 TEST(EarlyTriangulation, RefusesPointsOfALine) {

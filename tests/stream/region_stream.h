@@ -64,11 +64,24 @@ class RegionStream : public PointStream {
     kept_to_plan = true;
     order_ = plan.regions;
   }
+  /// As the told regions have it, one without points among them.
+  [[nodiscard]] std::optional<Box<2>> told_extent() const override {
+    Box<3> extent;
+    for (const InputRegion& region : regions_) extent.expand(region.box);
+    return plane_of(extent);
+  }
+  bool read_again() override {
+    turn_ = next_ = read_ = 0;
+    ++times_read;
+    return times_read <= most_times_read;
+  }
   [[nodiscard]] PointCounts counts() const override { return {.read = read_}; }
   [[nodiscard]] std::uint64_t points_read() const override { return read_; }
   [[nodiscard]] std::optional<double> fraction_read() const override { return std::nullopt; }
 
   bool kept_to_plan = false;
+  int times_read = 1;
+  int most_times_read = 2;
 
  private:
   std::vector<std::vector<LatticePoint>> points_;

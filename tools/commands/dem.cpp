@@ -50,6 +50,7 @@ Json raster_json(const DemReport& raster) {
           {"north", raster.north},
           {"bands", raster.bands},
           {"pixels_with_data", raster.pixels_with_data},
+          {"closed_tiles", raster.closed_tiles},
           {"spilled_bytes", raster.spilled_bytes}};
 }
 

@@ -58,7 +58,14 @@ class EngineSink {
 
   /// The box around all vertices in x and y, in the coordinates in which they come, and how many
   /// these are (of points: how many points; 0: not known), before the first block.
+  /// If blocks have come already, all of them are void and are forgotten.
   virtual void extent_known(const Box<2>& /*extent*/, std::uint64_t /*vertices*/) {}
+
+  /// In place of extent_known(), before the first block: what headers tell of the extent. False if
+  /// blocks may not come before it is certain.
+  virtual bool extent_told(const Box<2>& /*extent*/, std::uint64_t /*vertices*/) { return false; }
+  /// After extent_told() and some blocks: whether it makes no difference that this is the extent.
+  virtual bool extent_holds(const Box<2>& /*extent*/) { return false; }
 
   /// Ends the blocks and completes the output. The report is that of the run so far, to which the
   /// sink adds what it knows.

@@ -26,6 +26,19 @@ constexpr std::uint64_t kLeastMemory = std::uint64_t{64} << 20;
 /// The part of the memory that is for pixels.
 constexpr std::uint64_t kPixelShare = 4;
 
+/// A raster is large because of points far away if it has many pixels, and thousands for each
+/// vertex; it may be if it has hundreds.
+constexpr double kManyPixels = 1e7;
+constexpr double kManyForAVertex = 100;
+constexpr double kTooManyForAVertex = 2000;
+
+double pixels_of(const PixelGrid& grid) { return static_cast<double>(grid.columns) * grid.rows; }
+
+bool is_large(const PixelGrid& grid, std::uint64_t vertices) {
+  const double pixels = pixels_of(grid);
+  return pixels > kManyPixels && pixels > kManyForAVertex * static_cast<double>(vertices);
+}
+
 void check_path(const std::string& path) {
   if (!can_be_tried(path)) {
     throw InvalidArgument(
@@ -136,6 +149,8 @@ BlockSink& DemFile::open(const MeshStart& start) {
   check_crs(start);
   crs_ = start.header.crs.empty() ? like_.crs : start.header.crs;
   if (!start.is_triangulated) dem_options_.max_edge = options_.max_edge;
+  // Pixels of other meshes may be painted twice, and those of ranks by others, too.
+  dem_options_.closes_tiles = start.is_triangulated && context().options().executor == nullptr;
   dem_.emplace(dem_options_, start.header.lattice, *scratch_);
   // What is too large is told before the points are read.
   if (!wants_extent()) dem_->begin(Box<2>{});
@@ -145,7 +160,33 @@ BlockSink& DemFile::open(const MeshStart& start) {
 void DemFile::extent_known(const Box<2>& extent, std::uint64_t vertices) {
   if (!wants_extent()) return;
   check_size(extent, vertices);
+  writer_.emplace(*dem_);  // in its place, without vertices that came before
   dem_->begin(extent);
+}
+
+/// A raster that is refused, or that a warning tells of, is so when the extent is certain.
+bool DemFile::extent_told(const Box<2>& extent, std::uint64_t vertices) {
+  try {
+    if (is_large(grid_of(extent), vertices)) return false;
+    dem_->begin(extent);
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
+bool DemFile::extent_holds(const Box<2>& extent) {
+  if (grid_of(extent) == dem_->grid()) return true;
+  if (context().options().warning) {
+    context().options().warning(
+        "headers tell a larger extent than that of the points: these are read again, now that the "
+        "raster's place is known");
+  }
+  return false;
+}
+
+PixelGrid DemFile::grid_of(const Box<2>& extent) const {
+  return choose_grid(dem_options_.grid, dem_->in_output(extent));
 }
 
 void DemFile::check_crs(const MeshStart& start) const {
@@ -159,18 +200,14 @@ void DemFile::check_crs(const MeshStart& start) const {
       ErrorCode::kBadInput, {.file = options_.like, .remedy = Remedy::kForeignCrs});
 }
 
-/// Refuses a raster that is large because of points far away, unless that is wanted: it has many
-/// pixels, and thousands for each vertex. Says how large it is if there are hundreds.
+/// Refuses a raster that is large because of points far away, unless that is wanted. Says how large
+/// it is if it may be.
 void DemFile::check_size(const Box<2>& extent, std::uint64_t vertices) const {
-  constexpr double kManyPixels = 1e7;
-  constexpr double kManyForAVertex = 100;
-  constexpr double kTooManyForAVertex = 2000;
   if (vertices == 0) return;  // not known
+  const PixelGrid grid = grid_of(extent);
+  if (!is_large(grid, vertices)) return;
   const Box<2> box = dem_->in_output(extent);
-  const PixelGrid grid = choose_grid(dem_options_.grid, box);
-  const double pixels = static_cast<double>(grid.columns) * grid.rows;
-  const double for_each = pixels / static_cast<double>(vertices);
-  if (pixels <= kManyPixels || for_each <= kManyForAVertex) return;
+  const double for_each = pixels_of(grid) / static_cast<double>(vertices);
   if (options_.many_pixels || for_each <= kTooManyForAVertex) {
     if (!context().options().warning) return;
     context().options().warning(fmt::format(
@@ -219,6 +256,7 @@ void DemFile::complete(RunWatch& watch, Report& report, const WritePixels& write
              .north = grid.north,
              .bands = dem.raster_options().bands,
              .pixels_with_data = dem.pixels_with_data(),
+             .closed_tiles = dem.closed_tiles(),
              .spilled_bytes = dem.spilled_bytes()};
 }
 

@@ -27,6 +27,8 @@ class DemFile final : public OwnSink<DemSink> {
   [[nodiscard]] unsigned feeding_threads(unsigned threads) const override;
   [[nodiscard]] bool wants_extent() const override;
   void extent_known(const Box<2>& extent, std::uint64_t vertices) override;
+  [[nodiscard]] bool extent_told(const Box<2>& extent, std::uint64_t vertices) override;
+  [[nodiscard]] bool extent_holds(const Box<2>& extent) override;
   void complete(RunWatch& watch, Report& report) override;
 
   /// How the pixels get into a file: `written` is told how many are there.
@@ -43,6 +45,7 @@ class DemFile final : public OwnSink<DemSink> {
   /// Once all is found that is wrong without it: the driver there is, and the raster to be like.
   void ask_gdal();
   void check_crs(const MeshStart& start) const;
+  [[nodiscard]] PixelGrid grid_of(const Box<2>& extent) const;
   void check_size(const Box<2>& extent, std::uint64_t vertices) const;
 
   std::string path_;

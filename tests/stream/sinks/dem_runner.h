@@ -49,12 +49,14 @@ struct Rastered {
   std::vector<std::vector<float>> bands;
   std::uint64_t with_data = 0;
   std::uint64_t spilled = 0;
+  std::uint64_t closed = 0;
 };
 
 inline Rastered finished(Dem& dem, const DemOptions& options) {
   KeepingRaster raster(dem.grid(), options.products.size());
   dem.write(raster, [](std::uint64_t) {});
-  return {dem.grid(), std::move(raster.bands), dem.pixels_with_data(), dem.spilled_bytes()};
+  return {dem.grid(), std::move(raster.bands), dem.pixels_with_data(), dem.spilled_bytes(),
+          dem.closed_tiles()};
 }
 
 /// Points through the whole pipeline.

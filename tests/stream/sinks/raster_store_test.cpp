@@ -200,6 +200,79 @@ TEST_F(RasterStoreTest, KeepsTheTilesInAHandWhereTheyAre) {
   }
 }
 
+/// Puts a value into each pixel of a band, and says that all are decided.
+void fill_tile(RasterStore::Hand& hand, std::uint64_t number, bool decides = true) {
+  float* const pixels = hand.tile(number);
+  ASSERT_NE(pixels, nullptr) << number;
+  for (std::size_t p = 0; p < RasterStore::kTilePixels; ++p) {
+    set_pixel(pixels[p], static_cast<float>(number) * 1000 - static_cast<float>(p % 97));
+  }
+  if (decides) hand.decide(RasterStore::kTilePixels);
+}
+
+std::uint32_t all_pixels(std::uint64_t /*tile*/) { return RasterStore::kTilePixels; }
+
+TEST_F(RasterStoreTest, TakesNothingMoreForATileThatIsClosed) {
+  RasterStore store({PixelRule::kEqual}, 30 * kTileBytes, *scratch_, all_pixels);
+  RasterStore::Hand hand(store);
+  RasterStore::Hand other(store);
+  other.tile(5);
+  fill_tile(hand, 5);
+  hand.release();
+  EXPECT_NE(hand.tile(5), nullptr) << "another hand holds it";
+  hand.release();
+  EXPECT_EQ(store.closed_tiles(), 0U);
+  other.release();
+  EXPECT_EQ(store.closed_tiles(), 1U);
+  EXPECT_EQ(hand.tile(5), nullptr);
+  EXPECT_NE(hand.tile(6), nullptr);
+}
+
+TEST_F(RasterStoreTest, LeavesATileOpenWhosePixelsAreNotAllDecided) {
+  RasterStore store({PixelRule::kEqual}, 30 * kTileBytes, *scratch_, all_pixels);
+  RasterStore::Hand hand(store);
+  set_pixel(*hand.tile(5), 1);
+  hand.decide(RasterStore::kTilePixels - 1);
+  hand.release();
+  ASSERT_NE(hand.tile(5), nullptr);
+  hand.decide(1);
+  hand.release();
+  EXPECT_EQ(hand.tile(5), nullptr);
+}
+
+TEST_F(RasterStoreTest, GivesTheSamePixelsOfClosedTilesHoweverLittleMemoryItHas) {
+  constexpr std::uint64_t kTiles = 40;
+  RasterStore large({PixelRule::kEqual}, std::uint64_t{1} << 30, *scratch_);
+  {
+    RasterStore::Hand hand(large);
+    for (std::uint64_t t = 0; t < kTiles; ++t) fill_tile(hand, t, false);
+  }
+  const auto expected = take_all(large, kTiles);
+  for (const std::uint64_t tiles : {0, 9, 20}) {
+    RasterStore small({PixelRule::kEqual}, tiles * kTileBytes, *scratch_, all_pixels);
+    {
+      RasterStore::Hand hand(small);
+      for (std::uint64_t t = 0; t < kTiles; ++t) fill_tile(hand, t, t % 8 != 0);
+    }
+    EXPECT_EQ(small.closed_tiles(), 35U);
+    EXPECT_LT(small.spilled_bytes(), kTiles * kTileBytes / 2) << tiles;
+    EXPECT_TRUE(take_all(small, kTiles) == expected) << tiles;
+  }
+}
+
+/// Tiles that are open are in memory, while those that are closed go to the disk.
+TEST_F(RasterStoreTest, PutsTilesOnTheDiskThatAreClosedBeforeOthers) {
+  RasterStore store({PixelRule::kEqual}, 12 * kTileBytes, *scratch_, all_pixels);
+  RasterStore::Hand hand(store);
+  set_pixel(*hand.tile(1000), 7);
+  hand.release();
+  const float* const open = hand.tile(1000);
+  hand.release();
+  for (std::uint64_t t = 0; t < 100; ++t) fill_tile(hand, t);
+  EXPECT_EQ(hand.tile(1000), open);
+  EXPECT_EQ(*hand.tile(1000), 7);
+}
+
 TEST_F(RasterStoreTest, NamesItsTilesInAscendingOrder) {
   RasterStore store({PixelRule::kEqual}, 0, *scratch_);
   {

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -85,6 +87,13 @@ class PointSourceTest : public ::testing::Test {
     return {"LASF_Projection", 34735, keys};
   }
 
+  /// The path of a file with these bytes, of this process alone.
+  static std::string on_disk(const std::string& name, const LasFile& las) {
+    const std::string path = ::testing::TempDir() + std::to_string(::getpid()) + name;
+    std::ofstream(path, std::ios::binary) << las.bytes();
+    return path;
+  }
+
   FaultyFileSystem files_;
   std::string warnings_;
   std::string details_;
@@ -104,6 +113,68 @@ TEST_F(PointSourceTest, FiltersAndCountsThroughAllInputs) {
   EXPECT_EQ(all.counts.classes, 0U);
   EXPECT_EQ(all.counts.kept(), 2U * 17);
   for (const std::uint64_t index : all.index) EXPECT_EQ(index % 100 % 6, 2U) << index;
+}
+
+/// By headers that tell x from 10 to 20 and y from 30 to 40, on two lattices.
+TEST_F(PointSourceTest, TellsTheExtentInTheCoordinatesOfThePoints) {
+  LasFile fine = diagonal(5);
+  fine.scale = {0.01, 0.01, 0.01};
+  fine.offset = {0, 0, 0};
+  LasFile coarse = fine;
+  coarse.scale = {0.05, 0.05, 0.01};
+  coarse.offset = {0.02, 0, 0};
+  LasFile empty = fine;
+  empty.records.clear();
+  const std::string fine_path = on_disk("fine.las", fine);
+  const std::string coarse_path = on_disk("coarse.las", coarse);
+  const std::string empty_path = on_disk("empty.las", empty);
+  const PointSource one(disk(), {fine_path, empty_path}, {});
+  EXPECT_EQ(one.told_extent(), (Box<2>{{1000, 3000}, {2000, 4000}}));
+  // Of 0.02 + 0.05 n the nearest to 10 and 20.
+  const PointSource two(disk(), {coarse_path}, {});
+  EXPECT_EQ(two.told_extent(), (Box<2>{{200, 600}, {400, 800}}));
+  const PointSource both(disk(), {fine_path, coarse_path}, {});
+  ASSERT_TRUE(both.lattice());
+  EXPECT_EQ(both.told_extent(), (Box<2>{{1000, 3000}, {2002, 4000}}));
+  EXPECT_EQ(PointSource(disk(), {empty_path}, {}).told_extent(), std::nullopt);
+}
+
+TEST_F(PointSourceTest, TellsNoExtentOfPointsThatAreFiltered) {
+  const std::string path = on_disk("a.las", diagonal(100));
+  EXPECT_NE(PointSource(disk(), {path}, {}).told_extent(), std::nullopt);
+  for (const PointFilter& filter :
+       {PointFilter{.every = 2}, PointFilter{.classes = std::bitset<256>("1")},
+        PointFilter{.bounds = Box<3>{{0, 0, 0}, {1e9, 1e9, 1e9}}}}) {
+    PointSourceOptions options;
+    options.filter = filter;
+    EXPECT_EQ(PointSource(disk(), {path}, options).told_extent(), std::nullopt);
+  }
+}
+
+/// They might be smaller than the header tells, and there is no second look.
+TEST_F(PointSourceTest, TellsNoExtentOfPointsFromAPipe) {
+  files_.files["pipe.las"] = diagonal(100).bytes();
+  PointSource source(files_, {"pipe.las"}, {});
+  EXPECT_EQ(source.told_extent(), std::nullopt);
+  EXPECT_FALSE(source.read_again());
+}
+
+TEST_F(PointSourceTest, GivesAllPointsOnceMore) {
+  PointSource source(disk(), {on_disk("a.las", diagonal(70)), on_disk("b.las", diagonal(100))},
+                     {.index = true});
+  std::vector<std::vector<std::uint64_t>> indices(2);
+  for (auto& index : indices) {
+    for (PointBlock block; source.read(block);) {
+      index.insert(index.end(), block.index.begin(), block.index.end());
+    }
+    EXPECT_EQ(source.counts().read, 170U);
+    EXPECT_EQ(source.counts().withheld, 17U);
+    EXPECT_EQ(source.fraction_read(), 1);
+    EXPECT_TRUE(source.read_again());
+    EXPECT_EQ(source.points_read(), 0U);
+  }
+  EXPECT_EQ(indices[0].size(), 153U);
+  EXPECT_EQ(indices[1], indices[0]);
 }
 
 TEST_F(PointSourceTest, WhatIsKeptDoesNotDependOnThreads) {
