@@ -23,9 +23,11 @@ constexpr double kMostFill = 0.8;
 PointFeed feed_of(PointStream& source, const StreamOptions& options, StageTimes& times) {
   return {.fetch =
               [&](SourcePiece& piece) {
-                const StageTimer timer(times, Stage::kRead);
+                StageTimer timer(times, Stage::kRead, StepOrder::kInOrder);
                 options.progress(source.points_read(), source.fraction_read());
-                return source.fetch(piece);
+                const bool fetched = source.fetch(piece);
+                timer.move_bytes(piece.raw.bytes.size());
+                return fetched;
               },
           .decode =
               [&](SourcePiece& piece, PointBlock& block) {

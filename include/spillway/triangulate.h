@@ -8,6 +8,7 @@
 #include <spillway/figures.h>
 #include <spillway/mesh.h>
 #include <spillway/points.h>
+#include <spillway/run_steps.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -35,6 +36,11 @@ struct TriangulateOptions {
   /// else in any order: by the run's threads, one at a time. What it throws ends the run. Not for
   /// runs over ranks.
   std::function<void(TaskNode node)> task_done{};
+  /// If set, is told each step of the run when it is done, by the thread that has done it, one at a
+  /// time. Must not throw. Not for runs over ranks.
+  std::function<void(const StageStep& step)> step_done{};
+  /// If set, is told what the run keeps to, before the first step.
+  std::function<void(const RunLimits& limits)> limits_known{};
 };
 
 /// Triangulates all points of the source and gives the mesh to the sink as it comes: simplices that

@@ -1,9 +1,14 @@
 #pragma once
 
+#include <spillway/run_steps.h>
+
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
+#include <mutex>
+#include <utility>
 
 namespace spillway::detail {
 
@@ -26,6 +31,12 @@ inline constexpr std::array kStageNames = {"read",  "exchange", "deal",   "spill
                                            "load",  "divide",   "leaves", "finality",
                                            "merge", "encode",   "write"};
 
+/// Processor time that the calling thread has had.
+double processor_seconds();
+
+/// Whether many threads may do steps of a kind at the same time, or one after the other.
+enum class StepOrder : std::uint8_t { kAny, kInOrder };
+
 /// Seconds of all threads together, by stage; added to by many threads at once.
 class StageTimes {
  public:
@@ -36,22 +47,52 @@ class StageTimes {
     times_[static_cast<std::size_t>(stage)] += time.count();
   }
 
+  /// From now on `step_done`, which must not throw, is told every step, by the thread that has done
+  /// it, one at a time. To be called before the first.
+  void tell_steps(std::function<void(const StageStep&)> step_done) {
+    step_done_ = std::move(step_done);
+  }
+  [[nodiscard]] bool tells_steps() const { return static_cast<bool>(step_done_); }
+  void tell(StageStep step);
+
  private:
   std::array<std::atomic<std::int64_t>, kStageNames.size()> times_{};
+  std::function<void(const StageStep&)> step_done_;
+  std::mutex tell_mutex_;  ///< held while step_done_ is called
 };
 
 /// Adds the time between its construction and its destruction to a stage.
 class StageTimer {
  public:
-  StageTimer(StageTimes& times, Stage stage) : times_(times), stage_(stage), start_(Clock::now()) {}
-  ~StageTimer() { times_.add(stage_, Clock::now() - start_); }
+  StageTimer(StageTimes& times, Stage stage, StepOrder order = StepOrder::kAny)
+      : times_(times),
+        stage_(stage),
+        order_(order),
+        processor_start_(times.tells_steps() ? processor_seconds() : 0),
+        start_(Clock::now()) {}
+  ~StageTimer() {
+    const Clock::duration time = Clock::now() - start_;
+    times_.add(stage_, time);
+    if (!times_.tells_steps()) return;
+    times_.tell({.stage = kStageNames[static_cast<std::size_t>(stage_)],
+                 .in_order = order_ == StepOrder::kInOrder,
+                 .seconds = std::chrono::duration<double>(time).count(),
+                 .processor_time = processor_seconds() - processor_start_,
+                 .bytes = bytes_});
+  }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
+
+  /// Counts bytes that this step reads or writes.
+  void move_bytes(std::uint64_t bytes) { bytes_ += bytes; }
 
  private:
   using Clock = std::chrono::steady_clock;
   StageTimes& times_;
   Stage stage_;
+  StepOrder order_;
+  std::uint64_t bytes_ = 0;
+  double processor_start_;
   Clock::time_point start_;
 };
 

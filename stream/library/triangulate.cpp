@@ -45,6 +45,8 @@ StreamOptions stream_options(const TriangulateOptions& options, const Context& c
     return sink.extent_told(extent, points);
   };
   stream.extent_holds = [&sink](const Box<2>& extent) { return sink.extent_holds(extent); };
+  stream.step_done = options.step_done;
+  stream.limits_known = options.limits_known;
   stream.extent_known = [&sink](const Box<2>& extent, std::uint64_t points) {
     sink.extent_known(extent, points);
   };

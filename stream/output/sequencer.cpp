@@ -69,7 +69,8 @@ void Sequencer<D>::give_up() {
 
 template <int D>
 void Sequencer<D>::write(Waiting&& waiting) {
-  const StageTimer timer(times_, Stage::kWrite);
+  StageTimer timer(times_, Stage::kWrite, StepOrder::kInOrder);
+  timer.move_bytes(waiting.bytes);
   if (first_vertex_.size() <= next_.slot) first_vertex_.resize(next_.slot + 1);
   first_vertex_[next_.slot].push_back(vertices_);
   MeshBlock& mesh = waiting.mesh;

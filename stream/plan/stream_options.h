@@ -1,6 +1,7 @@
 #pragma once
 
 #include <spillway/figures.h>
+#include <spillway/run_steps.h>
 
 #include <cstdint>
 #include <functional>
@@ -26,7 +27,10 @@ struct StreamOptions {
   Heights heights = Heights::kFirst;
   std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, in output units
   bool input_index = false;
-  std::function<void(TaskNode)> task_done{};  ///< as TriangulateOptions::task_done
+  /// As in TriangulateOptions.
+  std::function<void(TaskNode)> task_done{};
+  std::function<void(const StageStep&)> step_done{};
+  std::function<void(const RunLimits&)> limits_known{};
   /// Triangulate while points are being read, where regions of the source tell where they lie.
   bool early = false;
   /// Told the box around all points in x and y, in the coordinates in which the source gives them,

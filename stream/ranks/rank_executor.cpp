@@ -38,7 +38,7 @@ class RankExecutor final : public Executor {
   }
 
   Report triangulate(Run& run) override {
-    if (run.options.task_done) {
+    if (run.options.task_done || run.options.step_done) {
       throw InvalidArgument("the tasks of a run over ranks are told as sums only");
     }
     auto* const source = dynamic_cast<detail::PointSource*>(run.points.stream);

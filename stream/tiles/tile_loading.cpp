@@ -172,13 +172,14 @@ StoredTile TileTree::one_of(Tile tile) const {
 
 template <int D>
 StoredTile TileTree::read(const TileNode<D>& node) {
-  const StageTimer timer(times_, Stage::kLoad);
+  StageTimer timer(times_, Stage::kLoad, StepOrder::kInOrder);
   if (options_.one_of_equal && node.points > options_.capacity && node.box.lo == node.box.hi) {
     return one_of(take(node.stored.front()));
   }
   StoredTile stored;
   stored.points = node.points;
   for (const std::uint32_t number : node.stored) append_stored(take(number), stored.segments);
+  for (const StoredTile::Segment& segment : stored.segments) timer.move_bytes(segment.bytes.size());
   return stored;
 }
 

@@ -138,7 +138,7 @@ void TileTree::deal(Batch& batch, const PointBlock& points) const {
 
 /// Puts a batch into the tiles' buffers, and takes out what has to go to the disk.
 void TileTree::append(Batch& batch) {
-  const StageTimer timer(times_, Stage::kDeal);
+  const StageTimer timer(times_, Stage::kDeal, StepOrder::kInOrder);
   ++batches_;
   if (options_.plan != nullptr && !filled_) begin_region(batch.region, batch);
   if (!filled_) points_ += batch.dealt.points.size();
@@ -296,9 +296,10 @@ void TileTree::spill(std::uint32_t number, Batch& batch) {
 }
 
 void TileTree::write(Batch& batch) {
-  const StageTimer timer(times_, Stage::kSpill);
+  StageTimer timer(times_, Stage::kSpill, StepOrder::kInOrder);
   for (const Spill& spill : batch.spills) {
     spill.stretch->append(spill.bytes, stretches_mutex_);
+    timer.move_bytes(spill.bytes.size());
     bytes_written_ += spill.bytes.size();
     points_written_ += spill.count;
   }

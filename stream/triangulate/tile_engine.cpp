@@ -8,6 +8,7 @@
 
 #include "src/delaunay/base_case.h"
 #include "src/error.h"
+#include "src/parallel/most_threads.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::detail {
@@ -49,6 +50,17 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
                .sequencer = sequencer_,
                .counts = counts_,
                .progress = [this] { report_progress(); }} {
+  if (options.step_done) counts_.times.tell_steps(options.step_done);
+  if (options.limits_known) {
+    const MemoryPlan any =
+        plan_memory(budget.limit(), D, kMostThreads, budget.whole(), expected.plan != nullptr);
+    options.limits_known({.batches = plan_.batches,
+                          .tile_points = planned_tile_,
+                          .loaded_points = kTilesAtATime * planned_tile_,
+                          .ready_tiles = Lanes::kMostReady,
+                          .waiting_bytes = plan_.waiting_bytes,
+                          .threads = any.threads});
+  }
   if (expected.plan == nullptr) return;
   cells_.emplace(*expected.plan);
   parts_.resize(cells_->parts());

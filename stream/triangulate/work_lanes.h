@@ -19,6 +19,9 @@ namespace spillway::detail {
 template <typename Node>
 class WorkLanes {
  public:
+  /// Nodes that may be ready before the caller of work_beside() lends a hand.
+  static constexpr std::size_t kMostReady = 1;
+
   struct Work {
     std::function<std::uint64_t(const Node&)> weight;
     /// Of one node at a time, in order; and the one after it, or null if that is not ready.
@@ -69,9 +72,6 @@ class WorkLanes {
   }
 
  private:
-  /// Nodes that may be ready before the caller of work_beside() lends a hand.
-  static constexpr std::size_t kMostReady = 1;
-
   [[nodiscard]] std::size_t ready() const {
     const std::lock_guard lock(mutex_);
     return ready_.size();

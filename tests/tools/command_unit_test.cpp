@@ -42,40 +42,6 @@ TEST(CoreList, NonsenseIsAnInvalidArgument) {
   }
 }
 
-TEST(CoreSimulation, SpeedUpIsOverOneCore) {
-  Task root;
-  for (int i = 0; i < 4; ++i) {
-    Task child;
-    child.seconds = 1;
-    root.children.push_back(child);
-  }
-  const auto runs = simulate_cores(root, {1, 2, 8});
-  ASSERT_EQ(runs.size(), 3U);
-  EXPECT_DOUBLE_EQ(runs[0].speed_up, 1);
-  EXPECT_DOUBLE_EQ(runs[1].speed_up, 2);
-  EXPECT_DOUBLE_EQ(runs[2].speed_up, 4);
-}
-
-TEST(TaskTree, IsPutTogetherFromItsNodes) {
-  TaskTree tree;
-  const auto add = [&tree](std::uint32_t number, std::vector<std::uint32_t> children) {
-    tree.add({.number = number, .children = std::move(children), .task = {.points = number}});
-  };
-  add(1, {});
-  add(0, {});
-  add(3, {});
-  add(2, {0, 1});
-  add(4, {2, 3});
-  const Task root = tree.take();
-  EXPECT_EQ(root.points, 4U);
-  ASSERT_EQ(root.children.size(), 2U);
-  EXPECT_EQ(root.children[1].points, 3U);
-  ASSERT_EQ(root.children[0].children.size(), 2U);
-  EXPECT_EQ(root.children[0].children[0].points, 0U);
-  EXPECT_EQ(root.children[0].children[1].points, 1U);
-  EXPECT_EQ(TaskTree().take().children.size(), 0U);
-}
-
 TEST(Count, TakesDigitsAndExponents) {
   EXPECT_EQ(parse_point_count("0"), 0U);
   EXPECT_EQ(parse_point_count("123456789012"), 123456789012U);

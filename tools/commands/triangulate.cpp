@@ -26,6 +26,8 @@
 #include "tools/report/speed_up_estimate.h"
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
+#include "tools/simulate/core_simulation.h"
+#include "tools/simulate/run_recorder.h"
 
 namespace spillway::detail {
 namespace {
@@ -49,6 +51,8 @@ struct TriangulateCommandOptions : TriangulationOptions {
   int dimension = 2;
   bool input_index = false;
   std::string core_list;
+  std::string disk_speed;
+  std::string simulated_points;
   bool parts = false;
 
   [[nodiscard]] bool simulates() const { return !core_list.empty(); }
@@ -75,6 +79,15 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
                   "Run on one thread and print what so many cores would take, as 1,2,4,...,1024"),
               parse_core_list)
       .value_name("LIST");
+  take_parsed(app.add_option("--simulate-disk", options.disk_speed,
+                             "Bytes a second of the simulated disk, as 500M or 2G; none: as many "
+                             "as are needed"),
+              parse_memory_size)
+      .value_name("SPEED");
+  take_parsed(app.add_option("--simulate-points", options.simulated_points,
+                             "Points of the simulated run, made of copies of the one measured"),
+              parse_point_count)
+      .value_name("N");
   add_report_options(app, options.report);
 }
 
@@ -103,7 +116,9 @@ void say(const TriangulateCommandOptions& options, const Report& report, const R
   if (facts.simulated.empty()) return;
   // The table is what was asked for; it gives way only to a mesh on standard output.
   const std::string table =
-      "what the triangulation alone would take, tasks measured on one thread:\n" +
+      fmt::format(
+          "what the whole command would take for {} points, steps measured on one thread:\n",
+          facts.simulated_points) +
       simulation_table(facts.simulated);
   if (options.output == "-") {
     progress.say(table);
@@ -132,7 +147,25 @@ void refuse_other_output(const std::string& path) {
       fmt::format("-o {}: this is not a mesh; it is what spillway {} makes", path, subcommand));
 }
 
+/// The run on as many cores as asked for.
+void simulate(const TriangulateCommandOptions& options, RunModel run, RunFacts& facts) {
+  if (!options.simulated_points.empty()) {
+    run = enlarge(run, parse_point_count(options.simulated_points));
+  }
+  const std::uint64_t speed =
+      options.disk_speed.empty() ? 0 : parse_memory_size(options.disk_speed);
+  facts.simulated_points = run.points;
+  facts.simulated =
+      simulate_cores(run, parse_core_list(options.core_list), static_cast<double>(speed));
+}
+
 void check_options(const TriangulateCommandOptions& options) {
+  const auto check_unused = [&](bool given, const char* option) {
+    if (options.simulates() || !given) return;
+    throw UsageError(fmt::format("{} has no effect without --simulate-cores", option));
+  };
+  check_unused(!options.disk_speed.empty(), "--simulate-disk");
+  check_unused(!options.simulated_points.empty(), "--simulate-points");
   if (options.simulates()) {
     parse_core_list(options.core_list);
     if (options.threads > 1) {
@@ -155,6 +188,7 @@ void check_options(const TriangulateCommandOptions& options) {
 int run(const TriangulateCommandOptions& options) {
   check_options(options);
   const auto start = std::chrono::steady_clock::now();
+  RunRecorder recorder;
   Progress progress = make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   ContextOptions limits =
       context_options(options.memory, options.simulates() ? 1 : thread_count(options), progress);
@@ -168,13 +202,16 @@ int run(const TriangulateCommandOptions& options) {
   check_heights(options, points->header());
   TriangulateOptions how = triangulate_options(options, options.dimension);
   how.input_index = options.input_index;
-  TaskTree tasks;
-  if (options.simulates()) how.task_done = [&tasks](TaskNode node) { tasks.add(std::move(node)); };
+  if (options.simulates()) {
+    how.task_done = [&](const TaskNode& node) { recorder.node(node); };
+    how.step_done = [&](const StageStep& step) { recorder.step(step); };
+    how.limits_known = [&](const RunLimits& known) { recorder.limits(known); };
+  }
   const Report report = triangulate_with_tasks(options, *points, *mesh, how, context);
   if (!is_first_rank()) return kExitDone;
   RunFacts facts = facts_of_run(options, options.output, context, start);
   if (options.simulates()) {
-    facts.simulated = simulate_cores(tasks.take(), parse_core_list(options.core_list));
+    simulate(options, recorder.take(report, report.output_bytes), facts);
   }
   write_statistics(options, report, facts);
   say(options, report, facts, progress);

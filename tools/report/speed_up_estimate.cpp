@@ -46,31 +46,15 @@ std::vector<unsigned> parse_core_list(std::string_view text) {
   return cores;
 }
 
-void TaskTree::add(TaskNode node) {
-  for (const std::uint32_t child : node.children) {
-    node.task.children.push_back(std::move(roots_.extract(child).mapped()));
-  }
-  roots_.emplace(node.number, std::move(node.task));
-}
-
-Task TaskTree::take() {
-  return roots_.empty() ? Task() : std::move(roots_.extract(roots_.begin()).mapped());
-}
-
-std::vector<SimulatedRun> simulate_cores(const Task& tasks, const std::vector<unsigned>& cores) {
-  const double alone = greedy_makespan(tasks, 1);
-  std::vector<SimulatedRun> runs;
-  for (const unsigned count : cores) {
-    const double seconds = greedy_makespan(tasks, count);
-    runs.push_back({count, seconds, seconds > 0 ? alone / seconds : 1});
-  }
-  return runs;
-}
-
 std::string simulation_table(const std::vector<SimulatedRun>& runs) {
-  std::string table = "  cores    seconds   speed-up";
+  std::string table = "  cores    seconds   speed-up   bottlenecks, and seconds without them";
   for (const SimulatedRun& run : runs) {
     table += fmt::format("\n{:7} {:10.4f} {:10.2f}", run.cores, run.seconds, run.speed_up);
+    const char* before = "   ";
+    for (const Bottleneck& bottleneck : run.bottlenecks) {
+      table += fmt::format("{}{} {:.4f}", std::exchange(before, ", "), bottleneck.name,
+                           bottleneck.seconds);
+    }
   }
   return table;
 }

@@ -63,6 +63,20 @@ Json to_json(const RankFigures& rank, std::size_t number) {
   return json;
 }
 
+Json to_json(const SimulatedRun& run) {
+  Json bottlenecks = Json::array();
+  for (const Bottleneck& bottleneck : run.bottlenecks) {
+    bottlenecks.push_back(
+        {{"name", std::string(bottleneck.name)}, {"seconds_without", bottleneck.seconds}});
+  }
+  Json json = {{"cores", run.cores},
+               {"seconds", run.seconds},
+               {"speed_up", run.speed_up},
+               {"bottleneck", std::string(run.bottlenecks.front().name)}};
+  json["bottlenecks"] = std::move(bottlenecks);
+  return json;
+}
+
 double ratio(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
@@ -141,9 +155,9 @@ Json to_json(const Report& report, const RunFacts& facts) {
   if (!facts.simulated.empty()) {
     json["simulated"] = Json::array();
     for (const SimulatedRun& run : facts.simulated) {
-      json["simulated"].push_back(
-          {{"cores", run.cores}, {"seconds", run.seconds}, {"speed_up", run.speed_up}});
+      json["simulated"].push_back(to_json(run));
     }
+    json["simulated_points"] = facts.simulated_points;
   }
   json["task_sums"] = task_sums(report);
   if (!report.ranks.empty()) json["ranks"] = ranks(report);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "formats/bytes/json.h"
-#include "tools/report/speed_up_estimate.h"
+#include "tools/simulate/core_simulation.h"
 
 namespace spillway::detail {
 
@@ -19,6 +19,7 @@ struct RunFacts {
   std::uint64_t memory_limit = 0;  ///< bytes
   double seconds = 0;              ///< of the whole run
   std::vector<SimulatedRun> simulated{};
+  std::uint64_t simulated_points = 0;  ///< of each of these
 };
 
 /// The object that --stats writes. docs/cli.md lists the keys; they are stable.

@@ -279,7 +279,25 @@ TEST(Triangulate, SimulatedCoresAreATableAndInTheStats) {
   ASSERT_EQ(runs.size(), 5U);
   EXPECT_EQ(runs[4]["cores"], 16);
   EXPECT_EQ(runs[0]["speed_up"], 1.0);
+  EXPECT_NE(runs[4]["bottleneck"], "");
+  EXPECT_EQ(runs[4]["bottlenecks"][0]["name"], runs[4]["bottleneck"]);
+  EXPECT_LT(runs[4]["bottlenecks"][0]["seconds_without"], runs[4]["seconds"]);
   EXPECT_EQ(stats_of(work)["threads"], 1);
+  EXPECT_EQ(stats_of(work)["simulated_points"], 5000);
+}
+
+TEST(Triangulate, SimulatedRunsMayBeLargerAndWaitForADisk) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 20000 -o in.las");
+  work.succeed(
+      "spillway triangulate -q in.las -o a.spm --tile 3000 --simulate-cores 64 "
+      "--simulate-points 1e5 --simulate-disk 1M --stats stats.json");
+  EXPECT_EQ(stats_of(work)["simulated_points"], 100000);
+  const auto run = stats_of(work)["simulated"][0];
+  EXPECT_EQ(run["bottleneck"], "disk");
+  // The input and the output of five times the points.
+  EXPECT_GT(run["seconds"],
+            5 * (20 * 20000 + stats_of(work)["output_bytes"].get<double>()) / (1 << 20));
 }
 
 TEST(Triangulate, ReplacesAnOutputThatIsThere) {

@@ -62,6 +62,10 @@ INSTANTIATE_TEST_SUITE_P(
         Unused{"ThinningByHeightOfFlatPoints", "triangulate flat.txt -o a.spm --thin 1:lowest",
                "the points have no z to thin them by"},
         Unused{"Parts", "triangulate in.las -o a.spm --parts", "start it with mpirun"},
+        Unused{"DiskOfNoSimulation", "triangulate in.las -o a.spm --simulate-disk 1G",
+               "--simulate-disk has no effect without --simulate-cores"},
+        Unused{"PointsOfNoSimulation", "triangulate in.las -o a.spm --simulate-points 1e9",
+               "--simulate-points has no effect without --simulate-cores"},
         Unused{"LevelsWithoutCopc", "triangulate in.las -o a.spm --resolution 1",
                "in.las is not a COPC file"}),
     name_of);
