@@ -36,6 +36,7 @@ class EqualPoints {
     double height = 0;
     std::uint64_t place = 0;
 
+    // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
     auto operator<=>(const Rank&) const = default;
   };
   [[nodiscard]] Rank rank_of(const LatticePoint& point, std::uint64_t place) const;

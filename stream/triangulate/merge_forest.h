@@ -21,9 +21,9 @@ class MergeForest {
 
    private:
     friend class MergeForest;
-    Node* parent = nullptr;
-    std::size_t children_missing = 0;
-    bool done = false;
+    Node* parent_ = nullptr;
+    std::size_t children_missing_ = 0;
+    bool done_ = false;
   };
 
   struct Added {
@@ -38,18 +38,19 @@ class MergeForest {
     static_cast<State&>(node) = std::move(state);
     node.number = static_cast<std::uint32_t>(nodes_.size() - 1);
     for (Node* child : children) {
-      child->parent = &node;
-      if (!child->done) ++node.children_missing;
+      child->parent_ = &node;
+      if (!child->done_) ++node.children_missing_;
     }
     node.children = std::move(children);
-    return {&node, node.children_missing == 0};
+    return {&node, node.children_missing_ == 0};
   }
 
   /// A node is done. Returns its parent if no other child of that is missing, else null.
   Node* done(Node& node) {
     const std::lock_guard lock(mutex_);
-    node.done = true;
-    return node.parent != nullptr && --node.parent->children_missing == 0 ? node.parent : nullptr;
+    node.done_ = true;
+    return node.parent_ != nullptr && --node.parent_->children_missing_ == 0 ? node.parent_
+                                                                             : nullptr;
   }
 
  private:
