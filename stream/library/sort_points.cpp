@@ -151,7 +151,8 @@ class Sorting {
       return true;
     };
     const auto decode = [&](std::size_t slot) {
-      auto& [stored, points] = slots[slot];
+      StoredTile& stored = slots[slot].stored;
+      std::vector<LatticePoint>& points = slots[slot].points;
       points.clear();
       if (stored.points > capacity_) return;  // equal points, which may be too many for the memory
       visit_points(stored, [&](std::span<const LatticePoint> some) {
@@ -159,8 +160,8 @@ class Sorting {
       });
     };
     const auto append = [&](std::size_t slot) {
-      auto& [stored, points] = slots[slot];
-      file_.append_placed(points);
+      StoredTile& stored = slots[slot].stored;
+      file_.append_placed(slots[slot].points);
       if (stored.points > capacity_) {
         visit_points(stored,
                      [&](std::span<const LatticePoint> some) { file_.append_placed(some); });
