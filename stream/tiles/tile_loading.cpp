@@ -116,50 +116,55 @@ TileTree::Tile TileTree::take(std::uint32_t number) {
   return taken.empty() ? Tile{} : std::move(taken.mapped());
 }
 
-/// Appends what is on the disk of a tile and what is held, in the order in which it came.
-void TileTree::append_stored(Tile tile, std::vector<StoredTile::Segment>& stored) {
+/// Calls one of the two for each part of a tile, in the order in which they came.
+template <typename OnDisk, typename InMemory>
+void TileTree::visit_parts(Tile tile, const OnDisk& on_disk, const InMemory& in_memory) {
   std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
   std::ranges::stable_sort(tile.held, {}, arrival_of<HeldPoints>);
   auto held = tile.held.begin();
-  const auto append_held_before = [&](std::uint64_t arrival) {
-    for (; held != tile.held.end() && arrival_of(*held) < arrival; ++held) {
-      stored.push_back({{}, {}, std::move(held->buffer)});
-    }
+  const auto visit_held_before = [&](std::uint64_t arrival) {
+    for (; held != tile.held.end() && arrival_of(*held) < arrival; ++held) in_memory(held->buffer);
   };
-  for (const TileSegment& segment : tile.segments) {
-    append_held_before(segment.arrival);
-    const FileStretch& stretch = *segment.stretch;
-    StoredTile::Segment& read = stored.emplace_back();
-    read.where = {stretch.file().name(), at_byte(stretch.offset())};
-    read.bytes.resize(stretch.size());
-    stretch.file().read(stretch.offset(), read.bytes);
+  for (TileSegment& segment : tile.segments) {
+    visit_held_before(segment.arrival);
+    on_disk(std::move(segment));
   }
-  append_held_before(kLast);
+  visit_held_before(kLast);
+}
+
+void TileTree::append_stored(Tile tile, std::vector<StoredTile::Segment>& stored) {
+  visit_parts(
+      std::move(tile),
+      [&](const TileSegment& segment) {
+        const FileStretch& stretch = *segment.stretch;
+        StoredTile::Segment& read = stored.emplace_back();
+        read.where = {stretch.file().name(), at_byte(stretch.offset())};
+        read.bytes.resize(stretch.size());
+        stretch.file().read(stretch.offset(), read.bytes);
+      },
+      [&](PointBuffer& buffer) {
+        stored.push_back({{}, {}, std::move(buffer)});
+      });
 }
 
 /// Makes one point of a tile of points that are one vertex.
 StoredTile TileTree::one_of(Tile tile) const {
   EqualPoints all(options_.dimension, *options_.one_of_equal);
-  std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
-  std::ranges::stable_sort(tile.held, {}, arrival_of<HeldPoints>);
-  auto held = tile.held.begin();
-  const auto add_held_before = [&](std::uint64_t arrival) {
-    for (; held != tile.held.end() && arrival_of(*held) < arrival; ++held) {
-      held->buffer.drain([&](std::span<const LatticePoint> points,
-                             std::span<const std::uint64_t> index) { all.add(points, index); });
-    }
-  };
-  for (TileSegment& segment : tile.segments) {
-    add_held_before(segment.arrival);
-    SegmentReader reader({std::move(segment)});
-    StoredBlocks blocks;
-    PointBlock points;
-    while (reader.fetch(blocks)) {
-      decode_all_points(blocks.bytes, blocks.where, points);
-      all.add(points.points, points.index);
-    }
-  }
-  add_held_before(kLast);
+  visit_parts(
+      std::move(tile),
+      [&](TileSegment segment) {
+        SegmentReader reader({std::move(segment)});
+        StoredBlocks blocks;
+        PointBlock points;
+        while (reader.fetch(blocks)) {
+          decode_all_points(blocks.bytes, blocks.where, points);
+          all.add(points.points, points.index);
+        }
+      },
+      [&](PointBuffer& buffer) {
+        buffer.drain([&](std::span<const LatticePoint> points,
+                         std::span<const std::uint64_t> index) { all.add(points, index); });
+      });
   StoredTile stored;
   stored.points = 1;
   stored.left_out = all.count() - 1;

@@ -152,9 +152,8 @@ class TileTree {
   struct Tile {
     Box<3> box;
     std::uint64_t points = 0;
-    double expected = 0;  ///< points of segments left over above that are still to come
-    std::vector<HeldPoints>
-        held;  ///< a run each; came after what is on the disk, if no arrival tells
+    double expected = 0;           ///< points of segments left over above that are still to come
+    std::vector<HeldPoints> held;  ///< a run each; without an arrival it came last
     std::optional<std::uint64_t> last_left_over{};  ///< the latest arrival of what was, above
     std::vector<TileSegment> segments;
     std::shared_ptr<ScratchFile> file;
@@ -211,6 +210,8 @@ class TileTree {
   [[nodiscard]] std::optional<TileNode<D>> nodes_below(CutTree::NodeRef ref) const;
   void take_below(CutTree::NodeRef ref);
   [[nodiscard]] Tile take(std::uint32_t number);
+  template <typename OnDisk, typename InMemory>
+  static void visit_parts(Tile tile, const OnDisk& on_disk, const InMemory& in_memory);
   static void append_stored(Tile tile, std::vector<StoredTile::Segment>& stored);
   [[nodiscard]] StoredTile one_of(Tile tile) const;
 
