@@ -15,7 +15,17 @@
 // Every loop here runs over a fixed number of values without a branch, in operations that SSE2 has,
 // so that the compiler makes vector code of it (but for the running sum of the decoder). That rules
 // out the conversion between doubles and 64-bit integers: an integer of up to 51 bits is instead
-// added to 1.5 * 2^52, where neighbouring doubles differ by 1, and read off the lowest bits.
+// added to 1.5 * 2^52, where neighbouring doubles differ by 1, and read off the lowest bits. On
+// processors with AVX2 the vectors are twice as long (with_longest_vectors).
+
+#ifdef __x86_64__
+/// Compiles a function, with all that it calls, for processors with AVX2.
+#define SPILLWAY_FOR_AVX2 [[gnu::target("avx2"), gnu::flatten]]
+#define SPILLWAY_HAS_AVX2 __builtin_cpu_supports("avx2")
+#else
+#define SPILLWAY_FOR_AVX2
+#define SPILLWAY_HAS_AVX2 false
+#endif
 
 namespace spillway::detail {
 namespace {
@@ -78,17 +88,14 @@ using Word = std::conditional_t<
     std::conditional_t<kWidth == 2, std::uint16_t,
                        std::conditional_t<kWidth <= 4, std::uint32_t, std::uint64_t>>>;
 
-bool all_integers(std::span<const double> values) {
-  std::size_t i = 0;
-  for (; i + kChunk <= values.size(); i += kChunk) {
-    const double* const chunk = values.data() + i;
-    std::uint64_t misfit = 0;
-    for (std::size_t k = 0; k < kChunk; ++k) misfit |= IntegerDoubles::misfit(chunk[k]);
-    if (misfit != 0) return false;
-  }
-  std::uint64_t misfit = 0;
-  for (; i < values.size(); ++i) misfit |= IntegerDoubles::misfit(values[i]);
-  return misfit == 0;
+template <typename Work>
+SPILLWAY_FOR_AVX2 void with_avx2(const Work& work) {
+  work();
+}
+
+template <typename Work>
+void with_longest_vectors(const Work& work) {
+  SPILLWAY_HAS_AVX2 ? with_avx2(work) : work();
 }
 
 /// Calls `body` with the width, 1 to 8, as a constant.
@@ -135,22 +142,55 @@ void encode_chunk(const typename Codec::Value* values, std::size_t count, std::b
   }
 }
 
+/// What the differences of values need.
+struct Differences {
+  std::uint64_t used = 0;     ///< bits that some difference has
+  std::uint64_t changes = 0;  ///< 0 if all differences are the first
+  std::uint64_t misfit = 0;   ///< 0 if the values, but perhaps for the first, are the codec's
+};
+
 template <typename Codec>
-void encode(std::vector<std::byte>& out, std::span<const typename Codec::Value> values,
-            std::uint8_t kind) {
-  if (values.empty()) return;
-  const std::uint64_t base = Codec::key(values[0]) - Codec::kOffset;
+std::uint64_t misfit_of(typename Codec::Value value) {
+  if constexpr (std::is_same_v<Codec, IntegerDoubles>) return Codec::misfit(value);
+  return 0;
+}
+
+/// Looks at the differences chunk by chunk, until one has a misfit.
+template <typename Codec>
+Differences differences_of(std::span<const typename Codec::Value> values) {
+  Differences found;
   const std::uint64_t step = values.size() > 1 ? Codec::key(values[1]) - Codec::key(values[0]) : 0;
-  std::uint64_t used = 0;     // bits that some difference has
-  std::uint64_t changes = 0;  // 0 if all differences are the first
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    const std::uint64_t difference = Codec::key(values[i]) - Codec::key(values[i - 1]);
-    used |= zigzag(difference);
-    changes |= difference ^ step;
+  for (std::size_t begin = 1; begin < values.size() && found.misfit == 0; begin += kChunk) {
+    std::uint64_t used = 0;
+    std::uint64_t changes = 0;
+    std::uint64_t misfit = 0;
+    const std::size_t end = std::min(begin + kChunk, values.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint64_t difference = Codec::key(values[i]) - Codec::key(values[i - 1]);
+      used |= zigzag(difference);
+      changes |= difference ^ step;
+      misfit |= misfit_of<Codec>(values[i]);
+    }
+    found.used |= used;
+    found.changes |= changes;
+    found.misfit |= misfit;
   }
-  const unsigned width = changes == 0 ? 0 : (static_cast<unsigned>(std::bit_width(used)) + 7) / 8;
+  return found;
+}
+
+/// Appends a column, unless a value is none of the codec's.
+template <typename Codec>
+bool encode(std::vector<std::byte>& out, std::span<const typename Codec::Value> values,
+            std::uint8_t kind) {
+  if (values.empty()) return true;
+  const Differences differences = differences_of<Codec>(values);
+  if ((differences.misfit | misfit_of<Codec>(values[0])) != 0) return false;
+  const std::uint64_t base = Codec::key(values[0]) - Codec::kOffset;
+  const unsigned width = differences.changes == 0
+                             ? 0
+                             : (static_cast<unsigned>(std::bit_width(differences.used)) + 7) / 8;
   const std::size_t plane_size = values.size() - 1;
-  const std::size_t body = width == 0 ? sizeof step : width * plane_size;
+  const std::size_t body = width == 0 ? sizeof(std::uint64_t) : width * plane_size;
   const std::size_t begin = out.size();
   out.resize(begin + kColumnHead + body);
   std::byte* const column = out.data() + begin;
@@ -158,8 +198,10 @@ void encode(std::vector<std::byte>& out, std::span<const typename Codec::Value> 
   store(column + 1, static_cast<std::uint8_t>(width));
   store(column + 2, base);
   if (width == 0) {
+    const std::uint64_t step =
+        values.size() > 1 ? Codec::key(values[1]) - Codec::key(values[0]) : 0;
     store(column + kColumnHead, step);
-    return;
+    return true;
   }
   with_width(width, [&]<unsigned kWidth>(std::integral_constant<unsigned, kWidth>) {
     for (std::size_t i = 0; i < plane_size; i += kChunk) {
@@ -167,6 +209,7 @@ void encode(std::vector<std::byte>& out, std::span<const typename Codec::Value> 
                                   column + kColumnHead + i, plane_size);
     }
   });
+  return true;
 }
 
 /// Up to a chunk of values after `key`, which becomes the key of the last one. Returns 0 if they
@@ -263,7 +306,11 @@ void read_integers(std::span<const std::byte>& left, const FileSpot& where, std:
   if (count == 0) return values.clear();
   const Column column = take(left, count, where);
   values.resize(count);
-  if (column.kind != kIntegers || decode<Integers<T>>(column.bytes, column.width, values) != 0) {
+  std::uint64_t misfit = column.kind ^ kIntegers;
+  if (misfit == 0) {
+    with_longest_vectors([&] { misfit = decode<Integers<T>>(column.bytes, column.width, values); });
+  }
+  if (misfit != 0) {
     fail(where, "a column does not hold the expected whole numbers");
   }
 }
@@ -271,21 +318,20 @@ void read_integers(std::span<const std::byte>& left, const FileSpot& where, std:
 }  // namespace
 
 bool append_column(std::vector<std::byte>& out, std::span<const double> values) {
-  const bool integers = all_integers(values);
-  if (integers) {
-    encode<IntegerDoubles>(out, values, kIntegers);
-  } else {
-    encode<BitDoubles>(out, values, kBits);
-  }
+  bool integers = false;
+  with_longest_vectors([&] {
+    integers = encode<IntegerDoubles>(out, values, kIntegers);
+    if (!integers) encode<BitDoubles>(out, values, kBits);
+  });
   return integers;
 }
 
 void append_column(std::vector<std::byte>& out, std::span<const std::uint64_t> values) {
-  encode<Integers<std::uint64_t>>(out, values, kIntegers);
+  with_longest_vectors([&] { encode<Integers<std::uint64_t>>(out, values, kIntegers); });
 }
 
 void append_column(std::vector<std::byte>& out, std::span<const std::uint32_t> values) {
-  encode<Integers<std::uint32_t>>(out, values, kIntegers);
+  with_longest_vectors([&] { encode<Integers<std::uint32_t>>(out, values, kIntegers); });
 }
 
 ColumnReader::ColumnReader(std::span<const std::byte> bytes, FileSpot where)
@@ -295,9 +341,11 @@ void ColumnReader::read(std::size_t count, std::vector<double>& values) {
   if (count == 0) return values.clear();
   const Column column = take(left_, count, where_);
   values.resize(count);
-  const std::uint64_t misfit = column.kind == kIntegers
-                                   ? decode<IntegerDoubles>(column.bytes, column.width, values)
-                                   : decode<BitDoubles>(column.bytes, column.width, values);
+  std::uint64_t misfit = 0;
+  with_longest_vectors([&] {
+    misfit = column.kind == kIntegers ? decode<IntegerDoubles>(column.bytes, column.width, values)
+                                      : decode<BitDoubles>(column.bytes, column.width, values);
+  });
   if (misfit != 0) fail(where_, "a column holds numbers out of range");
 }
 
