@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <utility>
 
 #include "src/delaunay/common/working_memory.h"
@@ -20,10 +21,24 @@ namespace {
 constexpr std::size_t kSmallestSample = 1'023;
 constexpr std::size_t kLargestSample = 65'535;
 constexpr std::size_t kPointsOfSample = 16;
+/// Halves share the sample of the whole. One is made anew when less than this part of those wanted
+/// is left.
+constexpr std::size_t kUsedUp = 3;
+/// One of so many points of a leaf that is to be filled stays free, as samples err.
+constexpr std::size_t kSpareShare = 24;
 /// Parts below this size are divided in the task that made them.
 constexpr std::size_t kSmallestParallelPart = 1 << 14;
 constexpr std::size_t kBoxGrain = 1 << 16;
 constexpr std::size_t kSampleGrain = 1 << 13;
+
+/// A range of the points, and some of them, by which it is cut.
+template <int D>
+struct Piece {
+  VertexId begin = 0, end = 0;
+  std::span<Point<D>> sample{};
+
+  [[nodiscard]] std::size_t size() const { return end - begin; }
+};
 
 template <int D>
 class Divider {
@@ -31,59 +46,108 @@ class Divider {
   Divider(std::span<Point<D>> points, std::span<VertexId> input_index, const DivideOptions& options)
       : points_(points), input_index_(input_index), options_(options) {}
 
-  Part<D> make_part(VertexId begin, VertexId end) const {
-    Part<D> part;
-    part.begin = begin;
-    part.end = end;
-    std::vector<Box<D>> boxes(grain_count(part.size(), kBoxGrain));
-    parallel_for(part.size(), kBoxGrain, [&](std::size_t g, std::size_t first, std::size_t last) {
-      Box<D> box;  // in registers, as boxes[g] could not be
-      for (std::size_t i = first; i < last; ++i) box.expand(points_[begin + i]);
-      boxes[g] = box;
-    });
-    for (const Box<D>& box : boxes) part.box.expand(box);
-    return part;
-  }
-
-  /// Divides `part` down to its leaves.
-  void divide(Part<D>& part, std::size_t depth, Task& task) const {
+  /// Divides a piece down to its leaves.
+  Part<D> divide(const Piece<D>& piece, std::size_t depth, Task& task) const {
     if (options_.stop.stop_requested()) throw Interrupted();
     task.kind = TaskKind::kDivide;
-    task.points = part.size();
-    if (part.size() <= options_.leaf_size || part.box.lo == part.box.hi) {
-      const Stopwatch watch(task.seconds);
-      sort_leaf(part);
-      return;
-    }
+    task.points = piece.size();
+    Part<D> part;
+    part.begin = piece.begin;
+    part.end = piece.end;
+    std::deque<std::vector<Point<D>>> samples;
+    std::vector<Piece<D>> pieces;
     {
       const Stopwatch watch(task.seconds);
-      split(part, options_.children, depth, part.children);
+      if (piece.size() > options_.leaf_size) {
+        split(piece, options_.children, depth, pieces, samples);
+      }
+      if (pieces.size() <= 1) {
+        part.box = box_of(piece);
+        sort_leaf(part);
+        return part;
+      }
     }
-    task.children.resize(part.children.size());
+    part.children.resize(pieces.size());
+    task.children.resize(pieces.size());
     TaskGroup group;
-    for (std::size_t c = 0; c < part.children.size(); ++c) {
-      const auto work = [&, c] { divide(part.children[c], depth + 1, task.children[c]); };
-      if (part.size() < kSmallestParallelPart) {
+    for (std::size_t c = 0; c < pieces.size(); ++c) {
+      const auto work = [&, c] {
+        part.children[c] = divide(pieces[c], depth + 1, task.children[c]);
+      };
+      if (piece.size() < kSmallestParallelPart) {
         work();
       } else {
         group.run(work);
       }
     }
     group.wait();
+    for (const Part<D>& child : part.children) part.box.expand(child.box);
+    return part;
   }
 
  private:
-  /// Appends to `parts` up to `count` parts that `part` falls into, by repeated cuts in two.
-  void split(const Part<D>& part, unsigned count, std::size_t depth,
-             std::vector<Part<D>>& parts) const {
-    if (count == 1 || part.box.lo == part.box.hi) {
-      parts.push_back(part);
-      return;
+  /// Appends up to `count` pieces that `piece` falls into, by repeated cuts in two. `samples` gets
+  /// what is sampled for them.
+  void split(Piece<D> piece, unsigned count, std::size_t depth, std::vector<Piece<D>>& pieces,
+             std::deque<std::vector<Point<D>>>& samples) const {
+    if (count > 1 && piece.size() > 1) {
+      if (kUsedUp * piece.sample.size() < wanted_sample(piece.size())) {
+        piece.sample = samples.emplace_back(sample_of(piece));
+      }
+      Box<D> box = box_around(piece.sample);
+      // Where a sample has no extent, all points may be equal.
+      if (box.lo == box.hi) box = box_of(piece);
+      if (box.lo != box.hi) {
+        const unsigned low_count = count / 2;
+        const std::size_t whole = std::max<std::size_t>(count, leaves_of(piece));
+        const auto [low, high] = cut(piece, cut_axis(box, depth), whole * low_count / count, whole);
+        split(low, low_count, depth, pieces, samples);
+        split(high, count - low_count, depth, pieces, samples);
+        return;
+      }
     }
-    const unsigned low_count = count / 2;
-    const VertexId middle = cut(part, cut_axis(part.box, depth), low_count, count);
-    split(make_part(part.begin, middle), low_count, depth, parts);
-    split(make_part(middle, part.end), count - low_count, depth, parts);
+    pieces.push_back(piece);
+  }
+
+  /// Into how many leaves a piece is to be divided; 1 where its halves are to be of equal size.
+  [[nodiscard]] std::size_t leaves_of(const Piece<D>& piece) const {
+    if (!options_.fill_leaves) return 1;
+    const std::size_t filled =
+        std::max<std::size_t>(1, options_.leaf_size - options_.leaf_size / kSpareShare);
+    return (piece.size() + filled - 1) / filled;
+  }
+
+  static std::size_t wanted_sample(std::size_t points) {
+    return std::min(points, std::clamp(points / kPointsOfSample, kSmallestSample, kLargestSample));
+  }
+
+  [[nodiscard]] std::vector<Point<D>> sample_of(const Piece<D>& piece) const {
+    const std::size_t stride = piece.size() / wanted_sample(piece.size());
+    std::vector<Point<D>> sample(piece.size() / stride);
+    parallel_for(sample.size(), kSampleGrain,
+                 [&](std::size_t, std::size_t first, std::size_t last) {
+                   for (std::size_t s = first; s < last; ++s) {
+                     const std::size_t i = piece.begin + s * stride;
+                     sample[s] = points_[i + mix64(i) % stride];  // rows of grids have a period
+                   }
+                 });
+    return sample;
+  }
+
+  static Box<D> box_around(std::span<const Point<D>> points) {
+    Box<D> box;
+    for (const Point<D>& p : points) box.expand(p);
+    return box;
+  }
+
+  [[nodiscard]] Box<D> box_of(const Piece<D>& piece) const {
+    std::vector<Box<D>> boxes(grain_count(piece.size(), kBoxGrain));
+    parallel_for(piece.size(), kBoxGrain, [&](std::size_t g, std::size_t first, std::size_t last) {
+      boxes[g] = box_around(points_.subspan(piece.begin + first, last - first));
+    });
+    Box<D> all;
+    for (const Box<D>& box : boxes) all.expand(box);
+    return all;
   }
 
   [[nodiscard]] int cut_axis(const Box<D>& box, std::size_t depth) const {
@@ -93,40 +157,39 @@ class Divider {
     return box.lo[axis] < box.hi[axis] ? axis : box.longest_axis();
   }
 
-  /// Moves the points below a cut, about share/whole of all, to the front; returns where the others
-  /// begin. Neither side is empty.
-  [[nodiscard]] VertexId cut(const Part<D>& part, int axis, unsigned share, unsigned whole) const {
-    const std::size_t stride = std::max<std::size_t>(
-        1,
-        part.size() / std::clamp(part.size() / kPointsOfSample, kSmallestSample, kLargestSample));
-    std::vector<double> sample(part.size() / stride);
-    parallel_for(
-        sample.size(), kSampleGrain, [&](std::size_t, std::size_t first, std::size_t last) {
-          for (std::size_t s = first; s < last; ++s) {
-            const std::size_t i = part.begin + s * stride;
-            sample[s] =
-                points_[i + mix64(i) % stride][axis];  // jittered: rows of grids have a period
-          }
-        });
+  /// Moves the points below a cut, about share/whole of all, to the front, and the sample likewise.
+  /// Not all points are equal on the axis. Neither half is empty.
+  [[nodiscard]] std::array<Piece<D>, 2> cut(const Piece<D>& piece, int axis, std::size_t share,
+                                            std::size_t whole) const {
+    const std::span<Point<D>> sample = piece.sample;
     const auto rank = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() * share / whole);
-    std::nth_element(sample.begin(), rank, sample.end());
-    const double value = *rank;
+    std::nth_element(sample.begin(), rank, sample.end(),
+                     [axis](const Point<D>& a, const Point<D>& b) { return a[axis] < b[axis]; });
+    const double value = (*rank)[axis];
+    const auto halves = [&](const auto& below) -> std::array<Piece<D>, 2> {
+      const VertexId middle = partition(piece, below);
+      const auto sampled = std::partition(sample.begin(), sample.end(), below) - sample.begin();
+      return {{{piece.begin, middle, sample.first(static_cast<std::size_t>(sampled))},
+               {middle, piece.end, sample.subspan(static_cast<std::size_t>(sampled))}}};
+    };
     // Points on the cut go up, unless nothing is below it.
-    return value > part.box.lo[axis]
-               ? partition(part, [=](const Point<D>& p) { return p[axis] < value; })
-               : partition(part, [=](const Point<D>& p) { return p[axis] <= value; });
+    const auto cut_below = halves([=](const Point<D>& p) { return p[axis] < value; });
+    if (cut_below[0].size() > 0) return cut_below;
+    return halves([=](const Point<D>& p) { return p[axis] <= value; });
   }
 
   /// Large parts are partitioned in two halves at the same time; then what is above in the first
   /// one changes places with what is below in the second one.
   template <typename Below>
-  VertexId partition(const Part<D>& part, const Below& below) const {
-    if (part.size() < kSmallestParallelPart) return partition_range(part.begin, part.end, below);
-    const VertexId half = part.begin + part.size() / 2;
+  VertexId partition(const Piece<D>& piece, const Below& below) const {
+    if (piece.size() < kSmallestParallelPart) {
+      return partition_range(piece.begin, piece.end, below);
+    }
+    const VertexId half = piece.begin + static_cast<VertexId>(piece.size() / 2);
     std::array<VertexId, 2> middle;
     parallel_for(2, 1, [&](std::size_t side, std::size_t, std::size_t) {
-      middle[side] = side == 0 ? partition_range(part.begin, half, below)
-                               : partition_range(half, part.end, below);
+      middle[side] = side == 0 ? partition_range(piece.begin, half, below)
+                               : partition_range(half, piece.end, below);
     });
     const VertexId above = half - middle[0];
     const VertexId below_count = middle[1] - half;
@@ -223,10 +286,10 @@ void number_lists(Part<D>& part, std::uint32_t& next) {
 template <int D>
 Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
                const DivideOptions& options, Task* task) {
-  const Divider<D> divider(points, input_index, options);
-  Part<D> root = divider.make_part(0, static_cast<VertexId>(points.size()));
   Task unused;
-  divider.divide(root, 0, task == nullptr ? unused : *task);
+  Part<D> root = Divider<D>(points, input_index, options)
+                     .divide({.begin = 0, .end = static_cast<VertexId>(points.size())}, 0,
+                             task == nullptr ? unused : *task);
   std::uint32_t next = 0;
   number_lists(root, next);
   return root;

@@ -23,6 +23,8 @@ struct DivideOptions {
   Division scheme = Division::kLongestExtent;
   unsigned children = 2;   ///< parts made of one part at a time, at least 2
   std::stop_token stop{};  ///< looked at before each part is divided
+  /// Whether parts need not be of equal size, so that leaves are few and nearly full.
+  bool fill_leaves = false;
 };
 
 /// A node of the k-d tree over an array of points.
@@ -41,10 +43,10 @@ struct Part {
 /// Divides the points into a k-d tree and puts them, with their input indices, into its order,
 /// those of a leaf into the order of a Hilbert curve. Cuts compare coordinates with a value taken
 /// from a sample, so equal points always stay together; a part is a leaf when it has at most
-/// leaf_size points or when all its points are equal. Where the scheme's axis has no extent the
-/// longest one is cut. The result doesn't depend on the number of threads. If `task` is set, it
-/// receives the tree of divisions with their durations. Throws Interrupted if a stop was
-/// requested in time.
+/// leaf_size points or when all its points are equal. Where the sample has no extent on the
+/// scheme's axis the longest one is cut. The result doesn't depend on the number of threads. If
+/// `task` is set, it receives the tree of divisions with their durations. Throws Interrupted if a
+/// stop was requested in time.
 template <int D>
 Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
                const DivideOptions& options, Task* task = nullptr);

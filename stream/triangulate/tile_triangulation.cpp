@@ -124,7 +124,12 @@ class TileRun {
       const StageTimer timer(counts_.times, Stage::kDivide);
       const TileOptions& options = context_.options;
       root_ = divide<D>(tile_.points, input_index_,
-                        {options.leaf_size, options.division, options.children}, division.data());
+                        {.leaf_size = options.leaf_size,
+                         .scheme = options.division,
+                         .children = options.children,
+                         .stop = {},
+                         .fill_leaves = true},
+                        division.data());
     }
     counts_.points += tile_.left_out;
     counts_.duplicates += tile_.left_out;

@@ -93,6 +93,34 @@ TEST(Divide, NeverSeparatesEqualPoints) {
   });
 }
 
+TEST(Divide, FillsLeavesWhereAsked) {
+  const auto leaf_sizes = [](bool fill) {
+    std::vector<std::size_t> sizes;
+    const Divided d = divided(random_points(400'000, 1'000'000),
+                              {.leaf_size = 20'000, .stop = {}, .fill_leaves = fill});
+    visit(d.root, [&](const Part<2>& part) {
+      if (part.leaf()) sizes.push_back(part.size());
+    });
+    return sizes;
+  };
+  EXPECT_EQ(leaf_sizes(false).size(), 32U);
+  const std::vector<std::size_t> filled = leaf_sizes(true);
+  EXPECT_LE(filled.size(), 23U);
+  for (const std::size_t size : filled) EXPECT_LE(size, 20'000U);
+}
+
+TEST(Divide, CutsPointsOfWhichNearlyAllAreEqual) {
+  std::vector<Point<2>> points(100'000, {3, 4});
+  points[50'000] = {5, 4};
+  points[70'000] = {1, 4};
+  const Divided d = divided(points, {.leaf_size = 10});
+  std::vector<std::size_t> sizes;
+  visit(d.root, [&](const Part<2>& part) {
+    if (part.leaf()) sizes.push_back(part.size());
+  });
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{1, 99'998, 1}));
+}
+
 TEST(Divide, StopsAtPointsThatAreAllEqual) {
   const Divided d = divided(std::vector<Point<2>>(1000, {3, 4}), {.leaf_size = 10});
   EXPECT_TRUE(d.root.leaf());
