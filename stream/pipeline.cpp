@@ -26,12 +26,13 @@ PointFeed feed_of(PointStream& source, const StreamOptions& options, StageTimes&
                 StageTimer timer(times, Stage::kRead, StepOrder::kInOrder);
                 options.progress(source.points_read(), source.fraction_read());
                 const bool fetched = source.fetch(piece);
-                timer.move_bytes(piece.raw.bytes.size());
+                if (!piece.raw.unread) timer.move_bytes(piece.raw.bytes.size());
                 return fetched;
               },
           .decode =
               [&](SourcePiece& piece, PointBlock& block) {
-                const StageTimer timer(times, Stage::kRead);
+                StageTimer timer(times, Stage::kRead);
+                if (piece.raw.unread) timer.move_bytes(piece.raw.bytes.size());
                 source.decode(piece, block);
               }};
 }

@@ -33,6 +33,8 @@ class FaultyFileSystem : public FileSystem {
   /// Whether inputs know their size and can go back, and outputs can be rewritten; false makes all
   /// of them pipes.
   bool seekable = true;
+  /// Whether inputs can be read at any byte by several threads.
+  bool read_anywhere = false;
   /// Reads end here, whatever size() says: a file that shrinks while it is read.
   std::uint64_t reads_end_at = std::numeric_limits<std::uint64_t>::max();
   /// Bytes that fit on the disk; the write that passes it throws as a full disk does.
@@ -84,11 +86,14 @@ class FaultyFileSystem : public FileSystem {
 
     std::size_t read(std::span<std::byte> buffer) override {
       owner_.note(Call::kRead);
-      const std::size_t end = std::min<std::uint64_t>(content_.size(), owner_.reads_end_at);
-      const std::size_t got = std::min(buffer.size(), end - std::min(end, position_));
-      if (got > 0) std::memcpy(buffer.data(), content_.data() + position_, got);
+      const std::size_t got = copy(position_, buffer);
       position_ += got;
       return got;
+    }
+    std::optional<std::size_t> read_at(std::uint64_t position,
+                                       std::span<std::byte> buffer) const override {
+      if (!owner_.read_anywhere) return std::nullopt;
+      return copy(position, buffer);
     }
     bool seek(std::uint64_t position) override {
       if (owner_.seekable) position_ = position;
@@ -100,6 +105,13 @@ class FaultyFileSystem : public FileSystem {
     [[nodiscard]] const std::string& name() const override { return name_; }
 
    private:
+    std::size_t copy(std::size_t position, std::span<std::byte> buffer) const {
+      const std::size_t end = std::min<std::uint64_t>(content_.size(), owner_.reads_end_at);
+      const std::size_t got = std::min(buffer.size(), end - std::min(end, position));
+      if (got > 0) std::memcpy(buffer.data(), content_.data() + position, got);
+      return got;
+    }
+
     FaultyFileSystem& owner_;
     std::string name_;
     std::string content_;

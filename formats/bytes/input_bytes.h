@@ -28,6 +28,11 @@ class InputBytes : public InputFile {
 
   bool seek(std::uint64_t position) override;
 
+  std::optional<std::size_t> read_at(std::uint64_t position,
+                                     std::span<std::byte> buffer) const override {
+    return file_->read_at(position, buffer);
+  }
+
   /// Whether seek() can go to any byte, and the size is known.
   [[nodiscard]] bool seekable() { return size() && seek(position_); }
 

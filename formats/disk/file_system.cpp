@@ -66,18 +66,18 @@ class DiskInput : public InputFile {
   }
 
   std::size_t read(std::span<std::byte> buffer) override {
-    std::size_t done = 0;
-    while (done < buffer.size()) {
-      const std::size_t wanted = std::min(buffer.size() - done, kLargestTransfer);
-      const ssize_t got = ::read(file_.get(), buffer.data() + done, wanted);
-      if (got == 0) break;
-      if (got > 0) {
-        done += static_cast<std::size_t>(got);
-      } else if (errno != EINTR) {
-        fail(errno);
-      }
-    }
-    return done;
+    return read_all(buffer, [this](std::span<std::byte> rest, std::size_t /*done*/) {
+      return ::read(file_.get(), rest.data(), rest.size());
+    });
+  }
+
+  std::optional<std::size_t> read_at(std::uint64_t position,
+                                     std::span<std::byte> buffer) const override {
+    if (!size_) return std::nullopt;
+    return read_all(buffer, [&](std::span<std::byte> rest, std::size_t done) {
+      return ::pread(file_.get(), rest.data(), rest.size(),
+                     start_ + static_cast<off_t>(position + done));
+    });
   }
 
   bool seek(std::uint64_t position) override {
@@ -92,6 +92,23 @@ class DiskInput : public InputFile {
  private:
   [[noreturn]] void fail(int error) const {
     throw SystemRefusal(fmt::format("cannot read {}: {}", name_, reason(error)), name_, error);
+  }
+
+  /// Fills the buffer by calls of read_some(rest, done), until the file ends.
+  template <typename ReadSome>
+  std::size_t read_all(std::span<std::byte> buffer, const ReadSome& read_some) const {
+    std::size_t done = 0;
+    while (done < buffer.size()) {
+      const std::size_t wanted = std::min(buffer.size() - done, kLargestTransfer);
+      const ssize_t got = read_some(buffer.subspan(done, wanted), done);
+      if (got == 0) break;
+      if (got > 0) {
+        done += static_cast<std::size_t>(got);
+      } else if (errno != EINTR) {
+        fail(errno);
+      }
+    }
+    return done;
   }
 
   Descriptor file_;

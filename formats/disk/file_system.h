@@ -23,6 +23,13 @@ class InputFile {
   /// False, and nothing done, where bytes come only once: a pipe, what is being decompressed.
   virtual bool seek(std::uint64_t /*position*/) { return false; }
 
+  /// Reads from that byte on as read() does, which it leaves alone; several threads may at a time.
+  /// Nothing where that is not possible: where bytes come only once.
+  virtual std::optional<std::size_t> read_at(std::uint64_t /*position*/,
+                                             std::span<std::byte> /*buffer*/) const {
+    return std::nullopt;
+  }
+
   /// Size in bytes; nothing for pipes.
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const = 0;
 

@@ -63,6 +63,7 @@ struct RawPoints {
   std::uint64_t offset = 0;      ///< of `bytes` in the source
   std::uint64_t first = 0;       ///< number of the first record
   std::uint64_t count = 0;       ///< of records in `bytes`
+  bool unread = false;           ///< `bytes` has the size, but decode() is still to read it
   /// Of PointHeader::regions, that all records of the batch belong to, where there are any.
   std::uint64_t region = 0;
 
@@ -72,6 +73,7 @@ struct RawPoints {
     decoded.clear();
     bytes.clear();
     offset = first = count = region = 0;
+    unread = false;
   }
 };
 

@@ -44,29 +44,27 @@ class LasReader : public PointReader {
         withheld_mask_(options.keep_withheld ? 0 : las_withheld_mask(las_.point_format)),
         block_points_(std::clamp<std::size_t>(kBlockBytes / las_.record_length, 1, kBlockPoints)),
         in_pieces_(path != "-" && source_->seekable()),
+        at_any_byte_(in_pieces_ && source_->read_at(0, {})),
         begin_(source_->position()),
         end_(las_.count) {}
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
   bool fetch(RawPoints& raw) override {
-    raw.offset = source_->position();
+    raw.offset = begin_ + next_ * las_.record_length;
     raw.first = next_;
     raw.count = std::min<std::uint64_t>(block_points_, end_ - next_);
     raw.bytes.resize(raw.count * las_.record_length);
-    const std::size_t got = source_->read(raw.bytes);
-    if (got < raw.bytes.size()) {
-      throw BadInput(source_->name(),
-                     fmt::format("the file ends at byte {}, within point {} of {}; get a complete "
-                                 "copy",
-                                 source_->position(), next_ + got / las_.record_length, las_.count),
-                     at_byte(source_->position()));
-    }
+    raw.unread = at_any_byte_;
+    if (!raw.unread) check_complete(raw, source_->read(raw.bytes));
     next_ += raw.count;
     return raw.count > 0;
   }
 
   void decode(RawPoints& raw, PointBlock& block) const override {
+    if (std::exchange(raw.unread, false)) {
+      check_complete(raw, source_->read_at(raw.offset, raw.bytes).value());
+    }
     // Every point is stored, and the place moves on only past those that are kept: no branch.
     block.points.resize(raw.count);
     block.index.resize(raw.count);
@@ -98,6 +96,18 @@ class LasReader : public PointReader {
   }
 
  private:
+  /// Refuses a file that ends early: the same words for all that is behind its end.
+  void check_complete(const RawPoints& raw, std::size_t got) const {
+    if (got == raw.bytes.size()) return;
+    const std::uint64_t end =
+        std::min(raw.offset + got, source_->size().value_or(raw.offset + got));
+    throw BadInput(source_->name(),
+                   fmt::format("the file ends at byte {}, within point {} of {}; get a complete "
+                               "copy",
+                               end, (end - begin_) / las_.record_length, las_.count),
+                   at_byte(end));
+  }
+
   void go_to_piece(std::uint64_t piece) override {
     next_ = piece * block_points_;
     end_ = next_ + std::min<std::uint64_t>(block_points_, las_.count - next_);
@@ -111,6 +121,7 @@ class LasReader : public PointReader {
   unsigned withheld_mask_;
   std::size_t block_points_;
   bool in_pieces_;
+  bool at_any_byte_;        // so that several threads read at a time
   std::uint64_t begin_;     // byte of the first record
   std::uint64_t end_;       // number of the first record that is not to be read
   std::uint64_t next_ = 0;  // number of the next record

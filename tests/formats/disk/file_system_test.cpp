@@ -205,6 +205,20 @@ TEST_F(Disk, ReadsOnFromAnyByteOfAFile) {
   EXPECT_EQ(source.read(bytes), 0U);
 }
 
+TEST_F(Disk, ReadsAtAnyByteBesideWhatIsReadInOrder) {
+  put_content(path("a"), "0123456789");
+  InputBytes source(disk().open(path("a")));
+  std::string buffer(3, ' ');
+  const std::span<std::byte> bytes = std::as_writable_bytes(std::span(buffer));
+  EXPECT_EQ(source.read(bytes), 3U);
+  EXPECT_EQ(source.read_at(6, bytes), 3U);
+  EXPECT_EQ(buffer, "678");
+  EXPECT_EQ(source.read_at(8, bytes), 2U);
+  EXPECT_EQ(source.read_at(20, bytes), 0U);
+  EXPECT_EQ(source.read(bytes), 3U);
+  EXPECT_EQ(buffer, "345");
+}
+
 TEST_F(Disk, FillsTheBufferFromAPipe) {
   ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
   std::thread writer([&] {
@@ -216,6 +230,7 @@ TEST_F(Disk, FillsTheBufferFromAPipe) {
   std::vector<std::byte> buffer(10000);
   EXPECT_EQ(file->read(buffer), 5000U);
   EXPECT_FALSE(file->seek(0));
+  EXPECT_FALSE(file->read_at(0, buffer));
   writer.join();
 }
 

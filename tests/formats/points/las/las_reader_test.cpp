@@ -90,6 +90,60 @@ TEST(LasReader, ReadsSeveralBlocks) {
   EXPECT_EQ(all.points[99999], (LatticePoint{149999, 299998, -149999}));
 }
 
+/// Three blocks of a file that is read when they are decoded, and the last of these first.
+TEST(LasReader, ReadsBlocksWhereTheyAreDecoded) {
+  LasFile file;
+  file.records.clear();
+  for (int i = 0; i < 150000; ++i) file.records.push_back({i, 2 * i, -i});
+  FaultyFileSystem files;
+  files.read_anywhere = true;
+  files.files["a.las"] = file.bytes();
+  const auto reader = open_point_reader(files, "a.las", {});
+  const int reads = files.count(Call::kRead);
+  std::array<RawPoints, 3> blocks;
+  for (RawPoints& raw : blocks) {
+    ASSERT_TRUE(reader->fetch(raw));
+    EXPECT_TRUE(raw.unread);
+  }
+  RawPoints after;
+  EXPECT_FALSE(reader->fetch(after));
+  EXPECT_EQ(files.count(Call::kRead), reads);
+  int next = 150000;
+  for (std::size_t b = blocks.size(); b-- > 0;) {
+    PointBlock block;
+    reader->decode(blocks[b], block);
+    EXPECT_FALSE(blocks[b].unread);
+    next -= static_cast<int>(block.points.size());
+    ASSERT_EQ(block.index.front(), static_cast<std::uint64_t>(next));
+    ASSERT_EQ(block.points.front(), (LatticePoint{1.0 * next, 2.0 * next, -1.0 * next}));
+  }
+  EXPECT_EQ(next, 0);
+}
+
+TEST(LasReader, TellsWhereAFileEndsThatIsReadWhereItIsDecoded) {
+  LasFile file;
+  file.records.assign(150000, {1, 1, 1});
+  const std::string bytes = file.bytes();
+  FaultyFileSystem files;
+  files.read_anywhere = true;
+  files.files["a.las"] = bytes;
+  const auto reader = open_point_reader(files, "a.las", {});
+  RawPoints raw;
+  ASSERT_TRUE(reader->fetch(raw));
+  ASSERT_TRUE(reader->fetch(raw));
+  const std::size_t record = (bytes.size() - raw.offset) / (150000 - 65536);
+  files.reads_end_at = raw.offset + 10 * record + 3;
+  PointBlock block;
+  try {
+    reader->decode(raw, block);
+    FAIL();
+  } catch (const BadInput& error) {
+    EXPECT_EQ(error.facts().place.number, files.reads_end_at);
+    EXPECT_NE(std::string(error.what()).find("within point 65546 of 150000"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(LasReader, PassesOverBlocksThatAreWithheldAltogether) {
   LasFile file;
   file.records.assign(70000, {1, 1, 1, true});
