@@ -20,7 +20,7 @@ struct RunLimits {
   std::uint64_t batches = 0;        ///< of points, on their way to their tiles
   std::uint64_t tile_points = 0;    ///< that a tile counts for at most among the next
   std::uint64_t loaded_points = 0;  ///< of tiles that are worked on at a time, or one tile
-  std::uint64_t ready_tiles = 0;    ///< before who reads lends a hand, where that is beside reading
+  std::uint64_t ready_points = 0;   ///< of tiles, beyond one, before who reads lends a hand
   std::uint64_t waiting_bytes = 0;  ///< of output that waits for its turn while tiles are begun
   unsigned threads = 0;             ///< for which there is memory
 };

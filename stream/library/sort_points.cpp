@@ -37,7 +37,7 @@ std::size_t cell_capacity(const SortOptions& options, const MemoryPlan& plan,
   const std::uint64_t least = expected.value_or(0) / most_cells;
   const std::uint64_t wanted =
       std::max(options.cell_points == 0 ? kCellPoints : options.cell_points, least);
-  return static_cast<std::size_t>(std::min<std::uint64_t>(wanted, plan.tile_capacity));
+  return static_cast<std::size_t>(std::min<std::uint64_t>(wanted, plan.tile_room));
 }
 
 /// Calls `take` for the points of a tile, some thousand at a time, in the order in which they came.

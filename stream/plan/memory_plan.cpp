@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "src/error.h"
 
@@ -14,6 +15,7 @@ namespace {
 struct Costs {
   std::size_t leaf_bytes;     ///< a point: triangulation of a leaf, and what is made of it
   std::size_t tile_bytes;     ///< a point: two loaded tiles and output that waits for its turn
+  std::size_t good_tile;      ///< tiles larger than this are no faster
   std::size_t good_leaf;      ///< leaves larger than this are no faster
   std::size_t small_leaf;     ///< leaves smaller than this lose too much to merging
   std::size_t enough_leaves;  ///< that are enough for every thread
@@ -26,6 +28,7 @@ struct Costs {
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr Costs kPlane{.leaf_bytes = 400,
                        .tile_bytes = 108,
+                       .good_tile = 500'000,
                        .good_leaf = 32'768,
                        .small_leaf = 4'096,
                        .enough_leaves = 16,
@@ -35,6 +38,7 @@ constexpr Costs kPlane{.leaf_bytes = 400,
                        .least_limit = 32 * kMiB};
 constexpr Costs kSpace{.leaf_bytes = 800,
                        .tile_bytes = 224,
+                       .good_tile = std::numeric_limits<std::size_t>::max(),
                        .good_leaf = 196'608,
                        .small_leaf = 16'384,
                        .enough_leaves = 8,
@@ -53,7 +57,8 @@ constexpr std::size_t kBufferedPointBytes = 24;
 constexpr double kBatchesShare = 0.35;
 constexpr std::size_t kBatchBytes = 65'536 * 58;
 constexpr std::size_t kLeastBatches = 3;
-constexpr std::size_t kMostBatches = 6;
+constexpr std::size_t kEnoughBatches = 6;  // for few threads
+constexpr std::size_t kBatchesOfThread = 2;
 
 const Costs& costs_of(int dimension) { return dimension == 2 ? kPlane : kSpace; }
 
@@ -78,11 +83,14 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
   MemoryPlan plan;
   const double part = early ? kEarlyShare : 1;
   plan.buffered_points = share(limit, part * costs.buffer_share, kBufferedPointBytes);
-  plan.tile_capacity = share(limit, part * kTileShare, costs.tile_bytes);
+  plan.tile_room = share(limit, part * kTileShare, costs.tile_bytes);
+  plan.tile_capacity = std::min(plan.tile_room, costs.good_tile);
   plan.leaf_size = std::min(
       {costs.good_leaf, share(limit, costs.leaf_share, costs.leaf_bytes), plan.tile_capacity});
   plan.waiting_bytes = share(limit, kWaitingShare, 1);
-  plan.batches = std::clamp(share(limit, kBatchesShare, kBatchBytes), kLeastBatches, kMostBatches);
+  plan.batches =
+      std::clamp(share(limit, kBatchesShare, kBatchBytes), kLeastBatches,
+                 std::max<std::size_t>(kEnoughBatches, kBatchesOfThread * wanted_threads));
   const std::size_t most = share(limit, costs.leaves_share, costs.leaf_bytes * plan.leaf_size);
   plan.threads = static_cast<unsigned>(std::clamp<std::size_t>(most, 1, wanted_threads));
   return plan;

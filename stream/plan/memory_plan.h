@@ -5,11 +5,12 @@
 
 namespace spillway::detail {
 
-/// How a memory limit is shared out. Nothing here depends on the number of threads, so neither does
-/// the order of the output.
+/// How a memory limit is shared out. Of this only the number of batches depends on the number of
+/// threads, and the order of the output does not depend on that.
 struct MemoryPlan {
   std::size_t buffered_points = 0;  ///< waiting in memory to be spilled
-  std::size_t tile_capacity = 0;    ///< points of one tile
+  std::size_t tile_room = 0;        ///< points of a tile, if two are loaded at a time
+  std::size_t tile_capacity = 0;    ///< points of a tile: at most tile_room
   std::size_t leaf_size = 0;        ///< largest number of points of a leaf
   std::uint64_t waiting_bytes = 0;  ///< of output that waits for its turn while tiles are begun
   std::size_t batches = 1;          ///< of points, on their way to their tiles

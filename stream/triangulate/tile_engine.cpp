@@ -40,7 +40,6 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
       budget_(budget),
       plan_(plan_memory(budget.limit(), D, options.threads, budget.whole(),
                         expected.plan != nullptr)),
-      planned_tile_(plan_.tile_capacity),
       counts_(budget),
       expected_points_(expected.count.value_or(0)),
       tree_(tree_options(expected), scratch, counts_.times),
@@ -54,10 +53,10 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
   if (options.limits_known) {
     const MemoryPlan any =
         plan_memory(budget.limit(), D, kMostThreads, budget.whole(), expected.plan != nullptr);
-    options.limits_known({.batches = plan_.batches,
-                          .tile_points = planned_tile_,
-                          .loaded_points = kTilesAtATime * planned_tile_,
-                          .ready_tiles = Lanes::kMostReady,
+    options.limits_known({.batches = any.batches,
+                          .tile_points = plan_.tile_room,
+                          .loaded_points = kTilesAtATime * plan_.tile_room,
+                          .ready_points = kTilesAtATime * plan_.tile_room / Lanes::kReadyShare,
                           .waiting_bytes = plan_.waiting_bytes,
                           .threads = any.threads});
   }
@@ -170,7 +169,7 @@ void TileEngine<D>::estimate_shortages(std::uint64_t all_points) {
     return growth_.enough_for({.limit = budget_.limit(),
                                .used = used,
                                .refused = refused,
-                               .loaded = kTilesAtATime * planned_tile_,
+                               .loaded = kTilesAtATime * plan_.tile_room,
                                .all_points = all_points});
   });
 }
@@ -237,10 +236,11 @@ typename TileEngine<D>::Node* TileEngine<D>::add_node(State state, std::vector<N
 template <int D>
 typename TileEngine<D>::Lanes TileEngine<D>::make_lanes() {
   return {plan_.threads,
-          kTilesAtATime * planned_tile_,
+          kTilesAtATime * plan_.tile_room,
           {.weight = [this](const Node& node) { return loaded_points(node); },
            .begin = [this](Node& node, const Node* next) { load(node, next); },
            .finish = [this](Node& node) { work_off(node); },
+           .follow = [this](Node& node) { merge_above(node); },
            .give_up = [this] { give_up(); }}};
 }
 
@@ -248,7 +248,7 @@ typename TileEngine<D>::Lanes TileEngine<D>::make_lanes() {
 /// planned by --tile.
 template <int D>
 std::uint64_t TileEngine<D>::loaded_points(const Node& node) const {
-  return node.children.empty() ? std::min<std::uint64_t>(node.tree->size(), planned_tile_) : 0;
+  return node.children.empty() ? std::min<std::uint64_t>(node.tree->size(), plan_.tile_room) : 0;
 }
 
 /// Takes what a tile has of the tree. What is on the disk of it has been read ahead, and the
@@ -264,7 +264,7 @@ void TileEngine<D>::load(Node& node, const Node* next) {
       std::async(std::launch::async, [this, tile = next->tree] { return tree_.read(*tile); });
 }
 
-/// Triangulates a tile or merges; after the last child of a merge, does that too.
+/// Triangulates a tile or merges.
 template <int D>
 void TileEngine<D>::work_off(Node& node) {
   if (node.children.empty()) {
@@ -283,6 +283,11 @@ void TileEngine<D>::work_off(Node& node) {
   } else {
     merge_node(node);
   }
+}
+
+/// Merges for which this node was the last child, and so on.
+template <int D>
+void TileEngine<D>::merge_above(Node& node) {
   for (Node* above = forest_.done(node); above != nullptr; above = forest_.done(*above)) {
     merge_node(*above);
   }

@@ -139,6 +139,7 @@ class TileEngine {
   [[nodiscard]] std::uint64_t loaded_points(const Node& node) const;
   void load(Node& node, const Node* next);
   void work_off(Node& node);
+  void merge_above(Node& node);
   void give_up();
   void merge_node(Node& node);
   void tell_done(const Node& node, Task task);
@@ -148,7 +149,6 @@ class TileEngine {
   const StreamOptions& options_;
   MemoryBudget& budget_;
   MemoryPlan plan_;
-  const std::size_t planned_tile_;  ///< points of a tile, unless --tile is given
   StreamCounts counts_;
   PointSpan<D> span_;
   const std::uint64_t expected_points_;  ///< 0: not known

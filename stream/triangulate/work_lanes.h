@@ -19,14 +19,16 @@ namespace spillway::detail {
 template <typename Node>
 class WorkLanes {
  public:
-  /// Nodes that may be ready before the caller of work_beside() lends a hand.
-  static constexpr std::size_t kMostReady = 1;
+  /// So much of the room may be ready, and one node at least, before the caller of work_beside()
+  /// lends a hand.
+  static constexpr std::uint64_t kReadyShare = 4;
 
   struct Work {
     std::function<std::uint64_t(const Node&)> weight;
     /// Of one node at a time, in order; and the one after it, or null if that is not ready.
     std::function<void(Node&, const Node* next)> begin;
-    std::function<void(Node&)> finish;  ///< then; of many at a time
+    std::function<void(Node&)> finish;  ///< then; of many at a time. Its weight is free after it
+    std::function<void(Node&)> follow;  ///< then: what was waiting for it alone
     std::function<void()> give_up;      ///< ends all waiting in the two, after a failure
   };
 
@@ -36,6 +38,7 @@ class WorkLanes {
   void add(Node& node) {
     const std::lock_guard lock(mutex_);
     ready_.push_back(&node);
+    ready_weight_ += work_.weight(node);
   }
 
   /// Works off what is ready while the caller goes on to bring more. If still more than a little is
@@ -45,7 +48,7 @@ class WorkLanes {
     if (failed_) group.wait();
     group_ = &group;
     begin_lanes();
-    while (ready() > kMostReady) {
+    while (much_ready()) {
       if (!work_off_one(false)) group.wait();
     }
   }
@@ -72,9 +75,9 @@ class WorkLanes {
   }
 
  private:
-  [[nodiscard]] std::size_t ready() const {
+  [[nodiscard]] bool much_ready() const {
     const std::lock_guard lock(mutex_);
-    return ready_.size();
+    return ready_.size() > 1 && ready_weight_ > room_ / kReadyShare;
   }
 
   void begin_lanes() {
@@ -115,6 +118,8 @@ class WorkLanes {
       // may be just what that one would wait for.
       isolated([&] { work_.finish(*node); });
       under_way_ -= weight;
+      begin_lanes();
+      isolated([&] { work_.follow(*node); });
       return true;
     } catch (...) {
       give_up();
@@ -130,6 +135,7 @@ class WorkLanes {
     }
     Node* const node = ready_.front();
     ready_.pop_front();
+    ready_weight_ -= work_.weight(*node);
     under_way_ += work_.weight(*node);
     work_.begin(*node, ready_.empty() ? nullptr : ready_.front());
     return node;
@@ -141,8 +147,9 @@ class WorkLanes {
   TaskGroup* group_ = nullptr;
   std::atomic<std::uint64_t> under_way_ = 0;  ///< weight
   std::atomic<bool> failed_ = false;
-  mutable std::mutex mutex_;  ///< guards the next three; held while a node is begun
+  mutable std::mutex mutex_;  ///< guards the next four; held while a node is begun
   std::deque<Node*> ready_;
+  std::uint64_t ready_weight_ = 0;
   std::size_t starting_ = 0;  ///< lanes that have not taken anything yet
   unsigned lanes_ = 0;
 };

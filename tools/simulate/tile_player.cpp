@@ -43,7 +43,9 @@ TilePlayer::TilePlayer(const RunModel& model, SimulatedMachine& machine, unsigne
 
 void TilePlayer::add_until(std::uint32_t end) {
   for (; added_ < end; ++added_) {
-    if (missing_[added_] == 0) ready_.push_back(added_);
+    if (missing_[added_] > 0) continue;
+    ready_.push_back(added_);
+    ready_points_ += weight_of(added_);
   }
 }
 
@@ -61,7 +63,7 @@ void TilePlayer::work_ahead(Then then) {
 }
 
 void TilePlayer::lend_hand(Then then) {
-  if (ready_.size() <= model_.limits.ready_tiles) return then();
+  if (ready_.size() <= 1 || ready_points_ <= model_.limits.ready_points) return then();
   work_off_one({.done = [this, then = std::move(then)](bool any) {
     if (any) return lend_hand(then);
     when_idle([this, then] { lend_hand(then); });
@@ -129,6 +131,7 @@ void TilePlayer::take_next() {
   taking_ = true;
   const std::uint32_t node = ready_.front();
   ready_.pop_front();
+  ready_points_ -= weight_of(node);
   under_way_ += weight_of(node);
   if (!is_tile(node)) return give(node);
   blocks_.wait_for_room(node, [this, node] { take_tile(node); });
@@ -175,10 +178,7 @@ void TilePlayer::give(std::uint32_t node) {
   takers_.pop_front();
   taking_ = false;
   if (taker.is_lane) begin_lanes();
-  work_off(node, [this, node, done = taker.done] {
-    under_way_ -= weight_of(node);
-    done(true);
-  });
+  work_off(node, [done = taker.done] { done(true); });
   take_next();
 }
 
@@ -237,7 +237,10 @@ void TilePlayer::part_done(const std::shared_ptr<Work>& work, std::uint32_t part
   }
 }
 
+/// Other tiles may be loaded while merges follow.
 void TilePlayer::node_done(std::uint32_t node, Then done) {
+  under_way_ -= weight_of(node);
+  begin_lanes();
   const std::uint32_t above = parent_[node];
   // A merge that is not there yet is ready when it is added.
   if (above == kNone || --missing_[above] > 0 || above >= added_) return done();

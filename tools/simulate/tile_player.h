@@ -85,6 +85,7 @@ class TilePlayer {
   std::vector<std::vector<std::uint32_t>> part_parent_;  ///< by cost and part
   std::uint32_t added_ = 0;                              ///< nodes that may be worked on
   std::deque<std::uint32_t> ready_;
+  std::uint64_t ready_points_ = 0;
   const std::size_t most_lanes_;
   std::size_t lanes_ = 0;
   std::size_t starting_ = 0;     ///< of these, who have not taken anything yet

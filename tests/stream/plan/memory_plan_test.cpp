@@ -106,6 +106,22 @@ TEST(MemoryPlan, NamesTheLeastOfTheWhole) {
   EXPECT_EQ(least(50 * kMiB, 3, 100 * kMiB), 192 * kMiB);
 }
 
+TEST(MemoryPlan, LoadsMoreTilesAtATimeWhereThereIsRoomForThem) {
+  const MemoryPlan little = plan_memory(64 * kMiB, 2, 2);
+  EXPECT_EQ(little.tile_capacity, little.tile_room);
+  const MemoryPlan much = plan_memory(2048 * kMiB, 2, 2);
+  EXPECT_EQ(much.tile_capacity, 500'000U);
+  EXPECT_GT(much.tile_room, 15 * much.tile_capacity);
+  const MemoryPlan space = plan_memory(2048 * kMiB, 3, 2);
+  EXPECT_EQ(space.tile_capacity, space.tile_room);
+}
+
+TEST(MemoryPlan, HasMoreBatchesForMoreThreads) {
+  EXPECT_EQ(plan_memory(2048 * kMiB, 2, 1).batches, 6U);
+  EXPECT_EQ(plan_memory(2048 * kMiB, 2, 64).batches, 128U);
+  EXPECT_EQ(plan_memory(32 * kMiB, 2, 64).batches, 3U);
+}
+
 TEST(MemoryPlan, DependsOnThreadsOnlyInTheirNumber) {
   for (const int dimension : {2, 3}) {
     const MemoryPlan one = plan_memory(256 * kMiB, dimension, 1);

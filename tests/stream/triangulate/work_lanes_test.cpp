@@ -16,6 +16,7 @@ using ::testing::Le;
 struct Item {
   std::uint64_t weight = 1;
   int finished = 0;
+  int followed = 0;
 };
 
 /// Items that are worked off, and what was seen of it.
@@ -50,6 +51,7 @@ class WorkLanesTest : public ::testing::TestWithParam<unsigned> {
             {.weight = [](const Item& item) { return item.weight; },
              .begin = [this](Item& item, const Item* next) { begin(item, next); },
              .finish = [this](Item& item) { finish(item); },
+             .follow = [](Item& item) { item.followed += item.finished; },
              .give_up = [this] { given_up_ = true; }}};
   }
   void run(const std::function<void()>& work) { with_threads(GetParam(), work); }
@@ -59,11 +61,17 @@ class WorkLanesTest : public ::testing::TestWithParam<unsigned> {
     for (const Item& item : items_) times.push_back(item.finished);
     return times;
   }
+  [[nodiscard]] std::vector<int> times_followed() const {
+    std::vector<int> times;
+    for (const Item& item : items_) times.push_back(item.followed);
+    return times;
+  }
   void expect_all_in_order() const {
     std::vector<std::ptrdiff_t> order(items_.size());
     std::iota(order.begin(), order.end(), 0);
     EXPECT_EQ(begun_, order);
     EXPECT_THAT(times_finished(), Each(1));
+    EXPECT_THAT(times_followed(), Each(1));
     EXPECT_THAT(most_.load(), Le(kRoom));
   }
 
@@ -117,7 +125,31 @@ TEST_P(WorkLanesTest, ThrowsWhatFailsAndBeginsNothingMore) {
     EXPECT_TRUE(given_up_);
     EXPECT_LT(begun_.size(), items_.size());
     EXPECT_EQ(items_[20].finished, 0);
+    EXPECT_EQ(items_[20].followed, 0);
   }
+}
+
+TEST_P(WorkLanesTest, BeginsOthersWhileWhatFollowsIsDone) {
+  if (GetParam() < 2) GTEST_SKIP() << "for several threads";
+  items_.resize(2);
+  for (Item& item : items_) item.weight = kRoom;
+  std::atomic<bool> second_begun = false;
+  WorkLanes<Item> lanes(GetParam(), kRoom,
+                        {.weight = [](const Item& item) { return item.weight; },
+                         .begin =
+                             [&](Item& item, const Item*) {
+                               second_begun = &item == &items_[1];
+                               second_begun.notify_all();
+                             },
+                         .finish = [](Item&) {},
+                         .follow =
+                             [&](Item& item) {
+                               if (&item == &items_[0]) second_begun.wait(false);
+                             },
+                         .give_up = [] {}});
+  for (Item& item : items_) lanes.add(item);
+  run([&] { lanes.work_off(); });
+  EXPECT_TRUE(second_begun);
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, WorkLanesTest, ::testing::Values(1, 2, 3, 8));

@@ -13,7 +13,7 @@ inline RunLimits no_limits() {
   return {.batches = 1000,
           .tile_points = 10,
           .loaded_points = 1000000,
-          .ready_tiles = 1,
+          .ready_points = 0,
           .waiting_bytes = 1ULL << 60,
           .threads = 1000};
 }
