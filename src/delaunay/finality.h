@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "src/delaunay/common/triangulation.h"
@@ -51,33 +52,112 @@ class ConflictRegion {
   std::array<Point<D>, D> facet_;  ///< of an infinite one
 };
 
+/// The regions of up to 64 simplices, which are held against boxes several at a time. Of each a bit
+/// stands in words that ask and answer.
+template <int D>
+class RegionBatch {
+ public:
+  static constexpr std::size_t kSize = SimplexBatch<D>::kSize;
+  static_assert(kSize == 64);
+
+  /// Of simplices whose corners `corners(s)`, s = 0, 1, ..., count - 1, are positions of `points`,
+  /// or kInfiniteVertex.
+  template <typename Corners>
+  void set(std::size_t count, const Corners& corners, std::span<const Point<D>> points) {
+    std::array<std::array<VertexId, D + 1>, kSize> vertices;
+    for (std::size_t s = 0; s < count; ++s) {
+      vertices[s] = corners(s);
+      const auto& v = vertices[s];
+      // An infinite one becomes flat, of which nothing is certified.
+      simplices_.set(s, [&](int i) -> const Point<D>& {
+        return points[v[i] == kInfiniteVertex ? v[i == 0 ? 1 : 0] : v[i]];
+      });
+    }
+    certify<D>(simplices_, balls_);
+    apart_.clear();
+    apart_bits_ = 0;
+    infinite_ = 0;
+    for (std::size_t s = 0; s < count; ++s) {
+      if (!balls_.certified(s)) set_apart(s, ConflictRegion<D>(vertices[s], points));
+    }
+    all_ = count == kSize ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
+  }
+
+  /// The bits of all that were set.
+  [[nodiscard]] std::uint64_t all() const { return all_; }
+  /// Those of infinite simplices.
+  [[nodiscard]] std::uint64_t infinite() const { return infinite_; }
+
+  [[nodiscard]] ConflictRegion<D> region(std::size_t s) const {
+    for (const auto& [other, region] : apart_) {
+      if (other == s) return region;
+    }
+    return ConflictRegion<D>(balls_.at(s));
+  }
+
+  /// ConflictRegion::may_meet() of those `asked` for.
+  [[nodiscard]] std::uint64_t may_meet(const Box<D>& box, std::uint64_t asked) const {
+    std::uint64_t met = spillway::detail::may_meet<D>(balls_, box, asked & ~apart_bits_);
+    if ((asked & apart_bits_) == 0) return met;
+    for (const auto& [s, region] : apart_) {
+      if ((asked >> s & 1) != 0 && region.may_meet(box)) met |= std::uint64_t{1} << s;
+    }
+    return met;
+  }
+
+  /// ConflictRegion::may_meet_leaf() of those `asked` for.
+  template <typename Tree>
+  [[nodiscard]] std::uint64_t may_meet_leaf(const Tree& tree, std::uint64_t asked) const {
+    const std::uint64_t near = may_meet(tree.box, asked);
+    if (near == 0 || tree.children.empty()) return near;
+    std::uint64_t met = 0;
+    for (const auto& child : tree.children) met |= may_meet_leaf(child, near & ~met);
+    return met;
+  }
+
+ private:
+  void set_apart(std::size_t s, const ConflictRegion<D>& region) {
+    const std::uint64_t bit = std::uint64_t{1} << s;
+    apart_.emplace_back(s, region);
+    apart_bits_ |= bit;
+    if (region.infinite()) infinite_ |= bit;
+  }
+
+  SimplexBatch<D> simplices_{};
+  BallBatch<D> balls_;
+  std::uint64_t all_ = 0;
+  std::uint64_t apart_bits_ = 0;
+  std::uint64_t infinite_ = 0;
+  /// Regions of infinite simplices, and of those of which a batch proves nothing.
+  std::vector<std::pair<std::size_t, ConflictRegion<D>>> apart_;
+};
+
+/// Calls visit(first, regions) for batches of `count` simplices, of which the first is `first`;
+/// `corners(s)` and `points` are as in RegionBatch::set().
+template <int D, typename Corners, typename Visit>
+void for_each_region_batch(std::size_t count, const Corners& corners,
+                           std::span<const Point<D>> points, const Visit& visit) {
+  RegionBatch<D> regions;
+  for (std::size_t first = 0; first < count; first += regions.kSize) {
+    regions.set(
+        std::min(count - first, regions.kSize), [&](std::size_t s) { return corners(first + s); },
+        points);
+    visit(first, std::as_const(regions));
+  }
+}
+
 /// Calls visit(s, region) for s = 0, 1, ..., count - 1 with the region of simplex s, whose corners
 /// `corners(s)` are positions of `points`, or kInfiniteVertex. Several at a time.
 template <int D, typename Corners, typename Visit>
 void for_each_region(std::size_t count, const Corners& corners, std::span<const Point<D>> points,
                      const Visit& visit) {
-  constexpr std::size_t kSize = SimplexBatch<D>::kSize;
-  SimplexBatch<D> batch{};
-  std::array<std::array<VertexId, D + 1>, kSize> vertices;
-  std::array<CertifiedBall<D>, kSize> balls;
-  for (std::size_t begin = 0; begin < count; begin += kSize) {
-    const std::size_t end = std::min(count, begin + kSize);
-    for (std::size_t s = begin; s < end; ++s) {
-      vertices[s - begin] = corners(s);
-      const auto& v = vertices[s - begin];
-      // An infinite one becomes flat, of which nothing is certified.
-      batch.set(s - begin, [&](int i) -> const Point<D>& {
-        return points[v[i] == kInfiniteVertex ? v[i == 0 ? 1 : 0] : v[i]];
-      });
-    }
-    certify<D>(batch, balls);
-    for (std::size_t s = begin; s < end; ++s) {
-      const CertifiedBall<D>& ball = balls[s - begin];
-      const bool certified = ball.error < std::numeric_limits<double>::infinity();
-      visit(s,
-            certified ? ConflictRegion<D>(ball) : ConflictRegion<D>(vertices[s - begin], points));
-    }
-  }
+  for_each_region_batch<D>(count, corners, points,
+                           [&](std::size_t first, const RegionBatch<D>& regions) {
+                             const std::size_t end = std::min(count, first + regions.kSize);
+                             for (std::size_t s = first; s < end; ++s) {
+                               visit(s, regions.region(s - first));
+                             }
+                           });
 }
 
 /// What merging needs to remember of each simplex, in parallel with the lists of a triangulation.

@@ -1,6 +1,7 @@
 #include "stream/triangulate/border.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <utility>
 
@@ -74,48 +75,86 @@ class Merge {
       result_.border.dimension = std::max(result_.border.dimension, child.dimension);
     }
     vertices.reserve(first_vertex_.back());
-    std::vector<bool> wanted(first_vertex_.back());
+    wanted_.assign(first_vertex_.back() + 1, 0);
+    result_.exposure_is_known = std::all_of(children_.begin(), children_.end(), knows_exposure);
     for (std::size_t c = 0; c < children_.size(); ++c) {
       Border<D> child = std::exchange(children_[c], {});
       open_.push_back(child.open());
-      const std::vector<std::uint8_t> exposed = exposed_simplices(child, c);
-      for (std::size_t s = 0; s < child.simplices.size(); ++s) {
-        Corners corners = child.simplices[s];
-        for (VertexId& v : corners) {
-          if (v == kInfiniteVertex) continue;
-          v += first_vertex_[c];
-          if (exposed[s] != 0) wanted[v] = true;
-        }
-        (exposed[s] != 0 ? exposed_ : result_.border.simplices).push_back(corners);
-      }
+      sort_out(child, c);
       if (child.open()) {
-        std::fill(wanted.begin() + first_vertex_[c], wanted.begin() + first_vertex_[c + 1], true);
+        std::fill(wanted_.begin() + first_vertex_[c], wanted_.begin() + first_vertex_[c + 1], 1);
       }
       vertices.insert(vertices.end(), child.vertices.begin(), child.vertices.end());
     }
-    for (VertexId v = 0; v < wanted.size(); ++v) {
-      if (wanted[v]) border_vertices_.push_back(v);
+    for (VertexId v = 0; v < first_vertex_.back(); ++v) {
+      if (wanted_[v] != 0) border_vertices_.push_back(v);
     }
+    wanted_ = {};
     result_.tested = result_.border.simplices.size();
     result_.retriangulated = border_vertices_.size();
     task.points = border_vertices_.size();
     task.grains = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
   }
 
-  [[nodiscard]] std::vector<std::uint8_t> exposed_simplices(const Border<D>& child,
-                                                            std::size_t c) const {
+  /// Sorts a child's simplices, in numbers of the merge, into those that are exposed, whose
+  /// vertices are marked, and the others. Nobody can tell which comes next: without branches.
+  void sort_out(Border<D>& child, std::size_t c) {
+    std::vector<Exposure>& exposure = child.exposure;
+    if (!knows_exposure(child)) exposure = exposure_to_siblings(child, c);
+    const std::size_t count = child.simplices.size();
+    const auto exposed = static_cast<std::size_t>(std::count_if(
+        exposure.begin(), exposure.end(), [](Exposure levels) { return (levels & 1) != 0; }));
+    auto& kept = result_.border.simplices;
+    auto& kept_exposure = result_.border.exposure;
+    const bool keeps_exposure = result_.exposure_is_known;
+    const std::size_t kept_before = kept.size();
+    const std::size_t exposed_before = exposed_.size();
+    kept.resize(kept_before + count - exposed + 1);  // and one more, that is written and not kept
+    exposed_.resize(exposed_before + exposed + 1);
+    if (keeps_exposure) kept_exposure.resize(kept.size());
+    Corners* next_kept = &kept[kept_before];
+    Corners* next_exposed = &exposed_[exposed_before];
+    const VertexId none = first_vertex_.back();
+    for (std::size_t s = 0; s < count; ++s) {
+      const Exposure levels = exposure[s];
+      const std::uint8_t is_exposed = levels & 1;
+      Corners corners = child.simplices[s];
+      for (VertexId& v : corners) {
+        const bool finite = v != kInfiniteVertex;
+        v = finite ? v + first_vertex_[c] : v;
+        wanted_[finite ? v : none] |= is_exposed;
+      }
+      if (keeps_exposure) kept_exposure[next_kept - kept.data()] = levels >> 1;
+      *(is_exposed != 0 ? next_exposed : next_kept) = corners;
+      next_exposed += is_exposed;
+      next_kept += 1 - is_exposed;
+    }
+    kept.pop_back();
+    exposed_.pop_back();
+    if (keeps_exposure) kept_exposure.pop_back();
+  }
+
+  [[nodiscard]] static bool knows_exposure(const Border<D>& child) {
+    return child.exposure.size() == child.simplices.size();
+  }
+
+  /// Bit 0 of the exposure of a child's simplices, where it is not known.
+  [[nodiscard]] std::vector<Exposure> exposure_to_siblings(const Border<D>& child,
+                                                           std::size_t c) const {
     const std::vector<Point<D>> points = child.positions();
-    std::vector<std::uint8_t> exposed(child.simplices.size());
-    parallel_for(exposed.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-      for_each_region<D>(
+    std::vector<Exposure> exposure(child.simplices.size());
+    parallel_for(exposure.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for_each_region_batch<D>(
           end - begin, [&](std::size_t s) { return child.simplices[begin + s]; }, points,
-          [&](std::size_t s, const ConflictRegion<D>& region) {
-            for (std::size_t other = 0; other < trees_.size() && exposed[begin + s] == 0; ++other) {
-              if (other != c && region.may_meet_leaf(*trees_[other])) exposed[begin + s] = 1;
+          [&](std::size_t first, const RegionBatch<D>& regions) {
+            std::uint64_t met = 0;
+            for (std::size_t other = 0; other < trees_.size(); ++other) {
+              if (other != c) met |= regions.may_meet_leaf(*trees_[other], regions.all() & ~met);
             }
+            for (; met != 0; met &= met - 1) exposure[begin + first + std::countr_zero(met)] = 1;
           });
     });
-    return exposed;
+    return exposure;
   }
 
   void triangulate(Task& task) {
@@ -175,6 +214,7 @@ class Merge {
   Kernel kernel_;
   std::vector<VertexId> first_vertex_;  ///< by child, and one more
   std::vector<bool> open_;              ///< by child
+  std::vector<std::uint8_t> wanted_;  ///< by vertex, whether it is to be triangulated; and one more
   std::vector<Corners> exposed_;
   std::vector<VertexId> border_vertices_;
   Triangulation<D> mesh_;

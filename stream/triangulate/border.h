@@ -28,6 +28,11 @@ struct BorderVertex {
   StreamPlace place;
 };
 
+/// Which merges above, within the same tile, may change a simplex: bit l is set if a sibling of the
+/// part may, where l = 0, or of the l-th node above it.
+using Exposure = std::uint16_t;
+inline constexpr std::size_t kExposureLevels = 16;
+
 /// What is left in memory of a part whose final simplices have been written: the simplices that
 /// points elsewhere may still change, and their vertices.
 template <int D>
@@ -35,6 +40,7 @@ struct Border {
   int dimension = -1;  ///< of the affine hull of all the part's points
   std::vector<BorderVertex<D>> vertices;
   std::vector<std::array<VertexId, D + 1>> simplices;  ///< of numbers of `vertices`
+  std::vector<Exposure> exposure;  ///< by simplex, if it is known, as of most parts of tiles
 
   /// Whether the part has no simplices and gives all its points to the merge above, since they span
   /// fewer than D dimensions.
@@ -45,7 +51,8 @@ struct Border {
     return positions;
   }
   [[nodiscard]] std::uint64_t bytes() const {
-    return vertices.size() * sizeof(vertices[0]) + simplices.size() * sizeof(simplices[0]);
+    return vertices.size() * sizeof(vertices[0]) + simplices.size() * sizeof(simplices[0]) +
+           exposure.size() * sizeof(exposure[0]);
   }
 };
 
@@ -54,6 +61,7 @@ template <int D>
 struct MergedBorder {
   Border<D> border;
   std::size_t tested = 0;            ///< how many simplices in front are known not to be final
+  bool exposure_is_known = true;     ///< of these
   std::uint64_t retriangulated = 0;  ///< points of the triangulation of the borders
 };
 

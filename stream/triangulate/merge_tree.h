@@ -59,6 +59,15 @@ class MergeTree {
     return siblings;
   }
 
+  /// The same, those of the node first, of each node upwards by itself.
+  [[nodiscard]] std::vector<std::vector<const Tree*>> siblings_by_level(const Node& node) const {
+    std::vector<std::vector<const Tree*>> levels;
+    for (const Node* n = &node; n->parent != nullptr; n = n->parent) {
+      append_siblings(*n, levels.emplace_back());
+    }
+    return levels;
+  }
+
   /// Appends the other children of a node's parent.
   static void append_siblings(const Node& node, std::vector<const Tree*>& siblings) {
     if (node.parent == nullptr) return;

@@ -72,14 +72,14 @@ class Settlement {
     for (const Duplicate& duplicate : part_.duplicates) {
       use_[duplicate.dropped - part_.first_vertex] = 0;
     }
-    part_.for_each_open([&](std::size_t s) {
+    part_.for_each_open([&](std::size_t s, std::size_t /*place*/) {
       if (part_.fates[s] != Fate::kKept) return;
       ++kept_;
       for (const VertexId v : part_.simplex(s)) {
         if (v != kInfiniteVertex) use_[v] = kByBorder;
       }
     });
-    part_.for_each_open([&](std::size_t s) {
+    part_.for_each_open([&](std::size_t s, std::size_t /*place*/) {
       if (part_.fates[s] != Fate::kKept) return;
       const Corners corners = part_.simplex(s);
       for (int i = 0; i <= D; ++i) {
@@ -147,6 +147,7 @@ class Settlement {
     const std::size_t count = part_.simplex_count();
     result_.final_simplices = count - kept_;
     result_.border.simplices.reserve(kept_);
+    if (!part_.exposure.empty()) result_.border.exposure.reserve(kept_);
     result_.mesh.corners.resize((D + 1) * (count - kept_));
     std::uint32_t* end = result_.mesh.corners.data();
     std::size_t s = 0;
@@ -161,11 +162,11 @@ class Settlement {
         }
       }
     };
-    part_.for_each_open([&](std::size_t open) {
+    part_.for_each_open([&](std::size_t open, std::size_t place) {
       if (part_.fates[open] == Fate::kFinal) return;
       list_final(open);
       if (part_.fates[open] == Fate::kKept) {
-        keep(part_.simplex(open));
+        keep(part_.simplex(open), place);
       } else {
         ++result_.hull_facets;
       }
@@ -175,11 +176,12 @@ class Settlement {
     result_.mesh.corners.resize(static_cast<std::size_t>(end - result_.mesh.corners.data()));
   }
 
-  void keep(Corners corners) {
+  void keep(Corners corners, std::size_t place) {
     for (VertexId& v : corners) {
       if (v != kInfiniteVertex) v = kept_number_[v];
     }
     result_.border.simplices.push_back(corners);
+    if (!part_.exposure.empty()) result_.border.exposure.push_back(part_.exposure[place]);
   }
 
   [[nodiscard]] static LatticePoint output_point(const BorderVertex<D>& vertex) {

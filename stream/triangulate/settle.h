@@ -43,6 +43,8 @@ struct MergeToSettle {
   BlockPlace block;  ///< of the stream, that is made
   const Border<D>& merged;
   std::span<const Fate> fates;  ///< by simplex
+  /// By simplex, where it is known: see Border::exposure.
+  std::span<const Exposure> exposure{};
 
   [[nodiscard]] int dimension() const { return merged.dimension; }
   [[nodiscard]] std::size_t vertex_count() const { return merged.vertices.size(); }
@@ -57,10 +59,11 @@ struct MergeToSettle {
   [[nodiscard]] const Point<D>& position(VertexId v) const { return merged.vertices[v].position; }
   void expect(VertexId /*v*/) const {}
   [[nodiscard]] StreamPlace place(VertexId v) const { return merged.vertices[v].place; }
-  /// Calls visit(s) for all simplices whose fate may be another one than kFinal, in order.
+  /// Calls visit(s, i) for all simplices whose fate may be another one than kFinal, in order, where
+  /// i is the place of the exposure.
   template <typename Visit>
   void for_each_open(const Visit& visit) const {
-    for (std::size_t s = 0; s < fates.size(); ++s) visit(s);
+    for (std::size_t s = 0; s < fates.size(); ++s) visit(s, s);
   }
 };
 
@@ -73,6 +76,7 @@ struct LeafToSettle {
   std::span<const Duplicate> duplicates;  ///< vertices without simplices, by the same numbers
   std::span<const Fate> fates;            ///< by simplex
   std::span<const std::uint32_t> open;    ///< ascending; the fates of all others are kFinal
+  std::span<const Exposure> exposure;     ///< of those `open`, where it is known
   std::span<const Point<D>> points;       ///< by vertex
   std::span<const VertexId> input_index;  ///< by vertex: its place in the two that follow
   std::span<const double> heights;        ///< D = 2
@@ -108,7 +112,7 @@ struct LeafToSettle {
   [[nodiscard]] StreamPlace place(VertexId /*v*/) const { return {}; }
   template <typename Visit>
   void for_each_open(const Visit& visit) const {
-    for (const std::uint32_t s : open) visit(s);
+    for (std::size_t i = 0; i < open.size(); ++i) visit(open[i], i);
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -67,30 +68,81 @@ MergedBorder<D> merge_resident(const TileContext<D>& context, std::span<Border<D
   return merged;
 }
 
+/// What may change simplices of a part of a tile: the siblings of the part, of the node above it,
+/// and so on, by level, and other tiles.
 template <int D>
-Fate final_fate(const ConflictRegion<D>& region) {
-  return region.infinite() ? Fate::kFinalFacet : Fate::kFinal;
+struct Surroundings {
+  std::vector<std::vector<const Part<D>*>> levels;
+  const Outside<D>& outside;
+
+  /// Whether there are few enough levels to tell what each may change.
+  [[nodiscard]] bool tells_exposure() const {
+    return !levels.empty() && levels.size() <= kExposureLevels;
+  }
+
+  /// The bits of regions that something may change. If `exposure` is given, sets that of each.
+  [[nodiscard]] std::uint64_t may_change(const RegionBatch<D>& regions, Exposure* exposure) const {
+    std::uint64_t changed = 0;
+    for (std::size_t level = 0; level < levels.size(); ++level) {
+      // Who wants to know the exposure asks for each level.
+      const std::uint64_t asked = exposure != nullptr ? regions.all() : regions.all() & ~changed;
+      std::uint64_t met = 0;
+      for (const Part<D>* sibling : levels[level]) {
+        met |= regions.may_meet_leaf(*sibling, asked & ~met);
+      }
+      changed |= met;
+      if (exposure == nullptr) continue;
+      for (; met != 0; met &= met - 1) {
+        exposure[std::countr_zero(met)] |= static_cast<Exposure>(1U << level);
+      }
+    }
+    for (const TileNode<D>* tile : outside) {
+      changed |= regions.may_meet_leaf(*tile, regions.all() & ~changed);
+    }
+    return changed;
+  }
+};
+
+/// Finds out the fates of simplices whose regions these are: calls set(s, fate) for each.
+template <int D, typename Set>
+void tell_fates(const RegionBatch<D>& regions, std::uint64_t changed, const Set& set) {
+  for (std::size_t s = 0; s < regions.kSize && (regions.all() >> s & 1) != 0; ++s) {
+    const bool kept = (changed >> s & 1) != 0;
+    const bool infinite = (regions.infinite() >> s & 1) != 0;
+    set(s, kept ? Fate::kKept : infinite ? Fate::kFinalFacet : Fate::kFinal);
+  }
 }
 
-/// Which simplices of a merged border are final: nothing of `trees` may change them.
-template <int D, typename MayBeChanged>
-Settled<D> settle_merged(const MergedBorder<D>& merged, BlockPlace block,
-                         const OutputOptions& output, const MayBeChanged& may_be_changed,
-                         StageTimes& times) {
+/// Which simplices of a merged border are final: nothing around it may change them.
+template <int D>
+Settled<D> settle_merged(MergedBorder<D>& merged, BlockPlace block, const OutputOptions& output,
+                         const Surroundings<D>& surroundings, StageTimes& times) {
   const StageTimer timer(times, Stage::kFinality);
-  const Border<D>& border = merged.border;
+  Border<D>& border = merged.border;
   const std::vector<Point<D>> positions = border.positions();
   std::vector<Fate> fates(border.simplices.size(), Fate::kKept);
+  const bool tells_exposure = surroundings.tells_exposure() && merged.exposure_is_known;
+  std::vector<Exposure>& exposure = border.exposure;
+  if (tells_exposure) {
+    exposure.resize(fates.size());
+  } else {
+    exposure = {};
+  }
   parallel_for(
       fates.size() - merged.tested, kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-        const std::size_t first = merged.tested + begin;
-        for_each_region<D>(
-            end - begin, [&](std::size_t s) { return border.simplices[first + s]; }, positions,
-            [&](std::size_t s, const ConflictRegion<D>& region) {
-              if (!may_be_changed(region)) fates[first + s] = final_fate(region);
+        for_each_region_batch<D>(
+            end - begin, [&](std::size_t s) { return border.simplices[merged.tested + begin + s]; },
+            positions,
+            [&](std::size_t first, const RegionBatch<D>& regions) {
+              const std::size_t at = merged.tested + begin + first;
+              const std::uint64_t changed =
+                  surroundings.may_change(regions, tells_exposure ? &exposure[at] : nullptr);
+              tell_fates(regions, changed, [&](std::size_t s, Fate fate) { fates[at + s] = fate; });
             });
       });
-  return settle<D>(MergeToSettle<D>{.block = block, .merged = border, .fates = fates}, output);
+  return settle<D>(
+      MergeToSettle<D>{.block = block, .merged = border, .fates = fates, .exposure = exposure},
+      output);
 }
 
 /// Cuts `cell` back so that it has nothing in common with any leaf of `tree`. Boxes of nodes may
@@ -165,13 +217,8 @@ class TileRun {
     return std::move(tree_->root().task);
   }
 
-  [[nodiscard]] auto change_test(std::vector<const Part<D>*> siblings) const {
-    return [this, siblings = std::move(siblings)](const ConflictRegion<D>& region) {
-      return std::any_of(siblings.begin(), siblings.end(),
-                         [&](const Part<D>* part) { return region.may_meet_leaf(*part); }) ||
-             std::any_of(outside_.begin(), outside_.end(),
-                         [&](const TileNode<D>* tile) { return region.may_meet_leaf(*tile); });
-    };
+  [[nodiscard]] Surroundings<D> surroundings_of(const Node& node) const {
+    return {tree_->siblings_by_level(node), outside_};
   }
 
   Border<D> triangulate_leaf(Node& node) {
@@ -206,8 +253,10 @@ class TileRun {
     std::vector<std::uint32_t> asked;
     if (!base_case.not_inside) asked = open_questions(node, leaf);
     leaf.open = base_case.not_inside ? *base_case.not_inside : asked;
-    const std::vector<Fate> fates = fates_in_leaf(node, leaf);
+    std::vector<Exposure> exposure;
+    const std::vector<Fate> fates = fates_in_leaf(node, leaf, exposure);
     leaf.fates = fates;
+    leaf.exposure = exposure;
     return settle<D>(leaf, context_.options.output);
   }
 
@@ -285,15 +334,20 @@ class TileRun {
     return open;
   }
 
-  [[nodiscard]] std::vector<Fate> fates_in_leaf(const Node& node,
-                                                const LeafToSettle<D>& leaf) const {
-    const auto may_be_changed = change_test(tree_->siblings_up(node));
+  /// By simplex. Sets the exposure of those that are open, if it can be told.
+  [[nodiscard]] std::vector<Fate> fates_in_leaf(const Node& node, const LeafToSettle<D>& leaf,
+                                                std::vector<Exposure>& exposure) const {
+    const Surroundings<D> surroundings = surroundings_of(node);
     const std::span<const std::uint32_t> open = leaf.open;
+    if (surroundings.tells_exposure()) exposure.resize(open.size());
     std::vector<Fate> fates(leaf.simplex_count(), Fate::kFinal);
-    for_each_region<D>(
+    for_each_region_batch<D>(
         open.size(), [&](std::size_t i) { return leaf.simplex(open[i]); }, leaf.points,
-        [&](std::size_t i, const ConflictRegion<D>& region) {
-          fates[open[i]] = may_be_changed(region) ? Fate::kKept : final_fate(region);
+        [&](std::size_t first, const RegionBatch<D>& regions) {
+          const std::uint64_t changed =
+              surroundings.may_change(regions, exposure.empty() ? nullptr : &exposure[first]);
+          tell_fates(regions, changed,
+                     [&](std::size_t i, Fate fate) { fates[open[first + i]] = fate; });
         });
     return fates;
   }
@@ -304,8 +358,8 @@ class TileRun {
     MergedBorder<D> merged = merge_resident<D>(context_, children, *node.tree, node.task);
     const BlockPlace block = place_of(node);
     if (merged.border.open()) return pass_up(context_, std::move(merged.border), block);
-    Settled<D> settled = settle_merged(merged, block, context_.options.output,
-                                       change_test(tree_->siblings_up(node)), counts_.times);
+    Settled<D> settled =
+        settle_merged(merged, block, context_.options.output, surroundings_of(node), counts_.times);
     counts_.final_in_tiles += settled.final_simplices;
     return pass_on(context_, std::move(settled), block);
   }
@@ -338,13 +392,10 @@ Settled<D> merge_borders_of(const TileContext<D>& context, const MergeInput<D>& 
   if (merged.border.open()) {
     settled.border = std::move(merged.border);
   } else {
-    const auto may_be_changed = [&](const ConflictRegion<D>& region) {
-      return std::any_of(input.outside.begin(), input.outside.end(),
-                         [&](const TileNode<D>* tile) { return region.may_meet_leaf(*tile); });
-    };
     OutputOptions output = context.options.output;
     output.imported_vertices = input.imported_vertices;
-    settled = settle_merged(merged, input.place, output, may_be_changed, context.counts.times);
+    settled = settle_merged<D>(merged, input.place, output,
+                               {.levels = {}, .outside = input.outside}, context.counts.times);
   }
   count_settled(settled, context.counts);
   return settled;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "src/geometry/determinants.h"
 #include "src/geometry/predicates.h"
@@ -193,6 +194,40 @@ struct RoughSphere {
   }
 };
 
+// Two balls at a time. Written out, as compilers make branches of the choices.
+using Pair = double __attribute__((vector_size(16)));
+using PairBits = std::uint64_t __attribute__((vector_size(16)));
+
+[[gnu::always_inline]] inline Pair larger(const Pair& a, const Pair& b) { return a < b ? b : a; }
+
+[[gnu::always_inline]] inline Pair pair_at(const double* numbers) {
+  Pair pair;
+  std::memcpy(&pair, numbers, sizeof pair);
+  return pair;
+}
+
+// How far a box is at least from a ball's centre on an axis: of one ball or of two.
+template <typename Number>
+[[gnu::always_inline]] inline Number gap_to(double lo, double hi, const Number& anchor,
+                                            const Number& centre, const Number& error) {
+  const Number below = (lo - anchor) - centre;
+  const Number above = centre - (hi - anchor);
+  return larger(Number{}, larger(below, above) - error);
+}
+
+// All bits of those of balls s and s + 1 that certainly miss the box, which is not empty.
+template <int D>
+[[gnu::always_inline]] inline PairBits misses(const BallBatch<D>& balls, const Box<D>& box,
+                                              std::size_t s) {
+  Pair squared_distance{};
+  for (int k = 0; k < D; ++k) {
+    const Pair gap = gap_to(box.lo[k], box.hi[k], pair_at(&balls.anchor[k][s]),
+                            pair_at(&balls.centre[k][s]), pair_at(&balls.error[s]));
+    squared_distance += gap * gap;
+  }
+  return (PairBits)(squared_distance > pair_at(&balls.squared_radius[s]));
+}
+
 }  // namespace
 
 template <int D>
@@ -238,9 +273,7 @@ bool may_meet(const CertifiedBall<D>& ball, const Box<D>& box) {
   if (box.empty()) return false;
   double squared_distance = 0;
   for (int k = 0; k < D; ++k) {
-    const double below = (box.lo[k] - ball.anchor[k]) - ball.centre[k];
-    const double above = ball.centre[k] - (box.hi[k] - ball.anchor[k]);
-    const double gap = std::max(0.0, std::max(below, above) - ball.error);
+    const double gap = gap_to(box.lo[k], box.hi[k], ball.anchor[k], ball.centre[k], ball.error);
     squared_distance += gap * gap;
   }
   return !(squared_distance > ball.squared_radius);
@@ -260,29 +293,37 @@ std::array<bool, SimplexBatch<D>::kSize> well_inside(const SimplexBatch<D>& simp
 }
 
 template <int D>
-void certify(const SimplexBatch<D>& simplices,
-             std::array<CertifiedBall<D>, SimplexBatch<D>::kSize>& balls) {
+void certify(const SimplexBatch<D>& simplices, BallBatch<D>& balls) {
   constexpr std::size_t kSize = SimplexBatch<D>::kSize;
-  std::array<std::array<double, kSize>, D> centre;
-  std::array<double, kSize> squared_radius;
-  std::array<double, kSize> error;
   std::array<double, kSize> proved;
   for (std::size_t s = 0; s < kSize; ++s) {
     const RoughSphere<D> sphere(corners_in(simplices, s));
-    for (int k = 0; k < D; ++k) centre[k][s] = sphere.centre[k];
-    squared_radius[s] = sphere.squared_radius;
-    error[s] = sphere.error;
+    for (int k = 0; k < D; ++k) balls.centre[k][s] = sphere.centre[k];
+    balls.squared_radius[s] = sphere.squared_radius;
+    balls.error[s] = sphere.error;
     proved[s] = sphere.proved;
   }
   for (std::size_t s = 0; s < kSize; ++s) {
-    CertifiedBall<D>& ball = balls[s];
-    for (int k = 0; k < D; ++k) {
-      ball.anchor[k] = simplices.corners[0][k][s];
-      ball.centre[k] = centre[k][s];
-    }
-    ball.squared_radius = proved[s] > 0 ? squared_radius[s] : CertifiedBall<D>{}.squared_radius;
-    ball.error = proved[s] > 0 ? error[s] : CertifiedBall<D>{}.error;
+    if (proved[s] > 0) continue;
+    balls.squared_radius[s] = CertifiedBall<D>{}.squared_radius;
+    balls.error[s] = CertifiedBall<D>{}.error;
   }
+  balls.anchor = simplices.corners[0];
+}
+
+template <int D>
+std::uint64_t may_meet(const BallBatch<D>& balls, const Box<D>& box, std::uint64_t asked) {
+  if (box.empty() || asked == 0) return 0;
+  PairBits missed{};
+  const PairBits pair_of_bits{1, 2};
+  constexpr std::size_t kTogether = 8;
+  for (std::size_t begin = 0; begin < BallBatch<D>::kSize; begin += kTogether) {
+    if ((asked >> begin & ((1U << kTogether) - 1)) == 0) continue;
+    for (std::size_t s = begin; s < begin + kTogether; s += 2) {
+      missed |= misses(balls, box, s) & (pair_of_bits << s);
+    }
+  }
+  return asked & ~(missed[0] | missed[1]);
 }
 
 template <int D>
@@ -305,8 +346,10 @@ template std::array<bool, SimplexBatch<2>::kSize> well_inside<2>(const SimplexBa
                                                                  const Box<2>&);
 template std::array<bool, SimplexBatch<3>::kSize> well_inside<3>(const SimplexBatch<3>&,
                                                                  const Box<3>&);
-template void certify<2>(const SimplexBatch<2>&, std::array<CertifiedBall<2>, 64>&);
-template void certify<3>(const SimplexBatch<3>&, std::array<CertifiedBall<3>, 64>&);
+template void certify<2>(const SimplexBatch<2>&, BallBatch<2>&);
+template void certify<3>(const SimplexBatch<3>&, BallBatch<3>&);
+template std::uint64_t may_meet<2>(const BallBatch<2>&, const Box<2>&, std::uint64_t);
+template std::uint64_t may_meet<3>(const BallBatch<3>&, const Box<3>&, std::uint64_t);
 template bool half_space_meets<2>(const std::array<Point<2>, 2>&, const Box<2>&);
 template bool half_space_meets<3>(const std::array<Point<3>, 3>&, const Box<3>&);
 

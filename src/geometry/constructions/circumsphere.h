@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "src/geometry/box.h"
@@ -61,12 +62,41 @@ template <int D>
 std::array<bool, SimplexBatch<D>::kSize> well_inside(const SimplexBatch<D>& simplices,
                                                      const Box<D>& box);
 
+/// What certified balls hold, number by number, so that several are tested at a time.
+template <int D>
+struct BallBatch {
+  static constexpr std::size_t kSize = SimplexBatch<D>::kSize;
+  using Numbers = std::array<double, kSize>;
+  std::array<Numbers, D> anchor;  ///< [axis][ball], as the next one
+  std::array<Numbers, D> centre;
+  Numbers squared_radius;
+  Numbers error;
+
+  /// Whether anything is certified of a ball.
+  [[nodiscard]] bool certified(std::size_t ball) const {
+    return error[ball] < std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] CertifiedBall<D> at(std::size_t ball) const {
+    CertifiedBall<D> result;
+    for (int k = 0; k < D; ++k) {
+      result.anchor[k] = anchor[k][ball];
+      result.centre[k] = centre[k][ball];
+    }
+    result.squared_radius = squared_radius[ball];
+    result.error = error[ball];
+    return result;
+  }
+};
+
 /// The certified circumspheres of the simplices of a batch, of any orientation: as true as those of
 /// certified_ball() with less work, but with larger errors where simplices are flat, and infinite
 /// ones sooner.
 template <int D>
-void certify(const SimplexBatch<D>& simplices,
-             std::array<CertifiedBall<D>, SimplexBatch<D>::kSize>& balls);
+void certify(const SimplexBatch<D>& simplices, BallBatch<D>& balls);
+
+/// may_meet() of those balls whose bits are set in `asked`: a bit for each.
+template <int D>
+std::uint64_t may_meet(const BallBatch<D>& balls, const Box<D>& box, std::uint64_t asked);
 
 /// True if and only if the closed half-space beyond `facet` has a point in common with the box.
 /// `facet` is listed so that orientation(facet, p) is positive for p beyond. Exact. True if the

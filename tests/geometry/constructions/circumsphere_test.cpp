@@ -100,31 +100,68 @@ TYPED_TEST(CertifiedBallTest, BoundsOfManyAtOnceHoldAgainstRationalArithmetic) {
       for (std::size_t s = 0; s < kSize; ++s) {
         batch.set(s, [&](int i) { return groups[begin + s][i]; });
       }
-      std::array<CertifiedBall<D>, kSize> balls;
+      BallBatch<D> balls;
       certify<D>(batch, balls);
       for (std::size_t s = 0; s < kSize; ++s) {
-        if (balls[s].error == kInfinity) continue;
+        if (balls.error[s] == kInfinity) continue;
         ++proofs;
-        expect_true_bounds<D>(testing::simplex_of<D>(groups[begin + s]), balls[s]);
+        expect_true_bounds<D>(testing::simplex_of<D>(groups[begin + s]), balls.at(s));
       }
     }
   }
   EXPECT_GT(proofs, 500U);
 }
 
+TYPED_TEST(CertifiedBallTest, ManyAtOnceMeetTheBoxesThatTheyMeetOneByOne) {
+  constexpr int D = TypeParam::value;
+  constexpr std::size_t kSize = SimplexBatch<D>::kSize;
+  Random random(24);
+  std::uint64_t all_met = 0;
+  std::uint64_t all_missed = 0;
+  for (const Hard family : testing::kAllHard) {
+    SCOPED_TRACE(testing::name_of(family));
+    const auto groups = testing::hard_groups<D>(family, kSize, 25);
+    SimplexBatch<D> batch;
+    for (std::size_t s = 0; s < kSize; ++s) {
+      batch.set(s, [&](int i) { return groups[s][i]; });
+    }
+    BallBatch<D> balls;
+    certify<D>(batch, balls);
+    std::vector<Box<D>> boxes = {Box<D>(), whole_space<D>()};
+    for (std::size_t s = 0; s < kSize; ++s) {
+      if (balls.certified(s)) boxes.push_back(touching_box<D>(balls.at(s), 1e-15, random));
+      boxes.push_back(box_of<D>(groups[s][0], groups[kSize - 1 - s][1]));
+      boxes.back().hi[0] = kInfinity;
+    }
+    for (const Box<D>& box : boxes) {
+      std::uint64_t one_by_one = 0;
+      for (std::size_t s = 0; s < kSize; ++s) {
+        if (may_meet<D>(balls.at(s), box)) one_by_one |= std::uint64_t{1} << s;
+      }
+      for (const std::uint64_t asked : {~std::uint64_t{0}, std::uint64_t{0x8000000100F00002}}) {
+        EXPECT_EQ(may_meet<D>(balls, box, asked), one_by_one & asked);
+      }
+      all_met |= one_by_one;
+      all_missed |= ~one_by_one;
+    }
+  }
+  EXPECT_EQ(all_met, ~std::uint64_t{0});
+  EXPECT_EQ(all_missed, ~std::uint64_t{0});
+}
+
 TYPED_TEST(CertifiedBallTest, ManyAtOnceAreTightForWellShapedSimplices) {
   constexpr int D = TypeParam::value;
   Random random(23);
   SimplexBatch<D> batch{};
-  std::array<CertifiedBall<D>, SimplexBatch<D>::kSize> balls;
+  BallBatch<D> balls;
   for (int trial = 0; trial < 300; ++trial) {
     const auto simplex = well_shaped<D>(random, random.uniform(0.5, 100), 5e6);
     batch.set(0, [&](int i) { return simplex[i]; });
     certify<D>(batch, balls);
     const CertifiedBall<D> ball = certified_ball<D>(simplex);
-    EXPECT_LE(balls[0].error, 1e-9 * std::sqrt(ball.squared_radius));
-    EXPECT_LE(balls[0].squared_radius, (1 + 1e-9) * ball.squared_radius);
-    EXPECT_EQ(balls[1].error, kInfinity);  // a point
+    EXPECT_LE(balls.error[0], 1e-9 * std::sqrt(ball.squared_radius));
+    EXPECT_LE(balls.squared_radius[0], (1 + 1e-9) * ball.squared_radius);
+    EXPECT_EQ(balls.error[1], kInfinity);  // a point
   }
 }
 
@@ -292,9 +329,9 @@ TYPED_TEST(CertifiedBallTest, NothingIsKnownOfWhatIsNotFinite) {
         SimplexBatch<D> batch{};
         batch.set(0, [&](int c) { return simplex[c]; });
         EXPECT_FALSE(well_inside<D>(batch, everything)[0]) << strange << ' ' << i << ' ' << k;
-        std::array<CertifiedBall<D>, SimplexBatch<D>::kSize> balls;
+        BallBatch<D> balls;
         certify<D>(batch, balls);
-        EXPECT_EQ(balls[0].error, kInfinity) << strange << ' ' << i << ' ' << k;
+        EXPECT_EQ(balls.error[0], kInfinity) << strange << ' ' << i << ' ' << k;
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 #include <set>
 
@@ -147,6 +148,34 @@ TYPED_TEST(BorderMerge, RetriangulatesOnlyWhatASiblingMayChange) {
   EXPECT_EQ(task.after[0].kind, TaskKind::kBorder);
   EXPECT_EQ(task.after[0].points, result.retriangulated);
   EXPECT_EQ(task.after[2].kind, TaskKind::kAccept);
+}
+
+TYPED_TEST(BorderMerge, TakesAnExposureThatIsKnown) {
+  constexpr int kD = TypeParam::value;
+  const std::vector<std::vector<Point<kD>>> parts = {random_points<kD>(200, 0, 9),
+                                                     random_points<kD>(200, 1, 10)};
+  std::vector<Border<kD>> children = {border_of<kD>(parts[0]), border_of<kD>(parts[1])};
+  const TileNode<kD> low = tree_of<kD>(parts[0]);
+  const TileNode<kD> high = tree_of<kD>(parts[1]);
+  const std::array trees = {&low, &high};
+  MemoryBudget budget(std::uint64_t{1} << 30);
+  Task task;
+  const auto merge = [&](std::vector<Border<kD>> borders) {
+    return merge_borders<kD, TileNode<kD>>(borders, trees, budget, task);
+  };
+  // All but the last simplex of the first part: so that one stays, and moves on by a level.
+  for (Border<kD>& child : children) child.exposure.assign(child.simplices.size(), 1);
+  children[0].exposure.back() = 6;
+  const MergedBorder<kD> known = merge(children);
+  EXPECT_TRUE(known.exposure_is_known);
+  EXPECT_EQ(known.tested, 1U);
+  EXPECT_EQ(known.border.exposure, std::vector<Exposure>{3});
+  EXPECT_EQ(known.border.simplices[0], children[0].simplices.back());
+  children[1].exposure = {};
+  const MergedBorder<kD> known_in_part = merge(children);
+  EXPECT_FALSE(known_in_part.exposure_is_known);
+  EXPECT_GT(known_in_part.tested, 1U);
+  EXPECT_TRUE(known_in_part.border.exposure.empty());
 }
 
 TYPED_TEST(BorderMerge, NeedsMemory) {

@@ -65,6 +65,9 @@ TEST(MergeTree, SiblingsUpAreTheRestOfTheTree) {
               ElementsAre(&right.children[0], &right.children[2], &left));
   EXPECT_THAT(tree.siblings_up(tree.nodes()[2]), ElementsAre(&right));
   EXPECT_THAT(tree.siblings_up(tree.root()), IsEmpty());
+  EXPECT_THAT(tree.siblings_by_level(tree.nodes()[4]),
+              ElementsAre(ElementsAre(&right.children[0], &right.children[2]), ElementsAre(&left)));
+  EXPECT_THAT(tree.siblings_by_level(tree.root()), IsEmpty());
 }
 
 TEST(MergeTree, MergesWhenTheLastChildIsDone) {

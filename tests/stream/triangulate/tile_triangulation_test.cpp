@@ -109,6 +109,14 @@ TYPED_TEST(TileTriangulation, OfATileAloneIsAll) {
   EXPECT_EQ(bench.counts.leaves, static_cast<std::uint64_t>(bench.leaves_told));
 }
 
+// More levels of merges than an exposure has bits.
+TEST(TileTriangulationOfManyLevels, IsAll) {
+  const auto points = random_points<2>(80'000, 7);
+  Bench<2> bench(1);
+  EXPECT_THAT(bench.tile(0, points, 0, {}).simplices, IsEmpty());
+  EXPECT_EQ(simplices_of<2>(bench.mesh), triangulated<2>(points));
+}
+
 TYPED_TEST(TileTriangulation, HasATaskForEachLeafAndMerge) {
   constexpr int kD = TypeParam::value;
   Bench<kD> bench;
