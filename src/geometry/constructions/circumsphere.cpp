@@ -194,39 +194,112 @@ struct RoughSphere {
   }
 };
 
-// Two balls at a time. Written out, as compilers make branches of the choices.
-using Pair = double __attribute__((vector_size(16)));
-using PairBits = std::uint64_t __attribute__((vector_size(16)));
+// Balls in lanes, two or four at a time. Written out, as compilers make branches of the choices.
+template <int kLanes>
+struct Lanes;
+template <>
+struct Lanes<2> {
+  using Reals [[gnu::vector_size(16)]] = double;
+  using Bits [[gnu::vector_size(16)]] = std::uint64_t;
+  static constexpr Bits kPlaces{0, 1};
+};
+template <>
+struct Lanes<4> {
+  using Reals [[gnu::vector_size(32)]] = double;
+  using Bits [[gnu::vector_size(32)]] = std::uint64_t;
+  static constexpr Bits kPlaces{0, 1, 2, 3};
+};
 
-[[gnu::always_inline]] inline Pair larger(const Pair& a, const Pair& b) { return a < b ? b : a; }
-
-[[gnu::always_inline]] inline Pair pair_at(const double* numbers) {
-  Pair pair;
-  std::memcpy(&pair, numbers, sizeof pair);
-  return pair;
-}
-
-// How far a box is at least from a ball's centre on an axis: of one ball or of two.
+// How far a box is at least from a ball's centre on an axis: of one ball, or of those in lanes.
 template <typename Number>
-[[gnu::always_inline]] inline Number gap_to(double lo, double hi, const Number& anchor,
-                                            const Number& centre, const Number& error) {
+[[gnu::always_inline]] inline void add_gap(double lo, double hi, const Number& anchor,
+                                           const Number& centre, const Number& error,
+                                           Number& squared_distance) {
   const Number below = (lo - anchor) - centre;
   const Number above = centre - (hi - anchor);
-  return larger(Number{}, larger(below, above) - error);
+  const Number outside = (below < above ? above : below) - error;
+  const Number gap = Number{} < outside ? outside : Number{};
+  squared_distance += gap * gap;
 }
 
-// All bits of those of balls s and s + 1 that certainly miss the box, which is not empty.
-template <int D>
-[[gnu::always_inline]] inline PairBits misses(const BallBatch<D>& balls, const Box<D>& box,
-                                              std::size_t s) {
-  Pair squared_distance{};
+// A bit for each ball in the next lanes from s on that certainly misses the box, which is not
+// empty.
+template <int D, int kLanes>
+[[gnu::always_inline]] inline void add_missed(const BallBatch<D>& balls, const Box<D>& box,
+                                              std::size_t s, typename Lanes<kLanes>::Bits& missed) {
+  using Reals = typename Lanes<kLanes>::Reals;
+  using Bits = typename Lanes<kLanes>::Bits;
+  Reals error, squared_radius;
+  std::memcpy(&error, &balls.error[s], sizeof(Reals));
+  std::memcpy(&squared_radius, &balls.squared_radius[s], sizeof(Reals));
+  Reals squared_distance{};
   for (int k = 0; k < D; ++k) {
-    const Pair gap = gap_to(box.lo[k], box.hi[k], pair_at(&balls.anchor[k][s]),
-                            pair_at(&balls.centre[k][s]), pair_at(&balls.error[s]));
-    squared_distance += gap * gap;
+    Reals anchor, centre;
+    std::memcpy(&anchor, &balls.anchor[k][s], sizeof(Reals));
+    std::memcpy(&centre, &balls.centre[k][s], sizeof(Reals));
+    add_gap(box.lo[k], box.hi[k], anchor, centre, error, squared_distance);
   }
-  return (PairBits)(squared_distance > pair_at(&balls.squared_radius[s]));
+  missed |=
+      (Bits)(squared_distance > squared_radius) & ((Bits{} + 1) << (Lanes<kLanes>::kPlaces + s));
 }
+
+template <int D, int kLanes>
+[[gnu::always_inline]] inline std::uint64_t may_meet_in_lanes(const BallBatch<D>& balls,
+                                                              const Box<D>& box,
+                                                              std::uint64_t asked) {
+  constexpr std::size_t kTogether = 8;
+  typename Lanes<kLanes>::Bits missed{};
+  for (std::size_t begin = 0; begin < BallBatch<D>::kSize; begin += kTogether) {
+    if ((asked >> begin & ((1U << kTogether) - 1)) == 0) continue;
+    for (std::size_t s = begin; s < begin + kTogether; s += kLanes) {
+      add_missed<D, kLanes>(balls, box, s, missed);
+    }
+  }
+  for (int lane = 0; lane < kLanes; ++lane) asked &= ~missed[lane];
+  return asked;
+}
+
+template <int D>
+[[gnu::always_inline]] inline void certify_all(const SimplexBatch<D>& simplices,
+                                               BallBatch<D>& balls) {
+  constexpr std::size_t kSize = SimplexBatch<D>::kSize;
+  // Arrays of its own, of which the compiler knows that they are no other's.
+  std::array<std::array<double, kSize>, D> centre;
+  std::array<double, kSize> squared_radius;
+  std::array<double, kSize> error;
+  std::array<double, kSize> proved;
+  for (std::size_t s = 0; s < kSize; ++s) {
+    const RoughSphere<D> sphere(corners_in(simplices, s));
+    for (int k = 0; k < D; ++k) centre[k][s] = sphere.centre[k];
+    squared_radius[s] = sphere.squared_radius;
+    error[s] = sphere.error;
+    proved[s] = sphere.proved;
+  }
+  for (std::size_t s = 0; s < kSize; ++s) {
+    balls.squared_radius[s] = proved[s] > 0 ? squared_radius[s] : CertifiedBall<D>{}.squared_radius;
+    balls.error[s] = proved[s] > 0 ? error[s] : CertifiedBall<D>{}.error;
+  }
+  balls.centre = centre;
+  balls.anchor = simplices.corners[0];
+}
+
+// The same for processors with AVX2, which have four lanes. Every operation is rounded alike, so
+// the results are the same to the bit.
+#ifdef __x86_64__
+template <int D>
+[[gnu::target("avx2")]] std::uint64_t may_meet_with_avx2(const BallBatch<D>& balls,
+                                                         const Box<D>& box, std::uint64_t asked) {
+  return may_meet_in_lanes<D, 4>(balls, box, asked);
+}
+
+template <int D>
+[[gnu::target("avx2")]] void certify_with_avx2(const SimplexBatch<D>& simplices,
+                                               BallBatch<D>& balls) {
+  certify_all<D>(simplices, balls);
+}
+
+const bool kHasAvx2 = static_cast<bool>(__builtin_cpu_supports("avx2"));
+#endif
 
 }  // namespace
 
@@ -273,8 +346,7 @@ bool may_meet(const CertifiedBall<D>& ball, const Box<D>& box) {
   if (box.empty()) return false;
   double squared_distance = 0;
   for (int k = 0; k < D; ++k) {
-    const double gap = gap_to(box.lo[k], box.hi[k], ball.anchor[k], ball.centre[k], ball.error);
-    squared_distance += gap * gap;
+    add_gap(box.lo[k], box.hi[k], ball.anchor[k], ball.centre[k], ball.error, squared_distance);
   }
   return !(squared_distance > ball.squared_radius);
 }
@@ -294,36 +366,19 @@ std::array<bool, SimplexBatch<D>::kSize> well_inside(const SimplexBatch<D>& simp
 
 template <int D>
 void certify(const SimplexBatch<D>& simplices, BallBatch<D>& balls) {
-  constexpr std::size_t kSize = SimplexBatch<D>::kSize;
-  std::array<double, kSize> proved;
-  for (std::size_t s = 0; s < kSize; ++s) {
-    const RoughSphere<D> sphere(corners_in(simplices, s));
-    for (int k = 0; k < D; ++k) balls.centre[k][s] = sphere.centre[k];
-    balls.squared_radius[s] = sphere.squared_radius;
-    balls.error[s] = sphere.error;
-    proved[s] = sphere.proved;
-  }
-  for (std::size_t s = 0; s < kSize; ++s) {
-    if (proved[s] > 0) continue;
-    balls.squared_radius[s] = CertifiedBall<D>{}.squared_radius;
-    balls.error[s] = CertifiedBall<D>{}.error;
-  }
-  balls.anchor = simplices.corners[0];
+#ifdef __x86_64__
+  if (kHasAvx2) return certify_with_avx2<D>(simplices, balls);
+#endif
+  certify_all<D>(simplices, balls);
 }
 
 template <int D>
 std::uint64_t may_meet(const BallBatch<D>& balls, const Box<D>& box, std::uint64_t asked) {
   if (box.empty() || asked == 0) return 0;
-  PairBits missed{};
-  const PairBits pair_of_bits{1, 2};
-  constexpr std::size_t kTogether = 8;
-  for (std::size_t begin = 0; begin < BallBatch<D>::kSize; begin += kTogether) {
-    if ((asked >> begin & ((1U << kTogether) - 1)) == 0) continue;
-    for (std::size_t s = begin; s < begin + kTogether; s += 2) {
-      missed |= misses(balls, box, s) & (pair_of_bits << s);
-    }
-  }
-  return asked & ~(missed[0] | missed[1]);
+#ifdef __x86_64__
+  if (kHasAvx2) return may_meet_with_avx2<D>(balls, box, asked);
+#endif
+  return may_meet_in_lanes<D, 2>(balls, box, asked);
 }
 
 template <int D>
