@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Triangulates the same points of terrain from a pipe in several orders, and prints a Markdown table: what each order
 # took, and whether all gave the same triangulation. The first row is a run of three points, which shows what a process
-# takes besides its data. Each run begins when its points are ready, so that the time is that of spillway. Where
+# takes besides its data, the second one of fewer points from a LAS file. A second table has the time of threads in each
+# stage, in ns a point, and how many times that of the file it is. Each run begins when its points are ready, so that the time is that of spillway. Where
 # other programs use the machine, processor time is the better measure.
 #
 #   tests/benchmark/pipe_orders.sh [OPTIONS] SPILLWAY
 #
 #   -n N             points [1e6]
+#   --file N         points of the file [1e7]
 #   --memory SIZE    as spillway triangulate takes it [32M]
 #   --orders LIST    of scan random curve outwards strips [all]
 #   --told           the stream's header tells the number of points and their extent
@@ -25,6 +27,7 @@ usage() {
 }
 
 points=1e6
+file_points=1e7
 memory=32M
 orders="scan random curve outwards strips"
 told=()
@@ -35,6 +38,7 @@ driver=
 while [ $# -gt 1 ]; do
   case "$1" in
     -n) points=$2 ;;
+    --file) file_points=$2 ;;
     --memory) memory=$2 ;;
     --orders) orders=${2//,/ } ;;
     --threads) threads=$2 ;;
@@ -63,11 +67,40 @@ figure() {
   sed -n -E "s/^ {$((2 * ${2:-1}))}\"$1\": \"?([^\",]*)\"?,?\$/\\1/p" "$folder/stats.json" 2> /dev/null
 }
 
-# Triangulates what comes through the pipe.
+# Triangulates an input: "-" is what comes through the pipe.
 triangulate() {
-  rm -f "$folder/stats.json"
-  /usr/bin/time -q -f '%e %U %S %M' -o "$folder/time" timeout "$limit" "$spillway" triangulate -q - \
-    -o "$folder/out.spm" --memory "$memory" --threads "$threads" --tmpdir "$folder" --stats "$folder/stats.json" < "$folder/pipe"
+  rm -f "$folder/stats.json" "$folder/out.spm"
+  /usr/bin/time -q -f '%e %U %S %M' -o "$folder/time" timeout "$limit" "$spillway" triangulate -q "$1" \
+    -o "$folder/out.spm" --memory "$memory" --threads "$threads" --tmpdir "$folder" --stats "$folder/stats.json" \
+    < "${2:-/dev/null}"
+}
+
+# Adds a column to the second table: of each stage of the last run, ns a point.
+keep_stages() {
+  sed -n '/^  "stages": {/,/^  }/s/^    "\(.*\)": \([^,]*\),\{0,1\}$/\1 \2/p' "$folder/stats.json" 2> /dev/null |
+    awk -v run="$1" -v n="$(figure points)" 'n > 0 { printf "%s %s %.1f\n", run, $1, 1e9 * $2 / n }' >> "$folder/stages"
+}
+
+# The second table; its first run is what the others are compared with.
+print_stages() {
+  awk '
+    !($1 in seen) { seen[$1] = 1; run[++runs] = $1 }
+    !($2 in known) { known[$2] = 1; stage[++stages] = $2 }
+    { ns[$1, $2] = $3; sum[$1] += $3 }
+    function cell(of, base) { return base > 0 && of != base ? sprintf("%.1f (%.2f)", of, of / base) : of }
+    END {
+      printf "\n| ns a point |"
+      for (r = 1; r <= runs; r++) printf " %s |", run[r]
+      printf "\n|---|"
+      for (r = 1; r <= runs; r++) printf "---|"
+      for (s = 1; s <= stages; s++) {
+        printf "\n| %s |", stage[s]
+        for (r = 1; r <= runs; r++) printf " %s |", cell(ns[run[r], stage[s]], ns[run[1], stage[s]])
+      }
+      printf "\n| all |"
+      for (r = 1; r <= runs; r++) printf " %s |", cell(sum[run[r]], sum[run[1]])
+      print ""
+    }' "$folder/stages"
 }
 
 # The row of a run that ended with that exit code.
@@ -93,18 +126,26 @@ hashes=()
 echo "| order | exit code | wall s | CPU us/pt | peak MiB | spilled/pt | tiles | above 4:1 | divided/pt | disk B/pt | hash |"
 echo "|---|---|---|---|---|---|---|---|---|---|---|"
 printf '0 0 0\n1 0 0\n0 1 0\n' > "$folder/pipe" &
-triangulate
+triangulate - "$folder/pipe"
 print_row "3 points" $?
 wait
+if "$spillway" generate terrain -n "$file_points" -o "$folder/points.las" -q; then
+  triangulate "$folder/points.las"
+  print_row "file" $?
+  keep_stages file
+fi
+rm -f "$folder/points.las"
 for order in $orders; do
   # The pipe is opened when the points are ready; if they never are, its reader must not wait.
   { "$driver" -n "$points" --order "$order" "${told[@]}" -o "$folder/pipe" || : <> "$folder/pipe"; } &
-  triangulate
+  triangulate - "$folder/pipe"
   code=$?
   wait
   print_row "$order" "$code"
+  keep_stages "$order"
   if [ "$code" -eq 0 ]; then hashes+=("$(figure canonical_hash)"); else failed=1; fi
 done
+if [ -s "$folder/stages" ]; then print_stages; fi
 different=$(printf '%s\n' "${hashes[@]}" | sort -u | wc -l)
 echo
 if [ ${#hashes[@]} -lt 2 ]; then
