@@ -4,6 +4,7 @@
 #include <xxhash.h>
 
 #include <array>
+#include <memory>
 
 #include "formats/bytes/bytes.h"
 #include "formats/compression/lz4.h"
@@ -53,21 +54,20 @@ void append_block(std::vector<std::byte>& out, std::uint32_t kind,
   BlockHead head;
   head.kind = kind;
   head.content_size = static_cast<std::uint32_t>(content.size());
-  const std::size_t begin = out.size();
-  out.resize(begin + kBlockHeadSize + content.size());
-  std::byte* const stored = out.data() + begin + kBlockHeadSize;
   // What does not get shorter is stored as it is: LZ4 stops when its room is used up.
+  const auto room = std::make_unique_for_overwrite<std::byte[]>(content.size());
   const std::size_t compressed =
-      content.size() <= 1 ? 0 : lz4_compress(content, {stored, content.size() - 1});
+      content.size() <= 1 ? 0 : lz4_compress(content, {room.get(), content.size() - 1});
   head.compressed = compressed > 0;
-  head.stored_size = head.compressed ? static_cast<std::uint32_t>(compressed) : head.content_size;
-  if (!head.compressed && !content.empty()) {
-    std::memcpy(stored, content.data(), content.size());
-  }
-  head.checksum = checksum_of(head, stored);
-  encode_fields(head, out.data() + begin);
-  store(out.data() + begin + kChecksumAt, head.checksum);
-  out.resize(begin + kBlockHeadSize + head.stored_size);
+  const std::span<const std::byte> stored =
+      head.compressed ? std::span<const std::byte>(room.get(), compressed) : content;
+  head.stored_size = static_cast<std::uint32_t>(stored.size());
+  head.checksum = checksum_of(head, stored.data());
+  std::array<std::byte, kBlockHeadSize> bytes;
+  encode_fields(head, bytes.data());
+  store(bytes.data() + kChecksumAt, head.checksum);
+  out.insert(out.end(), bytes.begin(), bytes.end());
+  out.insert(out.end(), stored.begin(), stored.end());
 }
 
 BlockHead decode_block_head(std::span<const std::byte, kBlockHeadSize> bytes,

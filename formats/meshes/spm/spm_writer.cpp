@@ -74,7 +74,6 @@ class SpmWriter : public MeshStreamWriter {
     block.prepared.resize(sizeof counts);
     store(block.prepared.data(), counts);
     append_block(block.prepared, kSpmMeshBlock, content);
-    block.prepared.shrink_to_fit();
     release(block.vertices);
     release(block.input_index);
     release(block.corners);
