@@ -65,11 +65,12 @@ void CutTree::find_tiles(std::span<const LatticePoint> points,
 
 bool CutTree::in_cell(const LatticePoint& point, std::uint32_t tile) const {
   const Box<3>& cell = cells_[tile];
-  bool inside = true;
+  unsigned inside = 1;  // not a bool: no branch for each side, which nobody can tell
   for (int k = 0; k < dimension_; ++k) {
-    inside = inside && point[k] >= cell.lo[k] && point[k] < cell.hi[k];
+    inside &= static_cast<unsigned>(point[k] >= cell.lo[k]) &
+              static_cast<unsigned>(point[k] < cell.hi[k]);
   }
-  return inside;
+  return inside != 0;
 }
 
 std::uint32_t CutTree::find_tile(const LatticePoint& point) const {
