@@ -12,6 +12,10 @@
 namespace spillway::detail {
 namespace {
 
+/// Of the largest array of a base case, more than a point usually takes in it.
+template <int D>
+constexpr std::size_t kWorkingBytes = D == 2 ? 200 : 800;
+
 template <int D>
 std::vector<Duplicate> find_duplicates(const BaseCaseInput<D>& input) {
   std::vector<VertexId> order(input.points.size());
@@ -60,7 +64,14 @@ void release_base_case_memory() {
   release_kept_slabs();
 }
 
+template <int D>
+void release_base_case_memory_above(std::size_t points) {
+  release_kept_slabs(points * kWorkingBytes<D>);
+}
+
 template BaseCase<2> triangulate_base_case<2>(const BaseCaseInput<2>&);
 template BaseCase<3> triangulate_base_case<3>(const BaseCaseInput<3>&);
+template void release_base_case_memory_above<2>(std::size_t);
+template void release_base_case_memory_above<3>(std::size_t);
 
 }  // namespace spillway::detail

@@ -21,4 +21,8 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
 /// Gives the system the memory that base cases keep for those that follow.
 void release_base_case_memory();
 
+/// The same of what is larger than base cases of so many points use, and was left by larger ones.
+template <int D>
+void release_base_case_memory_above(std::size_t points);
+
 }  // namespace spillway::detail

@@ -13,10 +13,11 @@ class FreedMemory {
   /// The process may hold so many bytes more than it does now.
   explicit FreedMemory(std::uint64_t limit);
 
-  /// Gives the system all that is free, if the process holds more than it may. Takes about a
+  /// Gives the system all that is free, if the process holds more than it may, or will with so many
+  /// bytes more; few are not looked at, as they may well be taken of what is free. Takes about a
   /// microsecond if not; what is given back costs as much a page when it is used again, so it is
   /// done again only when the process has grown by some of the limit. For any thread.
-  void give_back();
+  void give_back(std::uint64_t wanted);
 
  private:
   const std::uint64_t step_;              ///< bytes

@@ -52,8 +52,8 @@ class MemoryBudget {
   void give_back(std::uint64_t bytes) { used_ -= bytes; }
 
   /// For whoever is about to use much memory, leased or not: gives the system what has been freed,
-  /// if the process has outgrown the limit by it.
-  void give_back_freed() { freed_.give_back(); }
+  /// if the process has outgrown the limit by it, or would with so many bytes more.
+  void give_back_freed(std::uint64_t wanted = 0) { freed_.give_back(wanted); }
 
  private:
   const std::uint64_t limit_;

@@ -47,6 +47,11 @@ constexpr Costs kSpace{.leaf_bytes = 800,
                        .leaves_share = 0.45,
                        .least_limit = 96 * kMiB};
 
+/// What is not shared out: gaps between what is in use, tables, and code that is loaded when it is
+/// first run. More where points are read and tiles are triangulated at the same time.
+constexpr std::uint64_t kReserve = 3 * kMiB;
+constexpr std::uint64_t kEarlyReserve = 6 * kMiB;
+
 constexpr double kTileShare = 0.4;
 /// What buffers and tiles get of their shares if they are there at the same time.
 constexpr double kEarlyShare = 0.75;
@@ -57,6 +62,8 @@ constexpr std::size_t kBufferedPointBytes = 24;
 constexpr double kBatchesShare = 0.35;
 constexpr std::size_t kBatchBytes = 65'536 * 58;
 constexpr std::size_t kLeastBatches = 3;
+/// ... beside tiles that are triangulated, with which threads go on meanwhile.
+constexpr std::size_t kLeastEarlyBatches = 2;
 constexpr std::size_t kEnoughBatches = 6;  // for few threads
 constexpr std::size_t kBatchesOfThread = 2;
 
@@ -81,6 +88,7 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
                         {.perhaps = least * kMiB, .remedy = Remedy::kMemory});
   }
   MemoryPlan plan;
+  limit -= early ? kEarlyReserve : kReserve;
   const double part = early ? kEarlyShare : 1;
   plan.buffered_points = share(limit, part * costs.buffer_share, kBufferedPointBytes);
   plan.tile_room = share(limit, part * kTileShare, costs.tile_bytes);
@@ -88,9 +96,9 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
   plan.leaf_size = std::min(
       {costs.good_leaf, share(limit, costs.leaf_share, costs.leaf_bytes), plan.tile_capacity});
   plan.waiting_bytes = share(limit, kWaitingShare, 1);
-  plan.batches =
-      std::clamp(share(limit, kBatchesShare, kBatchBytes), kLeastBatches,
-                 std::max<std::size_t>(kEnoughBatches, kBatchesOfThread * wanted_threads));
+  plan.batches = std::clamp(
+      share(limit, kBatchesShare, kBatchBytes), early ? kLeastEarlyBatches : kLeastBatches,
+      std::max<std::size_t>(kEnoughBatches, kBatchesOfThread * wanted_threads));
   const std::size_t most = share(limit, costs.leaves_share, costs.leaf_bytes * plan.leaf_size);
   plan.threads = static_cast<unsigned>(std::clamp<std::size_t>(most, 1, wanted_threads));
   return plan;

@@ -34,6 +34,7 @@ void append_expected_points(std::vector<LatticePoint>& sample, const Box<3>& see
                             const Box<3>& extent, int dimension, double more) {
   const auto wanted = static_cast<std::size_t>(
       std::min<double>(kMostExpected, more * static_cast<double>(sample.size())));
+  sample.reserve(sample.size() + wanted);
   // Steps of a Kronecker sequence: M. Roberts, "The unreasonable effectiveness of quasirandom
   // sequences" (2018); the powers of the plastic number and of its equivalent in space.
   const std::array<double, 3> step =

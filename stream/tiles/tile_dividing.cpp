@@ -26,6 +26,9 @@ constexpr double kLeastOwnShare = 0.1;
 /// of one tile.
 constexpr std::size_t kManySamples = 2048;
 constexpr std::size_t kCutSamples = 256;
+/// Points that stand for those to come are as many as a share of those that may wait in memory.
+constexpr std::uint64_t kExpectedShare = 8;
+
 std::size_t tiles_for(double points, std::size_t capacity, double fill) {
   const double tiles = points / (fill * static_cast<double>(capacity));
   return std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(tiles)));
@@ -55,21 +58,27 @@ std::vector<LatticePoint> sample_of(const std::vector<Held>& held, std::size_t s
 /// are to come, too, if it is known where they will lie.
 void TileTree::divide_first(Batch& batch) {
   const Box<3> box = tiles_[0].box;
-  const auto seen = static_cast<double>(tiles_[0].points);
-  std::vector<LatticePoint> sample = sample_of(tiles_[0].held, sample_stride());
-  std::size_t tile_count = tiles_for(seen, options_.capacity, kKnownFill);
-  if (!filled_ && options_.extent && options_.expected.value_or(0) > tiles_[0].points) {
-    const auto expected = static_cast<double>(*options_.expected);
-    const bool everywhere = spans_extent(box, *options_.extent, options_.dimension);
-    tile_count =
-        tiles_for(expected, options_.capacity, everywhere ? kRepresentativeFill : kExpectedFill);
-    if (!everywhere) {
-      append_expected_points(sample, box, *options_.extent, options_.dimension,
-                             expected / seen - 1);
-    }
+  const std::uint64_t seen = tiles_[0].points;
+  const std::uint64_t all = options_.expected.value_or(0);
+  const bool tells = !filled_ && options_.extent && all > seen;
+  const bool everywhere = tells && spans_extent(box, *options_.extent, options_.dimension);
+  std::size_t stride = sample_stride();
+  if (tells && !everywhere) {
+    stride = std::max<std::size_t>(stride, kExpectedShare * all / options_.buffered_points);
+  }
+  std::vector<LatticePoint> sample = sample_of(tiles_[0].held, stride);
+  double points = static_cast<double>(seen);
+  double fill = kKnownFill;
+  if (tells) {
+    points = static_cast<double>(all);
+    fill = everywhere ? kRepresentativeFill : kExpectedFill;
+  }
+  if (tells && !everywhere) {
+    append_expected_points(sample, box, *options_.extent, options_.dimension,
+                           points / static_cast<double>(seen) - 1);
   }
   divided_ = true;
-  divide(0, std::move(sample), tile_count, batch);
+  divide(0, std::move(sample), tiles_for(points, options_.capacity, fill), batch);
 }
 
 /// Divides a tile into many by a sample of its points; where that tells too little, by its box.

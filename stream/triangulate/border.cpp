@@ -49,8 +49,9 @@ class Merge {
     const MemoryLease copy(budget_, bytes, "the merge of borders");
     find_exposed(task.after[0]);
     if (border_vertices_.empty()) return std::move(result_);  // one child, with nothing beside it
-    const MemoryLease lease(budget_, merge_bytes<D>(border_vertices_.size(), points_below()),
-                            "the triangulation of a border");
+    const std::uint64_t wanted = merge_bytes<D>(border_vertices_.size(), points_below());
+    const MemoryLease lease(budget_, wanted, "the triangulation of a border");
+    budget_.give_back_freed(wanted);
     triangulate(task.after[1]);
     accept(task.after[2]);
     return std::move(result_);

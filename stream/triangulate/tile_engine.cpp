@@ -268,11 +268,11 @@ void TileEngine<D>::load(Node& node, const Node* next) {
 template <int D>
 void TileEngine<D>::work_off(Node& node) {
   if (node.children.empty()) {
-    TilePoints<D> points = tree_.template decode<D>(std::move(node.stored));
-    if (replace_indices_) replace_indices_(points.index);
     Task task;
     {
       const MemoryLease lease(budget_, loaded_points(node) * kLoadedPointBytes, "a tile");
+      TilePoints<D> points = tree_.template decode<D>(std::move(node.stored));
+      if (replace_indices_) replace_indices_(points.index);
       node.border =
           triangulate_tile<D>(context_, {std::move(points), node.outside, node.number}, task);
     }

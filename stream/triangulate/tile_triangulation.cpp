@@ -387,6 +387,8 @@ template <int D>
 Settled<D> merge_borders_of(const TileContext<D>& context, const MergeInput<D>& input, Task& task) {
   MergedBorder<D> merged = merge_resident<D>(context, input.children, input.node, task);
   if (input.outside_shrank) merged.tested = 0;
+  // The largest merges are more than leaves.
+  release_base_case_memory_above<D>(context.options.leaf_size);
   context.budget.give_back_freed();
   Settled<D> settled;
   if (merged.border.open()) {

@@ -43,5 +43,12 @@ TEST_F(KeptSlabsTest, AreGoneWhenReleased) {
   EXPECT_EQ(BorrowedSlab(SlabUse::kSimplices, 1)->capacity(), 0U);
 }
 
+TEST_F(KeptSlabsTest, AreKeptIfTheyAreNotLargerWhenTheLargerOnesAreReleased) {
+  release_kept_slabs(20 * kUnit);
+  EXPECT_EQ(BorrowedSlab(SlabUse::kSimplices, 30 * kUnit)->capacity(), 20 * kUnit);
+  release_kept_slabs(9 * kUnit);
+  EXPECT_EQ(BorrowedSlab(SlabUse::kSimplices, 1)->capacity(), 0U);
+}
+
 }  // namespace
 }  // namespace spillway::detail

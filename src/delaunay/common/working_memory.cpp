@@ -136,10 +136,12 @@ void keep_slab(SlabUse use, Slab slab) {
   kept[use].insert(smallest_with(slab.capacity(), kept[use]), std::move(slab));
 }
 
-void release_kept_slabs() {
+void release_kept_slabs(std::size_t larger_than) {
   KeptSlabs& kept = KeptSlabs::instance();
   const std::lock_guard lock(kept.mutex);
-  for (std::vector<Slab>& slabs : kept.of_use) slabs.clear();
+  for (std::vector<Slab>& slabs : kept.of_use) {
+    slabs.erase(smallest_with(larger_than + 1, slabs), slabs.end());
+  }
 }
 
 }  // namespace spillway::detail

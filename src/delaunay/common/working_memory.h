@@ -72,7 +72,7 @@ Slab kept_or_new_slab(SlabUse use, std::size_t bytes);
 /// Keeps a slab for coming base cases.
 void keep_slab(SlabUse use, Slab slab);
 
-/// Gives the system all slabs that are kept for coming base cases.
-void release_kept_slabs();
+/// Gives the system the slabs that are kept for coming base cases: all, or those that are larger.
+void release_kept_slabs(std::size_t larger_than = 0);
 
 }  // namespace spillway::detail

@@ -3,86 +3,103 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <cstring>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "src/geometry/framed_point.h"
+#include "src/runtime/page_pool.h"
 
 namespace spillway::detail {
 
-/// Points waiting in memory, in the order in which they came, in chunks: growing never copies, and
-/// what is let go of goes back to the system. There is room for at most twice as many points as
-/// there are, but for the first ones.
+/// Points waiting in memory, in the order in which they came, in pages: growing never copies, and
+/// what is let go of serves any other buffer, or goes back to the system. There is room for less
+/// than a page of points more than there are.
 class PointBuffer {
  public:
-  /// Most points in one chunk; large enough to be memory of its own for the system.
+  /// Most points that are given at a time.
   static constexpr std::size_t kChunk = 4096;
 
   /// `index` is empty or as long as `points`, and always the same of both for one buffer.
   void append(std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
-    size_ += points.size();
+    if (pages_.empty()) page_points_ = index.empty() ? kPagePoints : kIndexedPoints;
     while (!points.empty()) {
-      if (chunks_.empty() || chunks_.back().size == chunks_.back().room) {
-        chunks_.push_back(make_chunk(std::clamp(room_, kLeastChunk, kChunk), !index.empty()));
-        room_ += chunks_.back().room;
-      }
-      Chunk& chunk = chunks_.back();
-      const std::size_t count = std::min(points.size(), chunk.room - chunk.size);
-      std::copy_n(points.begin(), count, chunk.points.get() + chunk.size);
-      if (!index.empty()) {
-        std::copy_n(index.begin(), count, chunk.index.get() + chunk.size);
-        index = index.subspan(count);
-      }
-      chunk.size += count;
+      if (size_ == room()) pages_.push_back(PagePool::instance().take());
+      const std::size_t used = size_ % page_points_;
+      const std::size_t count = std::min(points.size(), page_points_ - used);
+      std::byte* const page = pages_.back().get();
+      std::memcpy(page + used * sizeof(LatticePoint), points.data(), count * sizeof(LatticePoint));
       points = points.subspan(count);
+      size_ += count;
+      if (index.empty()) continue;
+      std::memcpy(page + kIndexOffset + used * sizeof(std::uint64_t), index.data(),
+                  count * sizeof(std::uint64_t));
+      index = index.subspan(count);
     }
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
 
   /// Number of points that it has memory for.
-  [[nodiscard]] std::size_t room() const { return room_; }
+  [[nodiscard]] std::size_t room() const { return pages_.size() * page_points_; }
 
-  /// Calls f(points) for every chunk in order.
+  /// Calls f(points) for some points at a time, in order.
   template <typename F>
   void visit(F&& f) const {
-    for (const Chunk& chunk : chunks_) {
-      f(std::span<const LatticePoint>(chunk.points.get(), chunk.size));
-    }
+    for (std::size_t p = 0; p < pages_.size(); ++p) f(points_of(p));
   }
 
-  /// Calls f(points, index) for every chunk in order and lets go of it.
+  /// Calls f(points, index) for kChunk points at a time, in order, those at the end fewer, and lets
+  /// go of them.
   template <typename F>
   void drain(F&& f) {
-    for (Chunk& chunk : chunks_) {
-      f(std::span<const LatticePoint>(chunk.points.get(), chunk.size),
-        chunk.index ? std::span<const std::uint64_t>(chunk.index.get(), chunk.size)
-                    : std::span<const std::uint64_t>());
-      chunk = {};
+    std::vector<LatticePoint> points;
+    std::vector<std::uint64_t> index;
+    points.reserve(std::min(size_, kChunk));
+    if (page_points_ == kIndexedPoints) index.reserve(points.capacity());
+    const auto give = [&] {
+      f(std::span<const LatticePoint>(points), std::span<const std::uint64_t>(index));
+      points.clear();
+      index.clear();
+    };
+    for (std::size_t p = 0; p < pages_.size(); ++p) {
+      const std::span<const LatticePoint> some = points_of(p);
+      const std::size_t count = std::min(some.size(), kChunk - points.size());
+      const auto take = [&](std::size_t begin, std::size_t end) {
+        points.insert(points.end(), some.begin() + begin, some.begin() + end);
+        if (page_points_ != kIndexedPoints) return;
+        const std::uint64_t* const numbers = index_of(p);
+        index.insert(index.end(), numbers + begin, numbers + end);
+      };
+      take(0, count);
+      if (points.size() == kChunk) give();
+      take(count, some.size());
+      pages_[p] = {};
     }
+    if (!points.empty()) give();
     *this = {};
   }
 
  private:
-  static constexpr std::size_t kLeastChunk = 64;
+  static constexpr std::size_t kPagePoints = PagePool::kPageBytes / sizeof(LatticePoint);
+  static constexpr std::size_t kIndexedPoints =
+      PagePool::kPageBytes / (sizeof(LatticePoint) + sizeof(std::uint64_t));
+  static constexpr std::size_t kIndexOffset = kIndexedPoints * sizeof(LatticePoint);
+  static_assert(std::is_trivially_copyable_v<LatticePoint>);
 
-  struct Chunk {
-    std::unique_ptr<LatticePoint[]> points;
-    std::unique_ptr<std::uint64_t[]> index;
-    std::size_t room = 0;
-    std::size_t size = 0;
-  };
-
-  static Chunk make_chunk(std::size_t room, bool indexed) {
-    return {std::make_unique_for_overwrite<LatticePoint[]>(room),
-            indexed ? std::make_unique_for_overwrite<std::uint64_t[]>(room) : nullptr, room, 0};
+  [[nodiscard]] std::span<const LatticePoint> points_of(std::size_t page) const {
+    return {reinterpret_cast<const LatticePoint*>(pages_[page].get()),
+            std::min(page_points_, size_ - page * page_points_)};
+  }
+  [[nodiscard]] const std::uint64_t* index_of(std::size_t page) const {
+    return reinterpret_cast<const std::uint64_t*>(pages_[page].get() + kIndexOffset);
   }
 
-  std::vector<Chunk> chunks_;
+  std::vector<PagePool::Page> pages_;  ///< all full but the last one
+  std::size_t page_points_ = kPagePoints;
   std::size_t size_ = 0;
-  std::size_t room_ = 0;
 };
 
 }  // namespace spillway::detail

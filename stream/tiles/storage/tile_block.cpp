@@ -44,24 +44,11 @@ void append_all_points(std::vector<std::byte>& bytes, std::span<const LatticePoi
 
 std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes) {
   std::vector<TileBlock> blocks;
-  const auto append = [&](std::span<const LatticePoint> some,
-                          std::span<const std::uint64_t> index) {
+  points.drain([&](std::span<const LatticePoint> some, std::span<const std::uint64_t> index) {
     const std::size_t begin = bytes.size();
     append_points(bytes, some, index);
     blocks.push_back({begin, bytes.size() - begin, some.size()});
-  };
-  PointBlock gathered;
-  const auto append_gathered = [&] {
-    if (gathered.size() > 0) append(gathered.points, gathered.index);
-    gathered.clear();
-  };
-  points.drain([&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
-    if (gathered.size() + chunk.size() > PointBuffer::kChunk) append_gathered();
-    if (chunk.size() == PointBuffer::kChunk) return append(chunk, index);
-    gathered.points.insert(gathered.points.end(), chunk.begin(), chunk.end());
-    gathered.index.insert(gathered.index.end(), index.begin(), index.end());
   });
-  append_gathered();
   return blocks;
 }
 

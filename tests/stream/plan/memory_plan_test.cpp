@@ -122,6 +122,19 @@ TEST(MemoryPlan, HasMoreBatchesForMoreThreads) {
   EXPECT_EQ(plan_memory(32 * kMiB, 2, 64).batches, 3U);
 }
 
+TEST(MemoryPlan, KeepsSomeMebibytesBackAndMoreBesideReading) {
+  const auto shared_out = [](std::uint64_t limit, bool early) {
+    return plan_memory(limit, 2, 2, 0, early).waiting_bytes * 10;  // a tenth of it
+  };
+  for (const std::uint64_t limit : {32 * kMiB, 256 * kMiB}) {
+    EXPECT_LE(shared_out(limit, false), limit - 3 * kMiB);
+    EXPECT_GT(shared_out(limit, false), limit - 4 * kMiB);
+    EXPECT_LT(shared_out(limit, true), shared_out(limit, false));
+  }
+  EXPECT_EQ(plan_memory(32 * kMiB, 2, 2).batches, 3U);
+  EXPECT_EQ(plan_memory(32 * kMiB, 2, 2, 0, true).batches, 2U);
+}
+
 TEST(MemoryPlan, DependsOnThreadsOnlyInTheirNumber) {
   for (const int dimension : {2, 3}) {
     const MemoryPlan one = plan_memory(256 * kMiB, dimension, 1);

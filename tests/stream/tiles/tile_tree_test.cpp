@@ -173,7 +173,7 @@ TEST(TileTree, WritesLittleTwiceInTheOrderOfAScanner) {
 }
 
 TEST(TileTree, DealsAgainWhatALaterCutPartedOnTheDisk) {
-  const DealtTiles<2> dealt = deal(make_points(Order::kRandom, kMany), kNothing);
+  const DealtTiles<2> dealt = deal(make_points(Order::kRandom, 250'000), kNothing);
   EXPECT_GT(dealt.left_over, kCapacity);
   EXPECT_GE(dealt.divided, dealt.left_over);
   EXPECT_EQ(deal(make_points(Order::kRandom, 5'000), kNothing).divided, 0U);

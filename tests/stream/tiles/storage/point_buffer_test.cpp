@@ -1,4 +1,4 @@
-// Points come out of a buffer as they went in, in chunks that grow.
+// Points come out of a buffer as they went in, some thousand at a time.
 
 #include "stream/tiles/storage/point_buffer.h"
 
@@ -43,7 +43,8 @@ TEST(PointBuffer, GivesBackPointsAndIndicesInTheirOrder) {
   EXPECT_EQ(next, begin);
 }
 
-TEST(PointBuffer, HasMemoryForTwiceAsManyPointsAtMost) {
+TEST(PointBuffer, HasMemoryForLessThanAPageMore) {
+  constexpr std::size_t kPageOfPoints = PagePool::kPageBytes / sizeof(LatticePoint);
   PointBuffer buffer;
   EXPECT_EQ(buffer.room(), 0U);
   std::size_t points = 0;
@@ -52,9 +53,33 @@ TEST(PointBuffer, HasMemoryForTwiceAsManyPointsAtMost) {
     points += count;
     EXPECT_EQ(buffer.size(), points);
     EXPECT_GE(buffer.room(), points);
-    EXPECT_LE(buffer.room(), std::max<std::size_t>(64, 2 * points));
+    EXPECT_LT(buffer.room(), points + kPageOfPoints);
   }
-  EXPECT_LE(buffer.room(), points + kPiece);  // chunks grow no further
+}
+
+TEST(PointBuffer, ShowsAllItsPointsInTheirOrder) {
+  for (const bool indexed : {false, true}) {
+    const std::vector<LatticePoint> points = points_from(0, kPiece + 9);
+    PointBuffer buffer;
+    buffer.append(
+        points, indexed ? std::vector<std::uint64_t>(points.size()) : std::vector<std::uint64_t>());
+    std::vector<LatticePoint> seen;
+    buffer.visit([&](std::span<const LatticePoint> some) {
+      seen.insert(seen.end(), some.begin(), some.end());
+    });
+    EXPECT_EQ(seen, points);
+    EXPECT_EQ(buffer.size(), points.size());
+  }
+}
+
+TEST(PointBuffer, GivesAsManyAtATimeAsItMay) {
+  PointBuffer buffer;
+  buffer.append(points_from(0, 2 * kPiece + 3), {});
+  std::vector<std::size_t> counts;
+  buffer.drain([&](std::span<const LatticePoint> points, std::span<const std::uint64_t>) {
+    counts.push_back(points.size());
+  });
+  EXPECT_EQ(counts, (std::vector<std::size_t>{kPiece, kPiece, 3}));
 }
 
 TEST(PointBuffer, IsEmptyAfterItIsDrainedAndCanBeUsedAgain) {
