@@ -7,15 +7,25 @@
 namespace spillway::detail {
 namespace {
 
-/// An axis may be cut whose extent is at least this share of the longest one: then no half is
-/// longer than four times its width.
-constexpr double kLeastExtent = 0.5;
 /// The smaller share is at least this one, if that can be.
 constexpr double kLeastShare = 0.2;
 /// What a share that is off a half costs, against segments on both sides.
 constexpr double kImbalanceCost = 0.5;
+/// What it costs each time that a side doubles its length beyond twice its width, and beyond what
+/// is compact, besides: when points that nobody expects may come, and when none do.
+constexpr double kLongCost = 0.3;
+constexpr double kTooLongCost = 1;
+constexpr double kTooLongAtEndCost = 3;
+/// Of the capacity: what compact tiles have at least that a long one is cut into.
+constexpr double kLeastCompactShare = 1.0 / 16;
+/// Nothing is any better than what is longer than this.
+constexpr double kLongest = 64;
 /// Sampled values that are tried as cuts on each axis.
 constexpr std::size_t kTriedSamples = 7;
+
+/// So many of a sample, and such a share of it, at one place are no accident.
+constexpr std::size_t kLeastHeavySamples = 4;
+constexpr double kLeastHeavyShare = 0.25;
 
 double above(double value) {
   return std::nextafter(value, std::numeric_limits<double>::infinity());
@@ -91,11 +101,39 @@ class Axis {
 
 }  // namespace
 
+double aspect_by_cuts(const Box<3>& box, const Box<3>& cell, int dimension) {
+  double shortest = std::numeric_limits<double>::infinity();
+  double longest = 0;
+  for (int k = 0; k < dimension; ++k) {
+    const bool cut = std::isfinite(cell.lo[k]) || std::isfinite(cell.hi[k]);
+    if (cut) shortest = std::min(shortest, box.extent(k));
+    longest = std::max(longest, box.extent(k));
+  }
+  if (longest == 0) return 1;
+  return shortest > 0 ? longest / shortest : std::numeric_limits<double>::infinity();
+}
+
+bool too_long(double points, double aspect, std::size_t capacity) {
+  const double parts = aspect / kMostAspect;
+  return parts > 1 && points >= parts * kLeastCompactShare * static_cast<double>(capacity);
+}
+
 double share_below(const Box<3>& box, const TileCut& cut) {
   const double lo = box.lo[cut.axis];
   const double hi = box.hi[cut.axis];
   if (cut.value <= lo) return 0;
   return cut.value > hi ? 1 : (cut.value - lo) / (hi - lo);
+}
+
+Box<3> part_of(const Box<3>& box, const TileCut& cut, int side) {
+  Box<3> part = box;
+  if (side == 0) {
+    const double below = std::nextafter(cut.value, -std::numeric_limits<double>::infinity());
+    part.hi[cut.axis] = std::min(part.hi[cut.axis], below);
+  } else {
+    part.lo[cut.axis] = std::max(part.lo[cut.axis], cut.value);
+  }
+  return part.lo[cut.axis] <= part.hi[cut.axis] ? part : Box<3>{};
 }
 
 std::optional<int> side_of(const Box<3>& box, const TileCut& cut) {
@@ -104,24 +142,59 @@ std::optional<int> side_of(const Box<3>& box, const TileCut& cut) {
   return std::nullopt;
 }
 
+std::optional<LatticePoint> heavy_place(const CrowdedTile& tile) {
+  std::vector<LatticePoint> points = tile.sample;
+  for (LatticePoint& p : points) {
+    for (int k = tile.dimension; k < 3; ++k) p[k] = 0;
+  }
+  std::sort(points.begin(), points.end());
+  std::optional<LatticePoint> place;
+  std::size_t most = kLeastHeavySamples - 1;
+  for (auto at = points.begin(); at != points.end();) {
+    const auto end = std::upper_bound(at, points.end(), *at);
+    const auto count = static_cast<std::size_t>(end - at);
+    if (count > most) {
+      most = count;
+      place = *at;
+    }
+    at = end;
+  }
+  const double least = kLeastHeavyShare * static_cast<double>(points.size());
+  return static_cast<double>(most) >= least ? place : std::nullopt;
+}
+
+std::optional<TileCut> cut_beside(const Box<3>& box, const LatticePoint& place, int dimension) {
+  for (int k = 0; k < dimension; ++k) {
+    for (const double value : {place[k], above(place[k])}) {
+      if (value > box.lo[k] && value <= box.hi[k]) return TileCut{k, value};
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<TileCut> choose_cut(const CrowdedTile& tile) {
-  double longest = 0;
-  for (int k = 0; k < tile.dimension; ++k) longest = std::max(longest, tile.box.extent(k));
+  Box<3> reach = tile.box;
+  reach.expand(tile.expected);
+  const double too_long_cost = tile.complete ? kTooLongAtEndCost : kTooLongCost;
+  const auto shape_cost = [&](const TileCut& cut, int side) {
+    const double times = std::min(aspect(part_of(reach, cut, side), tile.dimension), kLongest);
+    return kLongCost * std::max(0.0, std::log2(times / 2)) +
+           too_long_cost * std::max(0.0, std::log2(times / kMostAspect));
+  };
   std::optional<TileCut> best;
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < tile.dimension; ++k) {
-    const double extent = tile.box.extent(k);
-    if (extent == 0 || extent < kLeastExtent * longest) continue;
+    if (tile.box.extent(k) == 0) continue;
     const Axis axis(tile, k);
     for (const double value : axis.candidates()) {
-      const double share = axis.share(value);
-      const double uneven = std::abs(share - 0.5);
+      const TileCut cut{k, value};
+      const double uneven = std::abs(axis.share(value) - 0.5);
       const double too_uneven = std::max(0.0, uneven - (0.5 - kLeastShare));
       const double cost = axis.split_share(value) + kImbalanceCost * uneven + 10 * too_uneven +
-                          (longest - extent) / longest * kImbalanceCost;
+                          shape_cost(cut, 0) + shape_cost(cut, 1);
       if (cost >= least) continue;
       least = cost;
-      best = {k, value};
+      best = cut;
     }
   }
   return best;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,19 +24,52 @@ struct TileCut {
 struct CrowdedTile {
   int dimension = 2;
   Box<3> box{};                             ///< around all its points
+  Box<3> expected{};                        ///< around those still to come, as far as is known
   std::span<const TileSegment> segments{};  ///< those on the disk
   std::vector<LatticePoint> sample{};       ///< of those in memory
   double weight = 1;                        ///< points that each of the sample stands for
+  bool complete = false;                    ///< no others come but those that are expected
 };
 
-/// Where to cut it: into shares that are not too uneven, sides that are not too long, and so that
-/// few segments lie on both sides. Nothing if all its points are equal. There are points on both
-/// sides.
+/// Where to cut it: into shares that are not too uneven, sides that are compact, and so that few
+/// segments lie on both sides. Nothing if all its points are equal. There are points on both sides.
 std::optional<TileCut> choose_cut(const CrowdedTile& tile);
+
+/// Where a large share of the sample's points are equal; nothing if that is nowhere.
+std::optional<LatticePoint> heavy_place(const CrowdedTile& tile);
+
+/// A cut of `box` between that place and others; nothing if there are no others.
+std::optional<TileCut> cut_beside(const Box<3>& box, const LatticePoint& place, int dimension);
 
 /// The share of the points of `box` that lies below a cut, if they lie evenly. It may be 1 where a
 /// few lie on the cut or above.
 double share_below(const Box<3>& box, const TileCut& cut);
+
+/// A box is compact if its longest side is at most so many times as long as the shortest one.
+constexpr double kMostAspect = 4;
+
+/// How many times as long as its shortest side the longest one of a box is, on its first axes.
+template <int D>
+double aspect(const Box<D>& box, int dimension = D) {
+  double shortest = box.extent(0);
+  double longest = shortest;
+  for (int k = 1; k < dimension; ++k) {
+    shortest = std::min(shortest, box.extent(k));
+    longest = std::max(longest, box.extent(k));
+  }
+  if (longest == 0) return 1;
+  return shortest > 0 ? longest / shortest : std::numeric_limits<double>::infinity();
+}
+
+/// Likewise, but a side counts as short only if a cut of `cell` has made it so.
+double aspect_by_cuts(const Box<3>& box, const Box<3>& cell, int dimension);
+
+/// Whether a tile of that capacity and aspect is not compact though its points are not thin
+/// themselves: in compact boxes, they would be a sixteenth of the capacity each, or more.
+bool too_long(double points, double aspect, std::size_t capacity);
+
+/// The part of a box on one side of a cut, 0 for below; empty if it lies on the other.
+Box<3> part_of(const Box<3>& box, const TileCut& cut, int side);
 
 /// On which side of a cut all points of `box` lie: 0 is below. Nothing if that may be both; the box
 /// is tight.

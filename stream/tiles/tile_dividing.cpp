@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "stream/tiles/point_sample.h"
@@ -22,6 +23,10 @@ constexpr double kExpectedFill = 0.4;
 constexpr double kMostFill = 0.9;
 /// ... and has this share of its capacity itself, so that there is something to go by.
 constexpr double kLeastOwnShare = 0.1;
+/// Points that go to the disk together are parted into segments if they are this share of it.
+constexpr double kLeastPartedShare = 0.25;
+/// All points lie below it.
+constexpr TileCut kNoCut{.axis = 0, .value = std::numeric_limits<double>::infinity()};
 /// Sampled points for each capacity of points, where many tiles are made at once; and for the cut
 /// of one tile.
 constexpr std::size_t kManySamples = 2048;
@@ -91,7 +96,11 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
     const std::unique_lock lock(cuts_mutex_);
     cuts_.split(number, sample, tile_count);
     if (cuts_.tiles() == tiles_.size()) {
-      const auto cut = choose_cut({options_.dimension, whole.box, whole.segments, sample});
+      const auto cut = choose_cut({.dimension = options_.dimension,
+                                   .box = whole.box,
+                                   .expected = whole.expected_box,
+                                   .segments = whole.segments,
+                                   .sample = sample});
       if (!cut) {  // all points are equal
         tiles_[number] = std::move(whole);
         return;
@@ -133,6 +142,12 @@ bool TileTree::too_large(const Tile& tile) const {
   return tile.points > options_.capacity && can_be_cut(tile.box, options_.dimension);
 }
 
+/// Whether a tile is going to be, with the points still to come.
+bool TileTree::will_be_too_large(const Tile& tile) const {
+  return tile.points > 0 && can_be_cut(tile.box, options_.dimension) &&
+         static_cast<double>(tile.points) + tile.expected > static_cast<double>(options_.capacity);
+}
+
 /// Whether a tile is to be cut in two now.
 bool TileTree::outgrown(const Tile& tile) const {
   if (filled_) return too_large(tile);
@@ -142,17 +157,65 @@ bool TileTree::outgrown(const Tile& tile) const {
   return can_be_cut(tile.box, options_.dimension);
 }
 
-/// Cuts a tile in two, and a half again that is still too large.
-void TileTree::cut_in_two(std::uint32_t number) {
+/// Whether a tile is, with the points still to come. A side is not short that no cut has made so.
+bool TileTree::is_too_long(std::uint32_t number) const {
+  const Tile& tile = tiles_[number];
+  if (tile.points == 0) return false;
+  Box<3> box = tile.box;
+  box.expand(tile.expected_box);
+  return too_long(static_cast<double>(tile.points) + tile.expected,
+                  aspect_by_cuts(box, cuts_.cell(number), options_.dimension), options_.capacity);
+}
+
+/// Cuts tiles across that are too long.
+void TileTree::cut_long() {
+  for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
+    if (is_too_long(t)) cut_in_two(t, true);
+  }
+}
+
+/// Likewise below a node to which no more points come, but leaves nothing over.
+void TileTree::cut_long_below(CutTree::NodeRef ref) {
+  if (!CutTree::is_tile(ref)) {
+    for (const CutTree::NodeRef side : cuts_.sides(ref)) cut_long_below(side);
+    return;
+  }
+  const std::uint32_t number = CutTree::tile_at(ref);
+  if (tiles_[number].segments.empty() && is_too_long(number)) cut_in_two(number, true);
+}
+
+/// Whether a tile is to be cut in two; `complete`: no points come but those that are expected.
+bool TileTree::to_be_cut(std::uint32_t number, bool complete) const {
+  const Tile& tile = tiles_[number];
+  return outgrown(tile) || (complete && (will_be_too_large(tile) || is_too_long(number)));
+}
+
+/// Cuts a tile in two, and a half again that is to be cut. A place where many points are equal gets
+/// a tile of its own at once: else they would be dealt again with each cut beside them.
+void TileTree::cut_in_two(std::uint32_t number, bool complete) {
   Tile whole = std::exchange(tiles_[number], {});
   std::ranges::stable_sort(whole.segments, {}, &TileSegment::arrival);
   const std::size_t stride = std::max<std::size_t>(1, whole.waiting() / kCutSamples);
   const CrowdedTile crowded{.dimension = options_.dimension,
                             .box = whole.box,
+                            .expected = whole.expected_box,
                             .segments = whole.segments,
                             .sample = sample_of(whole.held, stride),
-                            .weight = static_cast<double>(stride)};
-  const TileCut cut = *choose_cut(crowded);
+                            .weight = static_cast<double>(stride),
+                            .complete = complete};
+  const std::optional<LatticePoint> heavy = heavy_place(crowded);
+  const auto cut_beside_heavy = [&](const Tile& tile) {
+    Box<3> box = tile.box;
+    box.expand(tile.expected_box);
+    return heavy ? cut_beside(box, *heavy, options_.dimension) : std::nullopt;
+  };
+  std::optional<TileCut> chosen = cut_beside_heavy(whole);
+  if (!chosen) chosen = choose_cut(crowded);
+  if (!chosen) {  // all points so far are equal
+    tiles_[number] = std::move(whole);
+    return;
+  }
+  const TileCut cut = *chosen;
   CutTree::NodeRef ref = 0;
   {
     const std::unique_lock lock(cuts_mutex_);
@@ -162,10 +225,11 @@ void TileTree::cut_in_two(std::uint32_t number) {
   set_cell_root(number, whole.cell, ref);
   const std::array<std::uint32_t, 2> halves = {number, static_cast<std::uint32_t>(tiles_.size())};
   tiles_.emplace_back();
-  const double below = share_below(whole.box, cut);
+  const double below = share_below(whole.expected_box, cut);
   for (const int side : {0, 1}) {
     Tile& half = tiles_[halves[side]];
     half.expected = whole.expected * (side == 0 ? below : 1 - below);
+    half.expected_box = part_of(whole.expected_box, cut, side);
     half.last_left_over = whole.last_left_over;
     half.used = whole.used;
     half.cut_at = cuts_made_;
@@ -194,41 +258,96 @@ void TileTree::cut_in_two(std::uint32_t number) {
     const auto points = static_cast<double>(segment.points);
     tiles_[halves[0]].expected += points * low_share;
     tiles_[halves[1]].expected += points * (1 - low_share);
+    for (const int side : {0, 1}) {
+      tiles_[halves[side]].expected_box.expand(part_of(segment.box, cut, side));
+    }
     leave_over(ref, std::move(segment));
   }
   room_ -= whole.room();
   for (HeldPoints& held : whole.held) deal_to_halves(std::move(held), cut, halves);
-  for (const std::uint32_t half : halves) {
-    if (outgrown(tiles_[half])) cut_in_two(half);
+  for (const int side : {0, 1}) {
+    const bool has_heavy = heavy && ((*heavy)[cut.axis] >= cut.value) == (side == 1);
+    if ((has_heavy && cut_beside_heavy(tiles_[halves[side]])) ||
+        to_be_cut(halves[side], complete)) {
+      cut_in_two(halves[side], complete);
+    }
   }
 }
 
-void TileTree::deal_to_halves(HeldPoints held, const TileCut& cut,
-                              const std::array<std::uint32_t, 2>& halves) {
-  std::array<PointBlock, 2> dealt;
-  std::array<HeldPoints, 2> parts;
+/// The points of a buffer on both sides of a cut, or of a second one on each side of the first.
+std::vector<TileTree::HeldPoints> TileTree::part(HeldPoints held, const TileCut& first,
+                                                 const std::array<TileCut, 2>& second) {
+  constexpr std::size_t kParts = 4;
+  std::vector<HeldPoints> parts(kParts);
   for (HeldPoints& part : parts) {
     part.arrival = held.arrival;
     part.run = held.run;
   }
-  held.buffer.drain([&](std::span<const LatticePoint> points,
-                        std::span<const std::uint64_t> index) {
-    std::array<Box<3>, 2> boxes;
-    for (PointBlock& some : dealt) some.clear();
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const int side = points[i][cut.axis] >= cut.value ? 1 : 0;
-      dealt[side].points.push_back(points[i]);
-      if (!index.empty()) dealt[side].index.push_back(index[i]);
-      boxes[side].expand(points[i]);
-    }
-    for (const int side : {0, 1}) {
-      if (dealt[side].size() == 0) continue;
-      put(parts[side], tiles_[halves[side]], dealt[side].points, dealt[side].index, boxes[side]);
-    }
-  });
+  std::vector<LatticePoint> dealt(kParts * PointBuffer::kChunk);
+  std::vector<std::uint64_t> dealt_index;
+  held.buffer.drain(
+      [&](std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
+        if (!index.empty()) dealt_index.resize(dealt.size());
+        std::array<std::size_t, kParts> counts{};
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const std::size_t side = points[i][first.axis] >= first.value ? 1 : 0;
+          const TileCut& next = second[side];
+          const std::size_t part = 2 * side + (points[i][next.axis] >= next.value ? 1 : 0);
+          const std::size_t place = part * PointBuffer::kChunk + counts[part]++;
+          dealt[place] = points[i];
+          if (!index.empty()) dealt_index[place] = index[i];
+        }
+        for (std::size_t p = 0; p < kParts; ++p) {
+          if (counts[p] == 0) continue;
+          const auto some = std::span(dealt).subspan(p * PointBuffer::kChunk, counts[p]);
+          for (const LatticePoint& point : some) parts[p].box.expand(point);
+          parts[p].buffer.append(some, index.empty()
+                                           ? std::span<const std::uint64_t>()
+                                           : std::span<const std::uint64_t>(dealt_index)
+                                                 .subspan(p * PointBuffer::kChunk, counts[p]));
+        }
+      });
+  return parts;
+}
+
+void TileTree::deal_to_halves(HeldPoints held, const TileCut& cut,
+                              const std::array<std::uint32_t, 2>& halves) {
+  std::vector<HeldPoints> parts = part(std::move(held), cut, {kNoCut, kNoCut});
   for (const int side : {0, 1}) {
-    if (parts[side].buffer.size() == 0) continue;
-    tiles_[halves[side]].held.push_back(std::move(parts[side]));
+    HeldPoints& points = parts[2 * static_cast<std::size_t>(side)];
+    if (points.buffer.size() == 0) continue;
+    Tile& half = tiles_[halves[side]];
+    half.points += points.buffer.size();
+    half.box.expand(points.box);
+    room_ += points.buffer.room();
+    half.held.push_back(std::move(points));
+  }
+}
+
+/// Appends parts of a buffer that are to be segments of their own, if it is a large one: they are
+/// so small and compact that most will lie on one side of a cut, if the tile is cut later.
+void TileTree::append_segments_of(HeldPoints held, std::vector<HeldPoints>& segments) const {
+  const double points = static_cast<double>(held.buffer.size());
+  if (points <= kLeastPartedShare * static_cast<double>(options_.capacity)) {
+    segments.push_back(std::move(held));
+    return;
+  }
+  CrowdedTile crowded{.dimension = options_.dimension, .box = held.box};
+  PointSample sample(std::max<std::size_t>(1, held.buffer.size() / kCutSamples));
+  held.buffer.visit([&](std::span<const LatticePoint> some) { sample.add(some); });
+  crowded.sample = sample.take();
+  const TileCut first = choose_cut(crowded).value_or(kNoCut);
+  std::array<TileCut, 2> second = {kNoCut, kNoCut};
+  for (const int side : {0, 1}) {
+    CrowdedTile half{.dimension = options_.dimension};
+    for (const LatticePoint& p : crowded.sample) {
+      if ((p[first.axis] >= first.value) == (side == 1)) half.sample.push_back(p);
+    }
+    for (const LatticePoint& p : half.sample) half.box.expand(p);
+    if (!half.box.empty()) second[side] = choose_cut(half).value_or(kNoCut);
+  }
+  for (HeldPoints& some : part(std::move(held), first, second)) {
+    if (some.buffer.size() > 0) segments.push_back(std::move(some));
   }
 }
 
@@ -264,6 +383,11 @@ std::uint64_t TileTree::divide_large(const DivisionProgress& progress) {
       progress(done + some, std::min(1.0, fraction));
     });
     done += points;
+    for (Tile& tile : tiles_) {
+      tile.expected = 0;
+      tile.expected_box = {};
+    }
+    cut_long();
     all += points_to_divide();
   }
   return done;

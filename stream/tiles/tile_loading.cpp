@@ -30,6 +30,19 @@ struct TileTree::Joinable {
   bool others = false;
 };
 
+/// Whether two tiles may become one: a compact one, or a thin one of two that are long.
+template <int D>
+bool TileTree::fit_together(const TileNode<D>& a, const TileNode<D>& b) const {
+  const std::uint64_t points = a.points + b.points;
+  if (points > options_.capacity) return false;
+  Box<D> both = a.box;
+  both.expand(b.box);
+  const double times = aspect(both);
+  if (times <= kMostAspect) return true;
+  return std::min(aspect(a.box), aspect(b.box)) > kMostAspect &&
+         !too_long(static_cast<double>(points), times, options_.capacity);
+}
+
 /// Appends all tiles below a node but the one that is returned.
 template <int D>
 TileTree::Joinable<D> TileTree::join_below(CutTree::NodeRef ref,
@@ -50,7 +63,7 @@ TileTree::Joinable<D> TileTree::join_below(CutTree::NodeRef ref,
   auto& [below, above] = sides;
   if (!below.tile && !below.others) return std::move(above);
   if (!above.tile && !above.others) return std::move(below);
-  if (below.tile && above.tile && below.tile->points + above.tile->points <= options_.capacity) {
+  if (below.tile && above.tile && fit_together(*below.tile, *above.tile)) {
     TileNode<D>& joined = *below.tile;
     joined.box.expand(above.tile->box);
     joined.points += above.tile->points;

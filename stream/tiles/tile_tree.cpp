@@ -81,9 +81,11 @@ void TileTree::fill(const PointFeed& source, const CellDone& done) {
       },
       done);
   filled_ = true;
-  if (divided_ || points_ <= options_.capacity) return;
-  Batch batch;  // nothing is spilled
-  divide_first(batch);
+  if (!divided_ && points_ > options_.capacity) {
+    Batch batch;  // nothing is spilled
+    divide_first(batch);
+  }
+  if (divided_) cut_long();
 }
 
 void TileTree::fill(const std::function<bool(PointBlock&)>& source) {
@@ -184,7 +186,8 @@ void TileTree::append_points(std::uint32_t number, std::span<const LatticePoint>
   }
   tile.used = batches_;
   put(tile.held.back(), tile, points, index, box);
-  if (divided_ && outgrown(tile)) cut_in_two(number);
+  if (filled_) tile.expected = std::max(0.0, tile.expected - static_cast<double>(points.size()));
+  if (divided_ && outgrown(tile)) cut_in_two(number, filled_);
 }
 
 /// Puts points of that box into a buffer of a tile.
@@ -209,6 +212,7 @@ void TileTree::begin_region(std::size_t region, Batch& batch) {
 
 void TileTree::finish_cell(std::uint32_t cell, Batch& batch) {
   if (left_over_below(cell_roots_[cell])) return;
+  cut_long_below(cell_roots_[cell]);
   take_below(cell_roots_[cell]);
   cell_done_[cell] = true;
   batch.cells_done.push_back(cell);
@@ -274,7 +278,15 @@ void TileTree::spill(std::uint32_t number, Batch& batch) {
   Tile& tile = tiles_[number];
   if (!tile.file) tile.file = folder_.create("tile");
   room_ -= tile.room();
+  std::vector<HeldPoints> parts;
   for (HeldPoints& held : std::exchange(tile.held, {})) {
+    if (filled_) {
+      parts.push_back(std::move(held));
+    } else {
+      append_segments_of(std::move(held), parts);
+    }
+  }
+  for (HeldPoints& held : parts) {
     auto stretch = std::make_shared<FileStretch>(tile.file);
     const std::uint64_t points = held.buffer.size();
     tile.segments.push_back({.stretch = stretch,

@@ -112,7 +112,7 @@ class TileTree {
   template <int D>
   [[nodiscard]] bool on_disk(const TileNode<D>& node) const;
 
-  /// The points of a tile, in the order in which they came. Uses all threads.
+  /// The points of a tile; equal ones in the order in which they came. Uses all threads.
   template <int D>
   TilePoints<D> decode(StoredTile stored) const;
 
@@ -153,6 +153,7 @@ class TileTree {
     Box<3> box;
     std::uint64_t points = 0;
     double expected = 0;           ///< points of segments left over above that are still to come
+    Box<3> expected_box{};         ///< where they lie
     std::vector<HeldPoints> held;  ///< a run each; without an arrival it came last
     std::optional<std::uint64_t> last_left_over{};  ///< the latest arrival of what was, above
     std::vector<TileSegment> segments;
@@ -190,7 +191,15 @@ class TileTree {
               Batch& batch);
   [[nodiscard]] bool outgrown(const Tile& tile) const;
   [[nodiscard]] bool too_large(const Tile& tile) const;
-  void cut_in_two(std::uint32_t number);
+  [[nodiscard]] bool will_be_too_large(const Tile& tile) const;
+  [[nodiscard]] bool is_too_long(std::uint32_t number) const;
+  void cut_long();
+  void cut_long_below(CutTree::NodeRef ref);
+  [[nodiscard]] bool to_be_cut(std::uint32_t number, bool complete) const;
+  void cut_in_two(std::uint32_t number, bool complete);
+  [[nodiscard]] static std::vector<HeldPoints> part(HeldPoints held, const TileCut& first,
+                                                    const std::array<TileCut, 2>& second);
+  void append_segments_of(HeldPoints held, std::vector<HeldPoints>& segments) const;
   void deal_to_halves(HeldPoints held, const TileCut& cut,
                       const std::array<std::uint32_t, 2>& halves);
   void set_cell_root(std::uint32_t tile, std::uint32_t cell, CutTree::NodeRef cut);
@@ -204,6 +213,8 @@ class TileTree {
 
   template <int D>
   struct Joinable;
+  template <int D>
+  [[nodiscard]] bool fit_together(const TileNode<D>& a, const TileNode<D>& b) const;
   template <int D>
   Joinable<D> join_below(CutTree::NodeRef ref, std::vector<TileNode<D>>& tiles) const;
   template <int D>

@@ -48,6 +48,8 @@ class CutTree {
   [[nodiscard]] static NodeRef ref_of(std::uint32_t tile) {
     return -static_cast<NodeRef>(tile) - 1;
   }
+  /// What is a tile's: from `lo` on, below `hi`, which are infinite where no cut is.
+  [[nodiscard]] const Box<3>& cell(std::uint32_t tile) const { return cells_[tile]; }
   [[nodiscard]] std::array<NodeRef, 2> sides(NodeRef ref) const { return cuts_[ref].sides; }
 
  private:

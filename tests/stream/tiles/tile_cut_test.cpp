@@ -75,6 +75,73 @@ TEST(SideOf, TakesPointsOnTheCutForAbove) {
   EXPECT_EQ(side_of(box, {1, 0}), 1);
 }
 
+TEST(Aspect, IsThatOfTheLongestSideToTheShortest) {
+  EXPECT_EQ(aspect(Box<2>{{0, 0}, {6, 2}}), 3);
+  EXPECT_EQ(aspect(Box<3>{{0, 0, 0}, {2, 8, 1}}), 8);
+  EXPECT_EQ(aspect(Box<3>{{0, 0, 0}, {2, 8, 1}}, 2), 4);
+  EXPECT_EQ(aspect(Box<2>{{3, 3}, {3, 3}}), 1);
+  EXPECT_TRUE(std::isinf(aspect(Box<2>{{3, 3}, {3, 4}})));
+}
+
+TEST(AspectByCuts, IsNotThatOfSidesThatNoCutMadeShort) {
+  const Box<3> box{{0, 0, 0}, {8, 2, 1}};
+  Box<3> cell = whole_space<3>();
+  EXPECT_LE(aspect_by_cuts(box, cell, 3), 1);
+  cell.lo[1] = 0;
+  EXPECT_EQ(aspect_by_cuts(box, cell, 3), 4);
+  cell.hi[2] = 1;
+  EXPECT_EQ(aspect_by_cuts(box, cell, 3), 8);
+  EXPECT_EQ(aspect_by_cuts(box, cell, 2), 4);
+}
+
+TEST(TooLong, IsWhatMakesCompactTilesThatAreNotSmall) {
+  EXPECT_FALSE(too_long(1000, 4, 1000));
+  EXPECT_TRUE(too_long(1000, 5, 1000));
+  EXPECT_TRUE(too_long(125, 8, 1000));
+  EXPECT_FALSE(too_long(124, 8, 1000));
+  EXPECT_FALSE(too_long(1000, std::numeric_limits<double>::infinity(), 1000));
+}
+
+TEST(PartOf, HasWhatACutLeavesOnASide) {
+  const Box<3> box{{0, 0, 0}, {4, 4, 4}};
+  EXPECT_EQ(part_of(box, {1, 3}, 1), (Box<3>{{0, 3, 0}, {4, 4, 4}}));
+  EXPECT_EQ(part_of(box, {1, 3}, 0), (Box<3>{{0, 0, 0}, {4, std::nextafter(3, 0), 4}}));
+  EXPECT_TRUE(part_of(box, {1, 5}, 1).empty());
+  EXPECT_TRUE(part_of(box, {1, 0}, 0).empty());
+  EXPECT_TRUE(part_of(Box<3>{}, {0, 1}, 0).empty());
+}
+
+TEST(HeavyPlace, IsWhereAQuarterOfTheSampleIs) {
+  CrowdedTile tile;
+  for (int i = 0; i < 12; ++i) tile.sample.push_back({1.0 * i, 2, 3});
+  EXPECT_FALSE(heavy_place(tile));
+  for (int i = 0; i < 4; ++i) tile.sample.push_back({20, 5, 1.0 * i});
+  EXPECT_EQ(heavy_place(tile), (LatticePoint{20, 5, 0}));
+  tile.dimension = 3;
+  EXPECT_FALSE(heavy_place(tile));
+}
+
+TEST(CutBeside, LeavesOnePlaceAlone) {
+  const LatticePoint place{1, 2, 0};
+  Box<3> box{{0, 0, 0}, {3, 3, 3}};
+  int cuts = 0;
+  while (const auto cut = cut_beside(box, place, 2)) {
+    box = part_of(box, *cut, place[cut->axis] >= cut->value ? 1 : 0);
+    ASSERT_LE(++cuts, 4);
+  }
+  EXPECT_EQ(cuts, 4);
+  EXPECT_EQ(box, (Box<3>{{1, 2, 0}, {1, 2, 3}}));
+}
+
+TEST(ChooseCut, LooksAtWherePointsAreStillToCome) {
+  CrowdedTile tile{.box = box_of(1, 0.8)};  // longer in x, but for what comes above
+  tile.expected = {{0, 0.8, 0}, {1, 3, 0}};
+  for (int i = 0; i < 100; ++i) tile.sample.push_back({0.01 * i, 0.08 * (i % 11), 0});
+  const auto cut = choose_cut(tile);
+  ASSERT_TRUE(cut);
+  EXPECT_EQ(cut->axis, 1);
+}
+
 TEST(ChooseCut, LeavesPointsOnBothSides) {
   for (unsigned seed = 1; seed <= 400; ++seed) {
     for (const int dimension : {2, 3}) {

@@ -1,12 +1,14 @@
 // Points of any order and number end up in tiles of at most the capacity, all of them, once, in the
-// order in which they came.
+// order in which they came, where they are equal.
 
 #include "stream/tiles/tile_tree.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "src/error.h"
 #include "src/parallel/parallel.h"
@@ -51,27 +53,35 @@ std::string fault_of(const DealtTiles<D>& dealt, const Points& points) {
   return std::ranges::count(found, false) > 0 ? "a point is missing" : "";
 }
 
-/// Points that come before one that was read earlier, in the tiles that a tile is made of.
+/// Points that come before an equal one that was read earlier.
 template <int D>
 std::size_t out_of_order(const DealtTiles<D>& dealt) {
   std::size_t descents = 0;
   for (const DealtTile<D>& tile : dealt.tiles) {
-    std::size_t here = 0;
-    for (std::size_t i = 1; i < tile.points.index.size(); ++i) {
-      here += tile.points.index[i] < tile.points.index[i - 1] ? 1 : 0;
+    std::map<Point<D>, std::uint64_t> last;
+    for (std::size_t i = 0; i < tile.points.points.size(); ++i) {
+      const auto [at, is_first] = last.try_emplace(tile.points.points[i], tile.points.index[i]);
+      descents += tile.points.index[i] < at->second ? 1 : 0;
+      at->second = tile.points.index[i];
     }
-    descents += here - std::min(here, tile.stored - 1);
   }
   return descents;
 }
 
-/// The share of tiles whose box is longer than four times its width.
-double share_of_long(const DealtTiles<2>& dealt) {
-  const auto count = std::ranges::count_if(dealt.tiles, [](const DealtTile<2>& tile) {
-    const auto [shorter, longer] = std::minmax(tile.box.extent(0), tile.box.extent(1));
-    return longer > 4 * shorter;
-  });
-  return static_cast<double>(count) / static_cast<double>(dealt.tiles.size());
+/// How many times as long as its width a tile's box is.
+double aspect_of(const DealtTile<2>& tile) { return aspect(tile.box); }
+
+/// Tiles that are not compact.
+std::size_t count_of_long(const DealtTiles<2>& dealt) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      dealt.tiles, [](const DealtTile<2>& tile) { return aspect_of(tile) > kMostAspect; }));
+}
+
+/// Those whose points are not thin themselves.
+std::size_t count_of_too_long(const DealtTiles<2>& dealt, std::size_t capacity) {
+  return static_cast<std::size_t>(std::ranges::count_if(dealt.tiles, [=](const DealtTile<2>& tile) {
+    return too_long(static_cast<double>(tile.points.points.size()), aspect_of(tile), capacity);
+  }));
 }
 
 class TileTreeOfOrder : public testing::TestWithParam<Order> {};
@@ -88,7 +98,7 @@ TEST_P(TileTreeOfOrder, KeepsEveryPointInTilesOfTheCapacity) {
   }
 }
 
-TEST_P(TileTreeOfOrder, GivesPointsInTheOrderInWhichTheyCame) {
+TEST_P(TileTreeOfOrder, GivesEqualPointsInTheOrderInWhichTheyCame) {
   EXPECT_EQ(out_of_order(deal(make_points(GetParam(), kMany), kNothing)), 0U);
 }
 
@@ -134,11 +144,51 @@ INSTANTIATE_TEST_SUITE_P(Orders, TileTreeOfOrder,
                                          Order::kRepeated),
                          testing::PrintToStringParamName());
 
+/// Buffers that hold a third of the points, and very few.
+constexpr std::array kDealings = {Dealing{.buffered = 20'000},
+                                  Dealing{.capacity = 200, .buffered = 6'000, .block = 300}};
+
+TEST_P(TileTreeOfOrder, MakesCompactTilesUnlessPointsAreThinAndWritesTwiceAtMost) {
+  const Points points = make_points(GetParam(), 60'000);
+  for (const Dealing& dealing : kDealings) {
+    const DealtTiles<2> dealt = deal_into_tiles<2>(points, dealing);
+    EXPECT_EQ(count_of_too_long(dealt, dealing.capacity), 0U) << dealing.buffered;
+    EXPECT_LE(dealt.writes(), 2.0) << dealing.buffered;
+  }
+}
+
 TEST(TileTree, MakesCompactTilesInWhateverOrderPointsCome) {
   for (const Order order : {Order::kRandom, Order::kSorted, Order::kFlightLines, Order::kStrips,
                             Order::kOutwards, Order::kCurve}) {
-    EXPECT_LE(share_of_long(deal(make_points(order, kMany), kNothing)), 0.02)
+    EXPECT_EQ(count_of_long(deal(make_points(order, kMany), kNothing)), 0U)
         << testing::PrintToString(order);
+  }
+}
+
+TEST(TileTree, LeavesLongWhatIsThinItself) {
+  Points points = make_points(Order::kRandom, kMany / 4);
+  for (LatticePoint& p : points) p[1] *= 1e-6;
+  const DealtTiles<2> dealt = deal(points, kNothing);
+  EXPECT_EQ(fault_of(dealt, points), "");
+  EXPECT_LE(dealt.tiles.size(), 2 * points.size() / kCapacity);
+}
+
+TEST(TileTree, WritesPointsTwiceAtMostWhereManyAreEqualAtEachOfManyPlaces) {
+  for (const std::size_t places : {20U, 100U, 300U}) {
+    for (const bool in_random_order : {false, true}) {
+      Points points = make_points(Order::kRandom, 60'000);
+      for (std::size_t i = 0; i < points.size(); i += 2) {
+        const std::size_t place = in_random_order ? i / 2 % places : i * places / points.size();
+        points[i][0] = points[2 * place + 1][0];
+        points[i][1] = points[2 * place + 1][1];
+      }
+      const DealtTiles<2> dealt =
+          deal_into_tiles<2>(points, {.capacity = 200, .buffered = 4'000, .block = 150});
+      EXPECT_LE(dealt.writes(), 2.0) << places << " places, at random " << in_random_order;
+      EXPECT_EQ(fault_of(dealt, points), "");
+      EXPECT_EQ(out_of_order(dealt), 0U);
+      EXPECT_EQ(apart_from_equal(dealt), 0U);
+    }
   }
 }
 
@@ -167,13 +217,14 @@ TEST(TileTree, WritesEveryPointOnceWhenTheHeaderTellsTheTruth) {
 
 TEST(TileTree, WritesLittleTwiceInTheOrderOfAScanner) {
   for (const Order order : {Order::kSorted, Order::kFlightLines, Order::kCurve}) {
-    EXPECT_LE(deal(make_points(order, kMany), kNothing).writes(), 1.3)
+    EXPECT_LE(deal(make_points(order, kMany), kNothing).writes(), 1.02)
         << testing::PrintToString(order);
   }
 }
 
 TEST(TileTree, DealsAgainWhatALaterCutPartedOnTheDisk) {
-  const DealtTiles<2> dealt = deal(make_points(Order::kRandom, 250'000), kNothing);
+  const DealtTiles<2> dealt =
+      deal_into_tiles<2>(make_points(Order::kRandom, kMany), {.buffered = 20'000});
   EXPECT_GT(dealt.left_over, kCapacity);
   EXPECT_GE(dealt.divided, dealt.left_over);
   EXPECT_EQ(deal(make_points(Order::kRandom, 5'000), kNothing).divided, 0U);
