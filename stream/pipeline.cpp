@@ -115,8 +115,9 @@ std::optional<RegionPlan> early_plan(PointStream& source, int dimension, const M
   if (!options.early || source.regions().empty()) return std::nullopt;
   std::size_t capacity = options.tile_capacity;
   if (capacity == 0) {
-    capacity =
-        plan_memory(budget.limit(), dimension, options.threads, budget.whole(), true).tile_capacity;
+    const MemoryPlan memory =
+        plan_memory(budget.limit(), dimension, options.threads, budget.whole(), true);
+    capacity = tile_capacity_for(source.expected().value_or(0), memory);
   }
   std::optional<RegionPlan> plan =
       plan_regions(source.regions(), {.dimension = dimension,

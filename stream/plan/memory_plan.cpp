@@ -53,6 +53,8 @@ constexpr std::uint64_t kReserve = 3 * kMiB;
 constexpr std::uint64_t kEarlyReserve = 6 * kMiB;
 
 constexpr double kTileShare = 0.4;
+/// More full tiles than this are not made if larger ones will do: something is known of each.
+constexpr std::uint64_t kManyTiles = 8192;
 /// What buffers and tiles get of their shares if they are there at the same time.
 constexpr double kEarlyShare = 0.75;
 constexpr double kWaitingShare = 0.1;
@@ -102,6 +104,10 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
   const std::size_t most = share(limit, costs.leaves_share, costs.leaf_bytes * plan.leaf_size);
   plan.threads = static_cast<unsigned>(std::clamp<std::size_t>(most, 1, wanted_threads));
   return plan;
+}
+
+std::size_t tile_capacity_for(std::uint64_t points, const MemoryPlan& plan) {
+  return std::clamp<std::size_t>(points / kManyTiles, plan.tile_capacity, plan.tile_room);
 }
 
 std::size_t leaf_size_for(std::uint64_t points, int dimension, const MemoryPlan& plan) {

@@ -10,7 +10,7 @@ namespace spillway::detail {
 struct MemoryPlan {
   std::size_t buffered_points = 0;  ///< waiting in memory to be spilled
   std::size_t tile_room = 0;        ///< points of a tile, if two are loaded at a time
-  std::size_t tile_capacity = 0;    ///< points of a tile: at most tile_room
+  std::size_t tile_capacity = 0;    ///< points of a tile, unless there are very many
   std::size_t leaf_size = 0;        ///< largest number of points of a leaf
   std::uint64_t waiting_bytes = 0;  ///< of output that waits for its turn while tiles are begun
   std::size_t batches = 1;          ///< of points, on their way to their tiles
@@ -23,6 +23,10 @@ struct MemoryPlan {
 /// get less.
 MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads,
                        std::uint64_t whole = 0, bool early = false);
+
+/// The capacity of tiles for `points` points: the plan's, and larger where that would be very many
+/// tiles, as far as there is room.
+std::size_t tile_capacity_for(std::uint64_t points, const MemoryPlan& plan);
 
 /// The size of leaves of `points` points: at most plan.leaf_size, and smaller where there are few
 /// points, so that all threads have something to do.

@@ -83,7 +83,7 @@ void TileTree::divide_first(Batch& batch) {
                            points / static_cast<double>(seen) - 1);
   }
   divided_ = true;
-  divide(0, std::move(sample), tiles_for(points, options_.capacity, fill), batch);
+  divide(0, std::move(sample), tiles_for(points, capacity_, fill), batch);
 }
 
 /// Divides a tile into many by a sample of its points; where that tells too little, by its box.
@@ -139,19 +139,19 @@ void TileTree::set_cell_root(std::uint32_t tile, std::uint32_t cell, CutTree::No
 }
 
 bool TileTree::too_large(const Tile& tile) const {
-  return tile.points > options_.capacity && can_be_cut(tile.box, options_.dimension);
+  return tile.points > capacity_ && can_be_cut(tile.box, options_.dimension);
 }
 
 /// Whether a tile is going to be, with the points still to come.
 bool TileTree::will_be_too_large(const Tile& tile) const {
   return tile.points > 0 && can_be_cut(tile.box, options_.dimension) &&
-         static_cast<double>(tile.points) + tile.expected > static_cast<double>(options_.capacity);
+         static_cast<double>(tile.points) + tile.expected > static_cast<double>(capacity_);
 }
 
 /// Whether a tile is to be cut in two now.
 bool TileTree::outgrown(const Tile& tile) const {
   if (filled_) return too_large(tile);
-  const double capacity = static_cast<double>(options_.capacity);
+  const auto capacity = static_cast<double>(capacity_);
   const double own = static_cast<double>(tile.points);
   if (own + tile.expected <= kMostFill * capacity || own < kLeastOwnShare * capacity) return false;
   return can_be_cut(tile.box, options_.dimension);
@@ -164,7 +164,7 @@ bool TileTree::is_too_long(std::uint32_t number) const {
   Box<3> box = tile.box;
   box.expand(tile.expected_box);
   return too_long(static_cast<double>(tile.points) + tile.expected,
-                  aspect_by_cuts(box, cuts_.cell(number), options_.dimension), options_.capacity);
+                  aspect_by_cuts(box, cuts_.cell(number), options_.dimension), capacity_);
 }
 
 /// Cuts tiles across that are too long.
@@ -328,7 +328,7 @@ void TileTree::deal_to_halves(HeldPoints held, const TileCut& cut,
 /// so small and compact that most will lie on one side of a cut, if the tile is cut later.
 void TileTree::append_segments_of(HeldPoints held, std::vector<HeldPoints>& segments) const {
   const double points = static_cast<double>(held.buffer.size());
-  if (points <= kLeastPartedShare * static_cast<double>(options_.capacity)) {
+  if (points <= kLeastPartedShare * static_cast<double>(capacity_)) {
     segments.push_back(std::move(held));
     return;
   }
@@ -374,8 +374,7 @@ std::uint64_t TileTree::divide_large(const DivisionProgress& progress) {
       if (!too_large(tiles_[t])) continue;
       std::vector<LatticePoint> sample = sample_of_all(tiles_[t]);
       divide(t, std::move(sample),
-             tiles_for(static_cast<double>(tiles_[t].points), options_.capacity, kKnownFill),
-             batch);
+             tiles_for(static_cast<double>(tiles_[t].points), capacity_, kKnownFill), batch);
     }
     const std::uint64_t points = left_over_points_;
     deal_again(take_left_over(), [&](std::uint64_t some) {
@@ -430,7 +429,7 @@ std::vector<LatticePoint> TileTree::sample_of_all(const Tile& tile) const {
 
 /// Of samples by which many tiles are made at once.
 std::size_t TileTree::sample_stride() const {
-  return std::max<std::size_t>(1, options_.capacity / kManySamples);
+  return std::max<std::size_t>(1, capacity_ / kManySamples);
 }
 
 void TileTree::deal_again(std::vector<TileSegment> segments,

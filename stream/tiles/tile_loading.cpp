@@ -34,13 +34,13 @@ struct TileTree::Joinable {
 template <int D>
 bool TileTree::fit_together(const TileNode<D>& a, const TileNode<D>& b) const {
   const std::uint64_t points = a.points + b.points;
-  if (points > options_.capacity) return false;
+  if (points > capacity_) return false;
   Box<D> both = a.box;
   both.expand(b.box);
   const double times = aspect(both);
   if (times <= kMostAspect) return true;
   return std::min(aspect(a.box), aspect(b.box)) > kMostAspect &&
-         !too_long(static_cast<double>(points), times, options_.capacity);
+         !too_long(static_cast<double>(points), times, capacity_);
 }
 
 /// Appends all tiles below a node but the one that is returned.
@@ -191,7 +191,7 @@ StoredTile TileTree::one_of(Tile tile) const {
 template <int D>
 StoredTile TileTree::read(const TileNode<D>& node) {
   StageTimer timer(times_, Stage::kLoad, StepOrder::kInOrder);
-  if (options_.one_of_equal && node.points > options_.capacity && node.box.lo == node.box.hi) {
+  if (options_.one_of_equal && node.points > capacity_ && node.box.lo == node.box.hi) {
     return one_of(take(node.stored.front()));
   }
   StoredTile stored;

@@ -51,7 +51,12 @@ std::size_t TileTree::Tile::waiting() const {
 }
 
 TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times)
-    : options_(options), folder_(folder), times_(times), cuts_(options.dimension), tiles_(1) {
+    : options_(options),
+      folder_(folder),
+      times_(times),
+      cuts_(options.dimension),
+      tiles_(1),
+      capacity_(options.capacity) {
   if (options.plan == nullptr) return;
   cuts_ = options.plan->cuts;
   tiles_.resize(cuts_.tiles());
@@ -81,7 +86,7 @@ void TileTree::fill(const PointFeed& source, const CellDone& done) {
       },
       done);
   filled_ = true;
-  if (!divided_ && points_ > options_.capacity) {
+  if (!divided_ && points_ > capacity_) {
     Batch batch;  // nothing is spilled
     divide_first(batch);
   }
@@ -143,7 +148,10 @@ void TileTree::append(Batch& batch) {
   const StageTimer timer(times_, Stage::kDeal, StepOrder::kInOrder);
   ++batches_;
   if (options_.plan != nullptr && !filled_) begin_region(batch.region, batch);
-  if (!filled_) points_ += batch.dealt.points.size();
+  if (!filled_) {
+    points_ += batch.dealt.points.size();
+    if (options_.grown_capacity) capacity_ = options_.grown_capacity(points_);
+  }
   append_dealt(std::exchange(batch.dealt, {}), batch);
   if (room_ <= most_room()) return;
   if (!divided_) divide_first(batch);
@@ -274,17 +282,18 @@ void TileTree::spill_some(Batch& batch) {
   }
 }
 
+/// False where tiles have been made for all points that are to come.
+bool TileTree::may_be_cut_later() const {
+  return options_.plan != nullptr || !options_.expected || !options_.extent;
+}
+
 void TileTree::spill(std::uint32_t number, Batch& batch) {
   Tile& tile = tiles_[number];
   if (!tile.file) tile.file = folder_.create("tile");
   room_ -= tile.room();
-  std::vector<HeldPoints> parts;
-  for (HeldPoints& held : std::exchange(tile.held, {})) {
-    if (filled_) {
-      parts.push_back(std::move(held));
-    } else {
-      append_segments_of(std::move(held), parts);
-    }
+  std::vector<HeldPoints> parts = std::exchange(tile.held, {});
+  if (!filled_ && may_be_cut_later()) {
+    for (HeldPoints& held : std::exchange(parts, {})) append_segments_of(std::move(held), parts);
   }
   for (HeldPoints& held : parts) {
     auto stretch = std::make_shared<FileStretch>(tile.file);

@@ -34,7 +34,10 @@ namespace spillway::detail {
 
 struct TileTreeOptions {
   int dimension = 2;
-  std::size_t capacity = 0;                 ///< most points of one tile, equal points apart
+  std::size_t capacity = 0;  ///< most points of one tile, equal points apart
+  /// If set, the capacity once there are so many points: at least as large, and ascending. What is
+  /// known of tiles takes memory, so there must not be too many.
+  std::function<std::size_t(std::uint64_t points)> grown_capacity{};
   std::size_t buffered_points = 0;          ///< most points waiting in memory
   std::optional<std::uint64_t> expected{};  ///< how many points will come, where that is known
   std::optional<Box<3>> extent{};           ///< where they will lie, where that is known
@@ -179,6 +182,7 @@ class TileTree {
            std::span<const std::uint64_t> index, const Box<3>& box);
   [[nodiscard]] std::size_t most_room() const;
   void spill_some(Batch& batch);
+  [[nodiscard]] bool may_be_cut_later() const;
   void spill(std::uint32_t number, Batch& batch);
   void write(Batch& batch);
 
@@ -244,6 +248,7 @@ class TileTree {
   std::uint64_t batches_ = 0;
   std::uint64_t arrivals_ = 0;  ///< handed out so far
   std::uint64_t runs_ = 0;      ///< likewise
+  std::size_t capacity_ = 0;
   std::atomic<std::uint64_t> points_ = 0;
   std::size_t room_ = 0;      ///< that all tiles' buffers take, in points
   std::size_t segments_ = 0;  ///< of all tiles, and those left over

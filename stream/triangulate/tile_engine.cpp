@@ -78,12 +78,20 @@ TileOptions TileEngine<D>::tile_options(const std::optional<Lattice>& lattice) c
 
 template <int D>
 TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
-  if (options_.tile_capacity > 0) plan_.tile_capacity = options_.tile_capacity;
+  std::function<std::size_t(std::uint64_t)> grown_capacity;
+  if (options_.tile_capacity > 0) {
+    plan_.tile_capacity = options_.tile_capacity;
+  } else if (expected.count) {
+    plan_.tile_capacity = tile_capacity_for(*expected.count, plan_);
+  } else {
+    grown_capacity = [this](std::uint64_t points) { return tile_capacity_for(points, plan_); };
+  }
   if (options_.buffered_points > 0) plan_.buffered_points = options_.buffered_points;
   const bool index = options_.input_index || expected.ordered_by_index;
   if (index) plan_.buffered_points = plan_.buffered_points * 3 / 4;
   return {.dimension = D,
           .capacity = plan_.tile_capacity,
+          .grown_capacity = std::move(grown_capacity),
           .buffered_points = plan_.buffered_points,
           .expected = expected.count,
           .extent = expected.extent,

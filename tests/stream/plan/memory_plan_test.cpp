@@ -116,6 +116,13 @@ TEST(MemoryPlan, LoadsMoreTilesAtATimeWhereThereIsRoomForThem) {
   EXPECT_EQ(space.tile_capacity, space.tile_room);
 }
 
+TEST(MemoryPlan, MakesLargerTilesOfVeryManyPoints) {
+  const MemoryPlan plan = plan_memory(1024 * kMiB, 2, 2);
+  EXPECT_EQ(tile_capacity_for(1'000'000, plan), plan.tile_capacity);
+  EXPECT_EQ(tile_capacity_for(8'192'000'000, plan), 1'000'000U);
+  EXPECT_EQ(tile_capacity_for(1ULL << 60, plan), plan.tile_room);
+}
+
 TEST(MemoryPlan, HasMoreBatchesForMoreThreads) {
   EXPECT_EQ(plan_memory(2048 * kMiB, 2, 1).batches, 6U);
   EXPECT_EQ(plan_memory(2048 * kMiB, 2, 64).batches, 128U);
