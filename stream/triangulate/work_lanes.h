@@ -19,8 +19,8 @@ namespace spillway::detail {
 template <typename Node>
 class WorkLanes {
  public:
-  /// So much of the room may be ready, and one node at least, before the caller of work_beside()
-  /// lends a hand.
+  /// So much of the room may be ready, as many nodes as there are lanes, and one node at least,
+  /// before the caller of work_beside() lends a hand.
   static constexpr std::uint64_t kReadyShare = 4;
 
   struct Work {
@@ -77,7 +77,8 @@ class WorkLanes {
  private:
   [[nodiscard]] bool much_ready() const {
     const std::lock_guard lock(mutex_);
-    return ready_.size() > 1 && ready_weight_ > room_ / kReadyShare;
+    if (ready_.size() <= 1) return false;
+    return ready_.size() > most_lanes_ || ready_weight_ > room_ / kReadyShare;
   }
 
   void begin_lanes() {

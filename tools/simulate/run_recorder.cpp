@@ -51,6 +51,7 @@ void RunRecorder::batch_step(const StageStep& step, double seconds, double gap) 
     batch_.fetched_bytes += static_cast<std::uint32_t>(step.bytes);
     add(batch_.fetch, seconds + gap);
   } else if (!step.in_order) {
+    batch_.fetched_bytes += static_cast<std::uint32_t>(step.bytes);  // where it is decoded
     add(batch_.deal, seconds);
     // What is dealt again is fetched without being timed.
     add(fetched_ ? batch_.deal : batch_.fetch, gap);

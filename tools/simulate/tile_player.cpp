@@ -63,7 +63,8 @@ void TilePlayer::work_ahead(Then then) {
 }
 
 void TilePlayer::lend_hand(Then then) {
-  if (ready_.size() <= 1 || ready_points_ <= model_.limits.ready_points) return then();
+  if (ready_.size() <= 1) return then();
+  if (ready_.size() <= most_lanes_ && ready_points_ <= model_.limits.ready_points) return then();
   work_off_one({.done = [this, then = std::move(then)](bool any) {
     if (any) return lend_hand(then);
     when_idle([this, then] { lend_hand(then); });

@@ -24,7 +24,10 @@ class PointBuffer {
 
   /// `index` is empty or as long as `points`, and always the same of both for one buffer.
   void append(std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
-    if (pages_.empty()) page_points_ = index.empty() ? kPagePoints : kIndexedPoints;
+    if (pages_.empty()) {  // as new, or moved from
+      size_ = 0;
+      page_points_ = index.empty() ? kPagePoints : kIndexedPoints;
+    }
     while (!points.empty()) {
       if (size_ == room()) pages_.push_back(PagePool::instance().take());
       const std::size_t used = size_ % page_points_;

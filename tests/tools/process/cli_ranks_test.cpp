@@ -93,7 +93,7 @@ TEST_F(RanksOfTheCommand, EndEachPhaseOfTheProgressWithTheTotalsOfAll) {
           << count << ' ' << arguments;
     }
   }
-  work_.succeed("spillway generate -q terrain -n 2500000 -o many.spp");
+  work_.succeed("spillway generate -q normal -n 2500000 -o many.spp");
   const Phases divided =
       run(ranks(2, "triangulate - --tile 20000 --memory 32M -o a.spm < many.spp"));
   const auto stats = nlohmann::json::parse(work_.read("run.json"));

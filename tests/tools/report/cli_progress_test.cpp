@@ -72,7 +72,7 @@ TEST_F(ProgressOfTheCommand, PointsThatAreWithheldAreReadToo) {
 
 TEST_F(ProgressOfTheCommand, TilesThatAreDividedAgainAreAPhase) {
   const Phases all = phases_of_script(
-      "spillway generate -q terrain -n 1200000 | spillway triangulate - --memory 32M --tile 20000 "
+      "spillway generate -q normal -n 1200000 | spillway triangulate - --memory 32M --tile 20000 "
       "-o a.spm --stats run.json --progress json");
   ASSERT_GT(figure("/divided_points"), 0U);
   EXPECT_EQ(all, (Phases{{"read", 1200000, "points"},

@@ -23,7 +23,7 @@ TEST(RunRecorder, PutsStepsWhereTheyBelong) {
   recorder.limits({.batches = 3, .loaded_points = 2, .threads = 7});
   for (int batch = 0; batch < 2; ++batch) {
     recorder.step(step("read", true, 100, 10));
-    recorder.step(step("read", false, 200));
+    recorder.step(step("read", false, 200, 3));
     recorder.step(step("deal", false, 300));
     recorder.step(step("deal", true, 400));
     recorder.step(step("spill", false, 500));
@@ -64,7 +64,7 @@ TEST(RunRecorder, PutsStepsWhereTheyBelong) {
   EXPECT_NEAR(run.batches[1].append, 400, kNear);
   EXPECT_NEAR(run.batches[1].encode, 500, kNear);
   EXPECT_NEAR(run.batches[1].write, 600, kNear);
-  EXPECT_EQ(run.batches[1].fetched_bytes, 10U);
+  EXPECT_EQ(run.batches[1].fetched_bytes, 13U);
   EXPECT_EQ(run.batches[1].written_bytes, 20U);
   EXPECT_NEAR(run.batches[2].deal, 700, kNear);
 
