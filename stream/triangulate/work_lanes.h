@@ -94,8 +94,11 @@ class WorkLanes {
     }
   }
 
+  /// Who finds that a node is just being begun goes on: that may wait for what this thread has to
+  /// do, and whoever begins it looks for lanes itself.
   bool may_begin_lane() {
-    const std::lock_guard lock(mutex_);
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock) return false;
     if (failed_ || lanes_ >= most_lanes_ || ready_.size() <= starting_) return false;
     if (!has_room(*ready_.front())) return false;
     ++lanes_;
@@ -114,7 +117,7 @@ class WorkLanes {
       Node* const node = take(is_lane);
       if (node == nullptr) return false;
       const std::uint64_t weight = work_.weight(*node);
-      if (is_lane) begin_lanes();
+      begin_lanes();
       // While a thread waits for a part of this, it does not take up another node: what it holds
       // may be just what that one would wait for.
       isolated([&] { work_.finish(*node); });
