@@ -28,7 +28,7 @@ struct Costs {
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr Costs kPlane{.leaf_bytes = 400,
                        .tile_bytes = 108,
-                       .good_tile = 500'000,
+                       .good_tile = 750'000,
                        .good_leaf = 32'768,
                        .small_leaf = 4'096,
                        .enough_leaves = 16,

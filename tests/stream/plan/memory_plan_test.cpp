@@ -110,8 +110,8 @@ TEST(MemoryPlan, LoadsMoreTilesAtATimeWhereThereIsRoomForThem) {
   const MemoryPlan little = plan_memory(64 * kMiB, 2, 2);
   EXPECT_EQ(little.tile_capacity, little.tile_room);
   const MemoryPlan much = plan_memory(2048 * kMiB, 2, 2);
-  EXPECT_EQ(much.tile_capacity, 500'000U);
-  EXPECT_GT(much.tile_room, 15 * much.tile_capacity);
+  EXPECT_EQ(much.tile_capacity, 750'000U);
+  EXPECT_GT(much.tile_room, 10 * much.tile_capacity);
   const MemoryPlan space = plan_memory(2048 * kMiB, 3, 2);
   EXPECT_EQ(space.tile_capacity, space.tile_room);
 }
