@@ -298,7 +298,7 @@ template <int D>
   certify_all<D>(simplices, balls);
 }
 
-const bool kHasAvx2 = static_cast<bool>(__builtin_cpu_supports("avx2"));
+const bool has_avx2 = static_cast<bool>(__builtin_cpu_supports("avx2"));
 #endif
 
 }  // namespace
@@ -367,7 +367,7 @@ std::array<bool, SimplexBatch<D>::kSize> well_inside(const SimplexBatch<D>& simp
 template <int D>
 void certify(const SimplexBatch<D>& simplices, BallBatch<D>& balls) {
 #ifdef __x86_64__
-  if (kHasAvx2) return certify_with_avx2<D>(simplices, balls);
+  if (has_avx2) return certify_with_avx2<D>(simplices, balls);
 #endif
   certify_all<D>(simplices, balls);
 }
@@ -376,7 +376,7 @@ template <int D>
 std::uint64_t may_meet(const BallBatch<D>& balls, const Box<D>& box, std::uint64_t asked) {
   if (box.empty() || asked == 0) return 0;
 #ifdef __x86_64__
-  if (kHasAvx2) return may_meet_with_avx2<D>(balls, box, asked);
+  if (has_avx2) return may_meet_with_avx2<D>(balls, box, asked);
 #endif
   return may_meet_in_lanes<D, 2>(balls, box, asked);
 }
