@@ -1,0 +1,142 @@
+// The command `dem` where headers tell where points lie: rasters are painted while these are read.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+
+#include "tests/tools/command_runner.h"
+
+namespace spillway::detail::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Many files whose headers tell where their points lie: painted while they are read.
+class DemOfASurvey : public ::testing::Test {
+ protected:
+  DemOfASurvey() {
+    work_.succeed(
+        "spillway generate terrain -n 40000 -q -o all.las\n"
+        "spillway generate terrain -n 40000 -q --grid 7x7 -o 't_#.las'");
+  }
+
+  /// The figures of a raster that is made with small tiles of points.
+  nlohmann::json make(const std::string& name, const std::string& arguments) {
+    messages_ = work_.run("spillway dem --resolution 0.25 --tile 2000 --stats stats.json -o " +
+                          name + " " + arguments);
+    EXPECT_EQ(messages_.exit_code, 0) << messages_.err;
+    return nlohmann::json::parse(work_.read("stats.json"));
+  }
+  static bool is_early(const nlohmann::json& stats) {
+    return stats["first_block_read_points"] < stats["points"].get<std::uint64_t>() / 2;
+  }
+
+  /// Makes the header of a file tell another number; `place` is that of the specification.
+  void lie(const std::string& name, std::size_t place, double value) {
+    std::string bytes = work_.read(name);
+    std::memcpy(bytes.data() + place, &value, sizeof value);
+    work_.write(name, bytes);
+  }
+  [[nodiscard]] bool same(const std::string& a, const std::string& b) const {
+    return work_.read(a) == work_.read(b);
+  }
+
+  Workspace work_;
+  Result messages_;
+};
+
+/// Where a LAS header has the largest x, and the least y.
+constexpr std::size_t kMostX = 179;
+constexpr std::size_t kLeastY = 203;
+
+TEST_F(DemOfASurvey, IsPaintedEarlyAndEqualsThatOfOneFile) {
+  for (const std::string options :
+       {"--cog", "--product slope,aspect,height,hillshade", "--product height,density", "--align",
+        "--max-edge 5", "--bounds 500000,4100000,500250,4100300"}) {
+    // Which of several points with equal x and y comes first is up to the files.
+    const std::string all = " --duplicates lowest " + options;
+    EXPECT_FALSE(is_early(make("one.tif", "all.las" + all)));
+    EXPECT_TRUE(is_early(make("early.tif", "t_*.las --memory 64M" + all))) << options;
+    EXPECT_FALSE(is_early(make("late.tif", "$(ls -r t_*.las) --distrust-headers" + all)));
+    EXPECT_TRUE(same("early.tif", "one.tif")) << options;
+    EXPECT_TRUE(same("late.tif", "one.tif")) << options;
+  }
+}
+
+TEST_F(DemOfASurvey, ClosesTilesOfPixelsBeforeAllTrianglesHaveCome) {
+  EXPECT_GT(make("dem.tif", "t_*.las")["raster"]["closed_tiles"], 0);
+  EXPECT_GT(make("dem.tif", "all.las")["raster"]["closed_tiles"], 0);
+  EXPECT_EQ(make("dem.tif", "t_*.las --product density")["raster"]["closed_tiles"], 0);
+  work_.succeed("spillway triangulate -q all.las -o tin.spm");
+  work_.succeed("spillway dem -q tin.spm -o mesh.tif --resolution 0.25 --stats stats.json");
+  EXPECT_EQ(nlohmann::json::parse(work_.read("stats.json"))["raster"]["closed_tiles"], 0)
+      << "triangles of a mesh may overlap";
+}
+
+TEST_F(DemOfASurvey, PointsMissingInACornerHaveNoData) {
+  work_.succeed("rm t_00_*.las t_01_00.las t_06_06.las");
+  const nlohmann::json early = make("early.tif", "t_*.las");
+  make("late.tif", "t_*.las --distrust-headers");
+  EXPECT_TRUE(is_early(early));
+  EXPECT_TRUE(same("early.tif", "late.tif"));
+  EXPECT_LT(early["raster"]["pixels_with_data"],
+            early["raster"]["columns"].get<int>() * early["raster"]["rows"].get<int>());
+}
+
+/// The raster is that of the points, for which they are read again.
+TEST_F(DemOfASurvey, BoxesThatAreTooLargeAreFoundOut) {
+  const double least_y = work_.info("all.las")["extent"]["min"][1];
+  make("true.tif", "t_*.las");
+  EXPECT_EQ(messages_.err.find("read again"), std::string::npos);
+  for (const auto& name : work_.names()) {
+    if (name.starts_with("t_")) lie(name, kLeastY, least_y - 20);
+  }
+  const nlohmann::json stats = make("dem.tif", "t_*.las");
+  EXPECT_THAT(messages_.err, HasSubstr("headers tell a larger extent"));
+  EXPECT_EQ(stats["points"], 40'000);
+  EXPECT_TRUE(same("dem.tif", "true.tif"));
+  make("late.tif", "t_*.las --distrust-headers");
+  EXPECT_THAT(messages_.err, Not(HasSubstr("headers tell")));
+  EXPECT_TRUE(same("late.tif", "true.tif"));
+}
+
+/// Far beyond what a raster may be: all is read first.
+TEST_F(DemOfASurvey, AnAbsurdBoxIsNotTakenForTheRasters) {
+  make("true.tif", "t_*.las");
+  for (const double far : {1e6, 1e12, 1e300}) {
+    lie("t_06_06.las", kMostX, far);
+    make("dem.tif", "t_*.las");
+    EXPECT_TRUE(same("dem.tif", "true.tif")) << far;
+  }
+}
+
+TEST_F(DemOfASurvey, ABoxThatIsOffByARoundingMakesNoDifference) {
+  make("true.tif", "t_*.las");
+  const double most = work_.info("t_04_04.las")["extent"]["max"][0];
+  for (const double off : {-0.009, -1e-9, 1e-9, 0.004}) {
+    lie("t_04_04.las", kMostX, most + off);
+    EXPECT_TRUE(is_early(make("dem.tif", "t_*.las")));
+    EXPECT_TRUE(same("dem.tif", "true.tif")) << off;
+  }
+}
+
+/// Points that are not used do not count for the extent.
+TEST_F(DemOfASurvey, FiltersWaitForAllPoints) {
+  const nlohmann::json early = make("early.tif", "t_*.las --keep-class 0");
+  EXPECT_FALSE(is_early(early));
+  make("late.tif", "t_*.las");
+  EXPECT_TRUE(same("early.tif", "late.tif"));
+}
+
+TEST_F(DemOfASurvey, OfASortedStreamThroughAPipeIsEarly) {
+  work_.succeed("spillway convert -q all.las --sorted -o sorted.spp");
+  make("one.tif", "all.las");
+  const nlohmann::json piped = make("piped.tif", "- < sorted.spp");
+  EXPECT_TRUE(same("piped.tif", "one.tif"));
+}
+
+}  // namespace
+}  // namespace spillway::detail::test
