@@ -275,7 +275,7 @@ void TileTree::cut_in_two(std::uint32_t number, bool complete) {
 }
 
 /// The points of a buffer on both sides of a cut, or of a second one on each side of the first.
-std::vector<TileTree::HeldPoints> TileTree::part(HeldPoints held, const TileCut& first,
+std::vector<HeldPoints> TileTree::part(HeldPoints held, const TileCut& first,
                                                  const std::array<TileCut, 2>& second) {
   constexpr std::size_t kParts = 4;
   std::vector<HeldPoints> parts(kParts);

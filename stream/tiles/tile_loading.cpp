@@ -123,7 +123,7 @@ bool TileTree::on_disk(const TileNode<D>& node) const {
   });
 }
 
-TileTree::Tile TileTree::take(std::uint32_t number) {
+Tile TileTree::take(std::uint32_t number) {
   const std::lock_guard lock(taken_mutex_);
   const auto taken = taken_.extract(number);
   return taken.empty() ? Tile{} : std::move(taken.mapped());

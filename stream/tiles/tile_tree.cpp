@@ -38,18 +38,6 @@ class SpareBlocks {
 
 }  // namespace
 
-std::size_t TileTree::Tile::room() const {
-  std::size_t room = 0;
-  for (const HeldPoints& some : held) room += some.buffer.room();
-  return room;
-}
-
-std::size_t TileTree::Tile::waiting() const {
-  std::size_t waiting = 0;
-  for (const HeldPoints& some : held) waiting += some.buffer.size();
-  return waiting;
-}
-
 TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times)
     : options_(options),
       folder_(folder),

@@ -9,7 +9,6 @@
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
-#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -23,10 +22,9 @@
 #include "stream/tiles/cuts/dealt_points.h"
 #include "stream/tiles/point_feed.h"
 #include "stream/tiles/regions/region_plan.h"
-#include "stream/tiles/storage/point_buffer.h"
 #include "stream/tiles/storage/segment_reader.h"
+#include "stream/tiles/storage/tile.h"
 #include "stream/tiles/storage/tile_block.h"
-#include "stream/tiles/storage/tile_segment.h"
 #include "stream/tiles/tile_cut.h"
 #include "stream/tiles/tile_node.h"
 
@@ -47,20 +45,6 @@ struct TileTreeOptions {
   /// If set, read() makes one point of a tile of points that are one vertex, where they are more
   /// than a tile may have: which one, in the plane, this tells.
   std::optional<Heights> one_of_equal{};
-};
-
-/// A tile's points as they lay in the tree: on the disk, encoded, and in memory.
-struct StoredTile {
-  struct Segment {
-    std::vector<std::byte> bytes;
-    FileSpot where;  ///< of the bytes, for messages
-    PointBuffer buffer;
-  };
-  std::vector<Segment> segments;
-  std::uint64_t points = 0;
-  /// Of points that are one vertex, and more than a tile has memory for, all but one: they are not
-  /// among the points.
-  std::uint64_t left_out = 0;
 };
 
 /// Points of any number and order, dealt into tiles that fit into memory. Points wait in memory;
@@ -119,6 +103,8 @@ class TileTree {
   template <int D>
   TilePoints<D> decode(StoredTile stored) const;
 
+  /// Most points of one tile, as many points as have been dealt so far.
+  [[nodiscard]] std::size_t capacity() const { return capacity_; }
   /// Points dealt so far.
   [[nodiscard]] std::uint64_t points() const { return points_; }
   /// How many points were written to the disk, those written twice counted twice.
@@ -126,13 +112,6 @@ class TileTree {
   [[nodiscard]] std::uint64_t bytes_written() const { return bytes_written_; }
 
  private:
-  /// Points on their way from one tile's buffer to its file.
-  struct Spill {
-    PointBuffer points;
-    std::shared_ptr<FileStretch> stretch;
-    std::uint64_t count = 0;
-    std::vector<std::byte> bytes;
-  };
   /// What goes through the pipeline at a time.
   struct Batch {
     SourcePiece piece;                       ///< as it came from the source
@@ -145,31 +124,6 @@ class TileTree {
     std::vector<Spill> spills;
     std::vector<std::uint32_t> cells_done;
   };
-  /// Points that wait, side by side in the order of their arrival.
-  struct HeldPoints {
-    PointBuffer buffer{};
-    Box<3> box{};
-    std::optional<std::uint64_t> arrival{};  ///< of the first, if there are later points
-    std::uint64_t run = 0;
-  };
-  struct Tile {
-    Box<3> box;
-    std::uint64_t points = 0;
-    double expected = 0;           ///< points of segments left over above that are still to come
-    Box<3> expected_box{};         ///< where they lie
-    std::vector<HeldPoints> held;  ///< a run each; without an arrival it came last
-    std::optional<std::uint64_t> last_left_over{};  ///< the latest arrival of what was, above
-    std::vector<TileSegment> segments;
-    std::shared_ptr<ScratchFile> file;
-    std::uint32_t spills = 0;  ///< to the file
-    std::uint64_t used = 0;    ///< the last batch that had points of it
-    std::uint64_t cut_at = 0;  ///< how many cuts had been made when it came about
-    std::uint32_t cell = 0;    ///< of the plan
-
-    [[nodiscard]] std::size_t room() const;     ///< of what is held, in points
-    [[nodiscard]] std::size_t waiting() const;  ///< points held
-  };
-
   /// Sends batches through the steps: `fetch` fills them in order, `decode` makes their points.
   void run_batches(const std::function<bool(Batch&)>& fetch,
                    const std::function<void(Batch&, PointBlock&)>& decode, const CellDone& done);

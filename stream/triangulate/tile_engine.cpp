@@ -385,7 +385,7 @@ RunFigures TileEngine<D>::figures() {
   if (!options_.max_edge) figures_.mesh.hull_facets = counts_.hull_facets;
   figures_.left_out = counts_.left_out;
   figures_.leaves = counts_.leaves;
-  figures_.tile_capacity = plan_.tile_capacity;
+  figures_.tile_capacity = tree_.capacity();
   figures_.leaf_size = context_.options.leaf_size;
   figures_.spilled_points = tree_.points_written();
   figures_.spilled_bytes = tree_.bytes_written();

@@ -1,0 +1,17 @@
+#include "stream/tiles/storage/tile.h"
+
+namespace spillway::detail {
+
+std::size_t Tile::room() const {
+  std::size_t room = 0;
+  for (const HeldPoints& some : held) room += some.buffer.room();
+  return room;
+}
+
+std::size_t Tile::waiting() const {
+  std::size_t waiting = 0;
+  for (const HeldPoints& some : held) waiting += some.buffer.size();
+  return waiting;
+}
+
+}  // namespace spillway::detail
