@@ -121,7 +121,7 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
     dealt.arrival = held.arrival;
     dealt.run = held.run;
     PointBlock points;
-    held.buffer.drain(
+    held.buffer.drain_in_chunks(
         [&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
           points.points.assign(chunk.begin(), chunk.end());
           points.index.assign(index.begin(), index.end());
@@ -276,37 +276,38 @@ void TileTree::cut_in_two(std::uint32_t number, bool complete) {
 
 /// The points of a buffer on both sides of a cut, or of a second one on each side of the first.
 std::vector<HeldPoints> TileTree::part(HeldPoints held, const TileCut& first,
-                                                 const std::array<TileCut, 2>& second) {
+                                       const std::array<TileCut, 2>& second) {
   constexpr std::size_t kParts = 4;
   std::vector<HeldPoints> parts(kParts);
   for (HeldPoints& part : parts) {
     part.arrival = held.arrival;
     part.run = held.run;
   }
-  std::vector<LatticePoint> dealt(kParts * PointBuffer::kChunk);
+  constexpr std::size_t kMost = PointBuffer::kPagePoints;
+  std::vector<LatticePoint> dealt(kParts * kMost);
   std::vector<std::uint64_t> dealt_index;
-  held.buffer.drain(
-      [&](std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
-        if (!index.empty()) dealt_index.resize(dealt.size());
-        std::array<std::size_t, kParts> counts{};
-        for (std::size_t i = 0; i < points.size(); ++i) {
-          const std::size_t side = points[i][first.axis] >= first.value ? 1 : 0;
-          const TileCut& next = second[side];
-          const std::size_t part = 2 * side + (points[i][next.axis] >= next.value ? 1 : 0);
-          const std::size_t place = part * PointBuffer::kChunk + counts[part]++;
-          dealt[place] = points[i];
-          if (!index.empty()) dealt_index[place] = index[i];
-        }
-        for (std::size_t p = 0; p < kParts; ++p) {
-          if (counts[p] == 0) continue;
-          const auto some = std::span(dealt).subspan(p * PointBuffer::kChunk, counts[p]);
-          for (const LatticePoint& point : some) parts[p].box.expand(point);
-          parts[p].buffer.append(some, index.empty()
-                                           ? std::span<const std::uint64_t>()
-                                           : std::span<const std::uint64_t>(dealt_index)
-                                                 .subspan(p * PointBuffer::kChunk, counts[p]));
-        }
-      });
+  held.buffer.drain([&](std::span<const LatticePoint> points,
+                        std::span<const std::uint64_t> index) {
+    if (!index.empty()) dealt_index.resize(dealt.size());
+    std::array<std::size_t, kParts> counts{};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::size_t side = points[i][first.axis] >= first.value ? 1 : 0;
+      const TileCut& next = second[side];
+      const std::size_t part = 2 * side + (points[i][next.axis] >= next.value ? 1 : 0);
+      const std::size_t place = part * kMost + counts[part]++;
+      dealt[place] = points[i];
+      if (!index.empty()) dealt_index[place] = index[i];
+    }
+    for (std::size_t p = 0; p < kParts; ++p) {
+      if (counts[p] == 0) continue;
+      const auto some = std::span(dealt).subspan(p * kMost, counts[p]);
+      for (const LatticePoint& point : some) parts[p].box.expand(point);
+      parts[p].buffer.append(
+          some, index.empty()
+                    ? std::span<const std::uint64_t>()
+                    : std::span<const std::uint64_t>(dealt_index).subspan(p * kMost, counts[p]));
+    }
+  });
   return parts;
 }
 

@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # Triangulates the same points of terrain from a pipe in several orders, and prints a Markdown table: what each order
 # took, and whether all gave the same triangulation. The first row is a run of three points, which shows what a process
-# takes besides its data, the second one of fewer points from a LAS file. A second table has the time of threads in each
-# stage, in ns a point, and how many times that of the file it is. Each run begins when its points are ready, so that the time is that of spillway. Where
-# other programs use the machine, processor time is the better measure.
+# takes besides its data. Before each order comes a run of fewer points in that order from a file, whose header tells
+# their number and extent. A second table has the time of threads in each stage, in ns a point, and how many times that
+# of the file it is. Each run begins when its points are ready, so that the time is that of spillway. Where other
+# programs use the machine, processor time is the better measure.
 #
 #   tests/benchmark/pipe_orders.sh [OPTIONS] SPILLWAY
 #
 #   -n N             points [1e6]
-#   --file N         points of the file [1e7]
+#   --file N         points of a file [1e7]
 #   --memory SIZE    as spillway triangulate takes it [32M]
 #   --orders LIST    of scan random curve outwards strips [all]
 #   --told           the stream's header tells the number of points and their extent
@@ -81,24 +82,26 @@ keep_stages() {
     awk -v run="$1" -v n="$(figure points)" 'n > 0 { printf "%s %s %.1f\n", run, $1, 1e9 * $2 / n }' >> "$folder/stages"
 }
 
-# The second table; its first run is what the others are compared with.
+# The second table: each order beside its file.
 print_stages() {
   awk '
-    !($1 in seen) { seen[$1] = 1; run[++runs] = $1 }
+    !($1 in seen) { seen[$1] = 1; if ($1 !~ /-file$/) run[++runs] = $1 }
     !($2 in known) { known[$2] = 1; stage[++stages] = $2 }
     { ns[$1, $2] = $3; sum[$1] += $3 }
-    function cell(of, base) { return base > 0 && of != base ? sprintf("%.1f (%.2f)", of, of / base) : of }
+    function cell(base, of) {
+      return base > 0 ? sprintf("%.1f, %.1f (%.2f)", base, of, of / base) : sprintf("-, %.1f", of)
+    }
     END {
-      printf "\n| ns a point |"
+      printf "\n| ns a point: file, pipe |"
       for (r = 1; r <= runs; r++) printf " %s |", run[r]
       printf "\n|---|"
       for (r = 1; r <= runs; r++) printf "---|"
       for (s = 1; s <= stages; s++) {
         printf "\n| %s |", stage[s]
-        for (r = 1; r <= runs; r++) printf " %s |", cell(ns[run[r], stage[s]], ns[run[1], stage[s]])
+        for (r = 1; r <= runs; r++) printf " %s |", cell(ns[run[r] "-file", stage[s]], ns[run[r], stage[s]])
       }
       printf "\n| all |"
-      for (r = 1; r <= runs; r++) printf " %s |", cell(sum[run[r]], sum[run[1]])
+      for (r = 1; r <= runs; r++) printf " %s |", cell(sum[run[r] "-file"], sum[run[r]])
       print ""
     }' "$folder/stages"
 }
@@ -129,18 +132,20 @@ printf '0 0 0\n1 0 0\n0 1 0\n' > "$folder/pipe" &
 triangulate - "$folder/pipe"
 print_row "3 points" $?
 wait
-if "$spillway" generate terrain -n "$file_points" -o "$folder/points.las" -q; then
-  triangulate "$folder/points.las"
-  print_row "file" $?
-  keep_stages file
-fi
-rm -f "$folder/points.las"
 for order in $orders; do
-  # The pipe is opened when the points are ready; if they never are, its reader must not wait.
-  { "$driver" -n "$points" --order "$order" "${told[@]}" -o "$folder/pipe" || : <> "$folder/pipe"; } &
+  if "$driver" -n "$file_points" --order "$order" --told -o "$folder/points.spp"; then
+    triangulate "$folder/points.spp"
+    print_row "$order, file" $?
+    keep_stages "$order-file"
+  fi
+  rm -f "$folder/points.spp"
+  # Who writes to the pipe must not be what its reader waits for.
+  "$driver" -n "$points" --order "$order" "${told[@]}" -o "$folder/points.spp" || exit 1
+  cat "$folder/points.spp" > "$folder/pipe" &
   triangulate - "$folder/pipe"
   code=$?
   wait
+  rm -f "$folder/points.spp"
   print_row "$order" "$code"
   keep_stages "$order"
   if [ "$code" -eq 0 ]; then hashes+=("$(figure canonical_hash)"); else failed=1; fi

@@ -6,8 +6,11 @@
 namespace spillway::detail {
 namespace {
 
-/// Cuts of a tile that the lookup does without.
+/// Cuts of a tile that the lookup does without, and of all tiles, one in so many.
 constexpr int kMostCutsSince = 6;
+constexpr std::uint32_t kTilesPerCutSince = 8;
+/// Points whose tiles are looked for side by side.
+constexpr std::size_t kTogether = 8;
 
 /// The axis on which the points lie farthest apart.
 int longest_axis(const LatticePoint* begin, const LatticePoint* end, int dimension,
@@ -51,43 +54,64 @@ CutTree::NodeRef CutTree::make_cut(std::uint32_t tile, int axis, double value) {
   since_.push_back(ref_of(other));
   cuts_since_.push_back(++cuts_since_[tile]);
   most_cuts_since_ = std::max(most_cuts_since_, cuts_since_.back());
+  ++all_cuts_since_;
   return ref;
 }
 
 void CutTree::find_tiles(std::span<const LatticePoint> points,
                          std::span<std::uint32_t> tiles) const {
   std::uint32_t tile = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!in_cell(points[i], tile)) tile = find_tile(points[i]);
-    tiles[i] = tile;
+  for (std::size_t i = 0; i < points.size();) {
+    const std::size_t count = std::min(kTogether, points.size() - i);
+    std::size_t inside = 0;
+    while (inside < count && is_in_cell(points[i + inside], tile) != 0) ++inside;
+    if (inside == count) {
+      std::fill_n(&tiles[i], count, tile);
+    } else if (count == kTogether) {
+      walk(&points[i], &tiles[i], std::integral_constant<std::size_t, kTogether>());
+    } else {
+      for (std::size_t k = 0; k < count; ++k) {
+        walk(&points[i + k], &tiles[i + k], std::integral_constant<std::size_t, 1>());
+      }
+    }
+    i += count;
+    tile = tiles[i - 1];
   }
 }
 
-bool CutTree::in_cell(const LatticePoint& point, std::uint32_t tile) const {
+unsigned CutTree::is_in_cell(const LatticePoint& point, std::uint32_t tile) const {
   const Box<3>& cell = cells_[tile];
-  unsigned inside = 1;  // not a bool: no branch for each side, which nobody can tell
+  unsigned inside = 1;
   for (int k = 0; k < dimension_; ++k) {
     inside &= static_cast<unsigned>(point[k] >= cell.lo[k]) &
               static_cast<unsigned>(point[k] < cell.hi[k]);
   }
-  return inside != 0;
+  return inside;
 }
 
-std::uint32_t CutTree::find_tile(const LatticePoint& point) const {
-  // As many steps for each point as for the deepest one: nobody can tell where a walk ends.
+/// Side by side, as each step of a walk waits for the one before; and as many steps for each point
+/// as for the deepest tile, as nobody can tell where a walk ends.
+template <std::size_t kPoints>
+void CutTree::walk(const LatticePoint* points, std::uint32_t* tiles,
+                   std::integral_constant<std::size_t, kPoints> /*count*/) const {
   const Cut* const lookup = lookup_.cuts().data();
-  NodeRef ref = lookup_.root();
+  std::array<NodeRef, kPoints> refs;
+  refs.fill(lookup_.root());
   for (int step = 0; step < lookup_.depth(); ++step) {
-    const Cut& cut = lookup[std::max(ref, 0)];
-    const NodeRef next = cut.sides[point[cut.axis] >= cut.value ? 1 : 0];
-    ref = ref >= 0 ? next : ref;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const Cut& cut = lookup[std::max(refs[i], 0)];
+      const NodeRef next = cut.sides[points[i][cut.axis] >= cut.value ? 1 : 0];
+      refs[i] = refs[i] >= 0 ? next : refs[i];
+    }
   }
-  ref = since_[tile_at(ref)];
-  while (ref >= 0) {
-    const Cut& cut = cuts_[ref];
-    ref = cut.sides[point[cut.axis] >= cut.value ? 1 : 0];
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    NodeRef ref = since_[tile_at(refs[i])];
+    while (ref >= 0) {
+      const Cut& cut = cuts_[ref];
+      ref = cut.sides[points[i][cut.axis] >= cut.value ? 1 : 0];
+    }
+    tiles[i] = tile_at(ref);
   }
-  return tile_at(ref);
 }
 
 void CutTree::renew_lookup() {
@@ -97,11 +121,13 @@ void CutTree::renew_lookup() {
   for (std::uint32_t tile = 0; tile < tiles_; ++tile) since_[tile] = ref_of(tile);
   std::ranges::fill(cuts_since_, 0);
   most_cuts_since_ = 0;
+  all_cuts_since_ = 0;
 }
 
 CutTree::NodeRef CutTree::cut(std::uint32_t tile, int axis, double value) {
   const NodeRef ref = make_cut(tile, axis, value);
-  if (most_cuts_since_ > kMostCutsSince) renew_lookup();
+  const bool many = all_cuts_since_ > tiles_ / kTilesPerCutSince;
+  if (many || most_cuts_since_ > kMostCutsSince) renew_lookup();
   return ref;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "src/geometry/framed_point.h"
@@ -54,8 +55,11 @@ class CutTree {
 
  private:
   void split_sample(std::uint32_t tile, LatticePoint* begin, LatticePoint* end, std::size_t parts);
-  [[nodiscard]] bool in_cell(const LatticePoint& point, std::uint32_t tile) const;
-  [[nodiscard]] std::uint32_t find_tile(const LatticePoint& point) const;
+  /// 1 or 0.
+  [[nodiscard]] unsigned is_in_cell(const LatticePoint& point, std::uint32_t tile) const;
+  template <std::size_t kPoints>
+  void walk(const LatticePoint* points, std::uint32_t* tiles,
+            std::integral_constant<std::size_t, kPoints> count) const;
 
   int dimension_;
   NodeRef root_ = ref_of(0);
@@ -68,6 +72,7 @@ class CutTree {
   std::vector<NodeRef> since_{ref_of(0)};
   std::vector<int> cuts_since_{0};  ///< by tile: cuts above it that the lookup does not have
   int most_cuts_since_ = 0;
+  std::uint32_t all_cuts_since_ = 0;
 };
 
 }  // namespace spillway::detail

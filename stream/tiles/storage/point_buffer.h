@@ -19,8 +19,10 @@ namespace spillway::detail {
 /// than a page of points more than there are.
 class PointBuffer {
  public:
-  /// Most points that are given at a time.
+  /// Points of a chunk.
   static constexpr std::size_t kChunk = 4096;
+  /// Most points in a page.
+  static constexpr std::size_t kPagePoints = PagePool::kPageBytes / sizeof(LatticePoint);
 
   /// `index` is empty or as long as `points`, and always the same of both for one buffer.
   void append(std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
@@ -54,10 +56,20 @@ class PointBuffer {
     for (std::size_t p = 0; p < pages_.size(); ++p) f(points_of(p));
   }
 
-  /// Calls f(points, index) for kChunk points at a time, in order, those at the end fewer, and lets
-  /// go of them.
+  /// Calls f(points, index) for kPagePoints points at a time at most, in order, where they lie, and
+  /// lets go of them.
   template <typename F>
   void drain(F&& f) {
+    for (std::size_t p = 0; p < pages_.size(); ++p) {
+      f(points_of(p), index_of(p));
+      pages_[p] = {};
+    }
+    *this = {};
+  }
+
+  /// The same for kChunk points at a time, those at the end fewer.
+  template <typename F>
+  void drain_in_chunks(F&& f) {
     std::vector<LatticePoint> points;
     std::vector<std::uint64_t> index;
     points.reserve(std::min(size_, kChunk));
@@ -67,26 +79,21 @@ class PointBuffer {
       points.clear();
       index.clear();
     };
-    for (std::size_t p = 0; p < pages_.size(); ++p) {
-      const std::span<const LatticePoint> some = points_of(p);
+    drain([&](std::span<const LatticePoint> some, std::span<const std::uint64_t> numbers) {
       const std::size_t count = std::min(some.size(), kChunk - points.size());
       const auto take = [&](std::size_t begin, std::size_t end) {
         points.insert(points.end(), some.begin() + begin, some.begin() + end);
-        if (page_points_ != kIndexedPoints) return;
-        const std::uint64_t* const numbers = index_of(p);
-        index.insert(index.end(), numbers + begin, numbers + end);
+        if (numbers.empty()) return;
+        index.insert(index.end(), numbers.begin() + begin, numbers.begin() + end);
       };
       take(0, count);
       if (points.size() == kChunk) give();
       take(count, some.size());
-      pages_[p] = {};
-    }
+    });
     if (!points.empty()) give();
-    *this = {};
   }
 
  private:
-  static constexpr std::size_t kPagePoints = PagePool::kPageBytes / sizeof(LatticePoint);
   static constexpr std::size_t kIndexedPoints =
       PagePool::kPageBytes / (sizeof(LatticePoint) + sizeof(std::uint64_t));
   static constexpr std::size_t kIndexOffset = kIndexedPoints * sizeof(LatticePoint);
@@ -96,8 +103,10 @@ class PointBuffer {
     return {reinterpret_cast<const LatticePoint*>(pages_[page].get()),
             std::min(page_points_, size_ - page * page_points_)};
   }
-  [[nodiscard]] const std::uint64_t* index_of(std::size_t page) const {
-    return reinterpret_cast<const std::uint64_t*>(pages_[page].get() + kIndexOffset);
+  [[nodiscard]] std::span<const std::uint64_t> index_of(std::size_t page) const {
+    if (page_points_ != kIndexedPoints) return {};
+    return {reinterpret_cast<const std::uint64_t*>(pages_[page].get() + kIndexOffset),
+            points_of(page).size()};
   }
 
   std::vector<PagePool::Page> pages_;  ///< all full but the last one

@@ -44,11 +44,12 @@ void append_all_points(std::vector<std::byte>& bytes, std::span<const LatticePoi
 
 std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes) {
   std::vector<TileBlock> blocks;
-  points.drain([&](std::span<const LatticePoint> some, std::span<const std::uint64_t> index) {
-    const std::size_t begin = bytes.size();
-    append_points(bytes, some, index);
-    blocks.push_back({begin, bytes.size() - begin, some.size()});
-  });
+  points.drain_in_chunks(
+      [&](std::span<const LatticePoint> some, std::span<const std::uint64_t> index) {
+        const std::size_t begin = bytes.size();
+        append_points(bytes, some, index);
+        blocks.push_back({begin, bytes.size() - begin, some.size()});
+      });
   return blocks;
 }
 

@@ -1,4 +1,4 @@
-// Points come out of a buffer as they went in, some thousand at a time.
+// Points come out of a buffer as they went in.
 
 #include "stream/tiles/storage/point_buffer.h"
 
@@ -22,25 +22,33 @@ std::vector<LatticePoint> points_from(std::size_t begin, std::size_t count) {
 }
 
 TEST(PointBuffer, GivesBackPointsAndIndicesInTheirOrder) {
-  PointBuffer buffer;
-  std::size_t begin = 0;
-  for (const std::size_t count : std::array<std::size_t, 5>{1, 0, kPiece, 3 * kPiece, 7}) {
-    std::vector<std::uint64_t> index(count);
-    for (std::size_t i = 0; i < count; ++i) index[i] = 2 * (begin + i);
-    buffer.append(points_from(begin, count), index);
-    begin += count;
-  }
-  EXPECT_EQ(buffer.size(), begin);
-  std::size_t next = 0;
-  buffer.drain([&](std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
-    ASSERT_EQ(points.size(), index.size());
-    EXPECT_LE(points.size(), kPiece);
-    for (std::size_t i = 0; i < points.size(); ++i, ++next) {
-      ASSERT_EQ(points[i][0], static_cast<double>(next));
-      ASSERT_EQ(index[i], 2 * next);
+  for (const bool in_chunks : {false, true}) {
+    PointBuffer buffer;
+    std::size_t begin = 0;
+    for (const std::size_t count : std::array<std::size_t, 5>{1, 0, kPiece, 3 * kPiece, 7}) {
+      std::vector<std::uint64_t> index(count);
+      for (std::size_t i = 0; i < count; ++i) index[i] = 2 * (begin + i);
+      buffer.append(points_from(begin, count), index);
+      begin += count;
     }
-  });
-  EXPECT_EQ(next, begin);
+    EXPECT_EQ(buffer.size(), begin);
+    std::size_t next = 0;
+    const auto take = [&](std::span<const LatticePoint> points,
+                          std::span<const std::uint64_t> index) {
+      ASSERT_EQ(points.size(), index.size());
+      EXPECT_LE(points.size(), in_chunks ? kPiece : PointBuffer::kPagePoints);
+      for (std::size_t i = 0; i < points.size(); ++i, ++next) {
+        ASSERT_EQ(points[i][0], static_cast<double>(next));
+        ASSERT_EQ(index[i], 2 * next);
+      }
+    };
+    if (in_chunks) {
+      buffer.drain_in_chunks(take);
+    } else {
+      buffer.drain(take);
+    }
+    EXPECT_EQ(next, begin);
+  }
 }
 
 TEST(PointBuffer, HasMemoryForLessThanAPageMore) {
@@ -72,11 +80,11 @@ TEST(PointBuffer, ShowsAllItsPointsInTheirOrder) {
   }
 }
 
-TEST(PointBuffer, GivesAsManyAtATimeAsItMay) {
+TEST(PointBuffer, GivesAsManyAtATimeAsAChunkHas) {
   PointBuffer buffer;
   buffer.append(points_from(0, 2 * kPiece + 3), {});
   std::vector<std::size_t> counts;
-  buffer.drain([&](std::span<const LatticePoint> points, std::span<const std::uint64_t>) {
+  buffer.drain_in_chunks([&](std::span<const LatticePoint> points, std::span<const std::uint64_t>) {
     counts.push_back(points.size());
   });
   EXPECT_EQ(counts, (std::vector<std::size_t>{kPiece, kPiece, 3}));
