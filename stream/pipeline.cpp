@@ -52,7 +52,7 @@ void run(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
   options.end_phase(source.points_read());
   divide(engine, options);
   options.begin_phase("triangulate");
-  const std::optional<TileNode<D>> root = engine.nodes();
+  const std::optional<TileNode<D>> root = engine.take_nodes();
   if (!root) refuse_empty_input(source.counts());
   refuse_flat_points(engine.span(), engine.points());
   options.extent_known(plane_of(root->box), root->points);

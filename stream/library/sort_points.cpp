@@ -126,7 +126,7 @@ class Sorting {
 
   void write() {
     // Boxes have z even where that was not divided.
-    const std::optional<TileNode<3>> root = tree_.nodes<3>();
+    const std::optional<TileNode<3>> root = tree_.take_nodes<3>();
     std::vector<const TileNode<3>*> cells;
     if (root) append_cells(*root, cells);
     cells_ = cells.size();

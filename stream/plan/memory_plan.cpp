@@ -49,7 +49,7 @@ constexpr Costs kSpace{.leaf_bytes = 800,
 
 /// What is not shared out: gaps between what is in use, tables, and code that is loaded when it is
 /// first run. More where points are read and tiles are triangulated at the same time.
-constexpr std::uint64_t kReserve = 3 * kMiB;
+constexpr std::uint64_t kReserve = 4 * kMiB;
 constexpr std::uint64_t kEarlyReserve = 6 * kMiB;
 
 constexpr double kTileShare = 0.4;

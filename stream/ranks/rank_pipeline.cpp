@@ -65,7 +65,7 @@ class RankRun {
       const RankDivision division = read();
       divide_tiles();
       options_.begin_phase("triangulate");
-      const std::optional<TileNode<D>> own = engine_.nodes();
+      const std::optional<TileNode<D>> own = engine_.take_nodes();
       const RankTree<D> tree(division, own, ranks_);
       if (tree.nodes().empty()) refuse_empty();
       const TileNode<D>& all = *tree.nodes().back().tiles;

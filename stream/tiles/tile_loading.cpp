@@ -88,7 +88,8 @@ std::optional<TileNode<D>> TileTree::nodes_below(CutTree::NodeRef ref) const {
   return tree_over(std::move(tiles));
 }
 
-/// Tiles below a node get no more points.
+/// Tiles below a node get no more points. What is known of their segments waits until they are
+/// read, so it is made short.
 void TileTree::take_below(CutTree::NodeRef ref) {
   if (!CutTree::is_tile(ref)) {
     for (const CutTree::NodeRef side : cuts_.sides(ref)) take_below(side);
@@ -99,14 +100,27 @@ void TileTree::take_below(CutTree::NodeRef ref) {
   if (tile.points == 0) return;
   room_ -= tile.room();
   segments_ -= tile.segments.size();
+  if (tile.segments.size() > 1) {
+    std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
+    const std::lock_guard lock(stretches_mutex_);
+    join_all_segments(tile.segments, [&tile](std::uint64_t before, std::uint64_t after) {
+      return std::ranges::any_of(tile.held, [=](const HeldPoints& held) {
+        return arrival_of(held) >= before && arrival_of(held) < after;
+      });
+    });
+  }
   const std::lock_guard lock(taken_mutex_);
   taken_.emplace(number, std::move(tile));
 }
 
 template <int D>
-std::optional<TileNode<D>> TileTree::nodes() {
+std::optional<TileNode<D>> TileTree::take_nodes() {
   take_below(cuts_.root());
-  return nodes_below<D>(cuts_.root());
+  std::optional<TileNode<D>> root = nodes_below<D>(cuts_.root());
+  // What was known of tiles that were filled would take memory from those that are read.
+  std::vector<Tile>(1).swap(tiles_);
+  cuts_ = CutTree(options_.dimension);
+  return root;
 }
 
 template <int D>
@@ -239,8 +253,8 @@ TilePoints<D> TileTree::decode(StoredTile stored) const {
   return result;
 }
 
-template std::optional<TileNode<2>> TileTree::nodes<2>();
-template std::optional<TileNode<3>> TileTree::nodes<3>();
+template std::optional<TileNode<2>> TileTree::take_nodes<2>();
+template std::optional<TileNode<3>> TileTree::take_nodes<3>();
 template std::optional<TileNode<2>> TileTree::take_cell<2>(std::uint32_t);
 template std::optional<TileNode<3>> TileTree::take_cell<3>(std::uint32_t);
 template bool TileTree::on_disk<2>(const TileNode<2>&) const;

@@ -13,8 +13,8 @@ constexpr std::size_t kSpillShare = 8;
 /// Most segments of a tile that are told apart.
 constexpr std::size_t kMostSegments = 6;
 /// What a tile and a segment take in memory, in points that wait.
-constexpr std::size_t kTileRoom = 28;
-constexpr std::size_t kSegmentRoom = 7;
+constexpr std::size_t kTileRoom = 40;
+constexpr std::size_t kSegmentRoom = 12;
 
 /// Blocks that points are decoded into before they are dealt: as many as are decoded at a time.
 class SpareBlocks {

@@ -84,14 +84,15 @@ class TileTree {
   std::vector<std::uint32_t> finish();
 
   /// The balanced tree of tiles, none of which is too large any more, neighbours that fit together
-  /// made one; nothing if there are no points. Of all points, or of those in one cell.
+  /// made one; nothing if there are no points. Of all points, once and at the end, or of those in
+  /// one cell.
   template <int D>
-  [[nodiscard]] std::optional<TileNode<D>> nodes();
+  [[nodiscard]] std::optional<TileNode<D>> take_nodes();
   template <int D>
   [[nodiscard]] std::optional<TileNode<D>> take_cell(std::uint32_t cell);
 
-  /// Takes a tile of nodes() out of the tree: reads what is on the disk of it. By one thread at a
-  /// time, but beside fill() and decode().
+  /// Takes a tile of take_nodes() out of the tree: reads what is on the disk of it. By one thread
+  /// at a time, but beside fill() and decode().
   template <int D>
   StoredTile read(const TileNode<D>& node);
 

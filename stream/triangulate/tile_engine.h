@@ -58,8 +58,8 @@ class TileEngine {
   /// Deals all points of the feed into tiles. With a plan, triangulates tiles that are complete.
   void spill(const PointFeed& feed);
 
-  /// After spill(): points of tiles that are too large, and are to be divided before nodes(); and
-  /// their division, which returns how many points were dealt again.
+  /// After spill(): points of tiles that are too large, and are to be divided before take_nodes();
+  /// and their division, which returns how many points were dealt again.
   [[nodiscard]] std::uint64_t points_to_divide() const { return tree_.points_to_divide(); }
   std::uint64_t divide_large();
 
@@ -74,8 +74,8 @@ class TileEngine {
 
   [[nodiscard]] std::uint64_t points() const { return tree_.points(); }
 
-  /// The tree of tiles; nothing if there are no points.
-  [[nodiscard]] std::optional<TileNode<D>> nodes() { return tree_.template nodes<D>(); }
+  /// The tree of tiles, once; nothing if there are no points.
+  [[nodiscard]] std::optional<TileNode<D>> take_nodes() { return tree_.template take_nodes<D>(); }
 
   /// Triangulates the tiles of `root`, one by one, and merges them. What nothing `outside` can
   /// change has gone to the sink when it returns; the rest is returned.

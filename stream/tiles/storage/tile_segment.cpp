@@ -1,6 +1,7 @@
 #include "stream/tiles/storage/tile_segment.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 namespace spillway::detail {
@@ -19,6 +20,14 @@ double loss(const TileSegment& a, const TileSegment& b, const Box<3>& all, int d
     if (all.extent(k) > 0) reach += both.extent(k) / all.extent(k);
   }
   return reach * static_cast<double>(a.points + b.points);
+}
+
+/// Makes one segment of two that lie side by side.
+void join(TileSegment& segment, const TileSegment& next) {
+  next.stretch->join(segment.stretch);
+  segment.end_spill = next.end_spill;
+  segment.points += next.points;
+  segment.box.expand(next.box);
 }
 
 }  // namespace
@@ -55,14 +64,24 @@ void join_segments(std::vector<TileSegment>& segments, std::size_t most, int dim
       least = lost;
     }
     if (!best) return;
-    TileSegment& segment = segments[*best];
-    const TileSegment& next = segments[*best + 1];
-    next.stretch->join(segment.stretch);
-    segment.end_spill = next.end_spill;
-    segment.points += next.points;
-    segment.box.expand(next.box);
+    join(segments[*best], segments[*best + 1]);
     segments.erase(segments.begin() + static_cast<std::ptrdiff_t>(*best) + 1);
   }
+}
+
+void join_all_segments(std::vector<TileSegment>& segments,
+                       const std::function<bool(std::uint64_t, std::uint64_t)>& apart) {
+  std::vector<TileSegment> joined;
+  for (TileSegment& segment : segments) {
+    if (!joined.empty() && side_by_side(joined.back(), segment) &&
+        !apart(joined.back().arrival, segment.arrival)) {
+      join(joined.back(), segment);
+    } else {
+      joined.push_back(std::move(segment));
+    }
+  }
+  segments = std::vector<TileSegment>(std::make_move_iterator(joined.begin()),
+                                      std::make_move_iterator(joined.end()));
 }
 
 }  // namespace spillway::detail

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -53,5 +54,10 @@ struct TileSegment {
 /// `most` are left, or no two of them lie side by side. Those first that lie close together, and
 /// have few points. Under the mutex of FileStretch::append().
 void join_segments(std::vector<TileSegment>& segments, std::size_t most, int dimension);
+
+/// The same for a tile that is cut no more, in one pass: joins all neighbours that lie side by
+/// side, unless points that wait came between them: apart(arrival, later arrival) tells.
+void join_all_segments(std::vector<TileSegment>& segments,
+                       const std::function<bool(std::uint64_t, std::uint64_t)>& apart);
 
 }  // namespace spillway::detail

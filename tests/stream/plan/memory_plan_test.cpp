@@ -135,7 +135,7 @@ TEST(MemoryPlan, KeepsSomeMebibytesBackAndMoreBesideReading) {
   };
   for (const std::uint64_t limit : {32 * kMiB, 256 * kMiB}) {
     EXPECT_LE(shared_out(limit, false), limit - 3 * kMiB);
-    EXPECT_GT(shared_out(limit, false), limit - 4 * kMiB);
+    EXPECT_GT(shared_out(limit, false), limit - 5 * kMiB);
     EXPECT_LT(shared_out(limit, true), shared_out(limit, false));
   }
   EXPECT_EQ(plan_memory(32 * kMiB, 2, 2).batches, 3U);

@@ -185,7 +185,7 @@ DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dea
       dealt.tiles.push_back({node.box, node.stored.size(), tree.decode<D>(tree.read(node))});
       EXPECT_EQ(dealt.tiles.back().points.points.size(), node.points);
     };
-    if (const auto root = tree.nodes<D>()) visit(visit, *root);
+    if (const auto root = tree.take_nodes<D>()) visit(visit, *root);
     dealt.written = tree.points_written();
   });
   return dealt;

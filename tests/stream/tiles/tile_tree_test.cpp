@@ -259,8 +259,9 @@ TEST(TileTree, SurvivesAHeaderThatLies) {
       return !std::exchange(given, true);
     });
     tree.divide_large([](std::uint64_t, double) {});
-    ASSERT_TRUE(tree.nodes<2>());
-    EXPECT_EQ(tree.nodes<2>()->points, points.size());
+    const std::optional<TileNode<2>> root = tree.take_nodes<2>();
+    ASSERT_TRUE(root);
+    EXPECT_EQ(root->points, points.size());
   });
 }
 

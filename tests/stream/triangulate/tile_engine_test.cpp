@@ -67,15 +67,15 @@ struct EngineRun {
 
   void spill(const std::vector<Point<D>>& points, std::uint64_t first_index = 0) {
     Feed feed(points, first_index);
-    with_threads(engine.threads(), [&] { engine.spill(feed.feed()); });
+    with_threads(engine.threads(), [&] {
+      engine.spill(feed.feed());
+      engine.divide_large();
+    });
+    root = engine.take_nodes();
   }
   Border<D> triangulate(const Outside<D>& outside = {}) {
     Border<D> border;
-    with_threads(engine.threads(), [&] {
-      engine.divide_large();
-      root = engine.nodes();
-      border = engine.triangulate(*root, outside);
-    });
+    with_threads(engine.threads(), [&] { border = engine.triangulate(*root, outside); });
     return border;
   }
 
@@ -170,7 +170,7 @@ TYPED_TEST(TileEngineTest, HasNoTilesWithoutPoints) {
   constexpr int kD = TypeParam::value;
   EngineRun<kD> run;
   run.spill({});
-  EXPECT_FALSE(run.engine.nodes());
+  EXPECT_FALSE(run.root);
   EXPECT_EQ(run.engine.points(), 0U);
   EXPECT_EQ(run.engine.points_to_divide(), 0U);
 }
@@ -202,8 +202,7 @@ TYPED_TEST(TileEngineTest, MergesABorderOfAnotherProcess) {
   TileNode<kD> root;
   root.points = points.size();
   for (EngineRun<kD>* run : {&here, &there}) {
-    with_threads(2, [run] { run->engine.divide_large(); });
-    root.children.push_back(*run->engine.nodes());
+    root.children.push_back(*run->root);
     root.box.expand(root.children.back().box);
   }
   std::vector<Border<kD>> borders;
@@ -237,13 +236,14 @@ TEST(TileEngine, DividesTilesAgainThatBecameTooLarge) {
                     .tile_capacity = 1000,
                     .buffered_points = 40 * PointBuffer::kChunk,
                     .input_index = true});
-  run.spill(points);
+  Feed feed(points);
+  with_threads(2, [&] { run.engine.spill(feed.feed()); });
   EXPECT_GT(run.engine.points_to_divide(), 0U);
   std::uint64_t divided = 0;
   with_threads(2, [&] { divided = run.engine.divide_large(); });
   EXPECT_GT(divided, 0U);
   EXPECT_EQ(run.engine.points_to_divide(), 0U);
-  EXPECT_EQ(run.engine.nodes()->points, points.size());
+  EXPECT_EQ(run.engine.take_nodes()->points, points.size());
   const RunFigures figures = run.engine.figures();
   EXPECT_EQ(figures.divided_points, divided);
   EXPECT_GT(figures.spilled_points, 0U);
@@ -273,7 +273,7 @@ TEST(TileEngine, EndsWithTheErrorOfItsSink) {
     with_threads(2, [&] {
       engine.spill(feed.feed());
       try {
-        engine.triangulate(*engine.nodes(), {});
+        engine.triangulate(*engine.take_nodes(), {});
       } catch (const Error& error) {
         message = error.what();
       }

@@ -107,6 +107,25 @@ TEST(JoinSegments, PrefersTheSmall) {
   EXPECT_EQ(segments[2].points, 50U);
 }
 
+TEST(JoinAllSegments, LeavesThoseThatAreApart) {
+  const auto file = std::make_shared<ScratchBytes>();
+  const auto other = std::make_shared<ScratchBytes>();
+  std::vector<TileSegment> segments = {segment_of(file, 0, 0, 1), segment_of(file, 1, 3, 4),
+                                       segment_of(file, 2, 8, 9), segment_of(file, 3, 8, 9),
+                                       segment_of(file, 5, 8, 9), segment_of(other, 6, 8, 9)};
+  join_all_segments(segments, [](std::uint64_t before, std::uint64_t after) {
+    return before < 2 && after >= 2;  // something waits that came between
+  });
+  ASSERT_EQ(segments.size(), 4U);
+  EXPECT_EQ(segments[0].end_spill, 2U);
+  EXPECT_EQ(segments[0].points, 200U);
+  EXPECT_EQ(segments[0].box, (Box<3>{{0, 0, 0}, {4, 1, 0}}));
+  EXPECT_EQ(segments[1].first_spill, 2U);
+  EXPECT_EQ(segments[1].end_spill, 4U);
+  EXPECT_EQ(segments[2].first_spill, 5U);
+  EXPECT_EQ(&segments[3].stretch->file(), other.get());
+}
+
 TEST(JoinSegments, KeepsPointsBoxesAndBytesOfRandomOnes) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
