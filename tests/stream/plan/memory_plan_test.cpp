@@ -134,7 +134,7 @@ TEST(MemoryPlan, KeepsSomeMebibytesBackAndMoreBesideReading) {
     return plan_memory(limit, 2, 2, 0, early).waiting_bytes * 10;  // a tenth of it
   };
   for (const std::uint64_t limit : {32 * kMiB, 256 * kMiB}) {
-    EXPECT_LE(shared_out(limit, false), limit - 3 * kMiB);
+    EXPECT_LE(shared_out(limit, false), limit - 4 * kMiB);
     EXPECT_GT(shared_out(limit, false), limit - 5 * kMiB);
     EXPECT_LT(shared_out(limit, true), shared_out(limit, false));
   }
