@@ -5,14 +5,23 @@
 namespace spillway::detail {
 
 template <int D>
-Sequencer<D>::Sequencer(BlockSink& sink, const OutputOptions& output, StageTimes& times)
-    : sink_(sink), times_(times), counts_facets_(output.max_edge.has_value()) {}
+Sequencer<D>::Sequencer(BlockSink& sink, MemoryBudget& budget, const OutputOptions& output,
+                        StageTimes& times)
+    : sink_(sink), budget_(budget), times_(times), counts_facets_(output.max_edge.has_value()) {}
+
+template <int D>
+Sequencer<D>::~Sequencer() {
+  budget_.give_back(table_bytes_);
+}
 
 template <int D>
 void Sequencer<D>::open_slot(std::uint32_t slot, std::uint32_t blocks) {
+  const std::uint64_t bytes = sizeof first_vertex_[0] + blocks * sizeof first_vertex_[0][0];
+  budget_.take(bytes, "the table of blocks");
   const std::lock_guard lock(mutex_);
-  if (blocks_.size() <= slot) blocks_.resize(slot + 1);
-  blocks_[slot] = blocks;
+  table_bytes_ += bytes;
+  if (first_vertex_.size() <= slot) first_vertex_.resize(slot + 1);
+  first_vertex_[slot].resize(blocks);
 }
 
 template <int D>
@@ -43,12 +52,13 @@ void Sequencer<D>::write_what_is_due(std::unique_lock<std::mutex>& lock) {
   for (auto due = waiting_.find(next_); due != waiting_.end(); due = waiting_.find(next_)) {
     Waiting turn = std::move(due->second);
     waiting_.erase(due);
+    number(turn);
     lock.unlock();
     const std::uint64_t bytes = turn.bytes;
     write(std::move(turn));
     lock.lock();
     waiting_bytes_ -= bytes;
-    if (++next_.block == blocks_[next_.slot]) next_ = {next_.slot + 1, 0};
+    if (++next_.block == first_vertex_[next_.slot].size()) next_ = {next_.slot + 1, 0};
     turned_.notify_all();
   }
   writing_ = false;
@@ -67,17 +77,21 @@ void Sequencer<D>::give_up() {
   turned_.notify_all();
 }
 
+/// Numbers the vertices that come with the next block, and those that it has from others. Under the
+/// mutex.
+template <int D>
+void Sequencer<D>::number(Waiting& waiting) {
+  first_vertex_[next_.slot][next_.block] = vertices_;
+  std::vector<std::uint64_t>& imported = waiting.mesh.imported;
+  imported.reserve(waiting.imported.size());
+  for (const StreamPlace& place : waiting.imported) imported.push_back(number_of_written(place));
+}
+
 template <int D>
 void Sequencer<D>::write(Waiting&& waiting) {
   StageTimer timer(times_, Stage::kWrite, StepOrder::kInOrder);
   timer.move_bytes(waiting.bytes);
-  if (first_vertex_.size() <= next_.slot) first_vertex_.resize(next_.slot + 1);
-  first_vertex_[next_.slot].push_back(vertices_);
   MeshBlock& mesh = waiting.mesh;
-  mesh.imported.reserve(waiting.imported.size());
-  for (const StreamPlace& place : waiting.imported) {
-    mesh.imported.push_back(number_of_written(place));
-  }
   if (counts_facets_) {
     open_facets_.add_block(waiting.corners, {vertices_, waiting.vertices, mesh.imported});
   }

@@ -10,6 +10,7 @@
 
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/geometry/canonical_hash.h"
+#include "src/runtime/memory_budget.h"
 #include "src/runtime/stage_times.h"
 #include "stream/output/open_facets.h"
 #include "stream/output/output_options.h"
@@ -22,13 +23,18 @@ namespace spillway::detail {
 template <int D>
 class Sequencer {
  public:
-  /// `sink` and `times` must outlive it.
-  Sequencer(BlockSink& sink, const OutputOptions& output, StageTimes& times);
+  /// `sink`, `budget` and `times` must outlive it. The table of what has been written takes 8 bytes
+  /// a block of the budget.
+  Sequencer(BlockSink& sink, MemoryBudget& budget, const OutputOptions& output, StageTimes& times);
+  ~Sequencer();
+  Sequencer(const Sequencer&) = delete;
+  Sequencer& operator=(const Sequencer&) = delete;
 
   /// Is called once, before the first block is written.
   void tell_first_block(std::function<void()> tell) { tell_first_block_ = std::move(tell); }
 
-  /// Tells how many blocks a slot has, at least one; once for every slot, in any order.
+  /// Tells how many blocks a slot has, at least one; once for every slot, in any order. Throws
+  /// Error (kOutOfBudget) if the table of blocks does not fit into the budget.
   void open_slot(std::uint32_t slot, std::uint32_t blocks);
 
   /// Takes what settle() made for one block; each comes once, from any thread. The sink absorbs it
@@ -63,10 +69,13 @@ class Sequencer {
   };
 
   void write_what_is_due(std::unique_lock<std::mutex>& lock);
+  void number(Waiting& waiting);
   void write(Waiting&& waiting);
   [[nodiscard]] std::uint64_t number_of_written(const StreamPlace& place) const;
 
   BlockSink& sink_;
+  MemoryBudget& budget_;
+  std::uint64_t table_bytes_ = 0;
   std::function<void()> tell_first_block_;  ///< empty once it has been called
   StageTimes& times_;
   mutable std::mutex mutex_;
@@ -74,8 +83,8 @@ class Sequencer {
   std::map<BlockPlace, Waiting> waiting_;
   std::uint64_t waiting_bytes_ = 0;
   BlockPlace next_{0, 0};
-  std::vector<std::uint32_t> blocks_;                     ///< by slot; 0 where not known yet
-  std::vector<std::vector<std::uint64_t>> first_vertex_;  ///< by slot and block, as written
+  /// By slot, empty where not known yet, and block: as written.
+  std::vector<std::vector<std::uint64_t>> first_vertex_;
   std::uint64_t vertices_ = 0;
   std::uint64_t simplices_ = 0;
   CanonicalHash<D> hash_;

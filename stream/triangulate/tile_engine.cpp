@@ -43,7 +43,7 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
       counts_(budget),
       expected_points_(expected.count.value_or(0)),
       tree_(tree_options(expected), scratch, counts_.times),
-      sequencer_(sink, {.max_edge = options.max_edge}, counts_.times),
+      sequencer_(sink, budget, {.max_edge = options.max_edge}, counts_.times),
       context_{.options = tile_options(expected.lattice),
                .budget = budget,
                .sequencer = sequencer_,

@@ -6,6 +6,8 @@
 #include <atomic>
 #include <thread>
 
+#include "src/error.h"
+
 namespace spillway::detail {
 namespace {
 
@@ -38,11 +40,12 @@ class SequencerTest : public testing::Test {
   }
 
   KeptSlabs sink_;
+  MemoryBudget budget_{1 << 20};
   StageTimes times_;
 };
 
 TEST_F(SequencerTest, WritesBlocksInTheOrderOfTheirPlaces) {
-  Sequencer<2> sequencer(sink_, {}, times_);
+  Sequencer<2> sequencer(sink_, budget_, {}, times_);
   sequencer.open_slot(1, 1);
   sequencer.open_slot(0, 2);
   sequencer.submit({1, 0}, block_of(1, 3), {}, {});
@@ -54,7 +57,7 @@ TEST_F(SequencerTest, WritesBlocksInTheOrderOfTheirPlaces) {
 }
 
 TEST_F(SequencerTest, NumbersVerticesAsTheyAreWritten) {
-  Sequencer<2> sequencer(sink_, {}, times_);
+  Sequencer<2> sequencer(sink_, budget_, {}, times_);
   sequencer.open_slot(0, 2);
   sequencer.open_slot(1, 1);
   const StreamPlace in_first{{0, 0}, 2};
@@ -69,8 +72,20 @@ TEST_F(SequencerTest, NumbersVerticesAsTheyAreWritten) {
   EXPECT_EQ(sequencer.totals().vertices, 6U);
 }
 
+TEST_F(SequencerTest, TakesTheTableOfBlocksOfTheBudget) {
+  {
+    Sequencer<2> sequencer(sink_, budget_, {}, times_);
+    sequencer.open_slot(0, 1000);
+    sequencer.open_slot(1, 2000);
+    EXPECT_GE(budget_.used(), 3000 * sizeof(std::uint64_t));
+    EXPECT_LE(budget_.used(), 3000 * sizeof(std::uint64_t) + 100);
+    EXPECT_THROW(sequencer.open_slot(2, 1 << 20), Error);
+  }
+  EXPECT_EQ(budget_.used(), 0U);
+}
+
 TEST_F(SequencerTest, PassesOverEmptyBlocks) {
-  Sequencer<2> sequencer(sink_, {}, times_);
+  Sequencer<2> sequencer(sink_, budget_, {}, times_);
   sequencer.open_slot(0, 2);
   sequencer.submit({0, 0}, {}, {}, {});
   EXPECT_THAT(sink_.blocks, IsEmpty());
@@ -79,7 +94,7 @@ TEST_F(SequencerTest, PassesOverEmptyBlocks) {
 }
 
 TEST_F(SequencerTest, CountsFacetsWhereSimplicesMayBeLeftOut) {
-  Sequencer<2> sequencer(sink_, {.max_edge = 1.0}, times_);
+  Sequencer<2> sequencer(sink_, budget_, {.max_edge = 1.0}, times_);
   sequencer.open_slot(0, 2);
   sequencer.submit({0, 0}, block_of(3, 0, {0, 1, 2}), {}, {});
   // Shares the edge of vertices 1 and 2.
@@ -90,7 +105,7 @@ TEST_F(SequencerTest, CountsFacetsWhereSimplicesMayBeLeftOut) {
 }
 
 TEST_F(SequencerTest, RoomIsWaitedForUntilBlocksAreWritten) {
-  Sequencer<2> sequencer(sink_, {}, times_);
+  Sequencer<2> sequencer(sink_, budget_, {}, times_);
   sequencer.open_slot(0, 1);
   sequencer.open_slot(1, 1);
   sequencer.submit({1, 0}, block_of(1000, 1), {}, {});
@@ -108,7 +123,7 @@ TEST_F(SequencerTest, RoomIsWaitedForUntilBlocksAreWritten) {
 }
 
 TEST_F(SequencerTest, NobodyWaitsAfterGivingUp) {
-  Sequencer<2> sequencer(sink_, {}, times_);
+  Sequencer<2> sequencer(sink_, budget_, {}, times_);
   sequencer.open_slot(0, 1);
   sequencer.open_slot(1, 1);
   sequencer.submit({1, 0}, block_of(1000, 1), {}, {});

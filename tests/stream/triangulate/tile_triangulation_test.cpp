@@ -55,7 +55,7 @@ class Bench {
   MemoryBudget budget{std::uint64_t{1} << 30};
   StreamCounts counts{budget};
   KeepingWriter mesh{D};
-  Sequencer<D> sequencer{mesh, {}, counts.times};
+  Sequencer<D> sequencer{mesh, budget, {}, counts.times};
   std::atomic<int> leaves_told = 0;
   TileContext<D> context{.options = {},
                          .budget = budget,
