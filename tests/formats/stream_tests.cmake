@@ -7,5 +7,6 @@ spillway_test(mesh_streams_test unit
     formats/meshes/sma/sma_test.cpp
     formats/meshes/spool/spm_section_test.cpp
     formats/meshes/spm/spm_test.cpp
+    formats/meshes/spm/spm_tetrahedra_test.cpp
     formats/meshes/spool/spooled_mesh_writer_test.cpp
   LIBS spillway_formats spillway_delaunay spillway_generators fmt::fmt)

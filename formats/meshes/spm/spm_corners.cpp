@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "formats/bytes/bytes.h"
+#include "formats/meshes/spm/spm_tetrahedra.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -53,25 +54,6 @@ Turned<2> turn(const std::uint32_t* s, std::integral_constant<int, 2> /*dimensio
   return {first, {second - first, s[0] + s[1] + s[2] - second - 2 * first}};
 }
 
-// First the pair that has the smallest corner, then that corner in its lower half.
-Turned<3> turn(const std::uint32_t* s, std::integral_constant<int, 3> /*dimension*/) {
-  const auto pair = [](std::uint32_t a, std::uint32_t b) { return CornerPair{b} << 32U | a; };
-  const auto upper = [](CornerPair p) { return static_cast<std::uint32_t>(p >> 32U); };
-  const auto lower = [](CornerPair p) { return static_cast<std::uint32_t>(p); };
-  CornerPair front = pair(s[0], s[1]);
-  CornerPair back = pair(s[2], s[3]);
-  const bool behind = std::min(s[2], s[3]) < std::min(s[0], s[1]);
-  const CornerPair difference = (front ^ back) & (0 - CornerPair{behind});
-  front ^= difference;
-  back ^= difference;
-  // To swap the corners of both pairs is even, too.
-  const int turns = static_cast<int>(upper(front) < lower(front)) * 32;
-  front = std::rotl(front, turns);
-  back = std::rotl(back, turns);
-  const std::uint32_t first = lower(front);
-  return {first, {upper(front) - first, lower(back) - first, upper(back) - first}};
-}
-
 /// Rows of numbers, most of them small.
 class NumberRows {
  public:
@@ -84,12 +66,6 @@ class NumberRows {
     put_all(triangles.size(), [&](std::size_t i, const auto& put) {
       put(continues[i] == 0, triangles[i][0]);
       put(true, triangles[i][1]);
-    });
-  }
-
-  void put_tetrahedra(std::span<const Rest<3>> tetrahedra) {
-    put_all(tetrahedra.size(), [&](std::size_t i, const auto& put) {
-      for (const std::uint32_t number : tetrahedra[i]) put(true, number);
     });
   }
 
@@ -292,11 +268,6 @@ void append_rests(std::vector<std::byte>& out, std::span<const std::uint32_t> en
   }
 }
 
-void append_rests(std::vector<std::byte>& /*out*/, std::span<const std::uint32_t> /*ends*/,
-                  std::span<Rest<3>> rests, NumberRows& rows) {
-  rows.put_tetrahedra(rests);
-}
-
 template <int D>
 void append_simplices(std::vector<std::byte>& out, std::uint32_t numbers,
                       std::span<const std::uint32_t> corners) {
@@ -335,11 +306,7 @@ class CornerReader {
     low_ = take(size);
     split_rows(counts);
     corners.resize(std::size_t{simplices_} * (dimension_ + 1));
-    if (dimension_ == 2) {
-      read_triangles(counts, bits, corners.data());
-    } else {
-      read_tetrahedra(counts, corners.data());
-    }
+    read_triangles(counts, bits, corners.data());
     return left_;
   }
 
@@ -430,16 +397,6 @@ class CornerReader {
     check_largest();
   }
 
-  void read_tetrahedra(std::span<const std::byte> counts, std::uint32_t* out) {
-    for (std::uint32_t first = 0; first < numbers_; ++first) {
-      for (std::uint32_t left = count_of(counts, first); left > 0; --left) {
-        *out++ = first;
-        for (int i = 0; i < 3; ++i) *out++ = corner(first + next());
-      }
-    }
-    check_largest();
-  }
-
   std::span<const std::byte> left_;
   int dimension_;
   std::uint32_t numbers_;
@@ -461,7 +418,7 @@ void append_corners(std::vector<std::byte>& out, int dimension, std::uint32_t nu
   if (dimension == 2) {
     append_simplices<2>(out, numbers, corners);
   } else {
-    append_simplices<3>(out, numbers, corners);
+    append_tetrahedra(out, numbers, corners);
   }
 }
 
@@ -469,6 +426,7 @@ std::span<const std::byte> read_corners(std::span<const std::byte> bytes, int di
                                         std::uint32_t numbers, std::uint32_t simplices,
                                         std::vector<std::uint32_t>& corners,
                                         const FileSpot& where) {
+  if (dimension == 3) return read_tetrahedra(bytes, numbers, simplices, corners, where);
   return CornerReader(bytes, dimension, numbers, simplices, where).read(corners);
 }
 
