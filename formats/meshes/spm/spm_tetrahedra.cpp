@@ -147,10 +147,14 @@ std::vector<std::uint32_t> append_counts(std::vector<std::byte>& out,
   return beyond;
 }
 
-/// Corners that came new, one after another.
+/// Corners that came new, one after another, by the time at which they did, from kRecent on.
 struct NewCorners {
-  std::unique_ptr<std::uint32_t[]> numbers;
-  std::size_t count;
+  [[nodiscard]] std::span<const std::uint32_t> all() const {
+    return {&by_time[kRecent], std::size_t{end} - kRecent};
+  }
+
+  std::unique_ptr<std::uint32_t[]> by_time;
+  std::uint32_t end = kRecent;  // the time of the next one
 };
 
 /// Appends half a byte for each corner. No branch: nobody can tell which of them are new.
@@ -161,23 +165,20 @@ NewCorners append_references(std::vector<std::byte>& out, std::uint32_t numbers,
   const std::size_t size = (3 * rests.size() + 1) / 2;
   out.resize(begin + size + 1);  // words of four bytes are written for three
   std::byte* at = out.data() + begin;
-  NewCorners found{std::make_unique_for_overwrite<std::uint32_t[]>(3 * rests.size()), 0};
-  // The time at which a corner was new; it goes on by one with each, and begins so late that none
-  // seems to have been new.
+  NewCorners found{std::make_unique_for_overwrite<std::uint32_t[]>(3 * rests.size() + kRecent + 1)};
+  // When a corner was new; 0, which is long ago, if it never was.
   const auto times = std::make_unique<std::uint32_t[]>(numbers);
-  std::uint32_t* next = found.numbers.get();
   std::uint32_t now = kRecent;
-  const auto refer = [&](std::uint32_t corner) {
+  const auto refer = [&times, &found, &now](std::uint32_t corner) {
     std::uint32_t ago = now - times[corner];
     const std::uint32_t known = 0 - std::uint32_t{ago < kRecent};  // all bits or none
     ago &= known;
-    *next = corner;
+    found.by_time[now] = corner;
     times[corner] = now - ago;
-    next += 1 + static_cast<std::ptrdiff_t>(static_cast<std::int32_t>(known));
     now += 1 + known;
     return ago;
   };
-  const auto refer_all = [&](const Rest& rest) {
+  const auto refer_all = [&refer](const Rest& rest) {
     std::uint32_t references = refer(rest[0]);
     references |= refer(rest[1]) << 4U;
     return references | refer(rest[2]) << 8U;
@@ -189,7 +190,7 @@ NewCorners append_references(std::vector<std::byte>& out, std::uint32_t numbers,
   }
   if (i < rests.size()) store(at, static_cast<std::uint16_t>(refer_all(rests[i])));
   out.resize(begin + size);
-  found.count = static_cast<std::size_t>(next - found.numbers.get());
+  found.end = now;
   return found;
 }
 
@@ -233,7 +234,7 @@ void append_sorted(std::vector<std::byte>& out, std::uint32_t numbers,
       append_counts(out, std::span(sorted.ends).first(numbers));
   const std::span<const Rest> rests(sorted.rests.get(), corners.size() / 4);
   const NewCorners found = append_references(out, numbers, rests);
-  append_numbers(out, counts, {found.numbers.get(), found.count});
+  append_numbers(out, counts, found.all());
 }
 
 /// What append_tetrahedra() wrote, taken apart.
