@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "formats/bytes/bytes.h"
+#include "formats/bytes/longest_vectors.h"
 #include "src/error.h"
 
 // Every loop here runs over a fixed number of values without a branch, in operations that SSE2 has,
@@ -17,15 +18,6 @@
 // out the conversion between doubles and 64-bit integers: an integer of up to 51 bits is instead
 // added to 1.5 * 2^52, where neighbouring doubles differ by 1, and read off the lowest bits. On
 // processors with AVX2 the vectors are twice as long (with_longest_vectors).
-
-#ifdef __x86_64__
-/// Compiles a function, with all that it calls, for processors with AVX2.
-#define SPILLWAY_FOR_AVX2 [[gnu::target("avx2"), gnu::flatten]]
-#define SPILLWAY_HAS_AVX2 __builtin_cpu_supports("avx2")
-#else
-#define SPILLWAY_FOR_AVX2
-#define SPILLWAY_HAS_AVX2 false
-#endif
 
 namespace spillway::detail {
 namespace {
@@ -87,16 +79,6 @@ using Word = std::conditional_t<
     kWidth == 1, std::uint8_t,
     std::conditional_t<kWidth == 2, std::uint16_t,
                        std::conditional_t<kWidth <= 4, std::uint32_t, std::uint64_t>>>;
-
-template <typename Work>
-SPILLWAY_FOR_AVX2 void with_avx2(const Work& work) {
-  work();
-}
-
-template <typename Work>
-void with_longest_vectors(const Work& work) {
-  SPILLWAY_HAS_AVX2 ? with_avx2(work) : work();
-}
 
 /// Calls `body` with the width, 1 to 8, as a constant.
 template <typename Body>

@@ -191,6 +191,25 @@ TEST(Spm, TrianglesAroundACornerComeBackWhateverTheyAre) {
   }
 }
 
+TEST(Spm, NumbersOfAllSizesComeBackBesideEachOther) {
+  constexpr std::array<std::uint32_t, 9> kNumbers = {1,     190,   191,   192,  193,
+                                                     16318, 16319, 16320, 70000};
+  for (std::uint32_t corners_used = 1; corners_used < 40; ++corners_used) {
+    std::vector<std::uint32_t> corners;
+    for (std::uint32_t i = 0; i < 81 * 3; ++i) {
+      const std::uint32_t first = i % corners_used;
+      corners.insert(corners.end(),
+                     {first + kNumbers[i % 9], first + kNumbers[i / 9 % 9] + 1, first});
+    }
+    std::vector<std::byte> bytes;
+    append_corners(bytes, 2, 80000, corners);
+    std::vector<std::uint32_t> read;
+    const auto count = static_cast<std::uint32_t>(corners.size() / 3);
+    ASSERT_TRUE(read_corners(bytes, 2, 80000, count, read, {"here"}).empty());
+    ASSERT_EQ(known_by(read), known_by(corners));
+  }
+}
+
 TEST(Spm, ATerrainTakesLessThan24BytesAPoint) {
   for (const std::size_t count : {4096, 32768}) {
     const StreamedMesh mesh = terrain_block(count);

@@ -1,0 +1,23 @@
+#pragma once
+// The triangles of a block: docs/formats-meshes.md ("spm").
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "src/error.h"
+
+namespace spillway::detail {
+
+/// append_corners() of triangles.
+void append_triangles(std::vector<std::byte>& out, std::uint32_t numbers,
+                      std::span<const std::uint32_t> corners);
+
+/// read_corners() of triangles.
+std::span<const std::byte> read_triangles(std::span<const std::byte> bytes, std::uint32_t numbers,
+                                          std::uint32_t triangles,
+                                          std::vector<std::uint32_t>& corners,
+                                          const FileSpot& where);
+
+}  // namespace spillway::detail
