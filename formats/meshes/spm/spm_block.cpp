@@ -7,6 +7,7 @@
 
 #include "formats/blocks/columns.h"
 #include "formats/bytes/bytes.h"
+#include "formats/bytes/longest_vectors.h"
 #include "formats/meshes/spm/spm_corners.h"
 #include "formats/points/spp/spp_coordinates.h"
 #include "src/error.h"
@@ -32,9 +33,13 @@ const char* demand(bool integer) { return integer ? "an integer up to 2^53" : "f
 std::uint32_t largest_of(std::span<const std::uint32_t> numbers) {
   constexpr std::uint32_t kHighest = std::uint32_t{1} << 31U;
   auto largest = static_cast<std::int32_t>(kHighest);
-  for (const std::uint32_t number : numbers) {
-    largest = std::max(largest, static_cast<std::int32_t>(number ^ kHighest));
-  }
+  with_longest_vectors([&largest, numbers] {
+    std::int32_t most = largest;
+    for (const std::uint32_t number : numbers) {
+      most = std::max(most, static_cast<std::int32_t>(number ^ kHighest));
+    }
+    largest = most;
+  });
   return static_cast<std::uint32_t>(largest) ^ kHighest;
 }
 
