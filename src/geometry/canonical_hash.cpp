@@ -12,10 +12,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "the canonical hash is defined on little-endian numbers");
 
-std::uint64_t simplex_hash(std::uint64_t sum_of_vertices) {
-  return XXH3_64bits(&sum_of_vertices, sizeof sum_of_vertices);
-}
-
 }  // namespace
 
 template <int D>
@@ -29,7 +25,7 @@ requires SupportedDimension<D>
 void CanonicalHash<D>::add(const std::array<Point<D>, D + 1>& simplex) {
   std::uint64_t vertices = 0;
   for (const Point<D>& position : simplex) vertices += vertex_hash<D>(position);
-  sum_ += simplex_hash(vertices);
+  add(vertices);
 }
 
 template <int D>
@@ -39,7 +35,7 @@ void CanonicalHash<D>::add(std::span<const std::uint32_t> corners,
   for (std::size_t s = 0; s < corners.size(); s += D + 1) {
     std::uint64_t sum = 0;
     for (int i = 0; i <= D; ++i) sum += vertices[corners[s + i]];
-    sum_ += simplex_hash(sum);
+    add(sum);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -24,6 +25,19 @@ class CanonicalHash {
  public:
   /// Adds one finite simplex, given by its output coordinates in any order.
   void add(const std::array<Point<D>, D + 1>& simplex);
+
+  /// Adds one finite simplex, given by the sum modulo 2^64 of its vertices' fingerprints.
+  void add(std::uint64_t sum_of_vertices) {
+    // XXH3-64 of eight bytes, without a call into the library.
+    constexpr std::uint64_t kSecret = 0xC73AB174C5ECD5A2U;
+    constexpr std::uint64_t kFactor = 0x9FB21C651E98DF25U;
+    std::uint64_t h = std::rotl(sum_of_vertices, 32) ^ kSecret;
+    h ^= std::rotl(h, 49) ^ std::rotl(h, 24);
+    h *= kFactor;
+    h ^= (h >> 35) + sizeof h;
+    h *= kFactor;
+    sum_ += h ^ (h >> 28);
+  }
 
   /// Adds finite simplices of D+1 corners each, one after the other: places of `vertices`, the
   /// fingerprints of all vertices.

@@ -14,6 +14,9 @@ constexpr std::uint8_t kByFinal = 1;
 constexpr std::uint8_t kByBorder = 2;
 constexpr std::uint8_t kByEmitted = 4;  ///< a final one that is not left out
 
+/// Simplices that are listed before they are appended to the block.
+constexpr std::size_t kListed = 64;
+
 /// Memory is fetched this many vertices ahead.
 constexpr VertexId kAhead = 16;
 
@@ -35,14 +38,14 @@ class Settlement {
     announce_vertices();
     import_and_finalize();
     list_simplices();
-    result_.hash.add(result_.mesh.corners, hashes_);
     return std::move(result_);
   }
 
  private:
   void mark_uses() {
     if constexpr (kOfLeaf) {
-      if (!output_.max_edge) return mark_uses_from_border();
+      const bool knows_neighbours = part_.open_simplices.size() == part_.open.size();
+      if (knows_neighbours && !output_.max_edge) return mark_uses_from_border();
     }
     mark_all_uses();
   }
@@ -72,18 +75,18 @@ class Settlement {
     for (const Duplicate& duplicate : part_.duplicates) {
       use_[duplicate.dropped - part_.first_vertex] = 0;
     }
-    part_.for_each_open([&](std::size_t s, std::size_t /*place*/) {
+    part_.for_each_open([&](std::size_t s, std::size_t place) {
       if (part_.fates[s] != Fate::kKept) return;
       ++kept_;
-      for (const VertexId v : part_.simplex(s)) {
+      for (const VertexId v : part_.open_simplex(place)) {
         if (v != kInfiniteVertex) use_[v] = kByBorder;
       }
     });
-    part_.for_each_open([&](std::size_t s, std::size_t /*place*/) {
+    part_.for_each_open([&](std::size_t s, std::size_t place) {
       if (part_.fates[s] != Fate::kKept) return;
-      const Corners corners = part_.simplex(s);
+      const Corners corners = part_.open_simplex(place);
       for (int i = 0; i <= D; ++i) {
-        if (part_.fates[part_.simplices[s].neighbours[i]] != Fate::kFinal) continue;
+        if (part_.fates[part_.open_simplices[place].neighbours[i]] != Fate::kFinal) continue;
         for (int k = 0; k <= D; ++k) {
           if (k != i) use_[corners[k]] |= kByFinal | kByEmitted;
         }
@@ -148,32 +151,68 @@ class Settlement {
     result_.final_simplices = count - kept_;
     result_.border.simplices.reserve(kept_);
     if (!part_.exposure.empty()) result_.border.exposure.reserve(kept_);
-    result_.mesh.corners.resize((D + 1) * (count - kept_));
-    std::uint32_t* end = result_.mesh.corners.data();
+    result_.mesh.corners.reserve((D + 1) * (count - kept_));
     std::size_t s = 0;
     // Most are final; those that may not be are few, if they are known.
-    const auto list_final = [&](std::size_t until) {
-      for (; s < until; ++s) {
-        const Corners corners = part_.finite_simplex(s);
-        if (is_left_out(corners)) {
-          ++result_.left_out;
-        } else {
-          for (const VertexId v : corners) *end++ = short_number_[v];
-        }
-      }
-    };
     part_.for_each_open([&](std::size_t open, std::size_t place) {
       if (part_.fates[open] == Fate::kFinal) return;
-      list_final(open);
+      list_final(s, open);
       if (part_.fates[open] == Fate::kKept) {
-        keep(part_.simplex(open), place);
+        keep(part_.open_simplex(place), place);
       } else {
         ++result_.hull_facets;
       }
       s = open + 1;
     });
-    list_final(count);
-    result_.mesh.corners.resize(static_cast<std::size_t>(end - result_.mesh.corners.data()));
+    list_final(s, count);
+    pass_on_listed();
+  }
+
+  /// Lists final simplices from `s` on.
+  void list_final(std::size_t s, std::size_t until) {
+    while (s < until) {
+      if (listed_ == kListed) pass_on_listed();
+      const std::size_t end = std::min(until, s + (kListed - listed_));
+      if (output_.max_edge) {
+        for (; s < end; ++s) {
+          if (is_left_out(part_.finite_simplex(s))) {
+            ++result_.left_out;
+          } else {
+            list(s, s + 1);
+          }
+        }
+      } else {
+        list(s, end);
+        s = end;
+      }
+    }
+  }
+
+  /// Lists and hashes simplices for which there is room.
+  void list(std::size_t begin, std::size_t end) {
+    const std::uint32_t* const numbers = short_number_.get();
+    const std::uint64_t* const hashes = hashes_.data();
+    CanonicalHash<D> hash;
+    std::array<std::uint32_t, D + 1>* next = &list_[listed_];
+    for (std::size_t s = begin; s < end; ++s, ++next) {
+      const Corners corners = part_.finite_simplex(s);
+      std::uint64_t sum = 0;
+      for (int i = 0; i <= D; ++i) {
+        const std::uint32_t number = numbers[corners[i]];
+        (*next)[i] = number;
+        sum += hashes[number];
+      }
+      hash.add(sum);
+    }
+    listed_ += end - begin;
+    result_.hash.add(hash);
+  }
+
+  /// Appends what was listed to the block: memory that nobody has cleared.
+  void pass_on_listed() {
+    const std::span<const std::uint32_t> corners(list_[0].data(), (D + 1) * listed_);
+    result_.mesh.corners.insert(result_.mesh.corners.end(), corners.begin(), corners.end());
+    listed_ = 0;
   }
 
   void keep(Corners corners, std::size_t place) {
@@ -214,6 +253,8 @@ class Settlement {
   std::unique_ptr<VertexId[]> kept_number_;        // by vertex, if it is in the border
   std::vector<std::uint64_t> hashes_;              // by short number
   std::size_t kept_ = 0;                           // simplices
+  std::array<std::array<std::uint32_t, D + 1>, kListed> list_;
+  std::size_t listed_ = 0;
   Settled<D> result_;
 };
 

@@ -55,12 +55,15 @@ struct MergeToSettle {
   [[nodiscard]] const std::array<VertexId, D + 1>& finite_simplex(std::size_t s) const {
     return merged.simplices[s];
   }
+  [[nodiscard]] const std::array<VertexId, D + 1>& open_simplex(std::size_t i) const {
+    return merged.simplices[i];
+  }
   [[nodiscard]] const BorderVertex<D>& vertex(VertexId v) const { return merged.vertices[v]; }
   [[nodiscard]] const Point<D>& position(VertexId v) const { return merged.vertices[v].position; }
   void expect(VertexId /*v*/) const {}
   [[nodiscard]] StreamPlace place(VertexId v) const { return merged.vertices[v].place; }
   /// Calls visit(s, i) for all simplices whose fate may be another one than kFinal, in order, where
-  /// i is the place of the exposure.
+  /// i is its place among them.
   template <typename Visit>
   void for_each_open(const Visit& visit) const {
     for (std::size_t s = 0; s < fates.size(); ++s) visit(s, s);
@@ -71,11 +74,13 @@ struct MergeToSettle {
 template <int D>
 struct LeafToSettle {
   BlockPlace block;
-  std::span<const Simplex<D>> simplices;
-  VertexId first_vertex = 0;              ///< the number that its first vertex has in `simplices`
+  std::span<const std::array<VertexId, D + 1>> corners;  ///< by simplex
+  VertexId first_vertex = 0;              ///< the number that its first vertex has in `corners`
   std::span<const Duplicate> duplicates;  ///< vertices without simplices, by the same numbers
   std::span<const Fate> fates;            ///< by simplex
   std::span<const std::uint32_t> open;    ///< ascending; the fates of all others are kFinal
+  /// Those, if they are listed by themselves; their neighbours are any simplices.
+  std::span<const Simplex<D>> open_simplices;
   std::span<const Exposure> exposure;     ///< of those `open`, where it is known
   std::span<const Point<D>> points;       ///< by vertex
   std::span<const VertexId> input_index;  ///< by vertex: its place in the two that follow
@@ -84,17 +89,23 @@ struct LeafToSettle {
 
   [[nodiscard]] int dimension() const { return D; }
   [[nodiscard]] std::size_t vertex_count() const { return points.size(); }
-  [[nodiscard]] std::size_t simplex_count() const { return simplices.size(); }
+  [[nodiscard]] std::size_t simplex_count() const { return corners.size(); }
   [[nodiscard]] std::array<VertexId, D + 1> simplex(std::size_t s) const {
-    std::array<VertexId, D + 1> corners = simplices[s].vertices;
-    for (VertexId& v : corners) v = v == kInfiniteVertex ? v : v - first_vertex;
-    return corners;
+    return from_first(corners[s]);
   }
   /// The same, if it is known to be finite.
   [[nodiscard]] std::array<VertexId, D + 1> finite_simplex(std::size_t s) const {
-    std::array<VertexId, D + 1> corners = simplices[s].vertices;
-    for (VertexId& v : corners) v -= first_vertex;
-    return corners;
+    std::array<VertexId, D + 1> simplex = corners[s];
+    for (VertexId& v : simplex) v -= first_vertex;
+    return simplex;
+  }
+  /// One of those that are open, by its place among them.
+  [[nodiscard]] std::array<VertexId, D + 1> open_simplex(std::size_t i) const {
+    return open_simplices.empty() ? simplex(open[i]) : from_first(open_simplices[i].vertices);
+  }
+  [[nodiscard]] std::array<VertexId, D + 1> from_first(std::array<VertexId, D + 1> simplex) const {
+    for (VertexId& v : simplex) v = v == kInfiniteVertex ? v : v - first_vertex;
+    return simplex;
   }
   [[nodiscard]] BorderVertex<D> vertex(VertexId v) const {
     BorderVertex<D> vertex;

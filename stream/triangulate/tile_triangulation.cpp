@@ -240,7 +240,7 @@ class TileRun {
       return pass_up(context_, open_border(part, leaf), place_of(node));
     }
     Settled<D> settled = settle_leaf(node, leaf);
-    recycle(std::move(leaf.simplices));
+    recycle(std::move(leaf));
     counts_.final_in_leaves += settled.final_simplices;
     return pass_on(context_, std::move(settled), place_of(node));
   }
@@ -248,11 +248,10 @@ class TileRun {
   Settled<D> settle_leaf(const Node& node, const BaseCase<D>& base_case) {
     const StageTimer timer(counts_.times, Stage::kFinality);
     LeafToSettle<D> leaf = leaf_of(*node.tree);
-    leaf.simplices = {base_case.simplices.data(), base_case.simplices.size()};
+    leaf.corners = {base_case.corners.data(), base_case.corners.size()};
     leaf.duplicates = base_case.duplicates;
-    std::vector<std::uint32_t> asked;
-    if (!base_case.not_inside) asked = open_questions(node, leaf);
-    leaf.open = base_case.not_inside ? *base_case.not_inside : asked;
+    leaf.open = *base_case.not_inside;
+    leaf.open_simplices = base_case.open_simplices;
     std::vector<Exposure> exposure;
     const std::vector<Fate> fates = fates_in_leaf(node, leaf, exposure);
     leaf.fates = fates;
@@ -263,13 +262,17 @@ class TileRun {
   BaseCase<D> base_case(const Node& node, std::span<const Point<D>> points) {
     const StageTimer timer(counts_.times, Stage::kLeaves);
     const Part<D>& part = *node.tree;
-    return triangulate_base_case<D>(
+    const Box<D> clear_box = clear_box_of(node);
+    BaseCase<D> base_case = triangulate_base_case<D>(
         {.points = points,
          .input_index = std::span(input_index_).subspan(part.begin, part.size()),
          .first_vertex = part.begin,
-         .clear_box = clear_box_of(node),
+         .clear_box = clear_box,
          .in_place = true,
+         .corners_only = true,
          .kernel = context_.options.kernel});
+    if (!base_case.simplices.empty()) tell_corners(base_case, points, part.begin, clear_box);
+    return base_case;
   }
 
   /// The box around a leaf that has nothing in common with the box of any other part.
@@ -310,28 +313,29 @@ class TileRun {
     return border;
   }
 
-  /// The simplices of a leaf whose circumspheres are not known to lie in its clear box, if the
-  /// kernel has not told: infinite ones, those near the box's sides, and some that are flat.
-  [[nodiscard]] std::vector<std::uint32_t> open_questions(const Node& node,
-                                                          const LeafToSettle<D>& leaf) const {
-    std::vector<std::uint32_t> open;
-    const Box<D> clear_box = clear_box_of(node);
+  /// Lists corners where the kernel gave simplices, and those of these whose circumspheres are not
+  /// known to lie in the clear box: infinite ones, those near its sides, and some that are flat.
+  static void tell_corners(BaseCase<D>& leaf, std::span<const Point<D>> points,
+                           VertexId first_vertex, const Box<D>& clear_box) {
+    const auto count = static_cast<std::uint32_t>(leaf.simplices.size());
+    leaf.corners = SlabArray<std::array<VertexId, D + 1>>(count);
+    std::vector<std::uint32_t>& open = leaf.not_inside.emplace();
     SimplexBatch<D> batch{};
-    const auto count = static_cast<std::uint32_t>(leaf.simplex_count());
     for (std::uint32_t begin = 0; begin < count; begin += batch.kSize) {
       const std::uint32_t end = std::min<std::uint32_t>(begin + batch.kSize, count);
       for (std::uint32_t s = begin; s < end; ++s) {
         // An infinite one becomes a point, of which the test of a batch knows nothing.
         const bool infinite = leaf.simplices[s].infinite();
-        const std::array<VertexId, D + 1> corners = leaf.finite_simplex(s);
-        batch.set(s - begin, [&](int i) { return leaf.points[infinite ? 0 : corners[i]]; });
+        const std::array<VertexId, D + 1>& corners = leaf.simplices[s].vertices;
+        leaf.corners[s] = corners;
+        batch.set(s - begin,
+                  [&](int i) { return points[infinite ? 0 : corners[i] - first_vertex]; });
       }
       const auto found = well_inside<D>(batch, clear_box);
       for (std::uint32_t s = begin; s < end; ++s) {
         if (!found[s - begin]) open.push_back(s);
       }
     }
-    return open;
   }
 
   /// By simplex. Sets the exposure of those that are open, if it can be told.
@@ -342,7 +346,7 @@ class TileRun {
     if (surroundings.tells_exposure()) exposure.resize(open.size());
     std::vector<Fate> fates(leaf.simplex_count(), Fate::kFinal);
     for_each_region_batch<D>(
-        open.size(), [&](std::size_t i) { return leaf.simplex(open[i]); }, leaf.points,
+        open.size(), [&](std::size_t i) { return leaf.open_simplex(i); }, leaf.points,
         [&](std::size_t first, const RegionBatch<D>& regions) {
           const std::uint64_t changed =
               surroundings.may_change(regions, exposure.empty() ? nullptr : &exposure[first]);

@@ -177,11 +177,14 @@ TYPED_TEST(KernelClearBox, ListsTheSameInPlaceAndApartWithOneAndWithSeveralThrea
     Box<D> clear_box;
     for (const Point<D>& p : points) clear_box.expand(p);
     clear_box.hi[0] = (clear_box.lo[0] + clear_box.hi[0]) / 2;
-    const auto listed = [&](unsigned threads, bool in_place) {
+    const auto listed = [&](unsigned threads, bool in_place, bool corners_only = false) {
       BaseCase<D> base_case;
       with_threads(threads, [&] {
-        base_case = triangulate_base_case<D>(
-            {.points = points, .input_index = index, .clear_box = clear_box, .in_place = in_place});
+        base_case = triangulate_base_case<D>({.points = points,
+                                              .input_index = index,
+                                              .clear_box = clear_box,
+                                              .in_place = in_place,
+                                              .corners_only = corners_only});
       });
       return base_case;
     };
@@ -196,6 +199,33 @@ TYPED_TEST(KernelClearBox, ListsTheSameInPlaceAndApartWithOneAndWithSeveralThrea
                              }));
       EXPECT_EQ(found.hull, expected.hull);
       EXPECT_EQ(found.not_inside, expected.not_inside);
+      EXPECT_TRUE(found.corners.empty());
+      EXPECT_TRUE(found.open_simplices.empty());
+    }
+    const auto expect_same_corners = [&](unsigned threads, const BaseCase<D>& full) {
+      const BaseCase<D> found = listed(threads, true, true);
+      EXPECT_TRUE(found.simplices.empty());
+      EXPECT_TRUE(std::equal(
+          found.corners.begin(), found.corners.end(), full.simplices.begin(), full.simplices.end(),
+          [](const auto& corners, const Simplex<D>& b) { return corners == b.vertices; }));
+      EXPECT_EQ(found.hull, full.hull);
+      EXPECT_EQ(found.not_inside, full.not_inside);
+      return found.open_simplices;
+    };
+    for (const unsigned threads : {1, 4}) {
+      EXPECT_TRUE(expect_same_corners(threads, expected).empty()) << "too many to be listed";
+    }
+    clear_box.lo.fill(-kInfinity);
+    clear_box.hi.fill(kInfinity);
+    const BaseCase<D> wide = listed(1, false);
+    for (const unsigned threads : {1, 4}) {
+      const std::vector<Simplex<D>> open = expect_same_corners(threads, wide);
+      ASSERT_EQ(open.size(), wide.not_inside->size());
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        const Simplex<D>& simplex = wide.simplices[wide.not_inside->at(i)];
+        ASSERT_EQ(open[i].vertices, simplex.vertices);
+        ASSERT_EQ(open[i].neighbours, simplex.neighbours);
+      }
     }
   }
 }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -195,6 +198,19 @@ std::uint64_t hash_of(const std::vector<std::array<Point<D>, D + 1>>& simplices)
   CanonicalHash<D> hash;
   for (const auto& simplex : simplices) hash.add(simplex);
   return hash.value();
+}
+
+TYPED_TEST(CanonicalHashTest, IsTheSumOfTheLibrarysHashes) {
+  constexpr int D = TypeParam::value;
+  std::uint64_t sum = 0x0123456789ABCDEFU;
+  std::uint64_t expected = 0;
+  CanonicalHash<D> hash;
+  for (int i = 0; i < 10'000; ++i) {
+    hash.add(sum);
+    expected += XXH3_64bits(&sum, sizeof sum);
+    ASSERT_EQ(hash.value(), expected);
+    sum = std::rotl(sum, 5) * 0x9E3779B97F4A7C15U;
+  }
 }
 
 TYPED_TEST(CanonicalHashTest, EveryBitOfEveryCoordinateCounts) {

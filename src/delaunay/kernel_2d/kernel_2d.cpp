@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "src/delaunay/common/working_memory.h"
@@ -35,12 +36,14 @@ bool certainly_inside(const Triangle& triangle, const Box<2>& box) {
 
 static_assert(sizeof(Triangle) >= 2 * sizeof(Simplex<2>), "simplices are listed over triangles");
 
-/// Turns a range of the kernel's triangles into simplices; number() turns vertices into final ones.
-/// The simplices may lie where the triangles are: see kernel::list_simplices.
-template <typename Number>
+/// Turns a range of the kernel's triangles into simplices, or into their corners; number() turns
+/// vertices into final ones. What is made may lie where the triangles are: see
+/// kernel::list_simplices.
+template <typename Number, typename Made>
 void list_range(const TriangleArray& triangles, std::uint32_t begin, std::uint32_t end,
-                const Number& number, const std::optional<Box<2>>& clear_box, Simplex<2>* simplices,
-                ListingNotes& notes) {
+                const Number& number, const std::optional<Box<2>>& clear_box, Made* made,
+                ListingNotes<2>& notes) {
+  constexpr bool kCornersOnly = !std::is_same_v<Made, Simplex<2>>;
   for (std::uint32_t i = begin; i < end; ++i) {
     Triangle triangle;
     std::memcpy(&triangle, &triangles.at_first(TriangleArray::handle(i, 0)), sizeof triangle);
@@ -51,12 +54,20 @@ void list_range(const TriangleArray& triangles, std::uint32_t begin, std::uint32
     number(vertices);
     vertices |= infinite;
     neighbours >>= TriangleArray::kNumberShift;
-    simplices[i] = {{vertices[0], vertices[1], vertices[2]},
-                    {neighbours[0], neighbours[1], neighbours[2]}};
+    const Simplex<2> simplex{{vertices[0], vertices[1], vertices[2]},
+                             {neighbours[0], neighbours[1], neighbours[2]}};
+    if constexpr (kCornersOnly) {
+      made[i] = simplex.vertices;
+    } else {
+      made[i] = simplex;
+    }
     const bool finite = mask_of(infinite) == 0;
     if (!finite) notes.hull.push_back(i);
-    if (clear_box && !(finite && certainly_inside(triangle, *clear_box)))
-      notes.not_inside.push_back(i);
+    if (!clear_box || (finite && certainly_inside(triangle, *clear_box))) continue;
+    notes.not_inside.push_back(i);
+    if constexpr (kCornersOnly) {
+      if (notes.lists_open) notes.open_simplices.push_back(simplex);
+    }
   }
 }
 
@@ -72,13 +83,20 @@ BaseCase<2> triangulate(const BaseCaseInput<2>& input, std::span<const VertexId>
   result.dimension = 2;
   const VertexId shift = input.first_vertex - kFirstPoint;
   const std::uint32_t count = insertion.triangle_count();
-  result.simplices = make_list<2>(input, memory, count);
-  const auto list = [&](const auto& number) {
-    list_simplices<2>(result, points.clear_box.has_value(),
-                      [&](std::uint32_t begin, std::uint32_t end, ListingNotes& notes) {
-                        list_range(triangles, begin, end, number, points.clear_box,
-                                   result.simplices.data(), notes);
+  const auto list_as = [&](const auto& number, auto* made) {
+    list_simplices<2>(result, count, points.clear_box.has_value(),
+                      [&](std::uint32_t begin, std::uint32_t end, ListingNotes<2>& notes) {
+                        list_range(triangles, begin, end, number, points.clear_box, made, notes);
                       });
+  };
+  const auto list = [&](const auto& number) {
+    if (input.corners_only) {
+      result.corners = make_corners<2>(memory, count);
+      list_as(number, result.corners.data());
+    } else {
+      result.simplices = make_list<2>(input, memory, count);
+      list_as(number, result.simplices.data());
+    }
   };
   if (insertion.repetitions().empty()) {
     list([shift](Words& v) { v += shift; });

@@ -3,6 +3,7 @@
 
 #include <spillway/choices.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -28,13 +29,18 @@ struct BaseCaseInput {
   /// nothing is copied, and at the peak less memory is used. For results that are soon recycled,
   /// or few.
   bool in_place = false;
+  /// Asks for BaseCase::corners instead of its simplices, in place, and for open_simplices if there
+  /// is a clear box: half as much to write and to read. Kernels may give simplices nevertheless.
+  bool corners_only = false;
   Kernel kernel = Kernel::kSpillway;
 };
 
 /// The triangulation of one base case: a single simplex list, its neighbours all inside it.
 template <int D>
 struct BaseCase {
-  SlabArray<Simplex<D>> simplices;    ///< finite and infinite; none if dimension < D
+  SlabArray<Simplex<D>> simplices;  ///< finite and infinite; none if dimension < D
+  /// Instead of these, if they were all that was asked for: the vertices of each.
+  SlabArray<std::array<VertexId, D + 1>> corners;
   std::vector<std::uint32_t> hull;    ///< indices of the infinite simplices
   std::vector<Duplicate> duplicates;  ///< sorted
   int dimension = -1;                 ///< of the points' affine hull
@@ -42,6 +48,7 @@ struct BaseCase {
   /// ascending, of all simplices but those that are finite and whose closed circumsphere certainly
   /// lies inside the box and touches no side.
   std::optional<std::vector<std::uint32_t>> not_inside;
+  std::vector<Simplex<D>> open_simplices;  ///< these, if there are `corners` and they are few
 };
 
 /// For kernels: a list of simplices to be filled, at the beginning of a slab that the kernel is
@@ -52,6 +59,20 @@ SlabArray<Simplex<D>> make_list(const BaseCaseInput<D>& input, Slab& memory, std
   if (!input.in_place) return {kept_or_new_slab(SlabUse::kSimplices, bytes), count};
   memory.reserve(bytes);
   return {std::move(memory), count};
+}
+
+/// For kernels: the same of BaseCase::corners, always in place.
+template <int D>
+SlabArray<std::array<VertexId, D + 1>> make_corners(Slab& memory, std::size_t count) {
+  memory.reserve(count * sizeof(std::array<VertexId, D + 1>));
+  return {std::move(memory), count};
+}
+
+/// Keeps the memory of a base case, which has been used, for those to come.
+template <int D>
+void recycle(BaseCase<D> used) {
+  keep_slab(SlabUse::kSimplices, used.simplices.take_slab());
+  keep_slab(SlabUse::kSimplices, used.corners.take_slab());
 }
 
 /// Keeps the memory of a list of simplices, which has been used, for base cases to come.
