@@ -33,6 +33,7 @@ std::optional<distributed::Ranks>& joined() {
 /// at the same time, such as a full disk, is to be reported once.
 constexpr std::chrono::milliseconds kTurn{200};
 constexpr std::chrono::milliseconds kFirstTurn{2000};
+constexpr std::chrono::milliseconds kFirstJoinedTurn{800};
 constexpr int kMostTurns = 50;
 
 /// Options that may differ from rank to rank: what they have on their machines.
@@ -83,9 +84,9 @@ int report_error(const Error& error, int exit_code) {
   const std::string rank =
       joined() && joined()->size() > 1 ? fmt::format("rank {}: ", joined()->rank()) : "";
   // The first process to end with an error ends them all, but not as fast.
-  if (!joined() && launch().rank > 0) std::this_thread::sleep_for(kFirstTurn);
-  std::this_thread::sleep_for(kTurn *
-                              std::min(joined() ? joined()->rank() : launch().rank, kMostTurns));
+  const int turn = joined() ? joined()->rank() : launch().rank;
+  if (turn > 0) std::this_thread::sleep_for(joined() ? kFirstJoinedTurn : kFirstTurn);
+  std::this_thread::sleep_for(kTurn * std::min(turn, kMostTurns));
   if (const auto* const list = dynamic_cast<const ErrorList*>(&error)) {
     write_error(rank + list->heading() + ":");
     for (const Error& fault : list->faults()) {
