@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "formats/meshes/spm/simplex_bytes.h"
+
 namespace spillway::detail {
 
 /// A number below kNarrow is a byte; below kFar its higher part is one, at least kNarrow, and its
@@ -15,9 +17,6 @@ namespace spillway::detail {
 inline constexpr std::uint32_t kNarrow = 192;
 inline constexpr std::uint32_t kFarByte = 255;
 inline constexpr std::uint32_t kFar = kNarrow + (kFarByte - kNarrow) * 256;
-
-/// How many triangles have a certain first corner, in half a byte; so many and more stand apart.
-inline constexpr std::uint32_t kManyHere = 15;
 
 /// The corners of a triangle but the first, less that.
 using TriangleRest = std::array<std::uint32_t, 2>;

@@ -1,7 +1,5 @@
 #include "formats/meshes/spm/spm_tetrahedra.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,13 +7,10 @@
 #include <numeric>
 
 #include "formats/bytes/bytes.h"
+#include "formats/meshes/spm/simplex_bytes.h"
 
 namespace spillway::detail {
 namespace {
-
-// How many tetrahedra have a certain first corner, in half a byte; what a count has beyond
-// kManyHere is among the numbers.
-constexpr std::uint32_t kManyHere = 15;
 
 // Half a byte names another corner: 0 says that it comes new, k that it is the k-th last of the new
 // ones.
@@ -238,11 +233,11 @@ void append_sorted(std::vector<std::byte>& out, std::uint32_t numbers,
 }
 
 /// What append_tetrahedra() wrote, taken apart.
-class TetrahedronReader {
+class TetrahedronReader : private SimplexBytes {
  public:
   TetrahedronReader(std::span<const std::byte> bytes, std::uint32_t numbers,
                     std::uint32_t tetrahedra, const FileSpot& where)
-      : left_(bytes), numbers_(numbers), tetrahedra_(tetrahedra), where_(where) {}
+      : SimplexBytes(bytes, where), numbers_(numbers), tetrahedra_(tetrahedra) {}
 
   std::span<const std::byte> read(std::vector<std::uint32_t>& corners) {
     counts_ = take((std::size_t{numbers_} + 1) / 2);
@@ -256,25 +251,10 @@ class TetrahedronReader {
     add_up(new_corners);
     corners.resize(std::size_t{tetrahedra_} * 4);
     put_corners(counts.data(), new_corners.data(), corners.data());
-    return left_;
+    return left();
   }
 
  private:
-  [[noreturn]] void fail(const char* what) const {
-    throw BadInput(where_, fmt::format("{}; the file is corrupt, make it again", what));
-  }
-
-  std::span<const std::byte> take(std::size_t size) {
-    if (left_.size() < size) fail("the simplices of a block end early");
-    const std::span<const std::byte> taken = left_.first(size);
-    left_ = left_.subspan(size);
-    return taken;
-  }
-
-  static std::uint32_t half(std::span<const std::byte> halves, std::size_t i) {
-    return (std::to_integer<std::uint32_t>(halves[i / 2]) >> (4 * (i % 2))) & 15U;
-  }
-
   /// Later ones cannot reach back before the first corner that came new.
   void check_first_references() const {
     const std::size_t size = std::size_t{tetrahedra_} * 3;
@@ -371,10 +351,8 @@ class TetrahedronReader {
     }
   }
 
-  std::span<const std::byte> left_;
   std::uint32_t numbers_;
   std::uint32_t tetrahedra_;
-  const FileSpot& where_;
   std::span<const std::byte> counts_;
   std::span<const std::byte> references_;
 };

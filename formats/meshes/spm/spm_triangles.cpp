@@ -1,7 +1,5 @@
 #include "formats/meshes/spm/spm_triangles.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -11,6 +9,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/longest_vectors.h"
 #include "formats/meshes/spm/number_rows.h"
+#include "formats/meshes/spm/simplex_bytes.h"
 
 #ifdef __SSE2__
 #include <emmintrin.h>
@@ -325,11 +324,11 @@ class TriangleQueue {
 };
 
 /// What append_triangles() wrote, taken apart.
-class TriangleReader {
+class TriangleReader : private SimplexBytes {
  public:
   TriangleReader(std::span<const std::byte> bytes, std::uint32_t numbers, std::uint32_t triangles,
                  const FileSpot& where)
-      : left_(bytes), numbers_(numbers), triangles_(triangles), where_(where) {}
+      : SimplexBytes(bytes, where), numbers_(numbers), triangles_(triangles) {}
 
   std::span<const std::byte> read(std::vector<std::uint32_t>& corners) {
     const std::span<const std::byte> counts = take((std::size_t{numbers_} + 1) / 2);
@@ -345,25 +344,10 @@ class TriangleReader {
     split_rows(counts);
     corners.resize(std::size_t{triangles_} * 3);
     put_triangles(counts, bits, corners.data());
-    return left_;
+    return left();
   }
 
  private:
-  [[noreturn]] void fail(const char* what) const {
-    throw BadInput(where_, fmt::format("{}; the file is corrupt, make it again", what));
-  }
-
-  std::span<const std::byte> take(std::size_t size) {
-    if (left_.size() < size) fail("the simplices of a block end early");
-    const std::span<const std::byte> taken = left_.first(size);
-    left_ = left_.subspan(size);
-    return taken;
-  }
-
-  static std::uint32_t half(std::span<const std::byte> counts, std::uint32_t i) {
-    return (std::to_integer<std::uint32_t>(counts[i / 2]) >> (4 * (i % 2))) & 15U;
-  }
-
   /// Finds out how long the second row is and how many numbers stand apart.
   void split_rows(std::span<const std::byte> counts) {
     std::size_t wide = 0;
@@ -435,10 +419,8 @@ class TriangleReader {
     check_largest();
   }
 
-  std::span<const std::byte> left_;
   std::uint32_t numbers_;
   std::uint32_t triangles_;
-  const FileSpot& where_;
   std::span<const std::byte> low_;
   std::size_t low_at_ = 0;
   std::span<const std::byte> high_;
