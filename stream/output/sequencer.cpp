@@ -16,7 +16,7 @@ Sequencer<D>::~Sequencer() {
 
 template <int D>
 void Sequencer<D>::open_slot(std::uint32_t slot, std::uint32_t blocks) {
-  const std::uint64_t bytes = sizeof first_vertex_[0] + blocks * sizeof first_vertex_[0][0];
+  const std::uint64_t bytes = sizeof(std::vector<std::uint64_t>) + blocks * sizeof(std::uint64_t);
   budget_.take(bytes, "the table of blocks");
   const std::lock_guard lock(mutex_);
   table_bytes_ += bytes;
