@@ -108,24 +108,32 @@ TEST_P(WorkLanesTest, WorksBesideWhoBringsMore) {
 }
 
 TEST_P(WorkLanesTest, ThrowsWhatFailsAndBeginsNothingMore) {
-  for (const bool beside : {false, true}) {
-    fails_at_ = &items_[20];
-    begun_.clear();
-    WorkLanes<Item> lanes = this->lanes();
-    const auto all = [&] {
-      TaskGroup group;
-      for (Item& item : items_) {
-        lanes.add(item);
-        if (beside) lanes.work_beside(group);
+  constexpr std::size_t kSmall = 20;  // others are under way when it fails, maybe all of them
+  constexpr std::size_t kLarge = 50;  // more than the room: nothing is begun beside it
+  for (const std::size_t failing : {kSmall, kLarge}) {
+    for (const bool beside : {false, true}) {
+      fails_at_ = &items_[failing];
+      begun_.clear();
+      given_up_ = false;
+      WorkLanes<Item> lanes = this->lanes();
+      const auto all = [&] {
+        TaskGroup group;
+        for (Item& item : items_) {
+          lanes.add(item);
+          if (beside) lanes.work_beside(group);
+        }
+        if (beside) group.wait();
+        lanes.work_off();
+      };
+      EXPECT_THROW(run(all), std::runtime_error);
+      EXPECT_TRUE(given_up_);
+      if (failing == kLarge) {
+        EXPECT_EQ(begun_.size(), kLarge + 1);
       }
-      if (beside) group.wait();
-      lanes.work_off();
-    };
-    EXPECT_THROW(run(all), std::runtime_error);
-    EXPECT_TRUE(given_up_);
-    EXPECT_LT(begun_.size(), items_.size());
-    EXPECT_EQ(items_[20].finished, 0);
-    EXPECT_EQ(items_[20].followed, 0);
+      EXPECT_EQ(items_[failing].finished, 0);
+      EXPECT_EQ(items_[failing].followed, 0);
+      for (Item& item : items_) item.finished = item.followed = 0;
+    }
   }
 }
 
