@@ -10,6 +10,7 @@
 #include "src/parallel/parallel.h"
 #include "stream/library/context/context_state.h"
 #include "stream/plan/memory_plan.h"
+#include "stream/tiles/regions/region_plan.h"
 #include "stream/tiles/tile_tree.h"
 
 namespace spillway::detail {
@@ -56,11 +57,28 @@ void visit_points(StoredTile& stored,
   }
 }
 
-/// Appends the tiles below a node in the order of the tree: whoever divides the same cells likewise
-/// gets each part of them in one stretch. docs/formats-blocks.md compares it with other orders.
-void append_cells(const TileNode<3>& node, std::vector<const TileNode<3>*>& cells) {
-  if (node.leaf()) cells.push_back(&node);
-  for (const TileNode<3>& side : node.children) append_cells(side, cells);
+void append_leaves(const TileNode<3>& node, std::vector<const TileNode<3>*>& leaves) {
+  if (node.leaf()) leaves.push_back(&node);
+  for (const TileNode<3>& side : node.children) append_leaves(side, leaves);
+}
+
+/// The tiles below a node in such an order that who reads them, and makes larger ones of them, gets
+/// each in one stretch. docs/formats-blocks.md compares it with other orders.
+std::vector<const TileNode<3>*> cells_in_order(const TileNode<3>& root, int dimension) {
+  std::vector<const TileNode<3>*> leaves;
+  append_leaves(root, leaves);
+  std::vector<InputRegion> regions;
+  regions.reserve(leaves.size());
+  for (const TileNode<3>* const leaf : leaves) regions.push_back({0, leaf->box, leaf->points});
+  std::vector<const TileNode<3>*> cells;
+  for (const std::size_t r : nested_order(regions, dimension)) cells.push_back(leaves[r]);
+  return cells;
+}
+
+/// About where the points will lie, where that is known.
+std::optional<Box<3>> extent_of(const RunPoints& points, const PointFile& file) {
+  if (!points.extent || !file.decided()) return std::nullopt;
+  return file.placed(*points.extent);
 }
 
 class Sorting {
@@ -77,6 +95,7 @@ class Sorting {
                .capacity = capacity_,
                .buffered_points = buffered_points(plan_),
                .expected = points_.expected(),
+               .extent = extent_of(points, file),
                .batches = plan_.batches},
               *scratch_, times_) {}
 
@@ -84,10 +103,10 @@ class Sorting {
     watch_.begin("read", "points");
     deal();
     watch_.end(points_.points_read());
-    if (tree_.points_to_divide() > 0) {
-      watch_.begin("divide", "points");
-      watch_.end(tree_.divide_large(
-          [&](std::uint64_t points, double fraction) { watch_.tell(points, fraction); }));
+    divide();
+    if (!tree_.nests()) {
+      tree_.divide_evenly();
+      divide();
     }
     watch_.begin("write", "points");
     write();
@@ -124,13 +143,21 @@ class Sorting {
     });
   }
 
+  void divide() {
+    if (tree_.points_to_divide() == 0) return;
+    watch_.begin("divide", "points");
+    watch_.end(tree_.divide_large(
+        [&](std::uint64_t points, double fraction) { watch_.tell(points, fraction); }));
+  }
+
   void write() {
     // Boxes have z even where that was not divided.
     const std::optional<TileNode<3>> root = tree_.take_nodes<3>();
     std::vector<const TileNode<3>*> cells;
-    if (root) append_cells(*root, cells);
+    if (root) cells = cells_in_order(*root, file_.sorted()->dimension);
     cells_ = cells.size();
     std::vector<PointRegion> regions;
+    regions.reserve(cells.size());
     for (const TileNode<3>* const cell : cells) regions.push_back({cell->box, cell->points});
     file_.append_regions(regions);
     write_points(cells);

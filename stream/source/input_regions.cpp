@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "src/error.h"
 
@@ -24,6 +25,24 @@ bool is_filled_in(const Box<3>& extent) {
 bool tells_where(const PointHeader& header) {
   if (!header.regions.empty() || header.count == 0) return true;
   return header.count && header.extent && (header.count == 1 || is_filled_in(*header.extent));
+}
+
+/// The box of a cell of a sorted stream, whose reader proves that it is right, in the coordinates
+/// of the source; nothing if it is no such cell, or cannot be told to the last bit.
+std::optional<Box<3>> exact_box(const PointHeader& header, const SourceCoordinates& coordinates,
+                                const Box<3>& told) {
+  if (header.format != "spp" || header.regions.empty()) return std::nullopt;
+  if (header.lattice != coordinates.lattice()) return std::nullopt;
+  if (!header.lattice) return told;
+  Box<3> box = coordinates.of_world(told);
+  for (int k = 0; k < coordinates.dimension(); ++k) {
+    const auto lo = header.lattice->to_integer(k, told.lo[k]);
+    const auto hi = header.lattice->to_integer(k, told.hi[k]);
+    if (!lo || !hi || !header.lattice->keeps_apart(k, *lo, *hi)) return std::nullopt;
+    box.lo[k] = *lo;
+    box.hi[k] = *hi;
+  }
+  return box;
 }
 
 }  // namespace
@@ -60,8 +79,10 @@ InputRegions::InputRegions(const SourceFacts& facts, const SourceCoordinates& co
 }
 
 /// What a header tells, in the coordinates of the source, and a step of its own lattice more: many
-/// programs round what they write there.
+/// programs round what they write there. Not so for cells of a sorted stream: a step more would
+/// make each wait for its neighbours.
 Box<3> InputRegions::box_of(std::size_t input, const Box<3>& told) const {
+  if (const auto box = exact_box(facts_.inputs[input].header, coordinates_, told)) return *box;
   const auto& own = facts_.inputs[input].header.lattice;
   Box<3> wide = told;
   for (int k = 0; k < 3; ++k) {

@@ -116,20 +116,23 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
     tile->cell = whole.cell;
   for (TileSegment& segment : whole.segments) leave_over(first_cut, std::move(segment));
   room_ -= whole.room();
-  for (HeldPoints& held : whole.held) {
-    Batch dealt;
-    dealt.arrival = held.arrival;
-    dealt.run = held.run;
-    PointBlock points;
-    held.buffer.drain_in_chunks(
-        [&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
-          points.points.assign(chunk.begin(), chunk.end());
-          points.index.assign(index.begin(), index.end());
-          deal(dealt, points);
-          append_dealt(dealt.dealt, dealt);
-        });
-    std::ranges::move(dealt.spills, std::back_inserter(batch.spills));
-  }
+  for (HeldPoints& held : whole.held) deal_held(std::move(held), batch);
+}
+
+/// Deals points that wait to the tiles there are now.
+void TileTree::deal_held(HeldPoints held, Batch& batch) {
+  Batch dealt;
+  dealt.arrival = held.arrival;
+  dealt.run = held.run;
+  PointBlock points;
+  held.buffer.drain_in_chunks(
+      [&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
+        points.points.assign(chunk.begin(), chunk.end());
+        points.index.assign(index.begin(), index.end());
+        deal(dealt, points);
+        append_dealt(dealt.dealt, dealt);
+      });
+  std::ranges::move(dealt.spills, std::back_inserter(batch.spills));
 }
 
 /// A tile has been cut: if it was a whole cell, that is now what is below the cut.

@@ -92,10 +92,6 @@ void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
                            const CellDone& done) {
   std::vector<Batch> batches(options_.batches);
   SpareBlocks spare;
-  const auto encode = [this](Batch& batch) {
-    const StageTimer timer(times_, Stage::kSpill);
-    for (Spill& spill : batch.spills) encode_points(spill.points, spill.bytes);
-  };
   const std::vector<PipelineStep> steps = {
       {.in_order = false,
        .work =
@@ -112,7 +108,12 @@ void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
              }
            }},
       {.in_order = true, .work = [&](std::size_t slot) { append(batches[slot]); }},
-      {.in_order = false, .work = [&](std::size_t slot) { encode(batches[slot]); }},
+      {.in_order = false,
+       .work =
+           [&](std::size_t slot) {
+             const StageTimer timer(times_, Stage::kSpill);
+             encode(batches[slot]);
+           }},
       {.in_order = true, .work = [&](std::size_t slot) {
          Batch& batch = batches[slot];
          write(batch);
@@ -302,6 +303,10 @@ void TileTree::spill(std::uint32_t number, Batch& batch) {
   const std::lock_guard lock(stretches_mutex_);
   join_segments(tile.segments, kMostSegments, options_.dimension);
   segments_ -= before - tile.segments.size();
+}
+
+void TileTree::encode(Batch& batch) {
+  for (Spill& spill : batch.spills) encode_points(spill.points, spill.bytes);
 }
 
 void TileTree::write(Batch& batch) {

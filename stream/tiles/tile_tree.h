@@ -80,6 +80,14 @@ class TileTree {
   /// many points were dealt again, those dealt twice counted twice.
   std::uint64_t divide_large(const DivisionProgress& progress);
 
+  /// Whether larger tiles can be put together of these in their order, so that few are begun and
+  /// not complete at a time. So it is where tiles have been cut in halves of all points, but not
+  /// where they were cut as the points came, along a flight line first.
+  [[nodiscard]] bool nests() const;
+
+  /// Divides all anew, so that it does: leaves all over that is on the disk, for divide_large().
+  void divide_evenly();
+
   /// The cells of the plan that `done` was not told of, which are complete now that all is divided.
   std::vector<std::uint32_t> finish();
 
@@ -139,6 +147,7 @@ class TileTree {
   void spill_some(Batch& batch);
   [[nodiscard]] bool may_be_cut_later() const;
   void spill(std::uint32_t number, Batch& batch);
+  static void encode(Batch& batch);
   void write(Batch& batch);
 
   void begin_region(std::size_t region, Batch& batch);
@@ -148,6 +157,8 @@ class TileTree {
   void divide_first(Batch& batch);
   void divide(std::uint32_t number, std::vector<LatticePoint> sample, std::size_t tile_count,
               Batch& batch);
+  void deal_held(HeldPoints held, Batch& batch);
+  [[nodiscard]] RegionPlan plan_anew(double most_points) const;
   [[nodiscard]] bool outgrown(const Tile& tile) const;
   [[nodiscard]] bool too_large(const Tile& tile) const;
   [[nodiscard]] bool will_be_too_large(const Tile& tile) const;

@@ -152,6 +152,19 @@ void PointFile::place(PointBlock& block) {
   }
 }
 
+Box<3> PointFile::placed(const Box<3>& world) const {
+  if (!how_.lattice) return world;
+  Box<3> box;  // scales may be negative
+  for (const Point<3>& corner : {world.lo, world.hi}) {
+    LatticePoint placed;
+    for (int k = 0; k < 3; ++k) {
+      placed[k] = (corner[k] - how_.lattice->offset[k]) / how_.lattice->scale[k];
+    }
+    box.expand(placed);
+  }
+  return box;
+}
+
 void PointFile::append_regions(std::span<const PointRegion> regions) {
   if (!writer_) open({});
   writer_->set_regions(regions);

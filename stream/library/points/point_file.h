@@ -46,6 +46,8 @@ class PointFile final : public spillway::PointSink {
   /// Makes points of `points.stream` those of the file; by many threads at a time if it is decided
   /// how.
   void place(PointBlock& block);
+  /// About where place() brings the points of a box in output coordinates, if decided().
+  [[nodiscard]] Box<3> placed(const Box<3>& world) const;
   /// Tells the regions of all points, as PointWriter::set_regions().
   void append_regions(std::span<const PointRegion> regions);
   /// The next points, after place().

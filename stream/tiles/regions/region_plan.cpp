@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "stream/tiles/regions/reading_order.h"
@@ -107,9 +108,22 @@ std::vector<CutValue> cut_values(const std::vector<Portion>& portions, int axis,
   return values;
 }
 
-/// Where to cut a cell: at the sides of regions, if that parts the points evenly enough.
-double best_value(const std::vector<Portion>& portions, int axis, const Box<3>& box) {
+/// Where a cell is cut.
+struct CellCut {
+  int axis = 0;
+  double value = 0;
+};
+
+/// Where to cut a cell: across its longest side, at the sides of regions if that parts the points
+/// evenly enough. Nothing if all lies at one place.
+std::optional<CellCut> best_cut(const std::vector<Portion>& portions, int dimension) {
   const double all = points_of(portions);
+  const Box<3> box = box_around(portions);
+  int axis = 0;
+  for (int k = 1; k < dimension; ++k) {
+    if (box.extent(k) > box.extent(axis)) axis = k;
+  }
+  if (!(box.extent(axis) > 0)) return std::nullopt;
   const auto at = [&](double share) { return quantile(portions, axis, box, share * all); };
   std::vector<CutValue> values =
       cut_values(portions, axis, at(kLeastShare), at(kMostShare), at(0.5));
@@ -121,7 +135,39 @@ double best_value(const std::vector<Portion>& portions, int axis, const Box<3>& 
     const double uneven = std::abs(points_below(portions, axis, value.value) / all - 0.5);
     return value.parted / all + kUnevenCost * uneven;
   };
-  return std::ranges::min_element(values, {}, cost)->value;
+  return CellCut{axis, std::ranges::min_element(values, {}, cost)->value};
+}
+
+/// Appends regions in the order of cells with one region each.
+void append_nested(std::vector<Portion> portions, int dimension, std::vector<std::size_t>& order) {
+  std::vector<Portion> above;
+  if (const auto cut = portions.size() > 1 ? best_cut(portions, dimension) : std::nullopt) {
+    const auto is_below = [&](const Portion& portion) {
+      const double lo = portion.box.lo[cut->axis];
+      const double hi = portion.box.hi[cut->axis];
+      return hi < cut->value || lo + (hi - lo) / 2 < cut->value;
+    };
+    const auto middle = std::stable_partition(portions.begin(), portions.end(), is_below);
+    above.assign(middle, portions.end());
+    portions.erase(middle, portions.end());
+  }
+  if (!above.empty() && !portions.empty()) {
+    append_nested(std::move(portions), dimension, order);
+    append_nested(std::move(above), dimension, order);
+    return;
+  }
+  for (const Portion& portion : above.empty() ? portions : above) order.push_back(portion.region);
+}
+
+/// Regions with points, each as one portion.
+std::vector<Portion> portions_of(std::span<const InputRegion> regions) {
+  std::vector<Portion> portions;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    const InputRegion& region = regions[r];
+    if (region.box.empty()) continue;
+    portions.push_back({r, region.box, static_cast<double>(region.count)});
+  }
+  return portions;
 }
 
 /// Cuts the plane or space into cells, and keeps what each has of the regions.
@@ -130,17 +176,13 @@ class Planner {
   Planner(int dimension, double most_points) : dimension_(dimension), most_points_(most_points) {}
 
   void cut(std::uint32_t tile, std::vector<Portion> portions) {
-    const Box<3> box = box_around(portions);
     const double points = points_of(portions);
-    int axis = 0;
-    for (int k = 1; k < dimension_; ++k) {
-      if (box.extent(k) > box.extent(axis)) axis = k;
-    }
-    if (points > most_points_ && box.extent(axis) > 0) {
-      const double value = best_value(portions, axis, box);
-      const double below = points_below(portions, axis, value);
+    const std::optional<CellCut> best =
+        points > most_points_ ? best_cut(portions, dimension_) : std::nullopt;
+    if (best) {
+      const double below = points_below(portions, best->axis, best->value);
       if (std::min(below, points - below) >= kLeastSide * points) {
-        return cut_at(tile, std::move(portions), axis, value);
+        return cut_at(tile, std::move(portions), best->axis, best->value);
       }
     }
     if (by_cell.size() <= tile) by_cell.resize(tile + 1);
@@ -266,19 +308,19 @@ void expect_waiting(std::span<const InputRegion> regions, RegionPlan& plan) {
 
 RegionPlan plan_regions(std::span<const InputRegion> regions, const RegionPlanOptions& options) {
   Planner planner(options.dimension, options.most_points);
-  std::vector<Portion> all;
-  for (std::size_t r = 0; r < regions.size(); ++r) {
-    const InputRegion& region = regions[r];
-    if (region.box.empty()) continue;
-    all.push_back({r, region.box, static_cast<double>(region.count)});
-  }
-  planner.cut(0, std::move(all));
+  planner.cut(0, portions_of(regions));
   RegionPlan plan{.cuts = planner.take_cuts()};
   plan.units = order_units(regions, planner, options.any_order);
   order_regions(regions, plan);
   tell_when_done(planner, plan);
   expect_waiting(regions, plan);
   return plan;
+}
+
+std::vector<std::size_t> nested_order(std::span<const InputRegion> regions, int dimension) {
+  std::vector<std::size_t> order;
+  append_nested(portions_of(regions), dimension, order);
+  return order;
 }
 
 bool pays(const RegionPlan& plan) { return plan.done_early >= kLeastEarly; }

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "formats/inputs/open_points.h"
+#include "stream/tiles/regions/region_plan.h"
 #include "tests/stream/library/call_test.h"
 
 namespace spillway {
@@ -64,6 +65,24 @@ TEST_F(Sort, KeepsAllPointsOfALattice) {
   expect_same_points(testing::all_of(*generate_points(hills)), "hills.spp");
   EXPECT_EQ(phases_.front(), "read");
   EXPECT_EQ(phases_.back(), "write");
+}
+
+TEST_F(Sort, WritesCellsSoThatLargerOnesOfThemAreCompleteOneAfterTheOther) {
+  const GenerateOptions hills{.family = "terrain", .count = 600'000};
+  sort(*generate_points(hills), "told.spp", {.cell_points = 2'000});
+  OwnPoints source(testing::all_of(*generate_points(hills)));  // tells no extent
+  sort(source, "untold.spp", {.cell_points = 2'000});
+  for (const char* const name : {"told.spp", "untold.spp"}) {
+    std::vector<detail::InputRegion> cells;
+    for (const detail::PointRegion& cell : header_of(name).regions) {
+      cells.push_back({0, cell.box, cell.count});
+    }
+    for (const double most_points : {8'000, 32'000}) {
+      const detail::RegionPlan plan =
+          detail::plan_regions(cells, {.most_points = most_points, .any_order = false});
+      EXPECT_LT(plan.most_waiting, 6 * most_points) << name;
+    }
+  }
 }
 
 TEST_F(Sort, DividesSpaceWhereThatIsWanted) {

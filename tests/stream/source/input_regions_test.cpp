@@ -81,6 +81,22 @@ TEST(InputRegions, AreThePartsThatAHeaderTells) {
   EXPECT_EQ(nodes.turns()[1].piece, 1U);
 }
 
+TEST(InputRegions, AreExactWhereTheyAreCellsOfASortedStream) {
+  PointHeader sorted = header("a.spp", 30, 1, 9);
+  sorted.format = "spp";
+  sorted.regions = {{*header("", 0, 1, 4).extent, 10}, {*header("", 0, 4.01, 9).extent, 20}};
+  const Regions alone({sorted});
+  EXPECT_EQ(alone.all()[0].box.hi[0], 400);
+  EXPECT_EQ(alone.all()[1].box.lo[1], 401);
+  PointHeader other = header("b.las", 5, 0, 1);
+  other.lattice->offset = {0.005, 0, 0};
+  const Regions on_another_lattice({sorted, other});
+  EXPECT_LT(on_another_lattice.all()[1].box.lo[1], on_another_lattice.all()[0].box.hi[1])
+      << "rounded, so a step more";
+  sorted.lattice.reset();
+  EXPECT_EQ(Regions({sorted}).all()[0].box.hi[0], 4);
+}
+
 TEST(InputRegions, AFilterLeavesAPartOfThem) {
   PointFilter filter;
   filter.every = 5;

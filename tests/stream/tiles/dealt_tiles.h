@@ -123,6 +123,8 @@ struct DealtTiles {
   std::uint64_t written = 0;
   std::uint64_t left_over = 0;  ///< to be dealt again
   std::uint64_t divided = 0;
+  bool nest_at_first = false;  ///< before they were divided evenly, if they were
+  bool nest = false;
 
   /// How often a point was written, on average.
   [[nodiscard]] double writes() const {
@@ -138,6 +140,7 @@ struct Dealing {
   std::size_t block = 777;
   unsigned threads = 2;
   Knowledge known{};
+  bool evenly = false;  ///< divide all anew at the end
 };
 
 /// Deals points, whose numbers are their indices.
@@ -177,6 +180,12 @@ DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dea
       share = fraction;
     });
     EXPECT_LE(told, dealt.divided);
+    dealt.nest_at_first = tree.nests();
+    if (dealing.evenly) {
+      tree.divide_evenly();
+      dealt.divided += tree.divide_large([](std::uint64_t /*done*/, double /*fraction*/) {});
+    }
+    dealt.nest = tree.nests();
     EXPECT_EQ(tree.points_to_divide(), 0U);
     EXPECT_EQ(tree.points(), points.size());
     const auto visit = [&](const auto& self, const TileNode<D>& node) -> void {

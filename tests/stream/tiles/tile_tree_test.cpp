@@ -137,6 +137,21 @@ TEST_P(TileTreeOfOrder, KeepsEqualPointsTogetherAndTheirOrderInLittleMemory) {
   EXPECT_EQ(apart_from_equal(dealt), 0U);
 }
 
+TEST_P(TileTreeOfOrder, DividedEvenlyKeepsEveryPointAndTheOrderOfEqualOnes) {
+  const Points points = make_points(GetParam(), kMany / 4);
+  for (Dealing dealing : {Dealing{.buffered = 20'000}, Dealing{.buffered = kMany},
+                          Dealing{.capacity = 200, .buffered = 6'000, .block = 300}}) {
+    dealing.evenly = true;
+    const DealtTiles<2> dealt = deal_into_tiles<2>(points, dealing);
+    EXPECT_EQ(fault_of(dealt, points), "");
+    EXPECT_EQ(out_of_order(dealt), 0U);
+    EXPECT_EQ(apart_from_equal(dealt), 0U);
+    EXPECT_TRUE(dealt.nest) << dealing.buffered;
+    EXPECT_LE(dealt.writes(), 3.0) << dealing.buffered;
+    EXPECT_EQ(dealt.written == 0, dealing.buffered == kMany) << dealing.buffered;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Orders, TileTreeOfOrder,
                          testing::Values(Order::kRandom, Order::kSorted, Order::kFlightLines,
                                          Order::kStrips, Order::kOutwards, Order::kCurve,
@@ -162,6 +177,27 @@ TEST(TileTree, MakesCompactTilesInWhateverOrderPointsCome) {
                             Order::kOutwards, Order::kCurve}) {
     EXPECT_EQ(count_of_long(deal(make_points(order, kMany), kNothing)), 0U)
         << testing::PrintToString(order);
+  }
+}
+
+TEST(TileTree, NestsWhereTheHeaderTellsWherePointsLieAndAfterItIsDividedEvenly) {
+  const Points sorted = make_points(Order::kSorted, 60'000);
+  Dealing dealing{.capacity = 200, .buffered = 30'000, .evenly = true};
+  const DealtTiles<2> dealt = deal_into_tiles<2>(sorted, dealing);
+  EXPECT_FALSE(dealt.nest_at_first);
+  EXPECT_TRUE(dealt.nest);
+  dealing.known = kAll;
+  EXPECT_TRUE(deal_into_tiles<2>(sorted, dealing).nest_at_first);
+}
+
+TEST(TileTree, DividedEvenlyIsTheSameForAnyNumberOfThreads) {
+  const Points points = make_points(Order::kFlightLines, kMany / 2);
+  const DealtTiles<2> one = deal_into_tiles<2>(points, {.threads = 1, .evenly = true});
+  const DealtTiles<2> three = deal_into_tiles<2>(points, {.threads = 3, .evenly = true});
+  EXPECT_EQ(one.written, three.written);
+  ASSERT_EQ(one.tiles.size(), three.tiles.size());
+  for (std::size_t t = 0; t < one.tiles.size(); ++t) {
+    ASSERT_EQ(one.tiles[t].points.index, three.tiles[t].points.index) << "tile " << t;
   }
 }
 

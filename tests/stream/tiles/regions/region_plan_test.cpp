@@ -165,5 +165,50 @@ TEST(RegionPlan, OfSpaceCutsAllAxes) {
   }
 }
 
+/// Cells that begin with a region and are complete with one that is farther from it than all of
+/// their regions together.
+std::size_t torn_cells(std::span<const InputRegion> in_order, double most_points) {
+  const RegionPlan plan = plan_regions(in_order, {.most_points = most_points, .any_order = false});
+  const auto meet = [](const Box<3>& a, const Box<3>& b) {
+    return a.lo[0] < b.hi[0] && b.lo[0] < a.hi[0] && a.lo[1] < b.hi[1] && b.lo[1] < a.hi[1];
+  };
+  std::size_t torn = 0;
+  for (const RegionPlan::Cell& cell : plan.cells) {
+    std::vector<std::size_t> of_cell;
+    for (std::size_t r = 0; r < in_order.size(); ++r) {
+      if (meet(in_order[r].box, cell.box)) of_cell.push_back(r);
+    }
+    torn += of_cell.back() - of_cell.front() >= of_cell.size() ? 1 : 0;
+  }
+  return torn;
+}
+
+TEST(RegionPlan, OfRegionsInNestedOrderHasTheCellsOneAfterTheOther) {
+  std::vector<InputRegion> regions = squares(16, 1000, -0.01);
+  std::mt19937 random(3);
+  std::ranges::shuffle(regions, random);
+  EXPECT_THAT(torn_cells(regions, 4000), Gt(32U));
+  std::vector<InputRegion> in_order;
+  for (const std::size_t r : nested_order(regions, 2)) in_order.push_back(regions[r]);
+  EXPECT_EQ(in_order.size(), regions.size());
+  for (const double most_points : {1000, 2000, 4000, 32'000, 100'000}) {
+    EXPECT_EQ(torn_cells(in_order, most_points), 0U) << most_points;
+  }
+}
+
+TEST(RegionPlan, NestedOrderHasEachRegionWithPointsOnce) {
+  std::vector<InputRegion> regions = squares(5, 1000, 0.3);
+  for (std::size_t i = 0; i < 9; ++i) {
+    regions.push_back({0, box_between({1, 1, 1}, {1, 1, 1}), 5000});
+    regions.push_back({0, Box<3>{}, 0});
+  }
+  std::vector<std::size_t> order = nested_order(regions, 2);
+  EXPECT_EQ(order.size(), 34U);
+  std::ranges::sort(order);
+  EXPECT_EQ(std::ranges::adjacent_find(order), order.end());
+  for (const std::size_t r : order) EXPECT_FALSE(regions[r].box.empty());
+  EXPECT_THAT(nested_order({}, 2), IsEmpty());
+}
+
 }  // namespace
 }  // namespace spillway::detail
