@@ -11,7 +11,9 @@
 #include <mutex>
 #include <string_view>
 #include <system_error>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "formats/disk/unfinished_files.h"
 #include "src/error.h"
@@ -57,6 +59,35 @@ class Usage {
   std::uint64_t peak_ = 0;
 };
 
+/// Files that nobody needs any more, by label. Their bytes are gone, but not their length. Another
+/// one goes on after that: a file system may look long for a new file's place where many have just
+/// been removed.
+class SpareFiles {
+ public:
+  struct Spare {
+    std::string path;
+    std::uint64_t end = 0;
+  };
+
+  void put(const std::string& label, Spare spare) {
+    const std::lock_guard lock(mutex_);
+    spares_[label].push_back(std::move(spare));
+  }
+
+  std::optional<Spare> take(const std::string& label) {
+    const std::lock_guard lock(mutex_);
+    std::vector<Spare>& spares = spares_[label];
+    if (spares.empty()) return std::nullopt;
+    Spare spare = std::move(spares.back());
+    spares.pop_back();
+    return spare;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::unordered_map<std::string, std::vector<Spare>> spares_;  // guarded by mutex_
+};
+
 /// A file that is open for the duration of one operation: there may be more files than descriptors.
 class Opened {
  public:
@@ -75,12 +106,19 @@ class Opened {
 
 class DiskScratchFile : public ScratchFile {
  public:
-  DiskScratchFile(const std::string& folder, const std::string& name, std::shared_ptr<Usage> usage)
-      : path_((std::filesystem::path(folder) / name).string()), usage_(std::move(usage)) {
-    create_in_temporary_folder(folder, name);
-  }
+  DiskScratchFile(std::string label, SpareFiles::Spare file, std::shared_ptr<Usage> usage,
+                  std::shared_ptr<SpareFiles> spares)
+      : label_(std::move(label)),
+        path_(std::move(file.path)),
+        begin_(file.end),
+        usage_(std::move(usage)),
+        spares_(std::move(spares)) {}
   ~DiskScratchFile() override {
-    ::unlink(path_.c_str());  // gone already if the folder is
+    if (empty()) {
+      spares_->put(label_, {path_, begin_ + size_});
+    } else {
+      ::unlink(path_.c_str());  // gone already if the folder is
+    }
     usage_->remove(size_);
   }
   DiskScratchFile(const DiskScratchFile&) = delete;
@@ -107,6 +145,7 @@ class DiskScratchFile : public ScratchFile {
   }
 
   void read(std::uint64_t offset, std::span<std::byte> buffer) const override {
+    offset += begin_;
     const Opened file(path_, O_RDONLY);
     if (file.get() < 0) fail("read", errno);
     while (!buffer.empty()) {
@@ -131,6 +170,15 @@ class DiskScratchFile : public ScratchFile {
   [[nodiscard]] const std::string& name() const override { return path_; }
 
  private:
+  /// Gives the room on the disk back; false if the file system can do that only to whole files.
+  bool empty() const {
+    if (size_ == 0) return true;
+    const Opened file(path_, O_WRONLY);
+    return file.get() >= 0 &&
+           ::fallocate(file.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+                       static_cast<off_t>(begin_), static_cast<off_t>(size_)) == 0;
+  }
+
   [[noreturn]] void fail(std::string_view action, int error) const {
     stop_if_run_is_ending();
     const std::string_view what_to_do = hint(error);
@@ -152,8 +200,11 @@ class DiskScratchFile : public ScratchFile {
     }
   }
 
+  std::string label_;
   std::string path_;
+  std::uint64_t begin_;  ///< where its own bytes begin
   std::shared_ptr<Usage> usage_;
+  std::shared_ptr<SpareFiles> spares_;
   std::uint64_t size_ = 0;
 };
 
@@ -171,8 +222,13 @@ class DiskScratchFolder : public ScratchFolder {
     const std::lock_guard lock(mutex_);
     try {
       if (path_.empty()) path_ = make_temporary_folder(parent_, "spillway-");
-      return std::make_unique<DiskScratchFile>(path_, fmt::format("{}-{}", label, ++files_),
-                                               usage_);
+      std::optional<SpareFiles::Spare> file = spares_->take(label);
+      if (!file) {
+        const std::string name = fmt::format("{}-{}", label, ++files_);
+        create_in_temporary_folder(path_, name);
+        file = {(std::filesystem::path(path_) / name).string()};
+      }
+      return std::make_unique<DiskScratchFile>(label, std::move(*file), usage_, spares_);
     } catch (const Error& error) {
       // That a folder cannot be made has one remedy, whatever the system's reason.
       throw SystemRefusal(error.what(), error.facts().file, error.facts().system_error,
@@ -186,6 +242,7 @@ class DiskScratchFolder : public ScratchFolder {
  private:
   const std::string parent_;
   const std::shared_ptr<Usage> usage_;
+  const std::shared_ptr<SpareFiles> spares_ = std::make_shared<SpareFiles>();
   std::mutex mutex_;         // guards what follows
   std::string path_;         // empty until the first file is made
   std::uint64_t files_ = 0;  // made so far

@@ -36,7 +36,8 @@ class ScratchFolder {
  public:
   virtual ~ScratchFolder() = default;
 
-  /// A new, empty file whose name begins with `label`. May be called by several threads.
+  /// An empty file whose name begins with `label`: a new one, or one that has been destroyed. May
+  /// be called by several threads.
   virtual std::unique_ptr<ScratchFile> create(const std::string& label) = 0;
 
   /// Bytes appended to all files so far, and the most that lay on the disk at one time.

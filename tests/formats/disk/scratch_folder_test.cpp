@@ -1,6 +1,7 @@
 #include "formats/disk/scratch_folder.h"
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -67,14 +68,34 @@ TEST_F(Scratch, TheFolderIsPrivateAndMadeWithTheFirstFile) {
   EXPECT_EQ(fs::status(made).permissions(), fs::perms::owner_all);
 }
 
+TEST_F(Scratch, AFileThatIsNotNeededAnyMoreServesAnew) {
+  const auto scratch = folder(10);
+  auto first = scratch->create("tile");
+  first->append(as_bytes_of("ten bytes."));
+  const std::string name = first->name();
+  first.reset();
+  const auto other = scratch->create("mesh");
+  EXPECT_NE(other->name(), name) << "it has another label";
+  const auto again = scratch->create("tile");
+  EXPECT_EQ(again->name(), name);
+  EXPECT_EQ(again->size(), 0U);
+  again->append(as_bytes_of("again"));
+  EXPECT_EQ(content(*again, 0, 5), "again");
+  EXPECT_THROW(content(*again, 5, 1), Error);
+  EXPECT_EQ(scratch->peak_bytes(), 10U);
+  EXPECT_NE(scratch->create("tile")->name(), name) << "it is in use";
+}
+
 TEST_F(Scratch, NothingIsLeft) {
   auto scratch = folder();
   auto first = scratch->create("tile");
   const auto second = scratch->create("tile");
-  first->append(as_bytes_of("x"));
+  first->append(std::vector<std::byte>(1 << 20));
   const std::string name = first->name();
   first.reset();
-  EXPECT_FALSE(fs::exists(name));
+  struct stat found {};
+  ASSERT_EQ(::stat(name.c_str(), &found), 0);
+  EXPECT_LE(found.st_blocks * 512, 8192) << "its bytes are gone at once";
   EXPECT_TRUE(fs::exists(second->name()));
   scratch.reset();
   EXPECT_TRUE(fs::is_empty(parent_));
