@@ -62,8 +62,8 @@ void append_leaves(const TileNode<3>& node, std::vector<const TileNode<3>*>& lea
   for (const TileNode<3>& side : node.children) append_leaves(side, leaves);
 }
 
-/// The tiles below a node in such an order that who reads them, and makes larger ones of them, gets
-/// each in one stretch. docs/formats-blocks.md compares it with other orders.
+/// The tiles below a node in such an order that whoever reads them, and makes larger ones of them,
+/// gets each in one stretch.
 std::vector<const TileNode<3>*> cells_in_order(const TileNode<3>& root, int dimension) {
   std::vector<const TileNode<3>*> leaves;
   append_leaves(root, leaves);
@@ -93,6 +93,7 @@ class Sorting {
         scratch_(context.state().scratch(context)),
         tree_({.dimension = file.sorted()->dimension,
                .capacity = capacity_,
+               .grown_capacity = grown_capacity(),
                .buffered_points = buffered_points(plan_),
                .expected = points_.expected(),
                .extent = extent_of(points, file),
@@ -141,6 +142,15 @@ class Sorting {
       while (block.size() == 0 && fetch(piece)) decode(piece, block);
       return block.size() > 0;
     });
+  }
+
+  /// Where it is not known how many points come: what is known of cells must not outgrow memory.
+  std::function<std::size_t(std::uint64_t)> grown_capacity() {
+    if (points_.expected()) return {};
+    return [this](std::uint64_t points) {
+      capacity_ = cell_capacity(*file_.sorted(), plan_, points);
+      return capacity_;
+    };
   }
 
   void divide() {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "src/error.h"
 
@@ -27,22 +26,15 @@ bool tells_where(const PointHeader& header) {
   return header.count && header.extent && (header.count == 1 || is_filled_in(*header.extent));
 }
 
-/// The box of a cell of a sorted stream, whose reader proves that it is right, in the coordinates
-/// of the source; nothing if it is no such cell, or cannot be told to the last bit.
-std::optional<Box<3>> exact_box(const PointHeader& header, const SourceCoordinates& coordinates,
-                                const Box<3>& told) {
-  if (header.format != "spp" || header.regions.empty()) return std::nullopt;
-  if (header.lattice != coordinates.lattice()) return std::nullopt;
-  if (!header.lattice) return told;
-  Box<3> box = coordinates.of_world(told);
-  for (int k = 0; k < coordinates.dimension(); ++k) {
-    const auto lo = header.lattice->to_integer(k, told.lo[k]);
-    const auto hi = header.lattice->to_integer(k, told.hi[k]);
-    if (!lo || !hi || !header.lattice->keeps_apart(k, *lo, *hi)) return std::nullopt;
-    box.lo[k] = *lo;
-    box.hi[k] = *hi;
+/// Whether the corners of a box in output coordinates are points of a lattice to the last bit.
+bool is_on(const Lattice& lattice, const Box<3>& world, int dimension) {
+  for (int k = 0; k < dimension; ++k) {
+    const auto lo = lattice.to_integer(k, world.lo[k]);
+    const auto hi = lattice.to_integer(k, world.hi[k]);
+    if (!lo || !hi) return false;
+    if (!lattice.keeps_apart(k, std::min(*lo, *hi), std::max(*lo, *hi))) return false;
   }
-  return box;
+  return true;
 }
 
 }  // namespace
@@ -70,7 +62,9 @@ InputRegions::InputRegions(const SourceFacts& facts, const SourceCoordinates& co
       }
       InputRegion region{turns_.size() - 1, {}, count / filter.every};
       const Box<3> kept = bounds ? common_part(told, *bounds) : told;
-      if (count > 0 && !kept.empty()) region.box = box_of(i, kept);
+      if (count > 0 && !kept.empty()) {
+        region.box = common_part(box_of(i, told), wide_box_of(i, kept));
+      }
       regions_.push_back(region);
     };
     for (const PointRegion& region : header.regions) add(region.box, region.count);
@@ -78,11 +72,18 @@ InputRegions::InputRegions(const SourceFacts& facts, const SourceCoordinates& co
   }
 }
 
-/// What a header tells, in the coordinates of the source, and a step of its own lattice more: many
-/// programs round what they write there. Not so for cells of a sorted stream: a step more would
-/// make each wait for its neighbours.
+/// What a header tells, in the coordinates of the source. Where it is not exact, it is wide; but a
+/// step more would make each cell of a sorted stream wait for its neighbours.
 Box<3> InputRegions::box_of(std::size_t input, const Box<3>& told) const {
-  if (const auto box = exact_box(facts_.inputs[input].header, coordinates_, told)) return *box;
+  const PointHeader& header = facts_.inputs[input].header;
+  const bool is_exact = header.regions_are_exact &&
+                        (!header.lattice || is_on(*header.lattice, told, coordinates_.dimension()));
+  return is_exact ? coordinates_.told_box(input, told) : wide_box_of(input, told);
+}
+
+/// A box in the coordinates of the source, and a step of the input's lattice more: many programs
+/// round what they write there.
+Box<3> InputRegions::wide_box_of(std::size_t input, const Box<3>& told) const {
   const auto& own = facts_.inputs[input].header.lattice;
   Box<3> wide = told;
   for (int k = 0; k < 3; ++k) {

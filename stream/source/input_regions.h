@@ -35,6 +35,7 @@ class InputRegions {
 
  private:
   [[nodiscard]] Box<3> box_of(std::size_t input, const Box<3>& told) const;
+  [[nodiscard]] Box<3> wide_box_of(std::size_t input, const Box<3>& told) const;
   [[noreturn]] void refuse(const PointBlock& block, std::size_t point, std::size_t region) const;
 
   const SourceFacts& facts_;

@@ -149,9 +149,13 @@ Box<3> SourceCoordinates::of_world(const Box<3>& world) const {
 }
 
 Box<3> SourceCoordinates::told_extent(std::size_t input) const {
+  return told_box(input, *header_of(input).extent);
+}
+
+Box<3> SourceCoordinates::told_box(std::size_t input, const Box<3>& world) const {
   const PointHeader& header = header_of(input);
   Box<3> box;
-  for (const Point<3>& told : {header.extent->lo, header.extent->hi}) {
+  for (const Point<3>& told : {world.lo, world.hi}) {
     LatticePoint corner(told);
     for (int k = 0; header.lattice && k < 3; ++k) {
       corner[k] = std::round((corner[k] - header.lattice->offset[k]) / header.lattice->scale[k]);

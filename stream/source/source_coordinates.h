@@ -39,6 +39,8 @@ class SourceCoordinates {
   /// What the header of an input tells of its extent, in these coordinates, such as points at its
   /// edges have them: what rounding has done to the header is undone.
   [[nodiscard]] Box<3> told_extent(std::size_t input) const;
+  /// The same for another box that the input's header tells.
+  [[nodiscard]] Box<3> told_box(std::size_t input, const Box<3>& world) const;
 
   /// Brings the points of a block, which are as the reader of an input gives them, into these
   /// coordinates. Throws Error if lattices do not keep those apart that the filter keeps. Safe for

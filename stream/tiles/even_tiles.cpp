@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,10 +20,23 @@ constexpr double kEvenFill = 0.7;
 
 }  // namespace
 
+/// The tiles in the order of the tree: their numbers depend on threads.
+std::vector<std::uint32_t> TileTree::numbers_in_order() const {
+  std::vector<std::uint32_t> numbers;
+  append_numbers(cuts_.root(), numbers);
+  return numbers;
+}
+
+void TileTree::append_numbers(CutTree::NodeRef ref, std::vector<std::uint32_t>& numbers) const {
+  if (CutTree::is_tile(ref)) return numbers.push_back(CutTree::tile_at(ref));
+  for (const CutTree::NodeRef side : cuts_.sides(ref)) append_numbers(side, numbers);
+}
+
 /// A plan for the tiles that there are, all of which are complete, in the order of cells.
 RegionPlan TileTree::plan_anew(double most_points) const {
   std::vector<InputRegion> regions;
-  for (const Tile& tile : tiles_) {
+  for (const std::uint32_t number : numbers_in_order()) {
+    const Tile& tile = tiles_[number];
     const std::uint64_t points = std::min<std::uint64_t>(tile.points, capacity_);  // equal ones
     if (points > 0) regions.push_back({0, tile.box, points});
   }
@@ -42,21 +56,35 @@ bool TileTree::nests() const {
 
 void TileTree::divide_evenly() {
   if (points_ == 0) return;
-  RegionPlan plan = plan_anew(kEvenFill * static_cast<double>(capacity_));
-  if (plan.cuts.tiles() == 1) return;
-  std::vector<Tile> old = std::exchange(tiles_, {});
-  cuts_ = std::move(plan.cuts);
+  CutTree cuts = plan_anew(kEvenFill * static_cast<double>(capacity_)).cuts;
+  if (cuts.tiles() == 1) return;
+  const std::vector<std::uint32_t> numbers = numbers_in_order();
+  std::vector<Tile> old = std::exchange(tiles_, std::vector<Tile>(cuts.tiles()));
+  cuts_ = std::move(cuts);  // no batch is under way
   ++cuts_made_;
-  tiles_.resize(cuts_.tiles());
-  for (Tile& tile : tiles_) tile.cut_at = cuts_made_;
-  for (Tile& tile : old) {
-    for (TileSegment& segment : tile.segments) leave_over(cuts_.root(), std::move(segment));
-    room_ -= tile.room();
+  std::optional<std::uint64_t> last;
+  for (const std::uint32_t number : numbers) {
+    for (TileSegment& segment : old[number].segments) {
+      last = std::max(last, std::optional(segment.last_arrival()));
+      leave_over(cuts_.root(), std::move(segment));
+    }
+  }
+  for (Tile& tile : tiles_) {
+    tile.cut_at = cuts_made_;
+    tile.last_left_over = last;
+  }
+  for (const std::uint32_t number : numbers) {
     Batch batch;
-    for (HeldPoints& held : tile.held) deal_held(std::move(held), batch);
+    room_ -= old[number].room();
+    for (HeldPoints& held : old[number].held) {
+      if (held.arrival) held.run = ++runs_;  // points of other tiles may have had the same one
+      deal_held(std::move(held), batch);
+    }
+    if (room_ > most_room()) spill_some(batch);
     encode(batch);
     write(batch);
   }
+  if (left_over_points_ == 0) cut_long();
 }
 
 }  // namespace spillway::detail

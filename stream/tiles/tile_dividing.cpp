@@ -111,10 +111,16 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
   }
   tiles_.resize(cuts_.tiles());
   set_cell_root(number, whole.cell, first_cut);
-  tiles_[number].cell = whole.cell;
-  for (auto tile = tiles_.begin() + first_new; tile != tiles_.end(); ++tile)
-    tile->cell = whole.cell;
-  for (TileSegment& segment : whole.segments) leave_over(first_cut, std::move(segment));
+  for (TileSegment& segment : whole.segments) {
+    whole.last_left_over = std::max(whole.last_left_over, std::optional(segment.last_arrival()));
+    leave_over(first_cut, std::move(segment));
+  }
+  const auto take_from_whole = [&](Tile& tile) {
+    tile.cell = whole.cell;
+    tile.last_left_over = whole.last_left_over;
+  };
+  take_from_whole(tiles_[number]);
+  std::for_each(tiles_.begin() + first_new, tiles_.end(), take_from_whole);
   room_ -= whole.room();
   for (HeldPoints& held : whole.held) deal_held(std::move(held), batch);
 }
@@ -255,7 +261,7 @@ void TileTree::cut_in_two(std::uint32_t number, bool complete) {
         std::exchange(follows, !whole.last_left_over || segment.arrival > *whole.last_left_over);
     for (const std::uint32_t half : halves) {
       tiles_[half].last_left_over =
-          std::max(tiles_[half].last_left_over, std::optional(segment.arrival));
+          std::max(tiles_[half].last_left_over, std::optional(segment.last_arrival()));
     }
     const double low_share = share_below(segment.box, cut);
     const auto points = static_cast<double>(segment.points);

@@ -108,12 +108,7 @@ void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
              }
            }},
       {.in_order = true, .work = [&](std::size_t slot) { append(batches[slot]); }},
-      {.in_order = false,
-       .work =
-           [&](std::size_t slot) {
-             const StageTimer timer(times_, Stage::kSpill);
-             encode(batches[slot]);
-           }},
+      {.in_order = false, .work = [&](std::size_t slot) { encode(batches[slot]); }},
       {.in_order = true, .work = [&](std::size_t slot) {
          Batch& batch = batches[slot];
          write(batch);
@@ -306,6 +301,7 @@ void TileTree::spill(std::uint32_t number, Batch& batch) {
 }
 
 void TileTree::encode(Batch& batch) {
+  const StageTimer timer(times_, Stage::kSpill);
   for (Spill& spill : batch.spills) encode_points(spill.points, spill.bytes);
 }
 

@@ -52,7 +52,7 @@ struct TileTreeOptions {
 /// at once. Of its points those in memory are dealt to the halves, and on the disk those segments
 /// go to a half that lie in it; the others are left over, to be dealt once more when all points are
 /// in. So a point is written at most twice as a rule, and once where the order is that of a
-/// scanner.
+/// scanner; once more by divide_evenly().
 class TileTree {
  public:
   TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times);
@@ -82,10 +82,11 @@ class TileTree {
 
   /// Whether larger tiles can be put together of these in their order, so that few are begun and
   /// not complete at a time. So it is where tiles have been cut in halves of all points, but not
-  /// where they were cut as the points came, along a flight line first.
+  /// where they were cut as the points came, across a flight line first.
   [[nodiscard]] bool nests() const;
 
-  /// Divides all anew, so that it does: leaves all over that is on the disk, for divide_large().
+  /// Divides all points anew, into tiles that nest. Leaves over what is on the disk, for
+  /// divide_large(). To be called after that, before take_nodes(), and not with a plan.
   void divide_evenly();
 
   /// The cells of the plan that `done` was not told of, which are complete now that all is divided.
@@ -147,7 +148,7 @@ class TileTree {
   void spill_some(Batch& batch);
   [[nodiscard]] bool may_be_cut_later() const;
   void spill(std::uint32_t number, Batch& batch);
-  static void encode(Batch& batch);
+  void encode(Batch& batch);
   void write(Batch& batch);
 
   void begin_region(std::size_t region, Batch& batch);
@@ -158,6 +159,8 @@ class TileTree {
   void divide(std::uint32_t number, std::vector<LatticePoint> sample, std::size_t tile_count,
               Batch& batch);
   void deal_held(HeldPoints held, Batch& batch);
+  [[nodiscard]] std::vector<std::uint32_t> numbers_in_order() const;
+  void append_numbers(CutTree::NodeRef ref, std::vector<std::uint32_t>& numbers) const;
   [[nodiscard]] RegionPlan plan_anew(double most_points) const;
   [[nodiscard]] bool outgrown(const Tile& tile) const;
   [[nodiscard]] bool too_large(const Tile& tile) const;

@@ -96,6 +96,7 @@ struct PointHeader {
   /// What the source tells of where its points lie: parts that come one after the other, in this
   /// order. Empty where it does not tell.
   std::vector<PointRegion> regions;
+  bool regions_are_exact = false;  ///< not rounded: the reader proves that no point lies outside
 };
 
 struct PointReaderOptions {

@@ -93,6 +93,7 @@ class SppReader : public PointReader {
     cells_.emplace(stream_, header_.coordinates, header_.lattice.has_value()).read_table(count);
     Box<3> extent;
     header_.regions = cells_->all();
+    header_.regions_are_exact = true;
     for (PointRegion& region : header_.regions) {
       if (header_.lattice) region.box = world_box(region.box);
       extent.expand(region.box);

@@ -11,6 +11,7 @@
 #include "formats/points/create_points.h"
 #include "formats/points/point_formats.h"
 #include "src/error.h"
+#include "src/geometry/lattice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/points/lost_fields.h"
 #include "stream/library/points/public_points.h"
@@ -153,16 +154,7 @@ void PointFile::place(PointBlock& block) {
 }
 
 Box<3> PointFile::placed(const Box<3>& world) const {
-  if (!how_.lattice) return world;
-  Box<3> box;  // scales may be negative
-  for (const Point<3>& corner : {world.lo, world.hi}) {
-    LatticePoint placed;
-    for (int k = 0; k < 3; ++k) {
-      placed[k] = (corner[k] - how_.lattice->offset[k]) / how_.lattice->scale[k];
-    }
-    box.expand(placed);
-  }
-  return box;
+  return how_.lattice ? integers_of(*how_.lattice, world) : world;
 }
 
 void PointFile::append_regions(std::span<const PointRegion> regions) {

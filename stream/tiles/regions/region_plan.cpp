@@ -143,9 +143,7 @@ void append_nested(std::vector<Portion> portions, int dimension, std::vector<std
   std::vector<Portion> above;
   if (const auto cut = portions.size() > 1 ? best_cut(portions, dimension) : std::nullopt) {
     const auto is_below = [&](const Portion& portion) {
-      const double lo = portion.box.lo[cut->axis];
-      const double hi = portion.box.hi[cut->axis];
-      return hi < cut->value || lo + (hi - lo) / 2 < cut->value;
+      return portion.share_below(cut->axis, cut->value) > 0.5;
     };
     const auto middle = std::stable_partition(portions.begin(), portions.end(), is_below);
     above.assign(middle, portions.end());

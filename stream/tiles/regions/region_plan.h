@@ -48,7 +48,8 @@ struct RegionPlanOptions {
 RegionPlan plan_regions(std::span<const InputRegion> regions, const RegionPlanOptions& options);
 
 /// The numbers of regions that have points, in an order in which every cell of a plan gets its
-/// regions in one stretch, whatever its size, as far as the plan parts none.
+/// regions in one stretch, whatever its size, as far as the plan parts none. For boxes that hardly
+/// overlap.
 std::vector<std::size_t> nested_order(std::span<const InputRegion> regions, int dimension);
 
 /// Whether enough tiles are complete early for a run that triangulates while it reads.

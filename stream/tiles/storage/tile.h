@@ -29,7 +29,7 @@ struct Tile {
   double expected = 0;           ///< points of segments left over above that are still to come
   Box<3> expected_box{};         ///< where they lie
   std::vector<HeldPoints> held;  ///< a run each; without an arrival it came last
-  std::optional<std::uint64_t> last_left_over{};  ///< the latest arrival of what was, above
+  std::optional<std::uint64_t> last_left_over{};  ///< the last arrival of what was, above
   std::vector<TileSegment> segments;
   std::shared_ptr<ScratchFile> file;
   std::uint32_t spills = 0;  ///< to the file

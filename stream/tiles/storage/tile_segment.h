@@ -48,6 +48,9 @@ struct TileSegment {
   std::uint64_t arrival = 0;
   bool follows = false;  ///< no other points that are dealt again come between it and the last
   Box<3> box;
+
+  /// No part of it has a later one. A segment has points.
+  [[nodiscard]] std::uint64_t last_arrival() const { return arrival + points - 1; }
 };
 
 /// Joins neighbours in `segments`, those of a tile in the order of their arrival, until at most

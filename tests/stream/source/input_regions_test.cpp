@@ -5,14 +5,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+
 #include "src/error.h"
 
 namespace spillway::detail {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Gt;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Lt;
+using ::testing::Pair;
 using ::testing::SizeIs;
 
 PointHeader header(const std::string& name, std::uint64_t count, double lo, double hi) {
@@ -81,20 +87,57 @@ TEST(InputRegions, AreThePartsThatAHeaderTells) {
   EXPECT_EQ(nodes.turns()[1].piece, 1U);
 }
 
-TEST(InputRegions, AreExactWhereTheyAreCellsOfASortedStream) {
+PointHeader sorted_header() {
   PointHeader sorted = header("a.spp", 30, 1, 9);
   sorted.format = "spp";
   sorted.regions = {{*header("", 0, 1, 4).extent, 10}, {*header("", 0, 4.01, 9).extent, 20}};
-  const Regions alone({sorted});
-  EXPECT_EQ(alone.all()[0].box.hi[0], 400);
-  EXPECT_EQ(alone.all()[1].box.lo[1], 401);
+  sorted.regions_are_exact = true;
+  return sorted;
+}
+
+/// Where the first cell ends and the second one begins, on the first axis.
+std::pair<double, double> sides(const Regions& regions) {
+  return {regions.all()[0].box.hi[0], regions.all()[1].box.lo[0]};
+}
+
+TEST(InputRegions, AreExactWhereTheyAreCellsOfASortedStream) {
+  PointHeader sorted = sorted_header();
+  EXPECT_THAT(sides(Regions({sorted})), Pair(400, 401));
+  sorted.lattice.reset();
+  EXPECT_THAT(sides(Regions({sorted})), Pair(4, 4.01));
+  sorted.regions_are_exact = false;
+  EXPECT_THAT(sides(Regions({sorted})), Pair(Gt(4), Lt(4.01)));
+}
+
+TEST(InputRegions, AreExactOnALatticeThatOthersShare) {
   PointHeader other = header("b.las", 5, 0, 1);
   other.lattice->offset = {0.005, 0, 0};
-  const Regions on_another_lattice({sorted, other});
-  EXPECT_LT(on_another_lattice.all()[1].box.lo[1], on_another_lattice.all()[0].box.hi[1])
-      << "rounded, so a step more";
-  sorted.lattice.reset();
-  EXPECT_EQ(Regions({sorted}).all()[0].box.hi[0], 4);
+  EXPECT_THAT(sides(Regions({sorted_header(), other})), Pair(800, 802)) << "of half the step";
+  PointHeader without = header("b.txt", 5, 0, 1);
+  without.lattice.reset();
+  EXPECT_THAT(sides(Regions({sorted_header(), without})), Pair(4, 4.01));
+  PointHeader downwards = sorted_header();
+  downwards.lattice->scale[0] = -0.01;
+  const auto [first_side, second_side] = sides(Regions({downwards}));
+  EXPECT_EQ(std::abs(first_side - second_side), 1);
+}
+
+TEST(InputRegions, AnExactOneEndsAtTheBoundsOfAFilterAtTheMost) {
+  PointFilter filter;
+  filter.bounds = *header("", 0, 0, 3.14159).extent;
+  const Regions cut({sorted_header()}, filter);
+  EXPECT_NEAR(cut.all()[0].box.hi[0], 315.159, 1e-6);
+  EXPECT_EQ(cut.all()[0].box.lo[0], 100);
+  EXPECT_TRUE(cut.all()[1].box.empty());
+}
+
+TEST(InputRegions, PointsOnTheSidesOfAnExactOneAreInside) {
+  const Regions sorted({sorted_header()});
+  PointBlock block;
+  block.points = {{100, 100, 0}, {400, 100, 0}, {100, 400, 0}, {400, 400, 0}};
+  block.index = {0, 1, 2, 3};
+  EXPECT_NO_THROW(sorted.regions->check(block, 0));
+  EXPECT_THROW(sorted.regions->check(block, 1), Error);
 }
 
 TEST(InputRegions, AFilterLeavesAPartOfThem) {

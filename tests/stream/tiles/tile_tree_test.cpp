@@ -152,6 +152,21 @@ TEST_P(TileTreeOfOrder, DividedEvenlyKeepsEveryPointAndTheOrderOfEqualOnes) {
   }
 }
 
+TEST_P(TileTreeOfOrder, DividedEvenlyIsTheSameForAnyNumberOfThreads) {
+  const Points points = make_points(GetParam(), kMany / 8);
+  Dealing dealing{.capacity = 300, .buffered = 6'000, .block = 300, .threads = 1, .evenly = true};
+  const DealtTiles<2> one = deal_into_tiles<2>(points, dealing);
+  dealing.threads = 4;
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    const DealtTiles<2> four = deal_into_tiles<2>(points, dealing);
+    EXPECT_EQ(one.written, four.written);
+    ASSERT_EQ(one.tiles.size(), four.tiles.size());
+    for (std::size_t t = 0; t < one.tiles.size(); ++t) {
+      ASSERT_EQ(one.tiles[t].points.index, four.tiles[t].points.index) << "tile " << t;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Orders, TileTreeOfOrder,
                          testing::Values(Order::kRandom, Order::kSorted, Order::kFlightLines,
                                          Order::kStrips, Order::kOutwards, Order::kCurve,
@@ -190,15 +205,40 @@ TEST(TileTree, NestsWhereTheHeaderTellsWherePointsLieAndAfterItIsDividedEvenly) 
   EXPECT_TRUE(deal_into_tiles<2>(sorted, dealing).nest_at_first);
 }
 
-TEST(TileTree, DividedEvenlyIsTheSameForAnyNumberOfThreads) {
-  const Points points = make_points(Order::kFlightLines, kMany / 2);
-  const DealtTiles<2> one = deal_into_tiles<2>(points, {.threads = 1, .evenly = true});
-  const DealtTiles<2> three = deal_into_tiles<2>(points, {.threads = 3, .evenly = true});
-  EXPECT_EQ(one.written, three.written);
-  ASSERT_EQ(one.tiles.size(), three.tiles.size());
-  for (std::size_t t = 0; t < one.tiles.size(); ++t) {
-    ASSERT_EQ(one.tiles[t].points.index, three.tiles[t].points.index) << "tile " << t;
+/// Five to fifty equal points at each of many places, which lie close together in some spots.
+Points at_many_places(Order order) {
+  Points points = make_points(order, 30'000);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t place = i - i % (5 + i / 50 % 45);
+    const double spot = std::floor(20 * points[place][0]) / 20;
+    points[i][0] = spot + (points[place][0] - spot) * (points[place][1] < 0.5 ? 0.02 : 1);
+    points[i][1] = points[place][1];
   }
+  std::mt19937_64 random(5);
+  if (order == Order::kRandom) std::ranges::shuffle(points, random);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i][2] = static_cast<double>(i);
+  return points;
+}
+
+TEST(TileTree, DividedEvenlyKeepsTheOrderOfEqualPointsWhereTilesAreCutAgain) {
+  for (const Order order : {Order::kRandom, Order::kFlightLines, Order::kStrips}) {
+    const Points points = at_many_places(order);
+    for (const std::size_t buffered : {4'000, 9'000, 20'000}) {
+      const DealtTiles<2> dealt = deal_into_tiles<2>(
+          points, {.capacity = 200, .buffered = buffered, .block = 250, .evenly = true});
+      EXPECT_EQ(fault_of(dealt, points), "") << testing::PrintToString(order) << buffered;
+      EXPECT_EQ(out_of_order(dealt), 0U) << testing::PrintToString(order) << buffered;
+      EXPECT_EQ(apart_from_equal(dealt), 0U) << testing::PrintToString(order) << buffered;
+    }
+  }
+}
+
+TEST(TileTree, DividedEvenlyKeepsThePointsOfSpace) {
+  const Points points = make_points(Order::kStrips, kMany / 4, false);
+  const DealtTiles<3> dealt = deal_into_tiles<3>(
+      points, {.capacity = 300, .buffered = 9'000, .known = kAll, .evenly = true});
+  EXPECT_EQ(fault_of(dealt, points), "");
+  EXPECT_EQ(out_of_order(dealt), 0U);
 }
 
 TEST(TileTree, LeavesLongWhatIsThinItself) {
