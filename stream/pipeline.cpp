@@ -102,8 +102,7 @@ bool run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
   divide(engine, options);
   options.begin_phase("triangulate");
   refuse_flat_points(engine.span(), engine.points());
-  engine.triangulate_rest();
-  options.end_phase(engine.points());
+  options.end_phase(engine.triangulate_rest());
   return true;
 }
 

@@ -160,14 +160,16 @@ Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& 
 }
 
 template <int D>
-void TileEngine<D>::triangulate_rest() {
+std::uint64_t TileEngine<D>::triangulate_rest() {
   const Stopwatch watch(figures_.triangulate_seconds);
+  points_before_ = counts_.points;
   tells_progress_ = true;
   for (const std::uint32_t cell : tree_.finish()) add_cell(cell);
   lanes_.work_off();
   if (!top_->border.simplices.empty()) {
     throw std::logic_error("not all that is final was found to be so: a fault of the program");
   }
+  return tree_.points() - points_before_;
 }
 
 /// From now on refusals tell what will do for so many points.
@@ -372,8 +374,9 @@ void TileEngine<D>::hand_over(const Border<D>& border) {
 template <int D>
 void TileEngine<D>::report_progress() const {
   if (!tells_progress_) return;
-  const std::uint64_t done = counts_.points;
-  options_.progress(done, static_cast<double>(done) / static_cast<double>(tree_.points()));
+  const std::uint64_t done = counts_.points - points_before_;
+  const std::uint64_t all = tree_.points() - points_before_;
+  options_.progress(done, all > 0 ? static_cast<double>(done) / static_cast<double>(all) : 1);
 }
 
 template <int D>

@@ -81,8 +81,8 @@ class TileEngine {
   /// change has gone to the sink when it returns; the rest is returned.
   Border<D> triangulate(const TileNode<D>& root, const Outside<D>& outside);
 
-  /// The same with a plan, for all that is left. Nothing remains.
-  void triangulate_rest();
+  /// The same with a plan, for all that is left. Nothing remains. Returns how many points that was.
+  std::uint64_t triangulate_rest();
 
   /// Merges borders of children of `node`, which need not be tiles of this process, as block
   /// `place` of a stream. Counts what has been settled, but writes nothing.
@@ -161,6 +161,7 @@ class TileEngine {
   std::vector<Node*> parts_;          ///< of these, by number, as far as they are complete
   Node* top_ = nullptr;  ///< the part that was added last: at the end that of all points
   std::atomic<bool> tells_progress_ = false;  ///< of triangulating: reading has ended
+  std::uint64_t points_before_ = 0;           ///< triangulated while points were read
   std::function<void(std::span<std::uint64_t>)> replace_indices_;
   std::mutex load_mutex_;  ///< guards the next one
   std::future<StoredTile> reading_ahead_;

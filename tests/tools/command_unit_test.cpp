@@ -99,6 +99,23 @@ TEST(ProgressJson, LeavesUnknownsNull) {
   EXPECT_EQ(json["rate"], 5.0);
 }
 
+TEST(ProgressOnATerminal, WhereTheInputIsAPipeShowsTheLineFromTheSecondPhaseOn) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress(ProgressStyle::kTerminalOfAPipe, false, false);
+    for (const char* const phase : {"read", "divide"}) {
+      progress.begin(phase, "points");
+      progress.update(200, 0.5);
+      std::this_thread::sleep_for(std::chrono::milliseconds(250));
+      progress.end(400);
+    }
+  }
+  const std::string shown = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(shown, testing::Not(testing::HasSubstr("read")));
+  EXPECT_THAT(shown, testing::HasSubstr("divide: 200 points"));
+  EXPECT_TRUE(shown.ends_with("\r\x1b[K")) << "the line is wiped at the end";
+}
+
 TEST(ProgressOfThreads, TheMostCountsInWhateverOrderTheySayIt) {
   testing::internal::CaptureStderr();
   {

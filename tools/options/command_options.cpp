@@ -126,7 +126,7 @@ Progress make_progress(const ReportOptions& options, bool reads_pipe) {
   } else if (options.progress == "auto" && isatty(STDERR_FILENO) != 0) {
     const char* terminal = std::getenv("TERM");
     if (terminal != nullptr && std::string_view(terminal) != "dumb") {
-      style = reads_pipe ? ProgressStyle::kNone : ProgressStyle::kTerminal;
+      style = reads_pipe ? ProgressStyle::kTerminalOfAPipe : ProgressStyle::kTerminal;
     }
   }
   return {style, options.quiet, options.verbose};

@@ -28,8 +28,9 @@ struct ReportOptions {
 void add_report_options(CommandLine& app, ReportOptions& options);
 
 /// The reporter that the options ask for. "auto" is a rewritten line on a terminal, else plain
-/// lines; of several ranks the first one reports; but nothing, messages apart, where the input is a
-/// pipe and all stages of the chain share the terminal: the first one's line stays readable.
+/// lines; of several ranks the first one reports. Where the input is a pipe, there is no line in
+/// the first phase: all commands of the chain share the terminal, and that of the first one stays
+/// readable.
 Progress make_progress(const ReportOptions& options, bool reads_pipe = false);
 
 /// --memory, --tmpdir, --max-tmp.

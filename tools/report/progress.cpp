@@ -13,6 +13,7 @@ namespace {
 MessageStyle message_style(ProgressStyle style) {
   switch (style) {
     case ProgressStyle::kTerminal:
+    case ProgressStyle::kTerminalOfAPipe:
       return MessageStyle::kTerminal;
     case ProgressStyle::kJson:
       return MessageStyle::kJson;
@@ -24,6 +25,7 @@ MessageStyle message_style(ProgressStyle style) {
 std::chrono::milliseconds period(ProgressStyle style) {
   switch (style) {
     case ProgressStyle::kTerminal:
+    case ProgressStyle::kTerminalOfAPipe:
       return std::chrono::milliseconds(100);
     case ProgressStyle::kJson:
       return std::chrono::seconds(1);
@@ -56,6 +58,7 @@ void Progress::begin(const std::string& phase, const std::string& unit) {
   {
     const std::lock_guard lock(mutex_);
     phase_ = {Clock::now(), {.phase = phase, .unit = unit, .fraction = {}}};
+    ++phases_;
   }
   if (style_ == ProgressStyle::kNone) return;
   try {
@@ -141,6 +144,10 @@ void Progress::detail(std::string_view message) {
   if (verbose_) say(message);
 }
 
+bool Progress::rewrites() const {
+  return style_ == ProgressStyle::kTerminal || style_ == ProgressStyle::kTerminalOfAPipe;
+}
+
 void Progress::tick_until_stopped(const std::stop_token& stop) {
   std::unique_lock sleep(sleep_mutex_);
   const auto never = [] { return false; };
@@ -155,7 +162,7 @@ void Progress::tick_until_stopped(const std::stop_token& stop) {
 }
 
 void Progress::show_end(const PhaseState& state, const std::lock_guard<std::mutex>& lock) const {
-  if (style_ == ProgressStyle::kTerminal) {
+  if (rewrites()) {
     wipe(lock);
   } else {
     show(state, lock);
@@ -169,6 +176,9 @@ void Progress::show(const PhaseState& state, const std::lock_guard<std::mutex>& 
     case ProgressStyle::kPlain:
       write_to_standard_error("spillway: " + progress_line(state) + "\n");
       break;
+    case ProgressStyle::kTerminalOfAPipe:
+      if (phases_ == 1) break;
+      [[fallthrough]];
     case ProgressStyle::kTerminal:
       wipe(lock);
       write_to_standard_error(progress_line(state));
@@ -180,7 +190,7 @@ void Progress::show(const PhaseState& state, const std::lock_guard<std::mutex>& 
 }
 
 void Progress::wipe(const std::lock_guard<std::mutex>& /*lock*/) const {
-  if (style_ == ProgressStyle::kTerminal) write_to_standard_error("\r\x1b[K");
+  if (rewrites()) write_to_standard_error("\r\x1b[K");
 }
 
 }  // namespace spillway::detail

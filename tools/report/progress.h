@@ -19,7 +19,9 @@ enum class ProgressStyle {
   kNone,
   kPlain,     ///< a line at the end of a phase and every few seconds
   kTerminal,  ///< one line that is rewritten ten times a second
-  kJson,      ///< a JSON object a line, every second and at the end of a phase; messages likewise
+  /// Likewise, but not in the first phase, in which whoever fills a pipe shows a line of its own.
+  kTerminalOfAPipe,
+  kJson,  ///< a JSON object a line, every second and at the end of a phase; messages likewise
 };
 
 /// All that a run says on standard error, errors excepted: progress and messages. The work is a
@@ -69,6 +71,7 @@ class Progress {
     void finish(std::uint64_t done);
   };
 
+  [[nodiscard]] bool rewrites() const;
   void tick_until_stopped(const std::stop_token& stop);
   void show_end(const PhaseState& state, const std::lock_guard<std::mutex>& lock) const;
   void show(const PhaseState& state, const std::lock_guard<std::mutex>& lock) const;
@@ -77,7 +80,8 @@ class Progress {
   const ProgressStyle style_;
   const bool quiet_;
   const bool verbose_;
-  std::mutex mutex_;  // guards the next two and what stands on standard error
+  std::mutex mutex_;  // guards the next three and what stands on standard error
+  std::uint64_t phases_ = 0;
   Phase phase_;
   std::optional<Phase> inner_;
   std::mutex sleep_mutex_;
