@@ -13,12 +13,13 @@
 #   --memory SIZE    as spillway triangulate takes it [32M]
 #   --orders LIST    of scan random curve outwards strips [all]
 #   --told           the stream's header tells the number of points and their extent
+#   --check          prove the first mesh of each set of equal hashes with spillway check, its points and the same memory
 #   --threads N      of spillway; 0: all there are [0]
 #   --limit SECONDS  a run that takes longer is ended, with exit code 124 [3600]
 #   --tmpdir DIR     where a folder for files is made, and removed at the end [$TMPDIR, else /tmp]
 #   --driver FILE    the ordered_points to run [beside SPILLWAY]
 #
-# The exit code is 1 if a run failed or hashes differ.
+# The exit code is 1 if a run failed, hashes differ, or a mesh is not proved.
 set -u -o pipefail
 export LC_ALL=C
 
@@ -32,6 +33,7 @@ file_points=1e7
 memory=32M
 orders="scan random curve outwards strips"
 told=()
+check=
 threads=0
 limit=3600
 tmpdir=${TMPDIR:-/tmp}
@@ -47,6 +49,7 @@ while [ $# -gt 1 ]; do
     --tmpdir) tmpdir=$2 ;;
     --driver) driver=$2 ;;
     --told) told=(--told); shift; continue ;;
+    --check) check=yes; shift; continue ;;
     *) usage ;;
   esac
   shift 2
@@ -126,6 +129,27 @@ print_row() {
 
 failed=0
 hashes=()
+proofs=()
+declare -A seen
+
+# With --check: proves the mesh of the last run with the points it was made of, if it is the first one of its hash.
+prove() {
+  local hash code seconds kilobytes
+  hash=$(figure canonical_hash)
+  if [ -z "$check" ] || [ -z "$hash" ] || [ -n "${seen[$hash]-}" ]; then return; fi
+  seen[$hash]=yes
+  /usr/bin/time -q -f '%e %M' -o "$folder/time" timeout "$limit" "$spillway" check -q "$folder/out.spm" \
+    --points "$folder/points.spp" --memory "$memory" --threads "$threads" --tmpdir "$folder" > "$folder/proof" 2>&1
+  code=$?
+  read -r seconds kilobytes < "$folder/time"
+  if [ "$code" -eq 0 ]; then
+    proofs+=("Proved: $hash, of $1, in $seconds s and $((kilobytes / 1024)) MiB.")
+  else
+    proofs+=("NOT proved: $hash, of $1, exit code $code." "$(cat "$folder/proof")")
+    failed=1
+  fi
+}
+
 echo "| order | exit code | wall s | CPU us/pt | peak MiB | spilled/pt | tiles | above 4:1 | divided/pt | disk B/pt | hash |"
 echo "|---|---|---|---|---|---|---|---|---|---|---|"
 printf '0 0 0\n1 0 0\n0 1 0\n' > "$folder/pipe" &
@@ -137,6 +161,7 @@ for order in $orders; do
     triangulate "$folder/points.spp"
     print_row "$order, file" $?
     keep_stages "$order-file"
+    prove "$order, file"
   fi
   rm -f "$folder/points.spp"
   # Who writes to the pipe must not be what its reader waits for.
@@ -145,12 +170,14 @@ for order in $orders; do
   triangulate - "$folder/pipe"
   code=$?
   wait
-  rm -f "$folder/points.spp"
   print_row "$order" "$code"
   keep_stages "$order"
+  prove "$order"
+  rm -f "$folder/points.spp"
   if [ "$code" -eq 0 ]; then hashes+=("$(figure canonical_hash)"); else failed=1; fi
 done
 if [ -s "$folder/stages" ]; then print_stages; fi
+if [ ${#proofs[@]} -gt 0 ]; then printf '\n'; printf '%s\n' "${proofs[@]}"; fi
 different=$(printf '%s\n' "${hashes[@]}" | sort -u | wc -l)
 echo
 if [ ${#hashes[@]} -lt 2 ]; then
