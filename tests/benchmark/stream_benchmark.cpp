@@ -105,13 +105,17 @@ double time_reference(const Plan& plan, std::uint64_t count) {
 }
 
 void compare(const Plan& plan, std::uint64_t count, const std::string& memory) {
-  const bool las = plan.family == "terrain";
-  const std::string input = fmt::format("{}/benchmark.{}", plan.folder, las ? "las" : "npy");
+  const bool terrain = plan.family == "terrain";
+  const std::string input = fmt::format("{}/benchmark.{}", plan.folder, terrain ? "las" : "npy");
   const std::string output = plan.folder + "/benchmark.spm";
   const std::string stats = plan.folder + "/benchmark.json";
   const std::string scratch = plan.folder + "/benchmark.copy";
-  run({plan.command, "generate", "-q", plan.family, "-n", std::to_string(count), "--dim",
-       std::to_string(plan.dimension), "-o", input});
+  std::vector<std::string> generate = {plan.command,          "generate", "-q", plan.family, "-n",
+                                       std::to_string(count), "-o",       input};
+  if (!terrain) {  // which always has z
+    generate.insert(generate.end(), {"--dim", std::to_string(plan.dimension)});
+  }
+  run(generate);
   std::vector<double> reference;
   std::vector<double> ours;
   std::vector<double> disk;

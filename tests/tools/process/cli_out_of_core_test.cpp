@@ -189,7 +189,7 @@ TEST_F(OutOfCore, AProcessHoldsTheLeastLimitAndWhatAnEmptyRunTakes) {
   GTEST_SKIP() << "a sanitizer's own memory is not in the budget";
 #endif
   constexpr double kEmptyRun = 13;  // MiB
-  constexpr double kBeside = 12;    // as docs/cli.md states
+  constexpr double kBeside = 12;    // of the 14 that docs/cli.md states
   const auto peak = [](const nlohmann::json& stats) {
     return stats["peak_rss_bytes"].get<double>() / (1 << 20);
   };
