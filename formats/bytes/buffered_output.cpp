@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 #include "formats/bytes/bytes.h"
 
@@ -28,7 +29,7 @@ void BufferedOutput::commit() {
 }
 
 void BufferedOutput::flush() {
-  if (used_ > 0) file_->write(std::span(buffer_).first(used_));
+  if (used_ > 0) file_->write(std::span(buffer_.get(), used_));
   used_ = 0;
 }
 

@@ -4,30 +4,29 @@
 #include <memory>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "formats/disk/file_system.h"
 
 namespace spillway::detail {
 
 /// Collects bytes and hands them to a file in buffers of some megabytes, which the file passes on
-/// without copying.
+/// without copying. Only what is filled of a buffer takes memory, so one that waits takes none.
 class BufferedOutput {
  public:
   explicit BufferedOutput(std::unique_ptr<OutputFile> file)
-      : file_(std::move(file)), buffer_(kBufferSize) {}
+      : file_(std::move(file)), buffer_(std::make_unique_for_overwrite<std::byte[]>(kBufferSize)) {}
 
   /// The most bytes that reserve() makes room for.
   static constexpr std::size_t kLargestRequest = std::size_t{1} << 16;
 
   /// Room for `size` bytes, to be filled and then counted by advance().
   std::byte* reserve(std::size_t size) {
-    if (buffer_.size() - used_ < size) flush();
-    return buffer_.data() + used_;
+    if (kBufferSize - used_ < size) flush();
+    return buffer_.get() + used_;
   }
 
   /// Appends what was put into the room that reserve() gave, up to `end`.
-  void advance_to(const std::byte* end) { used_ = end - buffer_.data(); }
+  void advance_to(const std::byte* end) { used_ = end - buffer_.get(); }
 
   void append(std::string_view text);
 
@@ -45,7 +44,7 @@ class BufferedOutput {
   void flush();
 
   std::unique_ptr<OutputFile> file_;
-  std::vector<std::byte> buffer_;
+  std::unique_ptr<std::byte[]> buffer_;
   std::size_t used_ = 0;
 };
 

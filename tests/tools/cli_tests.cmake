@@ -30,7 +30,7 @@ spillway_command_test(cli_fault_tests fault
   tools/process/cli_same_output_test.cpp
   tools/process/cli_signal_test.cpp)
 spillway_command_test(cli_out_of_core_tests cli
-  tools/process/cli_out_of_core_test.cpp)
+  tools/process/cli_memory_test.cpp tools/process/cli_out_of_core_test.cpp)
 spillway_command_test(cli_out_of_core_fault_tests fault
   tools/process/cli_out_of_core_fault_test.cpp)
 spillway_command_test(cli_input_tests cli

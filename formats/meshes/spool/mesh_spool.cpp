@@ -25,6 +25,7 @@ class ByteSpool {
     if (bytes.size() > memory_) {
       file_->append(bytes);
     } else {
+      buffer_.reserve(memory_);  // what is not filled takes none
       buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
     }
   }

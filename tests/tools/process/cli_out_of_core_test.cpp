@@ -168,47 +168,6 @@ TEST_F(OutOfCore, StatsTellWhatWasSpilledAndWhatStayed) {
   }
 }
 
-TEST_F(OutOfCore, ResidentMemoryStaysWithinTheBudget) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer's own memory is not in the budget";
-#endif
-  generate(3'000'000, "in.las");
-  constexpr double kMiB = 1 << 20;
-  const auto stream = triangulate("--memory 64M in.las -o mesh.spm");
-  const auto spooled = triangulate("--memory 64M in.las -o mesh.ply");
-  for (const auto& stats : {stream, spooled}) {
-    EXPECT_GT(stats["spilled_points"], 0);
-    EXPECT_LE(stats["peak_rss_bytes"].get<double>() / kMiB, 64 * 1.15 + 64) << stats["output"];
-  }
-  EXPECT_EQ(spooled["spilled_bytes"], stream["spilled_bytes"]) << "the spool is none of it";
-  EXPECT_EQ(work_.info("mesh.ply")["canonical_hash"], stream["canonical_hash"]);
-}
-
-TEST_F(OutOfCore, AProcessHoldsTheLeastLimitAndWhatAnEmptyRunTakes) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer's own memory is not in the budget";
-#endif
-  constexpr double kEmptyRun = 13;  // MiB
-  constexpr double kBeside = 12;    // of the 14 that docs/cli.md states
-  const auto peak = [](const nlohmann::json& stats) {
-    return stats["peak_rss_bytes"].get<double>() / (1 << 20);
-  };
-  work_.write("three.txt", "0 0 1\n1 0 2\n0 1 3\n");
-  EXPECT_LE(peak(triangulate("--memory 32M - -o mesh.spm < three.txt")), kEmptyRun);
-  for (const std::string family : {"terrain", "uniform"}) {
-    const std::string source = fmt::format("spillway generate -q {} -n 2e6 | ", family);
-    const auto stats = spill("--threads 2 - -o mesh.spm", source);
-    EXPECT_LE(peak(stats), 32 + kBeside) << family;
-  }
-  const std::string equal =
-      "awk 'BEGIN {for (i = 0; i < 1500000; ++i) print 5, 7, i % 1000; print \"0 0 0\\n9 0 1\"}' "
-      "| ";
-  const auto stats = spill("--threads 2 --duplicates highest - -o mesh.obj", equal);
-  EXPECT_EQ(stats["duplicates"], 1'499'999);
-  EXPECT_LE(peak(stats), 32 + kBeside);
-  EXPECT_THAT(work_.read("mesh.obj"), HasSubstr("v 5 7 999\n"));
-}
-
 /// The doubles or 64-bit integers of an array file, row after row.
 template <typename T>
 std::vector<T> array_of(const std::string& npy) {

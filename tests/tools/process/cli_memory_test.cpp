@@ -1,0 +1,128 @@
+// What the process holds at most: --memory and what docs/cli.md says that it takes beside it, at
+// the least limit too, where that counts most.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/tools/command_runner.h"
+
+namespace spillway::detail::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kMiB = 1 << 20;
+/// What a process may hold beside its limit, in MiB.
+constexpr double kBeside = 14;
+
+class ResidentMemory : public testing::Test {
+ protected:
+  void SetUp() override {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer's own memory is not in the budget";
+#endif
+  }
+
+  void generate(const std::string& points) const {
+    work_.succeed("spillway generate -q terrain -n " + points);
+  }
+
+  /// The figures of a run on two threads.
+  [[nodiscard]] nlohmann::json triangulate(const std::string& arguments,
+                                           const std::string& before = "") const {
+    work_.succeed(before + "spillway triangulate -q --threads 2 --tmpdir . --stats stats.json " +
+                  arguments);
+    return nlohmann::json::parse(work_.read("stats.json"));
+  }
+
+  /// In MiB.
+  static double peak(const nlohmann::json& stats) {
+    return stats["peak_rss_bytes"].get<double>() / kMiB;
+  }
+
+  /// What `convert -v` says of it, in MiB.
+  [[nodiscard]] double peak_of_conversion(const std::string& script) const {
+    const std::string label = "peak memory ";
+    const Result result = work_.run(script);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::size_t at = result.err.find(label);
+    if (at == std::string::npos) {
+      ADD_FAILURE() << result.err;
+      return 0;
+    }
+    return std::stod(result.err.substr(at + label.size())) / kMiB;
+  }
+
+  Workspace work_;
+};
+
+TEST_F(ResidentMemory, IsTheLimitWhetherAMeshIsAStreamOrSpooled) {
+  generate("2000000 -o in.las");
+  const auto stream = triangulate("--memory 64M in.las -o mesh.spm");
+  const auto spooled = triangulate("--memory 64M in.las -o mesh.ply");
+  for (const auto& stats : {stream, spooled}) {
+    EXPECT_GT(stats["spilled_points"], 0);
+    EXPECT_LE(peak(stats), 64 + kBeside) << stats["output"];
+  }
+  EXPECT_EQ(spooled["spilled_bytes"], stream["spilled_bytes"]) << "the spool is none of it";
+  EXPECT_EQ(work_.info("mesh.ply")["canonical_hash"], stream["canonical_hash"]);
+}
+
+TEST_F(ResidentMemory, IsTheLeastLimitWhateverIsWritten) {
+  generate("2000000 -o in.las");
+  for (const std::string output : {"mesh.ply", "mesh.spm --tasks tasks.jsonl"}) {
+    const auto stats = triangulate("--memory 32M in.las -o " + output);
+    EXPECT_GT(stats["spilled_points"], 0);
+    EXPECT_LE(peak(stats), 32 + kBeside) << output;
+  }
+}
+
+TEST_F(ResidentMemory, IsTheLeastLimitOfAPipeAndWhatAnEmptyRunTakes) {
+  constexpr double kEmptyRun = 13;  // MiB
+  constexpr double kBesidePipes = 12;
+  work_.write("three.txt", "0 0 1\n1 0 2\n0 1 3\n");
+  EXPECT_LE(peak(triangulate("--memory 32M - -o mesh.spm < three.txt")), kEmptyRun);
+  for (const std::string family : {"terrain", "uniform"}) {
+    const std::string source = fmt::format("spillway generate -q {} -n 2e6 | ", family);
+    const auto stats = triangulate("--memory 32M - -o mesh.spm", source);
+    EXPECT_GT(stats["spilled_points"], 0) << family;
+    EXPECT_LE(peak(stats), 32 + kBesidePipes) << family;
+  }
+  const std::string equal =
+      "awk 'BEGIN {for (i = 0; i < 1500000; ++i) print 5, 7, i % 1000; print \"0 0 0\\n9 0 1\"}' "
+      "| ";
+  const auto stats = triangulate("--memory 32M --duplicates highest - -o mesh.obj", equal);
+  EXPECT_GT(stats["spilled_points"], 0);
+  EXPECT_EQ(stats["duplicates"], 1'499'999);
+  EXPECT_LE(peak(stats), 32 + kBesidePipes);
+  EXPECT_THAT(work_.read("mesh.obj"), HasSubstr("v 5 7 999\n"));
+}
+
+TEST_F(ResidentMemory, IsTheLeastLimitWhereTilesAreTriangulatedWhilePointsAreRead) {
+  generate("2000000 --grid 4x4 -o 't_#.las'");
+  const auto survey = triangulate("--memory 32M t_*.las -o mesh.spm");
+  EXPECT_LT(survey["first_block_read_points"], survey["points"].get<int>() / 2);
+  EXPECT_LE(peak(survey), 32 + kBeside);
+
+  work_.succeed("spillway convert -q t_*.las --sorted --memory 32M --tmpdir . -o sorted.spp");
+  const auto pipe = triangulate("--memory 32M - -o mesh.spm", "cat sorted.spp | ");
+  EXPECT_LT(pipe["first_block_read_points"], pipe["points"].get<int>() / 2);
+  EXPECT_LE(peak(pipe), 32 + kBeside);
+  EXPECT_EQ(pipe["canonical_hash"], survey["canonical_hash"]);
+}
+
+TEST_F(ResidentMemory, IsTheLeastLimitWherePointsAreSorted) {
+  generate("3000000 -o in.spp");
+  const std::string sort = "spillway convert -v --sorted --memory 32M --tmpdir . ";
+  for (const std::string input : {"in.spp", "- < in.spp"}) {
+    EXPECT_LE(peak_of_conversion(sort + "-o sorted.spp " + input), 32 + kBeside) << input;
+  }
+  const std::string pipe = "spillway generate -q uniform -n 2e6 | " + sort + "- -o - > sorted.spp";
+  EXPECT_LE(peak_of_conversion(pipe), 32 + kBeside);
+}
+
+}  // namespace
+}  // namespace spillway::detail::test
