@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "tests/tools/command_runner.h"
 #include "tests/tools/inputs/las_samples.h"
@@ -121,6 +123,29 @@ TEST_F(Survey, ABoxThatIsOffByARoundingIsNoLie) {
   EXPECT_EQ(triangulate("t_*.las")["canonical_hash"], truth["canonical_hash"]);
 }
 
+TEST_F(Survey, TakesManyFilesThatAllCoverOnePlace) {
+  for (int file = 10; file < 30; ++file) {
+    const std::string name = std::to_string(file);
+    work_.succeed("spillway generate terrain -n 8000 -q --seed " + name + " -o x.las");
+    work_.succeed("spillway convert -q x.las --bounds 500100,4100100,500200,4100200 -o p_" + name +
+                  ".las");
+  }
+  work_.succeed("spillway convert -q p_*.las -o place.las");
+  const nlohmann::json place = triangulate("place.las");
+  EXPECT_GT(place["points"], 10'000);
+  for (const std::string files : {"p_*.las", "$(ls -r p_*.las)", "p_*.las --distrust-headers"}) {
+    EXPECT_EQ(triangulate(files)["canonical_hash"], place["canonical_hash"]) << files;
+  }
+  work_.succeed("spillway convert -q p_*.las t_*.las -o together.las");
+  const nlohmann::json together = triangulate("together.las");
+  EXPECT_EQ(together["first_block_read_points"], together["points"]);
+  for (const std::string files : {"p_*.las t_*.las", "$(ls -r p_*.las t_*.las)"}) {
+    const nlohmann::json survey = triangulate(files);
+    EXPECT_TRUE(is_early(survey)) << files;
+    EXPECT_EQ(survey["canonical_hash"], together["canonical_hash"]) << files;
+  }
+}
+
 TEST_F(Survey, PipesAmongFilesAreReadInTheirTurn) {
   const nlohmann::json survey = triangulate("t_00*.las - t_0[1-6]*.las < t_03_03.las");
   EXPECT_EQ(survey["points"], 40'000 + work_.info("t_03_03.las")["points"].get<int>());
@@ -129,12 +154,18 @@ TEST_F(Survey, PipesAmongFilesAreReadInTheirTurn) {
 TEST_F(Survey, ContoursAreThoseOfAllPoints) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   work_.succeed(
-      "spillway contour t_*.las -q --tile 2000 --interval 5 -o early.geojson && "
+      "spillway contour t_*.las -q --tile 2000 --interval 5 -o early.geojson --stats stats.json && "
       "spillway contour t_*.las -q --distrust-headers --interval 5 -o late.geojson");
-  const auto length = [&](const std::string& name) {
-    return nlohmann::json::parse(work_.read(name))["features"].size();
+  EXPECT_TRUE(is_early(nlohmann::json::parse(work_.read("stats.json"))));
+  const auto lines = [&](const std::string& name) {
+    std::vector<std::string> all;
+    const auto file = nlohmann::json::parse(work_.read(name));
+    for (const auto& line : file["features"]) all.push_back(line.dump());
+    std::sort(all.begin(), all.end());
+    return all;
   };
-  EXPECT_EQ(length("early.geojson"), length("late.geojson"));
+  EXPECT_FALSE(lines("late.geojson").empty());
+  EXPECT_EQ(lines("early.geojson"), lines("late.geojson"));
 }
 
 }  // namespace
