@@ -1,5 +1,6 @@
-# An encoder of LAZ, which only tests need.
+# An encoder of LAZ and COPC, which only tests need.
 add_library(laz_encoder STATIC EXCLUDE_FROM_ALL
+  formats/points/copc/encoded_files.cpp formats/points/copc/point_octree.cpp
   formats/points/laz/laz_encoder/arithmetic_encoder.cpp
   formats/points/laz/laz_encoder/chunk_encoder.cpp
   formats/points/laz/laz_encoder/gps_time_encoder.cpp

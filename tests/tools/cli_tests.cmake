@@ -37,6 +37,10 @@ spillway_command_test(cli_input_tests cli
   tools/inputs/cli_crs_test.cpp tools/inputs/cli_filter_test.cpp tools/inputs/cli_inputs_test.cpp
   tools/inputs/cli_lattice_test.cpp tools/inputs/cli_survey_test.cpp)
 
+spillway_command_test(cli_encoded_tests cli
+  tools/inputs/cli_encoded_test.cpp)
+target_link_libraries(cli_encoded_tests PRIVATE laz_encoder)
+
 spillway_command_test(cli_progress_tests cli
   tools/report/cli_progress_test.cpp tools/report/progress_lines.cpp)
 

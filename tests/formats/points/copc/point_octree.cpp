@@ -1,4 +1,4 @@
-#include "tests/benchmark/point_octree.h"
+#include "tests/formats/points/copc/point_octree.h"
 
 #include <algorithm>
 #include <iterator>
