@@ -48,8 +48,8 @@ struct GridReport {
 /// points of generate_points(), each file in the order of these. The name of `path` has one '#',
 /// for which each file has its column and row: "hills_#.las" becomes "hills_00_00.las",
 /// "hills_01_00.las", ... Files get their names when all are complete. Throws Error: as
-/// generate_points() and create_points() do; kInvalidArgument also for options that cannot be, and
-/// where there is a file of such a name.
+/// generate_points() and create_points() do; kInvalidArgument also for options that cannot be, for
+/// 0 points, and where there is a file of such a name.
 SPILLWAY_API GridReport generate_grid(const GenerateOptions& points, const std::string& path,
                                       const GridOptions& grid, const Context& context);
 

@@ -105,8 +105,14 @@ std::string write_grid(const GenerateCommandOptions& options, const std::string&
                                          .format = format,
                                          .las_version = options.output.las_version},
                                         context);
-  return fmt::format("{} points of {} written to {} files {}", done.points, options.family,
-                     done.files, options.output.name());
+  std::string text =
+      fmt::format("{} points of {} written to {} file{} {}", done.points, options.family,
+                  done.files, done.files == 1 ? "" : "s", options.output.name());
+  const auto tiles = static_cast<std::uint64_t>(size.columns) * size.rows;
+  if (const std::uint64_t empty = tiles - done.files; empty > 0) {
+    text += fmt::format(", none for {} tile{} without points", empty, empty == 1 ? "" : "s");
+  }
+  return text;
 }
 
 int run(const GenerateCommandOptions& options) {

@@ -46,7 +46,10 @@ std::size_t files_at_a_time() {
                                  kMostOpenFiles);
 }
 
-SurveyGridShape checked_shape(const GridOptions& grid) {
+SurveyGridShape checked_shape(const GridOptions& grid, std::uint64_t points) {
+  if (points == 0) {
+    throw InvalidArgument("a grid of 0 points would have no files: ask for 1 point at least");
+  }
   if (grid.columns < 1 || grid.rows < 1) {
     throw InvalidArgument(fmt::format("a grid has 1 column and 1 row at least, not {} x {}",
                                       grid.columns, grid.rows));
@@ -124,7 +127,7 @@ class GridWriter {
   GridWriter(const GenerateOptions& points, const std::string& path, const GridOptions& grid,
              const Context& context)
       : points_(points),
-        shape_(checked_shape(grid)),
+        shape_(checked_shape(grid, points.count)),
         names_(path, shape_.columns, shape_.rows),
         path_(path),
         options_{.format = grid.format, .las_version = grid.las_version, .exact = true},

@@ -143,6 +143,19 @@ TEST(Generate, AGridOfFilesHoldsThePointsOfOne) {
   EXPECT_EQ(work.info("survey/hills_03_02.las")["offset"], work.info("one.las")["offset"]);
 }
 
+TEST(Generate, AGridTellsHowManyFilesAreWritten) {
+  const Workspace work;
+  EXPECT_THAT(work.run("spillway generate terrain -n 1000 --grid 2x2 -o 'a_#.las'").err,
+              HasSubstr("1000 points of terrain written to 4 files a_#.las, 0."));
+  const std::string few = work.run("spillway generate uniform -n 1 --grid 3x1 -o 'b_#.txt'").err;
+  EXPECT_THAT(few, HasSubstr("1 points of uniform written to 1 file b_#.txt, none for 2 tiles "
+                             "without points, "));
+  EXPECT_EQ(work.succeed("ls b_* | wc -l"), "1\n");
+  const Result none = work.run("spillway generate terrain -n 0 --grid 2x2 -o 'c_#.las'");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("a grid of 0 points would have no files"));
+}
+
 TEST(Generate, AGridOfFilesIsNotMixedWithAnother) {
   const Workspace work;
   work.succeed("spillway generate -q terrain -n 1000 --grid 2x2 -o 'a_#.las'");

@@ -148,6 +148,7 @@ INSTANTIATE_TEST_SUITE_P(
         "generate terrain -n 9 --grid 2x2 -o x.las", "generate terrain -n 9 --grid 2x2 -o x#.laz",
         "generate terrain -n 9 --grid 2 -o x#.las", "generate terrain -n 9 --grid 0x2 -o x#.las",
         "generate terrain -n 9 --grid 2x2x2 -o x#.las",
+        "generate terrain -n 0 --grid 2x2 -o x#.las",
         "generate terrain -n 9 --grid 999x999 -o x#.las",
         "generate terrain -n 9 --grid 2x2 --overlap 0.5 -o x#.las",
         "triangulate in.txt -o x.obj --dim 3", "triangulate in.txt -o x.obj --id",
