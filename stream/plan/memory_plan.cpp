@@ -87,7 +87,7 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
         std::ceil(static_cast<double>(costs.least_limit / kMiB) * parts));
     throw TooSmallLimit(fmt::format("the memory limit is too small: {} MiB are the least{}", least,
                                     dimension == 3 ? " in three dimensions" : ""),
-                        {.perhaps = least * kMiB, .remedy = Remedy::kMemory});
+                        {.enough = least * kMiB, .remedy = Remedy::kMemory});
   }
   MemoryPlan plan;
   limit -= early ? kEarlyReserve : kReserve;

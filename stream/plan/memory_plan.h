@@ -18,8 +18,8 @@ struct MemoryPlan {
 };
 
 /// The plan for a limit in bytes. `wanted_threads` is cut down to what there is memory for. Throws
-/// TooSmallLimit with the least that may be enough if this one is too small: of `whole`, if the
-/// limit is a part of that. If tiles are triangulated `early`, while points wait for others, both
+/// TooSmallLimit with the least that is enough if this one is too small: of `whole`, if the limit
+/// is a part of that. If tiles are triangulated `early`, while points wait for others, both
 /// get less.
 MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads,
                        std::uint64_t whole = 0, bool early = false);

@@ -99,7 +99,7 @@ TEST(MemoryPlan, RefusesTooSmallALimitAndNamesTheLeast) {
 
 TEST(MemoryPlan, NamesTheLeastOfTheWhole) {
   const auto least = [](std::uint64_t limit, int dimension, std::uint64_t whole) {
-    return facts_of([&] { plan_memory(limit, dimension, 1, whole); }).perhaps;
+    return facts_of([&] { plan_memory(limit, dimension, 1, whole); }).enough;
   };
   EXPECT_EQ(least(8 * kMiB, 2, 0), 32 * kMiB);
   EXPECT_EQ(least(24 * kMiB, 2, 32 * kMiB), 43 * kMiB);
