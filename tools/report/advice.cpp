@@ -58,7 +58,7 @@ std::string advice(const ErrorFacts& facts) {
     case Remedy::kLas14:
       return "; choose --las-version 1.4";
     case Remedy::kDistrustHeaders:
-      return "; with --distrust-headers it may lie anywhere";
+      return "; with --distrust-headers all points are read first, and may lie anywhere";
     case Remedy::kPointLattice:
       return "; choose another --scale or --offset";
     case Remedy::kRanks:
