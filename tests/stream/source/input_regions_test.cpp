@@ -110,9 +110,12 @@ TEST(InputRegions, AreExactWhereTheyAreCellsOfASortedStream) {
 }
 
 TEST(InputRegions, AreExactOnALatticeThatOthersShare) {
-  PointHeader other = header("b.las", 5, 0, 1);
-  other.lattice->offset = {0.005, 0, 0};
-  EXPECT_THAT(sides(Regions({sorted_header(), other})), Pair(800, 802)) << "of half the step";
+  PointHeader quarters = sorted_header();
+  quarters.lattice->scale = {0.25, 0.25, 0.25};
+  quarters.regions[1].box.lo = {4.25, 4.25, 4.25};
+  PointHeader eighths = header("b.las", 5, 0, 1);
+  eighths.lattice->scale = {0.125, 0.125, 0.125};
+  EXPECT_THAT(sides(Regions({quarters, eighths})), Pair(32, 34));
   PointHeader without = header("b.txt", 5, 0, 1);
   without.lattice.reset();
   EXPECT_THAT(sides(Regions({sorted_header(), without})), Pair(4, 4.01));
