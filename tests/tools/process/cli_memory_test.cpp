@@ -118,7 +118,8 @@ TEST_F(ResidentMemory, IsTheLeastLimitWherePointsAreSorted) {
   generate("3000000 -o in.spp");
   const std::string sort = "spillway convert -v --sorted --memory 32M --tmpdir . ";
   for (const std::string input : {"in.spp", "- < in.spp"}) {
-    EXPECT_LE(peak_of_conversion(sort + "-o sorted.spp " + input), 32 + kBeside) << input;
+    const std::string command = fmt::format("{}-o sorted.spp {}", sort, input);
+    EXPECT_LE(peak_of_conversion(command), 32 + kBeside) << input;
   }
   const std::string pipe = "spillway generate -q uniform -n 2e6 | " + sort + "- -o - > sorted.spp";
   EXPECT_LE(peak_of_conversion(pipe), 32 + kBeside);
