@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
+#include <new>
 #include <string_view>
 #include <system_error>
 #include <unordered_map>
@@ -61,7 +62,7 @@ class Usage {
 
 /// Files that nobody needs any more, by label. Their bytes are gone, but not their length. Another
 /// one goes on after that: a file system may look long for a new file's place where many have just
-/// been removed.
+/// been removed. A file that has become long is not among them, as its length may be limited.
 class SpareFiles {
  public:
   struct Spare {
@@ -69,9 +70,12 @@ class SpareFiles {
     std::uint64_t end = 0;
   };
 
-  void put(const std::string& label, Spare spare) {
+  /// Returns false, and takes nothing, for one that is too long.
+  bool put(const std::string& label, Spare spare) {
+    if (spare.end > kMostLength) return false;
     const std::lock_guard lock(mutex_);
     spares_[label].push_back(std::move(spare));
+    return true;
   }
 
   std::optional<Spare> take(const std::string& label) {
@@ -84,6 +88,8 @@ class SpareFiles {
   }
 
  private:
+  static constexpr std::uint64_t kMostLength = std::uint64_t{64} << 20;
+
   std::mutex mutex_;
   std::unordered_map<std::string, std::vector<Spare>> spares_;  // guarded by mutex_
 };
@@ -114,11 +120,7 @@ class DiskScratchFile : public ScratchFile {
         usage_(std::move(usage)),
         spares_(std::move(spares)) {}
   ~DiskScratchFile() override {
-    if (empty()) {
-      spares_->put(label_, {path_, begin_ + size_});
-    } else {
-      ::unlink(path_.c_str());  // gone already if the folder is
-    }
+    if (!serves_anew()) ::unlink(path_.c_str());  // gone already if the folder is
     usage_->remove(size_);
   }
   DiskScratchFile(const DiskScratchFile&) = delete;
@@ -170,13 +172,23 @@ class DiskScratchFile : public ScratchFile {
   [[nodiscard]] const std::string& name() const override { return path_; }
 
  private:
-  /// Gives the room on the disk back; false if the file system can do that only to whole files.
-  bool empty() const {
-    if (size_ == 0) return true;
+  /// Gives the room on the disk back and the file to others. False if that cannot be, as on a file
+  /// system that gives back the room of whole files only.
+  [[nodiscard]] bool serves_anew() const {
     const Opened file(path_, O_WRONLY);
-    return file.get() >= 0 &&
-           ::fallocate(file.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
-                       static_cast<off_t>(begin_), static_cast<off_t>(size_)) == 0;
+    if (file.get() < 0) return false;
+    const off_t end = ::lseek(file.get(), 0, SEEK_END);  // a write may have failed halfway
+    const auto begin = static_cast<off_t>(begin_);
+    if (end < begin) return false;
+    if (end > begin && ::fallocate(file.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, begin,
+                                   end - begin) != 0) {
+      return false;
+    }
+    try {
+      return spares_->put(label_, {path_, static_cast<std::uint64_t>(end)});
+    } catch (const std::bad_alloc&) {
+      return false;
+    }
   }
 
   [[noreturn]] void fail(std::string_view action, int error) const {

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
@@ -84,6 +85,59 @@ TEST_F(Scratch, AFileThatIsNotNeededAnyMoreServesAnew) {
   EXPECT_THROW(content(*again, 5, 1), Error);
   EXPECT_EQ(scratch->peak_bytes(), 10U);
   EXPECT_NE(scratch->create("tile")->name(), name) << "it is in use";
+}
+
+/// Lets files of this process become no longer than that while it lives.
+class ShortFiles {
+ public:
+  explicit ShortFiles(rlim_t most) {
+    ::getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit few{most, old_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &few);
+    signal_ = ::signal(SIGXFSZ, SIG_IGN);
+  }
+  ~ShortFiles() {
+    ::signal(SIGXFSZ, signal_);
+    ::setrlimit(RLIMIT_FSIZE, &old_);
+  }
+  ShortFiles(const ShortFiles&) = delete;
+  ShortFiles& operator=(const ShortFiles&) = delete;
+
+ private:
+  rlimit old_{};
+  sighandler_t signal_ = SIG_DFL;
+};
+
+TEST_F(Scratch, AFileOfWhichAWriteFailedHalfwayServesAnew) {
+  const auto scratch = folder();
+  auto first = scratch->create("tile");
+  const std::string name = first->name();
+  first->append(as_bytes_of("12345"));
+  {
+    const ShortFiles limit(8);
+    EXPECT_THROW(first->append(as_bytes_of("67890")), Error);
+  }
+  EXPECT_EQ(fs::file_size(name), 8U);
+  first.reset();
+  const auto again = scratch->create("tile");
+  ASSERT_EQ(again->name(), name);
+  again->append(as_bytes_of("hello world"));
+  EXPECT_EQ(content(*again, 0, 11), "hello world");
+}
+
+TEST_F(Scratch, AFileThatHasBecomeLongIsRemoved) {
+  const auto scratch = folder();
+  std::vector<std::string> names;
+  for (int i = 0; i < 4; ++i) {
+    const auto file = scratch->create("tile");
+    names.push_back(file->name());
+    for (int mebibyte = 0; mebibyte < 24; ++mebibyte) {
+      file->append(std::vector<std::byte>(1 << 20));
+    }
+  }
+  EXPECT_EQ(names[2], names[0]);
+  EXPECT_NE(names[3], names[0]) << "after 72 MiB";
+  EXPECT_FALSE(fs::exists(names[0]));
 }
 
 TEST_F(Scratch, NothingIsLeft) {
