@@ -10,15 +10,10 @@
 
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
+#include "stream/tiles/cuts/cut_tree.h"
 #include "stream/tiles/storage/tile_segment.h"
 
 namespace spillway::detail {
-
-/// A cut in two: below `value` on `axis`, and not below.
-struct TileCut {
-  int axis = 0;
-  double value = 0;
-};
 
 /// What is known of a tile that has become too large.
 struct CrowdedTile {

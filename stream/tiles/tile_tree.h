@@ -12,8 +12,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include <spillway/choices.h>
-
 #include "formats/disk/scratch_folder.h"
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
@@ -27,25 +25,9 @@
 #include "stream/tiles/storage/tile_block.h"
 #include "stream/tiles/tile_cut.h"
 #include "stream/tiles/tile_node.h"
+#include "stream/tiles/tile_tree_options.h"
 
 namespace spillway::detail {
-
-struct TileTreeOptions {
-  int dimension = 2;
-  std::size_t capacity = 0;  ///< most points of one tile, equal points apart
-  /// If set, the capacity once there are so many points: at least as large, and ascending. What is
-  /// known of tiles takes memory, so there must not be too many.
-  std::function<std::size_t(std::uint64_t points)> grown_capacity{};
-  std::size_t buffered_points = 0;          ///< most points waiting in memory
-  std::optional<std::uint64_t> expected{};  ///< how many points will come, where that is known
-  std::optional<Box<3>> extent{};           ///< where they will lie, where that is known
-  bool index = false;                       ///< points keep their index; that of others is dropped
-  std::size_t batches = 6;                  ///< most of them under way at a time
-  const RegionPlan* plan = nullptr;         ///< that the feed keeps to; outlives the tree
-  /// If set, read() makes one point of a tile of points that are one vertex, where they are more
-  /// than a tile may have: which one, in the plane, this tells.
-  std::optional<Heights> one_of_equal{};
-};
 
 /// Points of any number and order, dealt into tiles that fit into memory. Points wait in memory;
 /// when too many do, tiles write theirs to the disk. A tile that has become too large is cut in two

@@ -12,6 +12,12 @@
 
 namespace spillway::detail {
 
+/// A cut in two: below `value` on `axis`, and not below.
+struct TileCut {
+  int axis = 0;
+  double value = 0;
+};
+
 /// Which tile a point belongs to: a k-d tree of cuts whose cells reach to infinity, so that it
 /// knows a tile for points anywhere. Points on a cut go up; equal points always go together.
 class CutTree {

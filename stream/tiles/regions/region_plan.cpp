@@ -1,6 +1,7 @@
 #include "stream/tiles/regions/region_plan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -108,15 +109,9 @@ std::vector<CutValue> cut_values(const std::vector<Portion>& portions, int axis,
   return values;
 }
 
-/// Where a cell is cut.
-struct CellCut {
-  int axis = 0;
-  double value = 0;
-};
-
 /// Where to cut a cell: across its longest side, at the sides of regions if that parts the points
 /// evenly enough. Nothing if all lies at one place.
-std::optional<CellCut> best_cut(const std::vector<Portion>& portions, int dimension) {
+std::optional<TileCut> best_cut(const std::vector<Portion>& portions, int dimension) {
   const double all = points_of(portions);
   const Box<3> box = box_around(portions);
   int axis = 0;
@@ -135,26 +130,26 @@ std::optional<CellCut> best_cut(const std::vector<Portion>& portions, int dimens
     const double uneven = std::abs(points_below(portions, axis, value.value) / all - 0.5);
     return value.parted / all + kUnevenCost * uneven;
   };
-  return CellCut{axis, std::ranges::min_element(values, {}, cost)->value};
+  return TileCut{axis, std::ranges::min_element(values, {}, cost)->value};
 }
 
 /// Appends regions in the order of cells with one region each.
 void append_nested(std::vector<Portion> portions, int dimension, std::vector<std::size_t>& order) {
-  std::vector<Portion> above;
-  if (const auto cut = portions.size() > 1 ? best_cut(portions, dimension) : std::nullopt) {
-    const auto is_below = [&](const Portion& portion) {
-      return portion.share_below(cut->axis, cut->value) > 0.5;
-    };
-    const auto middle = std::stable_partition(portions.begin(), portions.end(), is_below);
-    above.assign(middle, portions.end());
-    portions.erase(middle, portions.end());
+  const auto cut = portions.size() > 1 ? best_cut(portions, dimension) : std::nullopt;
+  std::array<std::vector<Portion>, 2> sides;
+  for (const Portion& portion : portions) {
+    const bool above = cut && portion.share_below(cut->axis, cut->value) <= 0.5;
+    sides[above ? 1 : 0].push_back(portion);
   }
-  if (!above.empty() && !portions.empty()) {
-    append_nested(std::move(portions), dimension, order);
-    append_nested(std::move(above), dimension, order);
-    return;
+  const bool parts = !sides[0].empty() && !sides[1].empty();
+  portions = {};
+  for (std::vector<Portion>& side : sides) {
+    if (parts) {
+      append_nested(std::move(side), dimension, order);
+    } else {
+      for (const Portion& portion : side) order.push_back(portion.region);
+    }
   }
-  for (const Portion& portion : above.empty() ? portions : above) order.push_back(portion.region);
 }
 
 /// Regions with points, each as one portion.
@@ -175,7 +170,7 @@ class Planner {
 
   void cut(std::uint32_t tile, std::vector<Portion> portions) {
     const double points = points_of(portions);
-    const std::optional<CellCut> best =
+    const std::optional<TileCut> best =
         points > most_points_ ? best_cut(portions, dimension_) : std::nullopt;
     if (best) {
       const double below = points_below(portions, best->axis, best->value);
