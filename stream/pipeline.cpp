@@ -5,7 +5,7 @@
 #include <mutex>
 #include <utility>
 
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/base_case/base_case.h"
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
 #include "src/parallel/parallel.h"

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/base_case/base_case.h"
+#include "src/delaunay/border/finality.h"
+#include "src/delaunay/border/merge.h"
+#include "src/delaunay/common/schedule.h"
 #include "src/delaunay/common/working_memory.h"
-#include "src/delaunay/finality.h"
-#include "src/delaunay/merge.h"
-#include "src/delaunay/schedule.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 

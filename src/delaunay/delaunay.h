@@ -6,9 +6,9 @@
 #include <stop_token>
 #include <vector>
 
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/base_case/base_case.h"
 #include "src/delaunay/common/triangulation.h"
-#include "src/delaunay/divide.h"
+#include "src/delaunay/division/divide.h"
 
 namespace spillway {
 struct Task;

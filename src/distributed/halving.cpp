@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "src/delaunay/hash.h"
+#include "src/delaunay/common/hash.h"
 #include "src/distributed/items.h"
 #include "src/geometry/box.h"
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "src/delaunay/hash.h"
+#include "src/delaunay/common/hash.h"
 #include "src/error.h"
 
 namespace spillway::detail::distributed {

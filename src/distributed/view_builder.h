@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "src/delaunay/border/finality.h"
 #include "src/delaunay/common/triangulation.h"
-#include "src/delaunay/finality.h"
 #include "src/distributed/halving.h"
 #include "src/distributed/items.h"
 #include "src/distributed/view.h"

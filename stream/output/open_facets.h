@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "formats/meshes/common/stream_numbers.h"
-#include "src/delaunay/hash.h"
+#include "src/delaunay/common/hash.h"
 
 namespace spillway::detail {
 

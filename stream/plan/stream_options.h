@@ -7,8 +7,8 @@
 #include <functional>
 #include <optional>
 
-#include "src/delaunay/base_case.h"
-#include "src/delaunay/divide.h"
+#include "src/delaunay/base_case/base_case.h"
+#include "src/delaunay/division/divide.h"
 #include "src/geometry/box.h"
 #include "stream/output/heights.h"
 

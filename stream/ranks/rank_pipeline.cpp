@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "formats/bytes/bytes.h"
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/base_case/base_case.h"
 #include "src/parallel/parallel.h"
 #include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/exchange/messages.h"

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "src/delaunay/hash.h"
+#include "src/delaunay/common/hash.h"
 #include "src/error.h"
 
 namespace spillway::detail {

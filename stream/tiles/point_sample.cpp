@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "src/delaunay/hash.h"
+#include "src/delaunay/common/hash.h"
 
 namespace spillway::detail {
 namespace {

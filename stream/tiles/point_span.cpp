@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "src/delaunay/affine_basis.h"
+#include "src/delaunay/base_case/affine_basis.h"
 #include "src/error.h"
 
 namespace spillway::detail {

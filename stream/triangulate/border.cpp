@@ -5,10 +5,10 @@
 #include <numeric>
 #include <utility>
 
-#include "src/delaunay/acceptance.h"
+#include "src/delaunay/border/acceptance.h"
+#include "src/delaunay/common/schedule.h"
 #include "src/delaunay/delaunay.h"
-#include "src/delaunay/divide.h"
-#include "src/delaunay/schedule.h"
+#include "src/delaunay/division/divide.h"
 #include "src/parallel/parallel.h"
 #include "src/runtime/memory_budget.h"
 #include "stream/tiles/tile_tree.h"

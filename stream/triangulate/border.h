@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "src/delaunay/base_case.h"
-#include "src/delaunay/finality.h"
-#include "src/delaunay/point_tree.h"
+#include "src/delaunay/base_case/base_case.h"
+#include "src/delaunay/border/finality.h"
+#include "src/delaunay/division/point_tree.h"
 #include "src/geometry/point.h"
 #include "stream/output/stream_place.h"
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "src/delaunay/point_tree.h"
+#include "src/delaunay/division/point_tree.h"
 
 namespace spillway::detail {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/base_case/base_case.h"
 #include "src/error.h"
 #include "src/parallel/most_threads.h"
 #include "src/parallel/parallel.h"

@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "src/delaunay/base_case.h"
-#include "src/delaunay/finality.h"
-#include "src/delaunay/point_tree.h"
+#include "src/delaunay/base_case/base_case.h"
+#include "src/delaunay/border/finality.h"
+#include "src/delaunay/division/point_tree.h"
 #include "src/parallel/parallel.h"
 #include "stream/triangulate/merge_tree.h"
 

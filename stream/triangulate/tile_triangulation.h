@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "src/delaunay/divide.h"
-#include "src/delaunay/schedule.h"
+#include "src/delaunay/common/schedule.h"
+#include "src/delaunay/division/divide.h"
 #include "src/runtime/memory_budget.h"
 #include "src/runtime/stage_times.h"
 #include "stream/output/heights.h"

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "src/delaunay/schedule.h"
+#include "src/delaunay/common/schedule.h"
 #include "src/geometry/box.h"
 
 namespace spillway::detail {

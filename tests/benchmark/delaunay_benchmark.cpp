@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
-#include "src/delaunay/base_case.h"
-#include "src/delaunay/delaunay.h"
-#include "src/delaunay/schedule.h"
+#include "src/delaunay/base_case/base_case.h"
+#include "src/delaunay/common/schedule.h"
 #include "src/delaunay/common/working_memory.h"
+#include "src/delaunay/delaunay.h"
 #include "src/generators/generators.h"
 #include "tests/benchmark/cgal_timing.h"
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "src/delaunay/schedule.h"
+#include "src/delaunay/common/schedule.h"
 
 namespace spillway::detail {
 namespace {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/base_case/base_case.h"
 #include "src/delaunay/kernel_3d/kernel_3d.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/delaunay/kernel_common/lane_width.h"

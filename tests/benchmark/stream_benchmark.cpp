@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "src/delaunay/schedule.h"
+#include "src/delaunay/common/schedule.h"
 #include "src/generators/generators.h"
 #include "tests/benchmark/cgal_timing.h"
 

@@ -1,4 +1,4 @@
-#include "src/delaunay/acceptance.h"
+#include "src/delaunay/border/acceptance.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/base_case/base_case.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numeric>
 
-#include "src/delaunay/affine_basis.h"
+#include "src/delaunay/base_case/affine_basis.h"
 
 namespace spillway::detail {
 namespace {

@@ -1,11 +1,11 @@
-#include "src/delaunay/divide.h"
+#include "src/delaunay/division/divide.h"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 #include <random>
 
-#include "src/delaunay/schedule.h"
+#include "src/delaunay/common/schedule.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::detail {

@@ -1,4 +1,4 @@
-#include "src/delaunay/finality.h"
+#include "src/delaunay/border/finality.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <numeric>
 #include <random>
 
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/base_case/base_case.h"
+#include "src/delaunay/common/schedule.h"
 #include "src/delaunay/delaunay.h"
-#include "src/delaunay/schedule.h"
 #include "src/geometry/predicates.h"
 
 namespace spillway::detail {

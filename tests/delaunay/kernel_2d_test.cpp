@@ -1,7 +1,7 @@
 // The 2D kernel as a whole: for every input CGAL's triangulation.
 
 #include "src/delaunay/kernel_2d/kernel_2d.h"
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/base_case/base_case.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

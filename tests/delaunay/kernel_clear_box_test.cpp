@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/base_case/base_case.h"
 #include "src/parallel/parallel.h"
 #include "tests/delaunay/kernel_sets.h"
 #include "tests/generators/family_cases.h"

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "src/delaunay/affine_basis.h"
-#include "src/delaunay/base_case.h"
+#include "src/delaunay/base_case/affine_basis.h"
+#include "src/delaunay/base_case/base_case.h"
 #include "src/delaunay/kernel_2d/kernel_2d.h"
 #include "src/delaunay/kernel_3d/kernel_3d.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "src/delaunay/hash.h"
+#include "src/delaunay/common/hash.h"
 #include "src/parallel/thread_demand.h"
 
 namespace spillway::detail {

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "src/delaunay/hash.h"
+#include "src/delaunay/common/hash.h"
 #include "src/error.h"
 
 namespace spillway::detail {

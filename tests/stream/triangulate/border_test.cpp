@@ -8,8 +8,8 @@
 #include <random>
 #include <set>
 
+#include "src/delaunay/common/schedule.h"
 #include "src/delaunay/delaunay.h"
-#include "src/delaunay/schedule.h"
 #include "src/error.h"
 #include "src/runtime/memory_budget.h"
 #include "stream/tiles/tile_tree.h"

@@ -19,8 +19,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "src/delaunay/base_case.h"
-#include "src/delaunay/hash.h"
+#include "src/delaunay/base_case/base_case.h"
+#include "src/delaunay/common/hash.h"
 #include "src/error.h"
 
 namespace spillway::detail {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "src/delaunay/hash.h"
+#include "src/delaunay/common/hash.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::detail {

@@ -1,4 +1,4 @@
-#include "src/delaunay/merge.h"
+#include "src/delaunay/border/merge.h"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "src/delaunay/acceptance.h"
-#include "src/delaunay/hash.h"
-#include "src/delaunay/schedule.h"
+#include "src/delaunay/border/acceptance.h"
+#include "src/delaunay/common/hash.h"
+#include "src/delaunay/common/schedule.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "src/delaunay/simplex_index.h"
+#include "src/delaunay/border/simplex_index.h"
 #include "src/geometry/point.h"
 
 namespace spillway::detail {

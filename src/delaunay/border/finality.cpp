@@ -1,4 +1,4 @@
-#include "src/delaunay/finality.h"
+#include "src/delaunay/border/finality.h"
 
 #include <algorithm>
 #include <atomic>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "src/delaunay/common/triangulation.h"
-#include "src/delaunay/divide.h"
+#include "src/delaunay/division/divide.h"
 #include "src/geometry/constructions/circumsphere.h"
 
 namespace spillway::detail {

@@ -1,4 +1,4 @@
-#include "src/delaunay/divide.h"
+#include "src/delaunay/division/divide.h"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 #include <deque>
 #include <utility>
 
+#include "src/delaunay/common/hash.h"
+#include "src/delaunay/common/schedule.h"
 #include "src/delaunay/common/working_memory.h"
-#include "src/delaunay/hash.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"
-#include "src/delaunay/schedule.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "src/delaunay/border/finality.h"
 #include "src/delaunay/common/triangulation.h"
-#include "src/delaunay/divide.h"
-#include "src/delaunay/finality.h"
+#include "src/delaunay/division/divide.h"
 
 namespace spillway {
 struct Task;

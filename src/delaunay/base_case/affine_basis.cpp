@@ -1,4 +1,4 @@
-#include "src/delaunay/affine_basis.h"
+#include "src/delaunay/base_case/affine_basis.h"
 
 #include "src/geometry/predicates.h"
 

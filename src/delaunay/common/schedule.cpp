@@ -1,4 +1,4 @@
-#include "src/delaunay/schedule.h"
+#include "src/delaunay/common/schedule.h"
 
 #include <deque>
 #include <functional>
