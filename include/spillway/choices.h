@@ -7,6 +7,7 @@ enum class Heights { kFirst, kLowest, kHighest, kMean };
 
 /// Which axis a division of points cuts.
 enum class Division {
+  kLeastBorder,    ///< where a sample says that least is triangulated twice, else the longest side
   kLongestExtent,  ///< the longest side of the points' tight box
   kCyclingAxis,    ///< x, y, (z,) x, ... by depth
   kConstantAxis,   ///< always x

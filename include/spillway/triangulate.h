@@ -26,7 +26,7 @@ struct TriangulateOptions {
   bool input_index = false;           ///< vertices carry their index in the input
   std::size_t tile_points = 0;        ///< most of a tile; 0: chosen by the memory
   std::size_t leaf_points = 0;        ///< most of a leaf; 0: chosen by number and memory
-  Division division = Division::kLongestExtent;
+  Division division = Division::kLeastBorder;
   unsigned children = 2;  ///< parts that are merged at a time, 2 to 1024
   /// Whether tiles are triangulated while others are still being read, where headers tell where all
   /// points lie. A point that lies elsewhere is an error then.

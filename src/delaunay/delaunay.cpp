@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "src/delaunay/base_case/base_case.h"
-#include "src/delaunay/border/finality.h"
+#include "src/delaunay/border/find_border.h"
 #include "src/delaunay/border/merge.h"
 #include "src/delaunay/common/schedule.h"
 #include "src/delaunay/common/working_memory.h"
@@ -56,6 +56,15 @@ std::size_t border_base_case_size(std::size_t points, std::size_t largest) {
                     std::min(kSmallestBorderBaseCase, largest), largest);
 }
 
+/// A set of at most so many points stays one base case if no cut of it pays.
+constexpr std::size_t kLargestUndivided = std::size_t{1} << 24;
+
+/// Of smaller sets that are divided, the longest axis is cut unseen: what a sample tells would cost
+/// more than it saves. Borders are hollow more often than other sets.
+constexpr std::size_t kSmallestJudged = 32'768;
+template <int D>
+constexpr std::size_t kSmallestJudgedBorder = D == 2 ? 4'096 : 8'192;
+
 constexpr std::size_t kCopyGrain = std::size_t{1} << 16;
 
 /// Made by all threads.
@@ -84,13 +93,21 @@ class Run {
                  });
   }
 
-  Triangulation<D> triangulate(std::size_t base_case_size, Task& task) && {
+  Triangulation<D> triangulate(std::size_t base_case_size, std::size_t smallest_judged,
+                               Task& task) && {
     task.before.resize(1);
-    const Part<D> root = divide<D>(
-        result_.points, result_.input_index,
-        {base_case_size, options_.division, options_.children, options_.stop}, task.before.data());
+    const DivideOptions division{
+        .leaf_size = base_case_size,
+        .scheme = options_.division,
+        .children = options_.children,
+        .stop = options_.stop,
+        .smallest_judged = smallest_judged,
+        .largest_undivided = options_.base_case_size == 0 ? kLargestUndivided : 0};
+    const Part<D> root =
+        divide<D>(result_.points, result_.input_index, division, task.before.data());
     result_.lists.resize(root.list + 1);
     marks_.resize(root.list + 1);
+    boxes_.resize(root.list + 1);
     duplicates_.resize(root.list + 1);
     base_case_size_ = base_case_size;
     root_list_ = root.list;
@@ -123,6 +140,9 @@ class Run {
          .clear_box = clear_box,
          .in_place = in_place_,
          .kernel = options_.kernel});
+    if (part.list != root_list_) {
+      boxes_[part.list] = RunBoxes<D>(result_.points.span().subspan(part.begin, part.size()));
+    }
     PartSurface surface;
     surface.dimension = leaf.dimension;
     surface.open = leaf.dimension < D;
@@ -158,7 +178,7 @@ class Run {
     group.wait();
     if (options_.stop.stop_requested()) throw Interrupted();
     PartSurface surface = merge<D>(
-        result_, marks_, part, surfaces, part.list != root_list_,
+        result_, marks_, boxes_, part, surfaces, part.list != root_list_,
         [this](SlabArray<Point<D>> points, std::size_t part_size, Task& border_task) {
           return triangulate_border(std::move(points), part_size, border_task);
         },
@@ -206,7 +226,8 @@ class Run {
     }
     DelaunayOptions options = options_;
     options.progress = nullptr;
-    return Run(std::move(points), options, false).triangulate(base_case_size, task);
+    return Run(std::move(points), options, false)
+        .triangulate(base_case_size, kSmallestJudgedBorder<D>, task);
   }
 
   const DelaunayOptions& options_;
@@ -216,6 +237,7 @@ class Run {
   std::atomic<std::size_t> points_done_ = 0;
   Triangulation<D> result_;
   std::vector<ListMarks> marks_;                    ///< by list
+  std::vector<RunBoxes<D>> boxes_;                  ///< of leaves, by list
   std::vector<std::vector<Duplicate>> duplicates_;  ///< by list
 };
 
@@ -241,7 +263,8 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
   Task unused;
   with_threads(threads, [&] {
     result = Run<D>(copy_of(points), options, in_place)
-                 .triangulate(base_case_size, options.tasks == nullptr ? unused : *options.tasks);
+                 .triangulate(base_case_size, kSmallestJudged,
+                              options.tasks == nullptr ? unused : *options.tasks);
   });
   return result;
 }
@@ -251,7 +274,8 @@ Triangulation<D> border_delaunay(SlabArray<Point<D>> points, Kernel kernel, Task
   const std::size_t base_case_size =
       std::max<std::size_t>(points.size() / 4, kGoodBorderBaseCase<D>);
   const DelaunayOptions options{.kernel = kernel};
-  return Run<D>(std::move(points), options, false).triangulate(base_case_size, task);
+  return Run<D>(std::move(points), options, false)
+      .triangulate(base_case_size, kSmallestJudgedBorder<D>, task);
 }
 
 template <int D>

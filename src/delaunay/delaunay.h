@@ -21,7 +21,7 @@ struct DelaunayOptions {
   unsigned threads = 0;  ///< 0: as many as the machine has
   std::size_t base_case_size =
       0;  ///< largest number of points in one base case; 0: chosen by D and n
-  Division division = Division::kLongestExtent;
+  Division division = Division::kLeastBorder;
   unsigned children = 2;  ///< parts that are merged at a time
   Kernel kernel = Kernel::kSpillway;
   /// If set, is told after each base case how many points have been through one. Called by many

@@ -6,7 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "src/delaunay/border/finality.h"
+#include "src/delaunay/border/conflict_region.h"
+#include "src/delaunay/border/find_border.h"
 #include "src/delaunay/common/triangulation.h"
 #include "src/distributed/halving.h"
 #include "src/distributed/items.h"

@@ -21,7 +21,7 @@ struct StreamOptions {
   std::size_t tile_capacity = 0;    ///< points of a tile; 0: chosen by the memory limit
   std::size_t buffered_points = 0;  ///< waiting in memory before any is spilled; 0: likewise
   std::size_t leaf_size = 0;        ///< points of a leaf; 0: chosen by D, n and the memory limit
-  Division division = Division::kLongestExtent;
+  Division division = Division::kLeastBorder;
   unsigned children = 2;  ///< parts of a tile that are merged at a time
   Kernel kernel = Kernel::kSpillway;
   Heights heights = Heights::kFirst;

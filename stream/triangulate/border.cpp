@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "src/delaunay/border/acceptance.h"
+#include "src/delaunay/border/region_batch.h"
 #include "src/delaunay/common/schedule.h"
 #include "src/delaunay/delaunay.h"
 #include "src/delaunay/division/divide.h"

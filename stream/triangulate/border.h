@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "src/delaunay/base_case/base_case.h"
-#include "src/delaunay/border/finality.h"
 #include "src/delaunay/division/point_tree.h"
 #include "src/geometry/point.h"
 #include "stream/output/stream_place.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "src/delaunay/base_case/base_case.h"
-#include "src/delaunay/border/finality.h"
+#include "src/delaunay/border/region_batch.h"
 #include "src/delaunay/division/point_tree.h"
 #include "src/parallel/parallel.h"
 #include "stream/triangulate/merge_tree.h"

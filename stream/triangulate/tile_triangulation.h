@@ -22,7 +22,7 @@ namespace spillway::detail {
 /// How tiles are triangulated.
 struct TileOptions {
   std::size_t leaf_size = 0;
-  Division division = Division::kLongestExtent;
+  Division division = Division::kLeastBorder;
   unsigned children = 2;
   Kernel kernel = Kernel::kSpillway;
   Heights heights = Heights::kFirst;

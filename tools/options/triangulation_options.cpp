@@ -24,9 +24,10 @@ Heights heights_by_name(const std::string& name) {
 }
 
 Division division_by_name(const std::string& name) {
+  if (name == "longest") return Division::kLongestExtent;
   if (name == "cycling") return Division::kCyclingAxis;
   if (name == "constant") return Division::kConstantAxis;
-  return Division::kLongestExtent;
+  return Division::kLeastBorder;
 }
 
 }  // namespace
@@ -61,7 +62,8 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
                      "Most points of a tile that is loaded at a time; 0: chosen by the memory"))
       .value_name("N")
       .show_default();
-  add_choice(app, "--division", options.division, {"longest", "cycling", "constant"},
+  add_choice(app, "--division", options.division,
+             {"least-border", "longest", "cycling", "constant"},
              "Which axis the division of points cuts");
   take_whole_number(
       app.add_option("--children", options.children, "Parts that are merged at a time"), 2, 1024)

@@ -30,7 +30,7 @@ struct TriangulationOptions {
   std::string tasks_path;
   std::size_t base_case_size = 0;
   std::size_t tile_capacity = 0;
-  std::string division = "longest";
+  std::string division = "least-border";
   unsigned children = 2;
   std::string kernel = "spillway";
   ReportOptions report;

@@ -18,6 +18,10 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
+/// Of a leaf the candidates for its border are tested one by one if they are at most this part of
+/// its simplices; otherwise the border is searched for.
+constexpr std::size_t kFewCandidates = 4;
+
 /// The vertices of a simplex without the i-th.
 template <std::size_t N>
 std::array<VertexId, N - 1> facet_vertices(const std::array<VertexId, N>& vertices, int i) {
@@ -43,9 +47,13 @@ int opposite_corner(const std::array<VertexId, N>& a, const std::array<VertexId,
 template <int D>
 class Merge {
  public:
-  Merge(Triangulation<D>& triangulation, std::span<ListMarks> marks, const Part<D>& part,
-        std::span<PartSurface> children)
-      : triangulation_(triangulation), marks_(marks), part_(part), children_(children) {}
+  Merge(Triangulation<D>& triangulation, std::span<ListMarks> marks,
+        std::span<const RunBoxes<D>> boxes, const Part<D>& part, std::span<PartSurface> children)
+      : triangulation_(triangulation),
+        marks_(marks),
+        boxes_(boxes),
+        part_(part),
+        children_(children) {}
 
   /// Step 1: border_ and border_vertices_.
   void find_borders(Task& task);
@@ -101,6 +109,7 @@ class Merge {
 
   Triangulation<D>& triangulation_;
   std::span<ListMarks> marks_;
+  std::span<const RunBoxes<D>> boxes_;  ///< of leaves, by list
   const Part<D>& part_;
   std::span<PartSurface> children_;
 
@@ -131,10 +140,15 @@ void Merge<D>::find_borders(Task& task) {
       for (std::size_t o = 0; o < count; ++o) {
         if (o != c) others.push_back(&part_.children[o]);
       }
-      borders[c] = children_[c].changeable
-                       ? border_among<D>(triangulation_, part_.children[c].list,
-                                         *children_[c].changeable, others, marks_)
-                       : find_border<D>(triangulation_, children_[c].hull, others, marks_);
+      const Part<D>& child = part_.children[c];
+      Siblings<D> siblings{others, triangulation_.points.span(), boxes_};
+      if (!asking_for_points_pays<D>(triangulation_, child, siblings)) siblings.most_boxes = 0;
+      const std::size_t size = triangulation_.lists[child.list].simplices.size();
+      const auto& changeable = children_[c].changeable;
+      borders[c] =
+          changeable && changeable->size() <= size / kFewCandidates
+              ? border_among<D>(triangulation_, child.list, *changeable, siblings, marks_)
+              : find_border<D>(triangulation_, child.box, children_[c].hull, siblings, marks_);
     });
   }
   group.wait();
@@ -433,11 +447,12 @@ PartSurface Merge<D>::surface() {
 }  // namespace
 
 template <int D>
-PartSurface merge(Triangulation<D>& triangulation, std::span<ListMarks> marks, const Part<D>& part,
+PartSurface merge(Triangulation<D>& triangulation, std::span<ListMarks> marks,
+                  std::span<const RunBoxes<D>> boxes, const Part<D>& part,
                   std::span<PartSurface> children, bool may_stay_open,
                   const BorderTriangulator<D>& triangulate_border, Task& task) {
   task.after.reserve(4);
-  Merge<D> merge(triangulation, marks, part, children);
+  Merge<D> merge(triangulation, marks, boxes, part, children);
   merge.find_borders(task.after.emplace_back());
   if (may_stay_open && merge.border_share() > kLargestBorder) {
     PartSurface open;
@@ -451,9 +466,11 @@ PartSurface merge(Triangulation<D>& triangulation, std::span<ListMarks> marks, c
   return merge.surface();
 }
 
-template PartSurface merge<2>(Triangulation<2>&, std::span<ListMarks>, const Part<2>&,
-                              std::span<PartSurface>, bool, const BorderTriangulator<2>&, Task&);
-template PartSurface merge<3>(Triangulation<3>&, std::span<ListMarks>, const Part<3>&,
-                              std::span<PartSurface>, bool, const BorderTriangulator<3>&, Task&);
+template PartSurface merge<2>(Triangulation<2>&, std::span<ListMarks>, std::span<const RunBoxes<2>>,
+                              const Part<2>&, std::span<PartSurface>, bool,
+                              const BorderTriangulator<2>&, Task&);
+template PartSurface merge<3>(Triangulation<3>&, std::span<ListMarks>, std::span<const RunBoxes<3>>,
+                              const Part<3>&, std::span<PartSurface>, bool,
+                              const BorderTriangulator<3>&, Task&);
 
 }  // namespace spillway::detail

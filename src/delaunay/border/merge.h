@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "src/delaunay/border/finality.h"
+#include "src/delaunay/border/find_border.h"
 #include "src/delaunay/common/triangulation.h"
 #include "src/delaunay/division/divide.h"
 
@@ -50,9 +50,11 @@ using BorderTriangulator =
 ///      has it too, facing the same way; border simplices that it does not have are removed.
 ///   4. Neighbours across the seams are linked, found by the hash of the facet they share.
 /// New simplices go to list part.list, which must be empty; children's lists stay where they
-/// are. Returns the part's own surface. `task` gets the steps with their durations.
+/// are. `boxes` has, by list, those of leaves. Returns the part's own surface. `task` gets the
+/// steps with their durations.
 template <int D>
-PartSurface merge(Triangulation<D>& triangulation, std::span<ListMarks> marks, const Part<D>& part,
+PartSurface merge(Triangulation<D>& triangulation, std::span<ListMarks> marks,
+                  std::span<const RunBoxes<D>> boxes, const Part<D>& part,
                   std::span<PartSurface> children, bool may_stay_open,
                   const BorderTriangulator<D>& triangulate_border, Task& task);
 

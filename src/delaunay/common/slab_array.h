@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -45,6 +46,8 @@ class SlabArray {
   [[nodiscard]] T* end() { return data() + size_; }
   [[nodiscard]] const T* begin() const { return data(); }
   [[nodiscard]] const T* end() const { return data() + size_; }
+
+  [[nodiscard]] std::span<const T> span() const { return {data(), size_}; }
 
   /// Lets the system have the huge pages that no item uses when it is short of memory.
   void shrink() { slab_.give_back_behind(size_ * sizeof(T)); }

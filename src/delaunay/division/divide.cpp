@@ -9,6 +9,8 @@
 #include "src/delaunay/common/hash.h"
 #include "src/delaunay/common/schedule.h"
 #include "src/delaunay/common/working_memory.h"
+#include "src/delaunay/division/cut_judgement.h"
+#include "src/delaunay/division/filled_share.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
@@ -24,6 +26,15 @@ constexpr std::size_t kPointsOfSample = 16;
 /// Halves share the sample of the whole. One is made anew when less than this part of those wanted
 /// is left.
 constexpr std::size_t kUsedUp = 3;
+/// Points of a set whose cuts are judged: enough to tell which axis is the better one by far.
+template <int D>
+constexpr std::size_t kJudgedSample = D == 2 ? 512 : 1'024;
+/// From this share of filled cells on (filled_share) a set is no curve and no surface: the longest
+/// axis is the best one.
+constexpr double kFilled = 0.6;
+/// A cut does not pay if more than this share of the points has simplices across it: they would be
+/// triangulated twice.
+constexpr double kLargestCrossing = 0.5;
 /// One of so many points of a leaf that is to be filled stays free, as samples err.
 constexpr std::size_t kSpareShare = 24;
 /// Parts below this size are divided in the task that made them.
@@ -100,7 +111,13 @@ class Divider {
       if (box.lo != box.hi) {
         const unsigned low_count = count / 2;
         const std::size_t whole = std::max<std::size_t>(count, leaves_of(piece));
-        const auto [low, high] = cut(piece, cut_axis(box, depth), whole * low_count / count, whole);
+        Cut where{cut_axis(box, depth), whole * low_count / count, whole};
+        if (options_.scheme == Division::kLeastBorder && piece.size() >= options_.smallest_judged &&
+            !judge(piece, box, where)) {
+          pieces.push_back(piece);
+          return;
+        }
+        const auto [low, high] = cut(piece, where);
         split(low, low_count, depth, pieces, samples);
         split(high, count - low_count, depth, pieces, samples);
         return;
@@ -157,12 +174,44 @@ class Divider {
     return box.lo[axis] < box.hi[axis] ? axis : box.longest_axis();
   }
 
-  /// Moves the points below a cut, about share/whole of all, to the front, and the sample likewise.
-  /// Not all points are equal on the axis. Neither half is empty.
-  [[nodiscard]] std::array<Piece<D>, 2> cut(const Piece<D>& piece, int axis, std::size_t share,
-                                            std::size_t whole) const {
+  /// Where a piece is cut: about below/all of its points lie below.
+  struct Cut {
+    int axis;
+    std::size_t below;
+    std::size_t all;
+  };
+
+  /// Looks for a better cut of a piece that is hollow. Returns false if none pays and the piece may
+  /// stay as it is.
+  [[nodiscard]] bool judge(const Piece<D>& piece, const Box<D>& box, Cut& where) const {
+    const std::size_t count = std::min(kJudgedSample<D>, piece.sample.size());
+    std::vector<Point<D>> sample(count);
+    for (std::size_t s = 0; s < count; ++s) {
+      sample[s] = piece.sample[s * piece.sample.size() / count];
+    }
+    if (filled_share<D>(sample, box) >= kFilled) return true;
+    const CutJudgement<D> judgement(std::move(sample));
+    if (!judgement.known()) return true;
+    // Leaves that are to be filled, and more than two parts, need cuts at certain places.
+    const bool movable = !options_.fill_leaves && options_.children == 2;
+    const JudgedCut best =
+        judgement.best_cut(where.axis, count * where.below / where.all, movable ? count / 8 : 0);
+    if (best.share > kLargestCrossing && piece.size() <= options_.largest_undivided) return false;
+    if (movable) {
+      where = {best.axis, best.below, count};
+    } else {
+      where.axis = best.axis;
+    }
+    return true;
+  }
+
+  /// Moves the points below a cut to the front, and the sample likewise. Not all points are equal
+  /// on the axis. Neither half is empty.
+  [[nodiscard]] std::array<Piece<D>, 2> cut(const Piece<D>& piece, const Cut& where) const {
     const std::span<Point<D>> sample = piece.sample;
-    const auto rank = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() * share / whole);
+    const int axis = where.axis;
+    const auto rank =
+        sample.begin() + static_cast<std::ptrdiff_t>(sample.size() * where.below / where.all);
     std::nth_element(sample.begin(), rank, sample.end(),
                      [axis](const Point<D>& a, const Point<D>& b) { return a[axis] < b[axis]; });
     const double value = (*rank)[axis];

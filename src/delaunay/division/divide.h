@@ -19,12 +19,19 @@ namespace spillway::detail {
 
 struct DivideOptions {
   std::size_t leaf_size = 0;  ///< parts of at most this many points are not divided further
-  /// Funke, Sanders 2017, section 3: "dynamic", "cyclic" and "constant".
-  Division scheme = Division::kLongestExtent;
+  /// Which axis is cut. The last three are "dynamic", "cyclic" and "constant" of Funke, Sanders
+  /// 2017, section 3.
+  Division scheme = Division::kLeastBorder;
   unsigned children = 2;   ///< parts made of one part at a time, at least 2
   std::stop_token stop{};  ///< looked at before each part is divided
   /// Whether parts need not be of equal size, so that leaves are few and nearly full.
   bool fill_leaves = false;
+  /// With Division::kLeastBorder, the smallest part of which a sample is triangulated
+  /// (CutJudgement) if it is hollow.
+  std::size_t smallest_judged = 32'768;
+  /// A part of at most so many points is a leaf, whatever its size, if the sample says that no cut
+  /// pays.
+  std::size_t largest_undivided = 0;
 };
 
 /// A node of the k-d tree over an array of points.

@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "src/geometry/determinants.h"
-#include "src/geometry/predicates.h"
 
 namespace spillway::detail {
 namespace {
@@ -381,18 +380,6 @@ std::uint64_t may_meet(const BallBatch<D>& balls, const Box<D>& box, std::uint64
   return may_meet_in_lanes<D, 2>(balls, box, asked);
 }
 
-template <int D>
-bool half_space_meets(const std::array<Point<D>, D>& facet, const Box<D>& box) {
-  if (box.empty()) return false;
-  std::array<Point<D>, D + 1> simplex;
-  std::copy(facet.begin(), facet.end(), simplex.begin());
-  for (int corner = 0; corner < (1 << D); ++corner) {
-    for (int k = 0; k < D; ++k) simplex[D][k] = (corner >> k & 1) != 0 ? box.hi[k] : box.lo[k];
-    if (orientation<D>(simplex) >= 0) return true;
-  }
-  return false;
-}
-
 template CertifiedBall<2> certified_ball<2>(const std::array<Point<2>, 3>&);
 template CertifiedBall<3> certified_ball<3>(const std::array<Point<3>, 4>&);
 template bool may_meet<2>(const CertifiedBall<2>&, const Box<2>&);
@@ -405,7 +392,5 @@ template void certify<2>(const SimplexBatch<2>&, BallBatch<2>&);
 template void certify<3>(const SimplexBatch<3>&, BallBatch<3>&);
 template std::uint64_t may_meet<2>(const BallBatch<2>&, const Box<2>&, std::uint64_t);
 template std::uint64_t may_meet<3>(const BallBatch<3>&, const Box<3>&, std::uint64_t);
-template bool half_space_meets<2>(const std::array<Point<2>, 2>&, const Box<2>&);
-template bool half_space_meets<3>(const std::array<Point<3>, 3>&, const Box<3>&);
 
 }  // namespace spillway::detail

@@ -98,10 +98,4 @@ void certify(const SimplexBatch<D>& simplices, BallBatch<D>& balls);
 template <int D>
 std::uint64_t may_meet(const BallBatch<D>& balls, const Box<D>& box, std::uint64_t asked);
 
-/// True if and only if the closed half-space beyond `facet` has a point in common with the box.
-/// `facet` is listed so that orientation(facet, p) is positive for p beyond. Exact. True if the
-/// facet's points do not span a hyperplane; false for an empty box. The box must be finite.
-template <int D>
-bool half_space_meets(const std::array<Point<D>, D>& facet, const Box<D>& box);
-
 }  // namespace spillway::detail

@@ -2,55 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "src/delaunay/common/triangulation.h"
-#include "src/delaunay/division/divide.h"
+#include "src/delaunay/border/conflict_region.h"
 #include "src/geometry/constructions/circumsphere.h"
+#include "src/geometry/point.h"
 
 namespace spillway::detail {
-
-/// Where a new point would destroy or change a simplex: its closed circumsphere (certified), or, of
-/// an infinite simplex, the closed half-space beyond its facet.
-template <int D>
-class ConflictRegion {
- public:
-  /// Of a simplex whose corners are positions of `points`, or kInfiniteVertex.
-  ConflictRegion(const std::array<VertexId, D + 1>& vertices, std::span<const Point<D>> points);
-
-  /// Of a finite simplex with this circumsphere.
-  explicit ConflictRegion(const CertifiedBall<D>& ball) : ball_(ball) {}
-
-  /// Whether it is that of an infinite simplex.
-  [[nodiscard]] bool infinite() const { return infinite_; }
-
-  /// Whether the region is the true one, or reaches less than a hundredth of the radius farther.
-  [[nodiscard]] bool tight() const {
-    constexpr double kLargestError = 0x1p-10;
-    return infinite_ ||
-           ball_.error * ball_.error < kLargestError * kLargestError * ball_.squared_radius;
-  }
-
-  /// False only if the region certainly has no point of the box.
-  [[nodiscard]] bool may_meet(const Box<D>& box) const;
-
-  /// Whether it may meet a leaf of a tree of boxes (Part, or anything with `box` and `children`).
-  template <typename Tree>
-  [[nodiscard]] bool may_meet_leaf(const Tree& tree) const {
-    if (!may_meet(tree.box)) return false;
-    if (tree.children.empty()) return true;
-    return std::any_of(tree.children.begin(), tree.children.end(),
-                       [&](const auto& child) { return may_meet_leaf(child); });
-  }
-
- private:
-  bool infinite_ = false;
-  CertifiedBall<D> ball_;          ///< of a finite simplex
-  std::array<Point<D>, D> facet_;  ///< of an infinite one
-};
 
 /// The regions of up to 64 simplices, which are held against boxes several at a time. Of each a bit
 /// stands in words that ask and answer.
@@ -92,7 +54,11 @@ class RegionBatch {
     for (const auto& [other, region] : apart_) {
       if (other == s) return region;
     }
-    return ConflictRegion<D>(balls_.at(s));
+    std::array<Point<D>, D + 1> corners;
+    for (int i = 0; i <= D; ++i) {
+      for (int k = 0; k < D; ++k) corners[i][k] = simplices_.corners[i][k][s];
+    }
+    return ConflictRegion<D>(corners, balls_.at(s));
   }
 
   /// ConflictRegion::may_meet() of those `asked` for.
@@ -159,35 +125,5 @@ void for_each_region(std::size_t count, const Corners& corners, std::span<const 
                              }
                            });
 }
-
-/// What merging needs to remember of each simplex, in parallel with the lists of a triangulation.
-enum class Mark : std::uint8_t {
-  kInterior,  ///< not in the border, or not yet looked at
-  kVague,     ///< a sibling may change it, by a region that is not tight; in the border if
-              ///< connected to it by such
-  kBorder,    ///< some sibling may change it
-  kSurvivor,  ///< in the border, and found again in the triangulation of the border
-  kFinal,     ///< no point of another part can change it: it is in no border
-};
-using ListMarks = SlabArray<Mark>;
-
-/// The border of one part against its siblings: every simplex that a point of `others` may change,
-/// found from the infinite simplices `hull` by a search over neighbours (such simplices are
-/// connected to the hull, since all of `others` lies beyond it). Marks them kBorder and returns
-/// them, in any order.
-template <int D>
-std::vector<SimplexId> find_border(const Triangulation<D>& triangulation,
-                                   std::span<const SimplexId> hull,
-                                   std::span<const Part<D>* const> others,
-                                   std::span<ListMarks> marks);
-
-/// The same border, but for rounding, of a leaf whose border has no other simplices than
-/// `candidates`, numbers in its list; in their order. What is tested lies in the order of memory,
-/// and not where a search leads.
-template <int D>
-std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::uint32_t list,
-                                    std::span<const std::uint32_t> candidates,
-                                    std::span<const Part<D>* const> others,
-                                    std::span<ListMarks> marks);
 
 }  // namespace spillway::detail

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "src/delaunay/border/conflict_region.h"
+#include "src/delaunay/border/run_boxes.h"
+#include "src/delaunay/division/divide.h"
+#include "src/geometry/point.h"
+
+namespace spillway::detail {
+
+/// The parts beside one part, with their points.
+template <int D>
+struct Siblings {
+  std::span<const Part<D>* const> parts;
+  std::span<const Point<D>> points;    ///< of which parts are ranges
+  std::span<const RunBoxes<D>> boxes;  ///< of the points of leaves, by list
+  /// How many boxes of runs one question may look at. A region that meets more of them, and none of
+  /// the points looked at, counts as holding one. If 0, any that meets the box of a leaf does.
+  std::size_t most_boxes = kMostBoxes;
+
+  static constexpr std::size_t kMostBoxes = 1 << 14;
+};
+
+/// Asks whether points of siblings lie in regions. Remembers points that it found, as regions that
+/// follow each other often hold the same ones.
+template <int D>
+class PointSearch {
+ public:
+  /// `siblings` must outlive it.
+  explicit PointSearch(const Siblings<D>& siblings) : siblings_(siblings) {}
+
+  /// False only if the region certainly holds no point of a sibling. The answer does not depend on
+  /// earlier questions.
+  [[nodiscard]] bool may_hold_a_point(const ConflictRegion<D>& region);
+
+  /// How many boxes of runs all questions have looked at.
+  [[nodiscard]] std::size_t boxes_seen() const { return boxes_seen_; }
+
+ private:
+  [[nodiscard]] bool in_part(const ConflictRegion<D>& region, const Part<D>& part);
+  [[nodiscard]] bool in_boxes(const ConflictRegion<D>& region, const Part<D>& leaf,
+                              std::size_t level, std::size_t begin);
+  [[nodiscard]] bool in_run(const ConflictRegion<D>& region, std::size_t begin, std::size_t end);
+
+  const Siblings<D>& siblings_;
+  std::size_t boxes_seen_ = 0;
+  std::size_t last_box_ = 0;  ///< how many may have been seen when the question ends
+  std::array<Point<D>, 4> found_{};
+  std::size_t found_count_ = 0;  ///< ever
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "src/geometry/point.h"
+
+namespace spillway::detail {
+
+/// A cut of a sample, and what it costs.
+struct JudgedCut {
+  int axis;
+  std::size_t below;  ///< how many points of the sample lie below it
+  double share;       ///< of the points that are corners of simplices across it
+};
+
+/// What cuts of a set would cost, by the triangulation of a sample of it: the points of simplices
+/// across a cut are those of the borders on both sides, which are triangulated twice. (Funke,
+/// Sanders, Winkler, "Load-Balancing for Parallel Delaunay Triangulations", Euro-Par 2019, cut the
+/// graph of a sample's triangulation into parts of any shape; here all cuts are across an axis.)
+template <int D>
+class CutJudgement {
+ public:
+  /// Of few points: they are triangulated by one thread.
+  explicit CutJudgement(std::vector<Point<D>> sample);
+
+  /// Whether the sample spans D dimensions. Otherwise nothing is to be asked.
+  [[nodiscard]] bool known() const { return known_; }
+
+  /// The best cut that has `below` points of the sample below it, or up to `room` more or fewer. It
+  /// is across `axis`, and in the middle of the room, unless another one is better by a quarter.
+  [[nodiscard]] JudgedCut best_cut(int axis, std::size_t below, std::size_t room) const;
+
+ private:
+  [[nodiscard]] double share(int axis, std::size_t below) const {
+    return crossing_[axis][below] / static_cast<double>(crossing_[axis].size());
+  }
+
+  bool known_ = false;
+  /// By axis and number of points below a cut, how many points have simplices across it; all where
+  /// there is no such cut, since coordinates are equal.
+  std::array<std::vector<double>, D> crossing_;
+};
+
+}  // namespace spillway::detail

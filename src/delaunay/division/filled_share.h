@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+
+#include "src/geometry/box.h"
+#include "src/geometry/point.h"
+
+namespace spillway::detail {
+
+/// How much of the box around some points they fill: of a grid with about half as many cells as
+/// there are points, the share of the cells that hold one. About 0.86 for points spread evenly,
+/// much less for those of a curve or a surface; at most 1. 0 without points.
+template <int D>
+double filled_share(std::span<const Point<D>> points, const Box<D>& box);
+
+}  // namespace spillway::detail

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+
+#include "src/geometry/box.h"
+#include "src/geometry/point.h"
+
+namespace spillway::detail {
+
+/// The closed half-space beyond a facet, which is listed so that orientation(facet, p) is positive
+/// for p beyond. Its questions are answered exactly.
+template <int D>
+requires SupportedDimension<D>
+class HalfSpace {
+ public:
+  HalfSpace() = default;
+  explicit HalfSpace(const std::array<Point<D>, D>& facet);
+
+  [[nodiscard]] const std::array<Point<D>, D>& facet() const { return facet_; }
+
+  /// Whether it has a point in common with a finite box. True if the facet's points do not span a
+  /// hyperplane; false for an empty box.
+  [[nodiscard]] bool meets(const Box<D>& box) const;
+
+ private:
+  std::array<Point<D>, D> facet_{};
+  std::array<bool, D> upwards_{};  ///< by axis, whether larger coordinates lie farther beyond
+};
+
+}  // namespace spillway::detail
