@@ -28,7 +28,7 @@ options=()
 # Where tests are built already, they stay.
 [[ -f build/release/CMakeCache.txt ]] || options=(-DSPILLWAY_TESTS=OFF)
 cmake --preset release "${options[@]}" --log-level=WARNING
-cmake --build --preset release -j "$(nproc)" --target spillway spillway_manual
+cmake --build --preset release -j "$(nproc)" --target product
 spillway=build/release/bin/spillway
 mkdir -p build/demo
 

@@ -10,8 +10,8 @@ function(spillway_mpi_test name)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
-  add_executable(${name} ${ARG_SOURCES} distributed/mpi_main.cpp)
-  target_link_libraries(${name} PRIVATE ${ARG_LIBS} spillway_ranks fmt::fmt GTest::gmock GTest::gtest)
+  spillway_test_program(${name} ${ARG_SOURCES} distributed/mpi_main.cpp)
+  target_link_libraries(${name} PRIVATE ${ARG_LIBS} spillway_ranks)
   foreach(ranks IN LISTS ARG_RANKS)
     add_test(NAME ${name}.with_${ranks}_ranks
              COMMAND ${MPIEXEC_EXECUTABLE} -n ${ranks} --oversubscribe --bind-to none

@@ -11,11 +11,12 @@
 
 #include "tests/formats/point_test_helpers.h"
 #include "tests/formats/sha256.h"
+#include "tests/test_paths.h"
 
 namespace spillway::detail::testing {
 
 inline std::filesystem::path shared_file(const char* name) {
-  return std::filesystem::path(SPILLWAY_SHARED_DATA) / name;
+  return test::shared_data_folder() / name;
 }
 
 inline std::string content_of(const std::filesystem::path& path) {

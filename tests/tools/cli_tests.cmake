@@ -5,12 +5,12 @@ spillway_test(command_unit_tests unit
     tools/simulate/run_player_test.cpp tools/simulate/run_recorder_test.cpp
   LIBS spillway_command nlohmann_json::nlohmann_json)
 
+add_library(command_runner STATIC tools/command_runner.cpp)
+target_link_libraries(command_runner PUBLIC spillway_runtime fmt::fmt nlohmann_json::nlohmann_json
+                      PRIVATE test_paths GTest::gtest)
+
 function(spillway_command_test name label)
-  spillway_test(${name} ${label}
-    SOURCES tools/command_runner.cpp ${ARGN}
-    LIBS spillway_runtime fmt::fmt nlohmann_json::nlohmann_json
-    SKIPS_BY_ITSELF)
-  target_compile_definitions(${name} PRIVATE SPILLWAY_COMMAND="$<TARGET_FILE:spillway>")
+  spillway_test(${name} ${label} SOURCES ${ARGN} LIBS command_runner SKIPS_BY_ITSELF)
   add_dependencies(${name} spillway)
 endfunction()
 
@@ -63,7 +63,6 @@ target_link_libraries(cli_render_tests PRIVATE PNG::PNG)
 if(SPILLWAY_MPI)
   spillway_command_test(cli_ranks_tests mpi
     tools/process/cli_ranks_test.cpp tools/report/progress_lines.cpp)
-  target_compile_definitions(cli_ranks_tests PRIVATE SPILLWAY_MPIRUN="${MPIEXEC_EXECUTABLE}")
 endif()
 
 # Two runs of the same commands make the same files and messages, and leave nothing in temporary folders.

@@ -1,4 +1,5 @@
 #include "tests/tools/command_runner.h"
+#include "tests/test_paths.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -86,7 +87,7 @@ Result Workspace::run(const std::string& script) const {
   posix_spawn_file_actions_addopen(&settings.actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   settings.catch_output(STDOUT_FILENO, outputs_ / "stdout");
   settings.catch_output(STDERR_FILENO, outputs_ / "stderr");
-  const std::string command = "spillway() { '" SPILLWAY_COMMAND "' \"$@\"; }\n" + script;
+  const std::string command = "spillway() { '" + command_path() + "' \"$@\"; }\n" + script;
   const int exit_code = wait_for_exit(spawn(settings, {"/bin/sh", "-c", command}));
   return {exit_code, content_of(outputs_ / "stdout"), content_of(outputs_ / "stderr")};
 }
@@ -104,7 +105,7 @@ pid_t Workspace::start(const std::vector<std::string>& arguments) const {
   posix_spawn_file_actions_addchdir_np(&settings.actions, folder_.c_str());
   posix_spawn_file_actions_adddup2(&settings.actions, pipe_ends[0], STDIN_FILENO);
   settings.catch_output(STDERR_FILENO, outputs_ / "stderr");
-  std::vector<std::string> command = {SPILLWAY_COMMAND};
+  std::vector<std::string> command = {command_path()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   const pid_t process = spawn(settings, command);
   close(pipe_ends[0]);  // the writing end stays open until this test program ends
@@ -158,7 +159,7 @@ bool build_lacks(const std::string& part) {
 }
 
 fs::path shared_file(const std::string& name) {
-  const fs::path path = fs::path(SPILLWAY_SHARED_DATA) / name;
+  const fs::path path = shared_data_folder() / name;
   return fs::exists(path) ? path : fs::path();
 }
 

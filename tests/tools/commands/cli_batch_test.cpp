@@ -6,6 +6,7 @@
 #include <chrono>
 #include <thread>
 
+#include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
 namespace spillway::detail::test {
@@ -184,11 +185,12 @@ TEST_F(Batch, SaysThatAFolderCannotBeWritten) {
 TEST_F(Batch, SaysThatAFolderIsProtected) {
   const std::string other = "setpriv --reuid 54321 --regid 54321 --clear-groups ";
   space.succeed("mkdir locked; chmod 755 . .. locked");
-  if (geteuid() != 0 || space.run(other + "test -x " SPILLWAY_COMMAND " -a -r in").exit_code != 0) {
+  if (geteuid() != 0 ||
+      space.run(other + "test -x " + command_path() + " -a -r in").exit_code != 0) {
     GTEST_SKIP() << "cannot run as another user";
   }
   const Result result =
-      space.run(other + SPILLWAY_COMMAND " batch in --output-dir locked --to ply");
+      space.run(other + command_path() + " batch in --output-dir locked --to ply");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.err,
             "spillway: error: --output-dir: cannot write to locked: Permission denied; choose "

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
 namespace spillway::detail::test {
@@ -24,7 +25,7 @@ class EverySample : public testing::TestWithParam<Sample> {
  protected:
   void SetUp() override {
     path_ = shared_file(GetParam().name).string();
-    if (path_.empty()) GTEST_SKIP() << "no " << GetParam().name << " in " SPILLWAY_SHARED_DATA;
+    if (path_.empty()) GTEST_SKIP() << "no " << GetParam().name << " in " << shared_data_folder();
   }
 
   std::string path_;

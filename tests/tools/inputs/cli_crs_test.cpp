@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 #include "tests/tools/inputs/las_samples.h"
 
@@ -155,7 +156,7 @@ TEST(CoordinateSystems, OfAFileWithGeocentricKeysFitItsCopcVersion) {
 
 TEST(CoordinateSystems, OfCommonCodesAreWrittenWithoutTheModule) {
   const Workspace work;
-  work.succeed("cp '" SPILLWAY_COMMAND "' alone");
+  work.succeed("cp '" + command_path() + "' alone");
   const std::vector<std::pair<int, int>> codes = {{1, 3857}, {1, 6339}, {1, 6350}, {2, 6318},
                                                   {2, 4167}, {2, 4617}, {3, 4978}, {1, 32633}};
   for (const auto& [model, code] : codes) {
@@ -179,7 +180,7 @@ TEST(CoordinateSystems, OfCommonCodesAreWrittenWithoutTheModule) {
 TEST(CoordinateSystems, OfRealFiles) {
   const std::string geocentric = shared_file("lone-star.laz");
   const std::string feet = shared_file("mvk-thin.las");
-  if (geocentric.empty() || feet.empty()) GTEST_SKIP() << "no samples in " SPILLWAY_SHARED_DATA;
+  if (geocentric.empty() || feet.empty()) GTEST_SKIP() << "no samples in " << shared_data_folder();
   const Workspace work;
   EXPECT_THAT(work.info(geocentric)["crs_note"].get<std::string>(), HasSubstr("geocentric"));
   EXPECT_THAT(work.info(feet)["crs_note"].get<std::string>(), HasSubstr("lengths in another unit"));

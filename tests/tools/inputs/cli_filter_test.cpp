@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 #include "tests/tools/inputs/las_samples.h"
 
@@ -200,7 +201,7 @@ TEST_F(Filters, ResolutionIsForCopcAndLeavesOtherFilesWhole) {
   EXPECT_THAT(work_.run("spillway info in.las --resolution 2").err,
               HasSubstr("in.las is not a COPC file"));
   const std::string copc = shared_file("1.2-with-color.copc.laz").string();
-  if (copc.empty()) GTEST_SKIP() << "no COPC file in " SPILLWAY_SHARED_DATA;
+  if (copc.empty()) GTEST_SKIP() << "no COPC file in " << shared_data_folder();
   const Result result = work_.run("spillway triangulate --force-crs --resolution 100 in.las '" +
                                   copc + "' -o mesh.ply --stats stats.json");
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -231,7 +232,7 @@ INSTANTIATE_TEST_SUITE_P(Cli, WrongFilter,
 
 TEST(SharedData, GroundOfAutzen) {
   const std::string path = shared_file("autzen_trim.las").string();
-  if (path.empty()) GTEST_SKIP() << "no autzen_trim.las in " SPILLWAY_SHARED_DATA;
+  if (path.empty()) GTEST_SKIP() << "no autzen_trim.las in " << shared_data_folder();
   const Workspace work;
   work.succeed("spillway triangulate -q '" + path +
                "' --keep-class 2 -o ground.ply --stats stats.json\n"

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 #include "tests/tools/inputs/las_samples.h"
 
@@ -240,7 +241,7 @@ TEST(Slips, GetASuggestion) {
 
 TEST(SharedData, ManyFilesAreOneTriangulation) {
   const std::filesystem::path path = shared_file("autzen_trim.las");
-  if (path.empty()) GTEST_SKIP() << "no autzen_trim.las in " SPILLWAY_SHARED_DATA;
+  if (path.empty()) GTEST_SKIP() << "no autzen_trim.las in " << shared_data_folder();
   const Workspace work;
   work.succeed("spillway triangulate -q '" + (path.parent_path() / "autzen_trim*.las").string() +
                "' -o both.ply --stats both.json --force-crs\n"

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
 namespace spillway::detail::test {
@@ -89,7 +90,7 @@ TEST(Usage, ATerminalGetsTheRightRemedy) {
     EXPECT_EQ(result.exit_code, 2) << command;
     return result.out;
   };
-  const std::string spillway = SPILLWAY_COMMAND;
+  const std::string spillway = command_path();
   const auto of_points = HasSubstr("the points are not text; name a file with -o");
   EXPECT_THAT(on_terminal(spillway + " convert in.las -o -"), of_points);
   EXPECT_THAT(on_terminal("cat in.las | " + spillway + " convert - -o -"), of_points);

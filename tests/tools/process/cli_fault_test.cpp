@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
 namespace spillway::detail::test {
@@ -73,7 +74,7 @@ TEST(BadInput, SampleFilesThatAreDamaged) {
   const Workspace work;
   for (const std::string name : {"1.2-with-color-clipped.las", "garbage_nVariableLength.las"}) {
     const auto path = shared_file(name);
-    if (path.empty()) GTEST_SKIP() << "no " << name << " in " SPILLWAY_SHARED_DATA;
+    if (path.empty()) GTEST_SKIP() << "no " << name << " in " << shared_data_folder();
     expect_failure(work, triangulate(path.string()), name);
   }
 }

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
 namespace spillway::detail::test {
@@ -58,7 +59,7 @@ class Limits : public testing::Test {
 TEST_F(Limits, OfMemory) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   if (kSanitized) GTEST_SKIP() << "not with a sanitizer";
-  const std::string command = SPILLWAY_COMMAND;
+  const std::string command = command_path();
   for (const std::string arguments :
        {"triangulate -q in.las -o out/mesh.ply --threads 8 --memory 32M",
         "dem -q in.las -o out/dem.tif --resolution 5 --threads 4", "info -q in.las > /dev/null"}) {
@@ -81,7 +82,7 @@ TEST_F(Limits, OfThreads) {
   // The superuser has no such limit; a user that nothing else runs as has it for this alone.
   const std::string other = "setpriv --reuid 54321 --regid 54321 --clear-groups ";
   if (geteuid() != 0 ||
-      work_.run("prlimit --nproc=2 " + other + "test -x " SPILLWAY_COMMAND " -a -r in.las")
+      work_.run("prlimit --nproc=2 " + other + "test -x " + command_path() + " -a -r in.las")
               .exit_code != 0) {
     GTEST_SKIP() << "cannot run as another user";
   }
@@ -92,7 +93,7 @@ TEST_F(Limits, OfThreads) {
     for (int processes = 2; processes < 16; ++processes) {
       const bool success =
           succeeds(fmt::format("timeout 60 prlimit --nproc={}", processes),
-                   fmt::format("{} {} {}", other, SPILLWAY_COMMAND, arguments),
+                   fmt::format("{} {} {}", other, command_path(), arguments),
                    fmt::format("cannot start a thread: the limit of processes or of memory is "
                                "reached (ulimit -u is {}",
                                processes));

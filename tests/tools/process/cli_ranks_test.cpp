@@ -17,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 #include "tests/tools/report/progress_lines.h"
 
@@ -30,13 +31,12 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// Containers run tests as root, which mpirun refuses unless it is told twice.
-const std::string kMpirun =
-    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " SPILLWAY_MPIRUN
-    " --oversubscribe --bind-to none";
+const std::string kMpirun = "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " +
+                            mpirun_path() + " --oversubscribe --bind-to none";
 
 /// A command line that runs so many ranks.
 std::string ranks(int count, const std::string& arguments) {
-  return fmt::format("{} -n {} {} {}", kMpirun, count, SPILLWAY_COMMAND, arguments);
+  return fmt::format("{} -n {} {} {}", kMpirun, count, command_path(), arguments);
 }
 
 /// The mesh that one process makes, and the same of ranks.
@@ -179,7 +179,7 @@ TEST_F(RanksOfTheCommand, KeepTilesOnDisksOfTheirOwn) {
   work_.succeed("mkdir one two && spillway generate -q terrain -n 1500000 -o in.las");
   const std::string common = "triangulate -q --memory 32M in.las -o b.spm --stats s.json";
   work_.succeed(fmt::format("{0} -n 1 {1} {2} --tmpdir one : -n 1 {1} {2} --tmpdir two", kMpirun,
-                            SPILLWAY_COMMAND, common));
+                            command_path(), common));
   const auto stats = nlohmann::json::parse(work_.read("s.json"));
   for (const auto& rank : stats.at("ranks").at("each")) EXPECT_GT(rank.at("spilled_bytes"), 0);
   EXPECT_TRUE(fs::is_empty(work_.folder() / "one"));
@@ -270,7 +270,7 @@ TEST_F(RanksThatFail, RefuseDegenerateInputsInBothDimensions) {
 TEST_F(RanksThatFail, SayWhatIsWrongWithOneOfThem) {
   work_.succeed("mkdir one two && spillway generate -q terrain -n 90000 -o in.las");
   const auto both = [&](const std::string& first, const std::string& second) {
-    const std::string common = std::string(SPILLWAY_COMMAND) + " triangulate -q in.las -o b.spm ";
+    const std::string common = command_path() + " triangulate -q in.las -o b.spm ";
     return fmt::format("{0} -n 1 {1} {2} : -n 1 {1} {3}", kMpirun, common, first, second);
   };
   expect_failure(both("--tmpdir one", "--tmpdir nowhere"), "--tmpdir: cannot write to nowhere");
@@ -288,7 +288,7 @@ TEST_F(RanksThatFail, TellWhichOfThemSeesAnotherFileOfTheSameName) {
       "spillway generate -q terrain -n 300000 --seed 2 -o two/in.las");
   const auto job = [&] {
     return fmt::format("{0} -n 1 -wdir one {1} {2} : -n 1 -wdir two {1} {2}", kMpirun,
-                       SPILLWAY_COMMAND, "triangulate -q in.las -o ../b.spm");
+                       command_path(), "triangulate -q in.las -o ../b.spm");
   };
   expect_failure(job(), "in.las: rank 1 reads another file of this name");
   // Another scale of z alone.
@@ -321,7 +321,7 @@ std::vector<pid_t> processes_with(const std::string& argument) {
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     std::ifstream file(entry.path() / "cmdline", std::ios::binary);
     const std::string line((std::istreambuf_iterator<char>(file)), {});
-    const bool is_rank = line.starts_with(SPILLWAY_COMMAND);
+    const bool is_rank = line.starts_with(command_path());
     if (is_rank && line.find(argument) != std::string::npos) found.push_back(std::stoi(name));
   }
   return found;

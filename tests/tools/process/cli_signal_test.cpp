@@ -15,6 +15,7 @@
 #include <string>
 #include <thread>
 
+#include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
 namespace spillway::detail::test {
@@ -157,7 +158,8 @@ TEST(Signals, EndARunWhoseMessagesNobodyTakes) {
   // The pipe is full, and its reader takes nothing.
   const Result result = work.run(
       "mkfifo pipe; sleep 20 < pipe & reader=$!\n"
-      "{ " SPILLWAY_COMMAND
+      "{ " +
+      command_path() +
       " generate uniform -n 1e9 -o long.npy -q & run=$!\n"
       "head -c 65536 /dev/zero >&2; sleep 0.3; kill -TERM $run; wait $run; echo $? > code; } 2> "
       "pipe\n"
@@ -169,7 +171,7 @@ TEST(Signals, EndARunWhoseMessagesNobodyTakes) {
 TEST(Signals, ATerminalsProgressLineIsWipedFirst) {
   const Workspace work;
   if (work.run("command -v script").exit_code != 0) GTEST_SKIP() << "no script";
-  const Result result = work.run("TERM=xterm script -qec 'timeout -s INT 0.5 " SPILLWAY_COMMAND
+  const Result result = work.run("TERM=xterm script -qec 'timeout -s INT 0.5 " + command_path() +
                                  " generate terrain -n 1e9 -o long.las' /dev/null");
   EXPECT_THAT(result.out, HasSubstr("\r\x1b[Kspillway: interrupted by SIGINT; nothing was written "
                                     "to long.las\r\n"));

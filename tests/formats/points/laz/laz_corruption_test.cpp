@@ -8,6 +8,7 @@
 #include "tests/formats/points/laz/laz_encoder/laz_excerpt.h"
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
+#include "tests/test_paths.h"
 
 namespace spillway::detail::testing {
 namespace {
@@ -465,7 +466,7 @@ INSTANTIATE_TEST_SUITE_P(All, LazDamage, ::testing::ValuesIn(small_files()),
 class SharedLazDamage : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SharedLazDamage, IsAnErrorOrPoints) {
-  const std::filesystem::path path = std::filesystem::path(SPILLWAY_SHARED_DATA) / GetParam();
+  const std::filesystem::path path = test::shared_data_folder() / GetParam();
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   std::ifstream stream(path, std::ios::binary);
   const std::string bytes(std::istreambuf_iterator<char>(stream), {});

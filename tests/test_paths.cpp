@@ -1,0 +1,9 @@
+#include "tests/test_paths.h"
+
+namespace spillway::detail::test {
+
+std::string command_path() { return SPILLWAY_COMMAND; }
+std::string mpirun_path() { return SPILLWAY_MPIRUN; }
+std::filesystem::path shared_data_folder() { return SPILLWAY_SHARED_DATA; }
+
+}  // namespace spillway::detail::test

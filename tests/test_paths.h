@@ -1,0 +1,18 @@
+#pragma once
+// Where things are on the machine that tests were built on.
+
+#include <filesystem>
+#include <string>
+
+namespace spillway::detail::test {
+
+/// The built command.
+std::string command_path();
+
+/// mpirun; empty in a build without MPI.
+std::string mpirun_path();
+
+/// Sample files outside of the repository; the folder need not be there.
+std::filesystem::path shared_data_folder();
+
+}  // namespace spillway::detail::test
