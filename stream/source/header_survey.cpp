@@ -9,6 +9,7 @@
 
 #include "formats/inputs/open_points.h"
 #include "src/error.h"
+#include "stream/source/changed_input.h"
 #include "stream/source/input_crs.h"
 
 namespace spillway::detail {
@@ -35,6 +36,7 @@ void survey(FileSystem& files, const std::string& path, const HeaderSurveyOption
   input.header = reader->header();
   check_points_have(input, options);
   std::error_code unknown;
+  input.bytes = bytes_of_file(path);
   input.opens_once = path == "-" || !std::filesystem::is_regular_file(path, unknown);
   // The n-th records of an input can be told in its pieces only if these know what comes before.
   if (!input.opens_once && (options.filter.every == 1 || input.header.count)) {

@@ -7,6 +7,7 @@
 
 #include "formats/inputs/open_points.h"
 #include "src/error.h"
+#include "stream/source/changed_input.h"
 
 namespace spillway::detail {
 namespace {
@@ -65,7 +66,12 @@ void PieceSequence::begin_turn() {
 
 void PieceSequence::open_current() {
   Input& input = inputs_[current()];
-  if (!input.reader) input.reader = open_point_reader(files_, input.path, options_.reader);
+  if (input.reader) return;
+  auto reader = open_point_reader(files_, input.path, options_.reader);
+  const SourceFacts::Input& surveyed = facts_.inputs[current()];
+  // A digest tells more, and what comes from another process has no regions.
+  if (!surveyed.digest) refuse_changed_input(surveyed, input.path, *reader);
+  input.reader = std::move(reader);
 }
 
 /// Looks at a file once; what has changed since is not seen.

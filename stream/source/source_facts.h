@@ -16,9 +16,10 @@ namespace spillway::detail {
 struct SourceFacts {
   struct Input {
     PointHeader header;
-    std::optional<std::uint64_t> pieces;  ///< that can be read in any order, filters considered
-    bool opens_once = false;              ///< a pipe: the rest of it is with who looked at it
-    std::optional<FileDigest> digest{};   ///< of a file, if asked for
+    std::optional<std::uint64_t> pieces;   ///< that can be read in any order, filters considered
+    bool opens_once = false;               ///< a pipe: the rest of it is with who looked at it
+    std::optional<FileDigest> digest{};    ///< of a file, if asked for
+    std::optional<std::uint64_t> bytes{};  ///< size of a file
 
     [[nodiscard]] bool has_heights() const { return header.coordinates != 2; }
     /// Classes and returns, which are those of LAS.

@@ -64,7 +64,8 @@ std::vector<LatticePoint> sample_of(const std::vector<Held>& held, std::size_t s
 void TileTree::divide_first(Batch& batch) {
   const Box<3> box = tiles_[0].box;
   const std::uint64_t seen = tiles_[0].points;
-  const std::uint64_t all = options_.expected.value_or(0);
+  const std::uint64_t all = std::min(options_.expected.value_or(0),
+                                     std::numeric_limits<std::uint64_t>::max() / kExpectedShare);
   const bool tells = !filled_ && options_.extent && all > seen;
   const bool everywhere = tells && spans_extent(box, *options_.extent, options_.dimension);
   std::size_t stride = sample_stride();

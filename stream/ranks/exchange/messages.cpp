@@ -61,6 +61,7 @@ void pack(Packer& message, const SourceFacts& facts) {
     pack_optional(message, input.pieces);
     message.put(input.opens_once);
     pack_optional(message, input.digest);
+    pack_optional(message, input.bytes);
   }
   message.put_list(facts.crs);
 }
@@ -74,6 +75,7 @@ SourceFacts unpack_source_facts(Unpacker& message) {
     input.pieces = unpack_optional<std::uint64_t>(message);
     input.opens_once = message.take<bool>();
     input.digest = unpack_optional<FileDigest>(message);
+    input.bytes = unpack_optional<std::uint64_t>(message);
   }
   facts.crs = message.take_list<std::string>();
   return facts;

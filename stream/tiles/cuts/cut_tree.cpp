@@ -132,7 +132,7 @@ CutTree::NodeRef CutTree::cut(std::uint32_t tile, int axis, double value) {
 }
 
 void CutTree::split(std::uint32_t tile, std::vector<LatticePoint>& sample, std::size_t parts) {
-  split_sample(tile, sample.data(), sample.data() + sample.size(), parts);
+  split_sample(tile, sample.data(), sample.data() + sample.size(), std::min(parts, sample.size()));
   renew_lookup();
 }
 

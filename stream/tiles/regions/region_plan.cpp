@@ -25,6 +25,9 @@ constexpr double kUnevenCost = 0.5;
 constexpr std::size_t kMostValues = 32;
 /// Steps by which a value is found that has a share of the points below it.
 constexpr int kBisections = 40;
+/// There are about so many cells at the most, whatever headers claim: where more points are told,
+/// cells expect more, and are cut when these come.
+constexpr double kMostCells = 16'384;
 /// Triangulating while reading pays from this share of points on that are complete early.
 constexpr double kLeastEarly = 0.25;
 
@@ -300,8 +303,10 @@ void expect_waiting(std::span<const InputRegion> regions, RegionPlan& plan) {
 }  // namespace
 
 RegionPlan plan_regions(std::span<const InputRegion> regions, const RegionPlanOptions& options) {
-  Planner planner(options.dimension, options.most_points);
-  planner.cut(0, portions_of(regions));
+  std::vector<Portion> portions = portions_of(regions);
+  Planner planner(options.dimension,
+                  std::max(options.most_points, points_of(portions) / kMostCells));
+  planner.cut(0, std::move(portions));
   RegionPlan plan{.cuts = planner.take_cuts()};
   plan.units = order_units(regions, planner, options.any_order);
   order_regions(regions, plan);

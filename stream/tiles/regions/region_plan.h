@@ -39,7 +39,7 @@ struct RegionPlan {
 
 struct RegionPlanOptions {
   int dimension = 2;       ///< only the first axes are looked at
-  double most_points = 0;  ///< that a cell expects
+  double most_points = 0;  ///< that a cell expects; more where that would be very many cells
   bool any_order = true;   ///< units may be read in any order
 };
 

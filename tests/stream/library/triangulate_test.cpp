@@ -57,6 +57,19 @@ class Blocks : public PointSource {
   std::size_t next_ = 0;
 };
 
+/// Few points, and a header that claims very many.
+class Claims : public Blocks {
+ public:
+  Claims(std::vector<Point<3>> points, std::uint64_t count)
+      : Blocks(std::move(points), 1000), count_(count) {}
+  [[nodiscard]] PointsHeader header() const override {
+    return {.count = count_, .extent = Extent{{0, 0, 0}, {100, 100, 100}}};
+  }
+
+ private:
+  std::uint64_t count_;
+};
+
 class FailingSink : public MeshSink {
  public:
   void write(const MeshBlock& /*block*/) override { throw std::runtime_error("the line is cut"); }
@@ -112,6 +125,28 @@ TEST_F(Streams, GiveTheMeshThatIsMadeInMemory) {
               std::set<Point<3>>(points.begin(), points.end()));
     EXPECT_GT(report.tiles, 1U);
     EXPECT_EQ(report.points.read, points.size());
+  }
+}
+
+TEST_F(Streams, DoNoWorkForPointsThatAHeaderOnlyClaims) {
+  const auto points = random_points(20'000);
+  const auto hash_of = [&](PointSource& source, std::uint64_t tile_points, int dimension) {
+    const Context context(options("96M"));
+    MeshInMemory mesh;
+    TriangulateOptions how;
+    how.dimension = dimension;
+    how.tile_points = tile_points;
+    return triangulate(source, mesh, how, context).mesh.canonical_hash;
+  };
+  for (const int dimension : {2, 3}) {
+    Blocks honest(points, 999);
+    const std::uint64_t hash = hash_of(honest, 0, dimension);
+    for (const std::uint64_t claimed : {std::uint64_t{70'300'024'700'928}, ~std::uint64_t{0}}) {
+      for (const std::uint64_t tile_points : {0, 3000}) {
+        Claims lie(points, claimed);
+        EXPECT_EQ(hash_of(lie, tile_points, dimension), hash) << claimed;
+      }
+    }
   }
 }
 

@@ -10,6 +10,7 @@
 #include "src/error.h"
 #include "stream/source/header_survey.h"
 #include "tests/formats/inputs/temporary_files.h"
+#include "tests/formats/points/las/las_file.h"
 
 namespace spillway::detail {
 namespace {
@@ -170,6 +171,58 @@ TEST_F(PieceSequenceTest, AFileThatAnotherProcessSawOtherwiseIsRefused) {
   }
   static_cast<void>(files_.put("b.txt", "11 0 0 \n"));
   EXPECT_THROW(of_another.begin_piece(1, 0), Error);
+}
+
+/// What a run says that has looked at headers, when others stand in the files' place.
+class ChangedInput : public PieceSequenceTest {
+ protected:
+  /// Empty if it takes what it finds.
+  std::string fault(const std::string& before, const std::string& after, const char* name) {
+    paths_ = {files_.put("first.txt", "0 0 0\n"), files_.put(name, before)};
+    facts_ = survey_headers(disk(), paths_, {}).facts;
+    PieceSequence all = sequence();
+    SourcePiece piece;
+    EXPECT_TRUE(all.fetch(piece));
+    static_cast<void>(files_.put(name, after));
+    try {
+      fetch_all(all);
+      return "";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.facts().file, HasSubstr(name));
+      return error.what();
+    }
+  }
+
+  static std::string las(double scale, double offset = 0, std::int32_t x = 1) {
+    testing::LasFile file;
+    file.scale = {scale, scale, scale};
+    file.offset = {offset, 0, 0};
+    file.records[0].x = x;
+    return file.bytes();
+  }
+};
+
+TEST_F(ChangedInput, OfAnotherScaleOrOffsetIsRefused) {
+  const auto told = HasSubstr(
+      "the file has changed since its header was read: its coordinates have another scale or "
+      "offset; run again when nothing writes to it");
+  EXPECT_THAT(fault(las(0.01), las(0.001), "a.las"), told);
+  EXPECT_THAT(fault(las(0.01), las(0.01, 7), "a.las"), told);
+}
+
+TEST_F(ChangedInput, OfAnotherFormatIsRefusedByItsName) {
+  EXPECT_THAT(fault(las(0.01), "5 6 7\n", "a.las"), HasSubstr("a.las: this is not a LAS file"));
+  EXPECT_THAT(fault("5 6 7\n", las(0.01), "a.xyz"), HasSubstr("the format is las, not text"));
+}
+
+TEST_F(ChangedInput, OfAnotherLengthIsRefused) {
+  EXPECT_THAT(fault("5 6 7\n", "5 6 7\n8 9 10\n", "a.xyz"), HasSubstr("it has 13 bytes, not 6"));
+  EXPECT_THAT(fault("5 6 7\n", "5 6   \n", "a.xyz"),
+              HasSubstr("its points have 2 coordinates, not 3"));
+}
+
+TEST_F(ChangedInput, ThatTellsTheSameIsTaken) {
+  EXPECT_EQ(fault("5 6 7\n", "6 5 7\n", "a.xyz"), "");
 }
 
 TEST_F(PieceSequenceTest, AReaderThatIsOpenGoesOn) {

@@ -138,6 +138,19 @@ TEST(RegionPlan, OfRegionsWithoutPointsHasOneCell) {
   EXPECT_FALSE(pays(plan));
 }
 
+TEST(RegionPlan, CountsThatLieMakeFewCells) {
+  constexpr std::size_t kMany = 200'000;
+  for (const std::uint64_t lie : {std::uint64_t{70'300'024'700'928}, std::uint64_t{1} << 62}) {
+    auto regions = squares(3, 1000);
+    regions[4].count = lie;
+    for (const int dimension : {2, 3}) {
+      const RegionPlan plan = plan_regions(regions, {.dimension = dimension, .most_points = 100});
+      EXPECT_LT(plan.cells.size(), kMany) << lie;
+      expect_to_hold(plan, regions, dimension);
+    }
+  }
+}
+
 TEST(RegionPlan, TakesFlatBoxesAndEqualOnes) {
   std::vector<InputRegion> regions = squares(3, 1000);
   for (std::size_t i = 0; i < 9; ++i) {
