@@ -6,15 +6,17 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <new>
+#include <span>
 #include <string_view>
 #include <system_error>
 
 #include "formats/bytes/line_reader.h"
 #include "formats/disk/file_system.h"
+#include "formats/inputs/point_folder.h"
 #include "formats/meshes/mesh_formats.h"
-#include "formats/points/point_formats.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -25,7 +27,8 @@ namespace fs = std::filesystem;
 /// What arguments stand for.
 struct Found {
   std::vector<std::string> files;
-  std::size_t of_meshes = 0;  ///< files of meshes in several files, which were left out
+  std::size_t of_meshes = 0;           ///< files of meshes in several files, which were left out
+  std::vector<std::string> notices{};  ///< of other files in folders that were left out
 };
 
 /// The names of the formats of meshes in several files.
@@ -33,34 +36,22 @@ std::string formats_in_files() {
   return list_of_formats([](const MeshFormat& format) { return format.file_set != nullptr; }, "or");
 }
 
+/// Says which point files of a folder it does not stand for.
+std::string left_out_text(const std::string& folder, const PointFolder& found) {
+  constexpr std::size_t kMostNamed = 3;
+  const std::size_t count = found.left_out.size();
+  const auto named = std::span(found.left_out).first(std::min(count, kMostNamed));
+  return fmt::format("{}: the {} file{} of {} {} taken, and not {}{}; name what else is wanted",
+                     folder, found.files.size(), found.files.size() == 1 ? "" : "s", found.kind,
+                     found.files.size() == 1 ? "is" : "are", fmt::join(named, ", "),
+                     count > kMostNamed ? fmt::format(" and {} more", count - kMostNamed) : "");
+}
+
 void append_folder(const std::string& folder, Found& found) {
-  std::vector<std::string> names;
-  std::error_code fault;
-  for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end;
-       entry.increment(fault)) {
-    std::error_code unknown;
-    const std::string name = entry->path().string();
-    if (entry->path().filename().string().starts_with('.')) continue;  // hidden
-    if (!point_format_of_path(name) || entry->is_directory(unknown)) continue;
-    if (mesh_format_of_part(disk(), name) != nullptr) {
-      ++found.of_meshes;
-    } else {
-      names.push_back(name);
-    }
-  }
-  if (fault) {
-    throw SystemRefusal(fmt::format("cannot read the folder {}: {}", folder, fault.message()),
-                        folder, fault.value());
-  }
-  if (names.empty()) {
-    const std::string others = fmt::format(" but those of {} meshes", formats_in_files());
-    throw BadInput(
-        folder,
-        fmt::format("the folder has no point files ({}){}; name files or a pattern",
-                    fmt::join(point_extensions(), ", "), found.of_meshes > 0 ? others : ""));
-  }
-  std::sort(names.begin(), names.end());
-  found.files.insert(found.files.end(), names.begin(), names.end());
+  PointFolder in_folder = look_into_folder(folder);
+  found.of_meshes += in_folder.of_meshes;
+  if (!in_folder.left_out.empty()) found.notices.push_back(left_out_text(folder, in_folder));
+  std::ranges::move(in_folder.files, std::back_inserter(found.files));
 }
 
 void append_name(const std::string& name, Found& found) {
@@ -151,6 +142,9 @@ std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments
     } else {
       append(argument, found);
     }
+  }
+  for (const std::string& text : found.notices) {
+    if (notice) notice(text);
   }
   if (found.of_meshes > 0 && notice) {
     notice(fmt::format("{} files of {} meshes in folders left out: they are not points",

@@ -12,8 +12,8 @@ bool stands_for_several(const std::string& argument);
 
 /// The files that arguments stand for, in the order of the arguments:
 /// - "-" and names of files: themselves, as is what names nothing that there is;
-/// - a folder: the point files in it, by extension, sorted; not those of folders below it, and not
-///   the files of npy meshes, whose number `notice` is told;
+/// - a folder: the point files in it that look_into_folder() chooses, sorted; `notice` is told of
+///   others;
 /// - a pattern (* ? [...]) that is no file's name: what it matches, sorted;
 /// - "@LIST": the lines of that file ("@-": of standard input), each a name, folder or pattern as
 ///   above, relative to the folder of the list; blank lines and those that begin with # are left

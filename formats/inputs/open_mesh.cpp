@@ -88,13 +88,19 @@ Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string
                    MeshFormats formats) {
   const MeshFormat* format = format_name.empty() ? format_of_files(files, path, formats)
                                                  : &mesh_format(path, format_name, formats);
-  if (format != nullptr && format->file_set != nullptr) return format->file_set->read(files, path);
+  if (format != nullptr && format->file_set != nullptr) {
+    Mesh mesh = format->file_set->read(files, path);
+    mesh.format = format->name;
+    return mesh;
+  }
   auto source = std::make_unique<InputBytes>(files.open(path));
   if (format == nullptr) format = mesh_format_of_content(*source, formats);
   if (format == nullptr) refuse_what_is_no_mesh(*source, path, formats);
   if (format == nullptr) format = mesh_format_of_name(path, formats);
   if (format == nullptr) fail_for_unknown(*source, formats);
-  return read_as(*format, std::move(source), path);
+  Mesh mesh = read_as(*format, std::move(source), path);
+  mesh.format = format->name;
+  return mesh;
 }
 
 /// Whether all vertices are on the header's lattice, z of the plane apart.

@@ -40,6 +40,7 @@ enum class Remedy {
   kRasterExtent,     ///< saying what a raster covers, larger pixels, or agreeing to many
   kPointLattice,     ///< rounding points to another lattice
   kDistrustHeaders,  ///< not relying on what headers tell of where points lie
+  kColumns,          ///< saying which columns of a table are x, y and z
 };
 
 /// What a place in a file is counted in.

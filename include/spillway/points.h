@@ -56,8 +56,11 @@ struct Returns {
 
 /// Which points of files are used, and how these are read. Filters apply in the order of members.
 struct PointOptions {
-  int dimension = 2;                 ///< in which they will be triangulated: 2 or 3
-  std::string format{};              ///< "las", "text", ... ; empty: by first bytes and name
+  int dimension = 2;     ///< in which they will be triangulated: 2 or 3
+  std::string format{};  ///< "las", "text", ... ; empty: by first bytes and name
+  /// Of text: the columns of x, y and, if there is a third one, z, counted from 1; empty: by their
+  /// names, or, where these are missing, the first ones.
+  std::vector<int> columns{};
   bool keep_withheld = false;        ///< use points that LAS flags as withheld
   std::uint64_t every = 1;           ///< use records 0, n, 2n, ... of each file
   std::vector<int> classes{};        ///< use points of these classes, 0 to 255; empty: all

@@ -103,6 +103,7 @@ Report convert(MeshSource& source, MeshSink& sink, const Context& context) {
   std::optional<OpenedMesh::Extent2> extent;
   if (auto* const file = dynamic_cast<OpenedMesh*>(&source)) {
     file->take();
+    if (target->tells_hash()) file->check_totals(watch);
     if (target->wants_extent()) extent = file->find_extent(watch);
     MeshStreamReader& reader = file->reader(watch, !target->is_product());
     return detail::convert(reader, file->path(), extent, *target, context, watch);

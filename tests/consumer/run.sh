@@ -10,6 +10,7 @@
 #   headers          every header compiles alone, without warnings, and includes nothing but the standard's and its own
 #   symbols          the shared library exports the public names alone
 #   docs             the code in docs/library.md is that of the program
+#   everything       what is installed without a choice: command, manual, completions, library, licence, docs
 #   refusal          Spillway itself is not built with -ffast-math
 set -euo pipefail
 build=$(realpath "$1")
@@ -50,6 +51,20 @@ uses_shared() {
 }
 
 case $what in
+  everything)
+    cmake --install "$build" --prefix "$work/prefix" >/dev/null
+    cd "$work/prefix"
+    for file in share/man/man1/spillway.1 share/bash-completion/completions/spillway \
+      share/zsh/vendor-completions/_spillway share/fish/vendor_completions.d/spillway.fish \
+      include/spillway/triangulate.h share/doc/*/LICENSE share/doc/*/README.md share/doc/*/docs/cli.md; do
+      [[ -s $file ]] || fail "$file is not installed"
+    done
+    [[ -n $(find . -name 'libspillway.so.*') && -n $(find . -name libspillway.a) ]] || fail "no library"
+    cd "$work"
+    "$work/prefix/bin/spillway" generate -q terrain -n 1000 -o a.las
+    "$work/prefix/bin/spillway" triangulate -q a.las -o a.ply
+    "$work/prefix/bin/spillway" check -q a.ply --points a.las
+    ;;
   shared)
     install_and_move
     build_and_run

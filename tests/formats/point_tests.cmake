@@ -16,6 +16,7 @@ spillway_test(points_test unit
     formats/points/text/pts_test.cpp
     formats/points/text/text_columns_test.cpp
     formats/points/text/text_reader_test.cpp
+    formats/points/text/unnamed_columns_test.cpp
   LIBS laz_encoder Boost::iostreams PkgConfig::liblz4 fmt::fmt)
 spillway_test(point_fault_test fault
   SOURCES formats/points/point_fault_test.cpp

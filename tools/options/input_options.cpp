@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -44,6 +45,10 @@ bool InputOptions::filters() const {
 void add_input_options(CommandLine& app, InputOptions& options) {
   add_choice(app, "--input-format", options.format, point_format_names(),
              "Format of the points, where neither name nor first bytes tell");
+  take_parsed(app.add_option("--columns", options.columns,
+                             "Of text, the columns of x, y, z: as 3,2,4, or as PNEZD")
+                  .value_name("LIST"),
+              parse_columns);
   app.add_flag("--force-crs", options.force_crs,
                "Take coordinates as they are, though inputs have different coordinate systems");
   const std::string group = "Filters (of the points that are read)";
@@ -77,6 +82,40 @@ void add_input_options(CommandLine& app, InputOptions& options) {
                      "Of COPC files, read the levels needed for points so far apart; others whole"))
       .value_name("R")
       .group(group);
+}
+
+std::vector<int> parse_columns(std::string_view text) {
+  constexpr std::array<std::string_view, 3> kLetters = {"XE", "YN", "ZH"};
+  std::vector<int> columns;
+  bool valid = true;
+  if (std::ranges::all_of(text, [](unsigned char c) { return std::isalpha(c) != 0; })) {
+    std::array<int, 3> found{};
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      const auto letter = static_cast<char>(std::toupper(static_cast<unsigned char>(text[i])));
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (kLetters.at(axis).find(letter) == std::string_view::npos) continue;
+        valid = valid && found.at(axis) == 0;
+        found.at(axis) = static_cast<int>(i) + 1;
+      }
+    }
+    columns.assign(found.begin(), found.end() - (found[2] == 0 ? 1 : 0));
+  } else {
+    for (const std::string_view part : split(text, ',')) {
+      columns.push_back(number_of<std::uint16_t>(part).value_or(0));
+    }
+  }
+  valid = valid && (columns.size() == 2 || columns.size() == 3);
+  for (const int column : columns) {
+    valid = valid && column > 0 && std::ranges::count(columns, column) == 1;
+  }
+  if (!valid) {
+    throw UsageError(
+        fmt::format("\"{}\" does not tell columns; give the numbers of x, y and z, as 3,2,4, or a "
+                    "letter for each column, as PNEZD, with one X or E, one Y or N, and at most "
+                    "one Z or H",
+                    text));
+  }
+  return columns;
 }
 
 std::vector<int> parse_classes(std::string_view text) {
@@ -167,6 +206,7 @@ PointOptions point_options(const InputOptions& options, int dimension) {
   PointOptions points;
   points.dimension = dimension;
   points.format = options.format;
+  if (!options.columns.empty()) points.columns = parse_columns(options.columns);
   points.keep_withheld = options.keep_withheld;
   points.every = options.every;
   if (!options.keep_class.empty()) points.classes = parse_classes(options.keep_class);

@@ -16,6 +16,7 @@ namespace spillway::detail {
 /// As on the command line; an empty text is an option that was not given.
 struct InputOptions {
   std::string format;
+  std::string columns;
   bool force_crs = false;
   bool keep_withheld = false;
   std::uint64_t every = 1;
@@ -31,11 +32,11 @@ struct InputOptions {
 };
 
 /// The names of the options that add_input_options() adds.
-inline constexpr std::array<std::string_view, 10> kInputOptionNames = {
-    "--input-format", "--force-crs", "--keep-withheld", "--every", "--keep-class",
-    "--drop-class",   "--returns",   "--bounds",        "--thin",  "--resolution"};
+inline constexpr std::array<std::string_view, 11> kInputOptionNames = {
+    "--input-format", "--columns", "--force-crs", "--keep-withheld", "--every",     "--keep-class",
+    "--drop-class",   "--returns", "--bounds",    "--thin",          "--resolution"};
 
-/// --input-format, --force-crs, and the group "Filters".
+/// --input-format, --columns, --force-crs, and the group "Filters".
 void add_input_options(CommandLine& app, InputOptions& options);
 
 /// The same for open_points(). Throws UsageError for wrong options.
@@ -44,6 +45,11 @@ PointOptions point_options(const InputOptions& options, int dimension);
 /// Reads the value of --keep-class: numbers and ranges, "2,3-5". This and what follows throws
 /// UsageError that says what is expected, for take_parsed().
 std::vector<int> parse_classes(std::string_view text);
+
+/// Reads the value of --columns: the numbers of x, y and z, "3,2,4" or "3,2", or a letter for each
+/// column from the first on, "PNEZD", of which X or E, Y or N, and Z or H count. Returns numbers
+/// from 1 on.
+std::vector<int> parse_columns(std::string_view text);
 
 /// Reads the value of --returns: "first", "last", "single" and numbers, separated by commas.
 Returns parse_returns(std::string_view text);

@@ -59,6 +59,9 @@ std::string advice(const ErrorFacts& facts) {
       return "; choose --las-version 1.4";
     case Remedy::kDistrustHeaders:
       return "; with --distrust-headers all points are read first, and may lie anywhere";
+    case Remedy::kColumns:
+      return "; say which columns are x, y and z, as --columns PNEZD (point, northing, easting, "
+             "height, description) or --columns 3,2,4";
     case Remedy::kPointLattice:
       return "; choose another --scale or --offset";
     case Remedy::kRanks:

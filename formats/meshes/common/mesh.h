@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "src/geometry/framed_point.h"
@@ -37,6 +38,7 @@ struct Mesh {
   std::vector<WorldPoint> vertices;        ///< output coordinates; z is 0 where the file has none
   std::vector<std::uint64_t> corners;      ///< dimension+1 vertex numbers a simplex, in file order
   std::vector<std::uint64_t> input_index;  ///< one a vertex if header.has_input_index, else empty
+  std::string_view format{};               ///< name of the format of the file that was read
 
   [[nodiscard]] std::size_t corners_per_simplex() const { return header.dimension + 1; }
 };

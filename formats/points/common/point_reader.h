@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -106,6 +107,8 @@ struct PointReaderOptions {
   /// Only points in this box (output coordinates, closed) are wanted: a reader that knows where its
   /// points lie leaves out parts that have none there, but may give others too.
   std::optional<Box<3>> bounds{};
+  /// Of text: the columns of x, y and z, counted from 0; that of z is -1 where there is none.
+  std::optional<std::array<int, 3>> columns{};
   /// Of COPC, levels of the octree finer than this spacing are left out; 0: all are read.
   double resolution = 0;
 };

@@ -337,6 +337,22 @@ void find_points(InputBytes& source, LasHeader& header) {
   }
 }
 
+/// Says what follows the points that the header counts, where there is room for more of them.
+void tell_of_more(const InputBytes& source, LasHeader& header) {
+  const std::optional<std::uint64_t> size = source.size();
+  if (!size) return;
+  const std::uint64_t begin = source.position();
+  const std::uint64_t end = std::min(*size, header.offset_behind_points.value_or(*size));
+  const std::uint64_t told = begin + header.count * header.record_length;
+  if (end < told + header.record_length) return;
+  header.notices.push_back(fmt::format(
+      "the header counts {} points, but {} bytes follow them, room for {} more, which are not "
+      "read; if they are points, correct the count in the header ({})",
+      header.count, end - told, (end - told) / header.record_length,
+      header.version == "1.4" || header.version == "1.5" ? "8 bytes from byte 247 on"
+                                                         : "4 bytes from byte 107 on"));
+}
+
 }  // namespace
 
 LasHeader read_las_header(InputBytes& source) {
@@ -365,7 +381,10 @@ LasHeader read_las_header(InputBytes& source) {
          fmt::format("the file ends at byte {}, before the points; get a complete copy",
                      source.position()));
   }
-  if (!header.laz) find_points(source, header);
+  if (!header.laz) {
+    find_points(source, header);
+    tell_of_more(source, header);
+  }
   return header;
 }
 
@@ -381,6 +400,7 @@ PointHeader las_point_header(const LasHeader& las, const std::string& path) {
   header.crs = las.crs;
   header.crs_note = las.crs_note;
   header.software = las.software;
+  header.notices = las.notices;
   header.extra_bytes = las.record_length - kLasRecordLengths.at(las.point_format);
   return header;
 }

@@ -77,6 +77,7 @@ struct LasHeader {
   std::string crs;                     ///< WKT, or "EPSG:n", or empty
   std::string crs_note;                ///< as PointHeader has it
   std::string software;                ///< generating software
+  std::vector<std::string> notices;    ///< as PointHeader has them
   std::uint64_t offset_to_points = 0;  ///< compressed or not
   /// Where waveforms or extended records begin after the points, if there are any.
   std::optional<std::uint64_t> offset_behind_points;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 #include "formats/bytes/bytes.h"
 #include "formats/points/laz/coding/arithmetic_decoder.h"
@@ -107,7 +108,7 @@ std::size_t shortest_chunk(const LasHeader& las) {
   return las.record_length + sizeof(std::uint32_t) * (las.laz->format.layered ? 1 + layers : 1);
 }
 
-std::optional<std::vector<LazChunk>> read_chunk_table(InputBytes& source, const LasHeader& las) {
+std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeader& las) {
   const std::optional<TableRange> range = find_table(source, las);
   if (!range) return std::nullopt;
   const std::uint64_t head = load_at(source, range->offset);
@@ -159,7 +160,8 @@ std::optional<std::vector<LazChunk>> read_chunk_table(InputBytes& source, const 
                      "get a complete copy",
                      las.count, range->offset, points));
   }
-  return table;
+  const std::uint64_t more = chunks - table.size();
+  return LazChunkTable{std::move(table), more};
 }
 
 }  // namespace spillway::detail

@@ -17,13 +17,19 @@ struct LazChunk {
   std::uint64_t count = 0;  ///< of points
 };
 
+/// The chunks of a file, up to the header's number of points.
+struct LazChunkTable {
+  std::vector<LazChunk> chunks;
+  std::uint64_t more = 0;  ///< chunks that the table lists after these
+};
+
 /// Size of the pointer to the chunk table, which stands before the first chunk.
 inline constexpr std::size_t kChunkTablePointer = 8;
 
-/// The chunks that the table lists, up to the header's number of points, in a file that can be
-/// read from any byte on (`source` is left somewhere). Nothing if the table was never written.
+/// What the table lists, in a file that can be read from any byte on (`source` is left somewhere).
+/// Nothing if the table was never written.
 /// Throws Error for a table that is not that of a complete file.
-std::optional<std::vector<LazChunk>> read_chunk_table(InputBytes& source, const LasHeader& las);
+std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeader& las);
 
 /// Reads the pointer at the beginning of the points of a source that cannot go back, and returns
 /// what it says of where the chunks end; nothing where the table tells that or is missing.

@@ -138,6 +138,17 @@ class LazReader : public PointReader {
     if (options.bounds && header_.extent) intersect(*options.bounds);
   }
 
+  void take_table(std::optional<LazChunkTable> table) {
+    if (!table) return;
+    chunks_ = std::move(table->chunks);
+    if (table->more == 0) return;
+    header_.notices.push_back(fmt::format(
+        "the header counts {} points, but {} more chunk{} of them follow{}, which {} not read; "
+        "write the file again, or correct the count in the header",
+        las_.count, table->more, table->more == 1 ? "" : "s", table->more == 1 ? "s" : "",
+        table->more == 1 ? "is" : "are"));
+  }
+
   void find_chunks() {
     const bool seekable = source_->seekable();
     if (las_.count == 0) {
@@ -149,7 +160,7 @@ class LazReader : public PointReader {
       return;
     }
     if (seekable) {
-      chunks_ = read_chunk_table(*source_, las_);
+      take_table(read_chunk_table(*source_, las_));
       if (!chunks_) source_->seek(las_.offset_to_points + kChunkTablePointer);
     } else {
       chunks_end_ = read_end_of_chunks(*source_, las_).value_or(kUnlimited);

@@ -16,7 +16,9 @@ namespace {
 
 /// Kinds of coordinates, those that are chosen first standing first. x and y have four; each name
 /// of a height is a kind of its own.
-constexpr int kKinds = 8;
+constexpr int kKinds = 24;
+/// From this one on, heights are depths.
+constexpr int kFirstDepth = 20;
 
 /// What a name stands for.
 struct Meaning {
@@ -29,18 +31,29 @@ struct BaseName {
   Meaning meaning;
 };
 
-constexpr std::array kBaseNames = {
-    BaseName{"x", {0, 0}},         BaseName{"y", {1, 0}},         BaseName{"z", {2, 0}},
-    BaseName{"e", {0, 1}},         BaseName{"east", {0, 1}},      BaseName{"easting", {0, 1}},
-    BaseName{"eastings", {0, 1}},  BaseName{"n", {1, 1}},         BaseName{"north", {1, 1}},
-    BaseName{"northing", {1, 1}},  BaseName{"northings", {1, 1}}, BaseName{"ostwert", {0, 1}},
-    BaseName{"nordwert", {1, 1}},  BaseName{"rechts", {0, 2}},    BaseName{"rechtswert", {0, 2}},
-    BaseName{"rw", {0, 2}},        BaseName{"hoch", {1, 2}},      BaseName{"hochwert", {1, 2}},
-    BaseName{"hw", {1, 2}},        BaseName{"lon", {0, 3}},       BaseName{"long", {0, 3}},
-    BaseName{"lng", {0, 3}},       BaseName{"longitude", {0, 3}}, BaseName{"lat", {1, 3}},
-    BaseName{"latitude", {1, 3}},  BaseName{"h", {2, 7}},         BaseName{"height", {2, 5}},
-    BaseName{"elevation", {2, 1}}, BaseName{"elev", {2, 2}},      BaseName{"alt", {2, 4}},
-    BaseName{"altitude", {2, 3}},  BaseName{"hoehe", {2, 6}}};
+constexpr std::array kBaseNames = {BaseName{"x", {0, 0}},           BaseName{"y", {1, 0}},
+                                   BaseName{"z", {2, 0}},           BaseName{"e", {0, 1}},
+                                   BaseName{"east", {0, 1}},        BaseName{"easting", {0, 1}},
+                                   BaseName{"eastings", {0, 1}},    BaseName{"n", {1, 1}},
+                                   BaseName{"north", {1, 1}},       BaseName{"northing", {1, 1}},
+                                   BaseName{"northings", {1, 1}},   BaseName{"ostwert", {0, 1}},
+                                   BaseName{"nordwert", {1, 1}},    BaseName{"rechts", {0, 2}},
+                                   BaseName{"rechtswert", {0, 2}},  BaseName{"rw", {0, 2}},
+                                   BaseName{"hoch", {1, 2}},        BaseName{"hochwert", {1, 2}},
+                                   BaseName{"hw", {1, 2}},          BaseName{"lon", {0, 3}},
+                                   BaseName{"long", {0, 3}},        BaseName{"lng", {0, 3}},
+                                   BaseName{"longitude", {0, 3}},   BaseName{"lat", {1, 3}},
+                                   BaseName{"latitude", {1, 3}},    BaseName{"h", {2, 7}},
+                                   BaseName{"height", {2, 5}},      BaseName{"elevation", {2, 1}},
+                                   BaseName{"elev", {2, 2}},        BaseName{"alt", {2, 4}},
+                                   BaseName{"altitude", {2, 3}},    BaseName{"hoehe", {2, 6}},
+                                   BaseName{"rl", {2, 8}},          BaseName{"cota", {2, 9}},
+                                   BaseName{"quota", {2, 10}},      BaseName{"hauteur", {2, 11}},
+                                   BaseName{"cote", {2, 12}},       BaseName{"altura", {2, 13}},
+                                   BaseName{"elevacion", {2, 14}},  BaseName{"hoogte", {2, 15}},
+                                   BaseName{"hoejd", {2, 16}},      BaseName{"depth", {2, 20}},
+                                   BaseName{"tiefe", {2, 21}},      BaseName{"profondeur", {2, 22}},
+                                   BaseName{"profundidad", {2, 23}}};
 
 constexpr std::array<std::string_view, 23> kUnits = {
     "m",       "meter", "meters",  "metre", "metres",   "cm",     "mm",  "km",
@@ -298,6 +311,7 @@ class Chooser {
         const std::vector<int> columns = columns_of(2, kind, exact);
         if (columns.empty()) continue;
         take(2, columns);
+        choice_.is_depth = kind >= kFirstDepth;
         return;
       }
     }

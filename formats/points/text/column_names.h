@@ -14,6 +14,8 @@ struct ColumnChoice {
   std::array<int, 3> column = {-1, -1, -1};  ///< of x, y and z; -1: no column is named so
   /// Whether x and y are called so, or z is named, too: what a sentence does by chance hardly ever.
   bool plain = false;
+  /// Whether z is named as a depth, which counts downwards.
+  bool is_depth = false;
   /// How many names stand for a coordinate or for what else points often have: "id", "intensity".
   std::size_t known = 0;
   /// What was taken, where the names leave some doubt; else empty.

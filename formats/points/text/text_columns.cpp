@@ -273,6 +273,7 @@ bool TextColumns::parse_as(std::string_view line, LatticePoint& point) const {
       if (axis >= 0 && !read_decimal(field, true, point[axis])) return false;
     }
   }
+  if (turned_) point[2] = 0 - point[2];
   if (fields.at_end()) return !exact_count_ || axes_.size() == count_;
   return rest_fits(fields.rest());
 }

@@ -42,6 +42,9 @@ class TextColumns {
   TextColumns(Separator separator, bool decimal_commas, const std::array<int, 3>& column,
               std::size_t count, bool named);
 
+  /// From now on z is what its column says with the other sign: a depth.
+  void turn_heights() { turned_ = true; }
+
   /// 2 or 3.
   [[nodiscard]] int coordinates() const { return coordinates_; }
 
@@ -63,6 +66,7 @@ class TextColumns {
   Separator separator_;
   bool decimal_commas_;
   int coordinates_;
+  bool turned_ = false;  // z is a depth
   std::size_t count_;
   bool exact_count_;
   std::vector<int> axes_;  // for each column up to the last that is read: its axis, or -1

@@ -19,8 +19,9 @@ constinit const PointFormat kTextPoints = {
     .extensions = kExtensions,
     .is_text = true,
     .open_reader =
-        [](PointInput input, const PointReaderOptions& /*options*/) {
-          return open_text_reader(std::move(input.source), input.path, std::move(input.content));
+        [](PointInput input, const PointReaderOptions& options) {
+          return open_text_reader(std::move(input.source), input.path, std::move(input.content),
+                                  options.columns);
         },
     .open_writer =
         [](std::unique_ptr<OutputFile> file, const std::string& path,

@@ -8,6 +8,7 @@
 
 #include "formats/bytes/fields.h"
 #include "formats/points/text/column_names.h"
+#include "formats/points/text/unnamed_columns.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -179,20 +180,25 @@ class CommentHeader {
 struct RowLayout {
   Separator separator = Separator::kBlanks;
   bool decimal_commas = false;
-  std::size_t count = 0;  // of columns
+  std::size_t count = 0;     // of columns
+  bool are_numbers = false;  // those that are read
 };
 
 class Opening {
  public:
-  Opening(LineReader& lines, const std::string& name) : lines_(lines), name_(name) {}
+  Opening(LineReader& lines, const std::string& name,
+          const std::optional<std::array<int, 3>>& columns)
+      : lines_(lines), name_(name), chosen_(columns) {}
 
   TextOpening read() {
     if (!next_data_line()) return without_rows(first_columns({}));
     if (line_.find('\r') != line_.npos) {
       fail("has line ends of CR alone: convert them to LF (tr '\\r' '\\n')");
     }
-    if (read_count()) return with_row(columns_of_row());
-    if (scan_points_) return without_rows(first_columns({}));
+    const bool is_pts = read_count();
+    if (!is_pts && scan_points_) return without_rows(first_columns({}));
+    if (chosen_) return with_chosen_columns();
+    if (is_pts) return with_row(columns_of_row());
     if (is_header()) return under_header();
     return with_row(columns_of_row());
   }
@@ -238,6 +244,21 @@ class Opening {
            !begins_with_numbers(Separator::kBlanks, 2, 2);
   }
 
+  /// The first line is a header if nothing in the chosen columns resembles a number.
+  TextOpening with_chosen_columns() {
+    RowLayout layout = layout_of_row();
+    const std::vector<std::string_view> fields = text_names(line_, layout.separator);
+    const bool is_header = std::ranges::none_of(*chosen_, [&](int column) {
+      return column >= 0 && static_cast<std::size_t>(column) < fields.size() &&
+             resembles_number(fields[column]);
+    });
+    if (is_header) {
+      if (!next_data_line()) return without_rows(first_columns(layout));
+      layout = layout_of_row();
+    }
+    return with_row(first_columns(layout));
+  }
+
   TextOpening under_header() {
     const std::string header(line_);
     const NamesLine names = read_names(header);
@@ -265,8 +286,8 @@ class Opening {
       fail(fmt::format("has {} columns, but the header names {}: {}; name all of them, or none",
                        fields.size(), names.names.size(), listed(names.names)));
     }
-    return with_row(TextColumns(names.separator, has_decimal_commas(names.separator, column),
-                                column, names.names.size(), true));
+    return with_row(
+        named_columns(names, names.separator, has_decimal_commas(names.separator, column)));
   }
 
   /// The columns by the last comment that names those of the first row, else by the row itself.
@@ -278,6 +299,7 @@ class Opening {
     }
     const RowLayout layout = layout_of_row();
     check_comments(layout.count);
+    check_first_column(layout);
     return first_columns(layout);
   }
 
@@ -295,10 +317,29 @@ class Opening {
           notices_.push_back(fmt::format("the comment in line {} is a header: {}", comment.line(),
                                          taken_columns(names.names, column)));
         }
-        return TextColumns(separator, commas, column, fields.size(), true);
+        return named_columns(names, separator, commas);
       }
     }
     return std::nullopt;
+  }
+
+  /// The columns that names tell, for the rows that follow.
+  TextColumns named_columns(const NamesLine& names, Separator separator, bool decimal_commas) {
+    const std::array<int, 3>& column = names.choice.column;
+    TextColumns columns(separator, decimal_commas, column, names.names.size(), true);
+    if (!names.choice.is_depth) return columns;
+    const auto name = quoted(names.names[static_cast<std::size_t>(column[2])]);
+    const bool is_below_zero = !look_at_rows(separator, [&](const auto& fields) {
+      double depth = 0;
+      return static_cast<std::size_t>(column[2]) < fields.size() &&
+             read_decimal(fields[column[2]], decimal_commas, depth) && depth > 0;
+    });
+    if (!is_below_zero) columns.turn_heights();
+    notices_.push_back(fmt::format("column {} ({}) counts downwards: {}", column[2] + 1, name,
+                                   is_below_zero
+                                       ? "its numbers are 0 or less, and taken for z as they stand"
+                                       : "z is its number with the other sign"));
+    return columns;
   }
 
   /// Throws Error if the last comment that lists columns has others than 1 to 3, which are to be
@@ -329,9 +370,32 @@ class Opening {
                    at_line(comment.line()));
   }
 
-  static TextColumns first_columns(const RowLayout& layout) {
-    return {layout.separator, layout.decimal_commas, first_three(layout.count), layout.count,
-            false};
+  [[nodiscard]] TextColumns first_columns(const RowLayout& layout) const {
+    return {layout.separator, layout.decimal_commas, columns_of(layout.count), layout.count, false};
+  }
+
+  /// Throws Error if column 1 of a table without names may be the number of a point, or is none.
+  void check_first_column(const RowLayout& layout) {
+    if (scan_points_) return;
+    if (!layout.are_numbers) {
+      const std::vector<std::string_view> fields = text_fields(line_, layout.separator);
+      const auto numbers = std::ranges::count_if(fields, resembles_number);
+      if (fields.empty() || resembles_number(fields[0]) || numbers < 2) return;
+      fail(fmt::format("has {} columns without names, and the first one is not a number: {}",
+                       fields.size(), quoted(line_)),
+           Remedy::kColumns);
+    }
+    std::vector<UnnamedRow> rows;
+    look_at_rows(layout.separator, [&](const std::vector<std::string_view>& fields) {
+      if (fields.size() >= 3) rows.push_back({{fields[0], fields[1], fields[2]}, fields.size()});
+      return !fields.empty() && fields.size() < 3;
+    });
+    if (lines_.unread().size() > kSample && !rows.empty()) rows.pop_back();  // it is cut off
+    const UnnamedColumns judged = judge_unnamed_columns(rows);
+    if (!judged.fault.empty()) {
+      throw BadInput(name_, judged.fault, lines_.place(), Remedy::kColumns);
+    }
+    if (!judged.notice.empty()) notices_.push_back(judged.notice);
   }
 
   /// The first separator with which the columns that are read are numbers.
@@ -342,30 +406,34 @@ class Opening {
     for (const Separator separator : kSeparators) {
       const std::vector<std::string_view> fields = text_fields(line_, separator);
       if (fields.size() < 2 || (separator == Separator::kBlanks && tabs_only)) continue;
-      const std::array<int, 3> column = first_three(fields.size());
+      const std::array<int, 3> column = columns_of(fields.size());
       for (const bool commas : {false, true}) {
         if (commas && separator == Separator::kComma) continue;
         if (!are_numbers(fields, column, commas)) continue;
-        if (separator == Separator::kComma) check_commas(fields);
+        if (separator == Separator::kComma && !chosen_) check_commas(fields);
         const bool decimal_commas = commas || has_decimal_commas(separator, column);
         if (decimal_commas && separator == Separator::kBlanks) {
           notices_.emplace_back("commas are read as decimal commas, as blanks separate columns");
         }
-        return {separator, decimal_commas, fields.size()};
+        return {separator, decimal_commas, fields.size(), true};
       }
     }
     // No way to read it; the likeliest one words the error.
     const Separator likeliest = likely_separator(line_);
-    return {likeliest, false, text_fields(line_, likeliest).size()};
+    return {likeliest, false, text_fields(line_, likeliest).size(), false};
   }
 
-  static std::array<int, 3> first_three(std::size_t count) { return {0, 1, count == 2 ? -1 : 2}; }
+  /// The columns that are read of a table of `count` columns whose names do not tell.
+  [[nodiscard]] std::array<int, 3> columns_of(std::size_t count) const {
+    return chosen_.value_or(std::array{0, 1, count == 2 ? -1 : 2});
+  }
 
   static bool are_numbers(const std::vector<std::string_view>& fields,
                           const std::array<int, 3>& column, bool decimal_commas) {
     double value = 0;
     return std::all_of(column.begin(), column.end(), [&](int i) {
-      return i < 0 || read_decimal(fields[i], decimal_commas, value);
+      return i < 0 || (static_cast<std::size_t>(i) < fields.size() &&
+                       read_decimal(fields[i], decimal_commas, value));
     });
   }
 
@@ -458,12 +526,13 @@ class Opening {
     return {std::move(columns), std::nullopt, scan_points_, scan_line_, std::move(notices_)};
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw BadInput(name_, fmt::format("{} {}", lines_.line_name(), what), lines_.place());
+  [[noreturn]] void fail(const std::string& what, Remedy remedy = Remedy::kNone) const {
+    throw BadInput(name_, fmt::format("{} {}", lines_.line_name(), what), lines_.place(), remedy);
   }
 
   LineReader& lines_;
   const std::string& name_;
+  std::optional<std::array<int, 3>> chosen_;
   std::string_view line_;
   std::vector<CommentHeader> comments_;
   std::optional<std::uint64_t> scan_points_;
@@ -473,8 +542,9 @@ class Opening {
 
 }  // namespace
 
-TextOpening read_text_opening(LineReader& lines, const std::string& name) {
-  return Opening(lines, name).read();
+TextOpening read_text_opening(LineReader& lines, const std::string& name,
+                              const std::optional<std::array<int, 3>>& columns) {
+  return Opening(lines, name, columns).read();
 }
 
 std::optional<std::uint64_t> point_count_of_line(std::string_view line) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,9 +24,12 @@ struct TextOpening {
   std::vector<std::string> notices;  ///< of what was taken where the file leaves some doubt
 };
 
-/// Reads up to the first point. Throws Error that names `name` and the line for a header that does
-/// not say which columns are x and y, and for a first row whose columns cannot be told for sure.
-TextOpening read_text_opening(LineReader& lines, const std::string& name);
+/// Reads up to the first point. `columns` of x, y and z, counted from 0, go before what names and
+/// rows tell; that of z is -1 where there is none. Throws Error that names `name` and the line for
+/// a header that does not say which columns are x and y, and for a first row whose columns cannot
+/// be told for sure.
+TextOpening read_text_opening(LineReader& lines, const std::string& name,
+                              const std::optional<std::array<int, 3>>& columns = {});
 
 /// The number of points that a line of PTS with nothing else tells; nothing for any other line.
 std::optional<std::uint64_t> point_count_of_line(std::string_view line);

@@ -21,11 +21,12 @@ constexpr std::size_t kBlockPoints = 65536;
 class TextReader : public PointReader {
  public:
   TextReader(std::unique_ptr<InputBytes> source, const std::string& path,
-             std::unique_ptr<InputFile> content, std::uint64_t piece_bytes)
+             std::unique_ptr<InputFile> content, const std::optional<std::array<int, 3>>& columns,
+             std::uint64_t piece_bytes)
       : source_(std::move(source)),
         content_(std::move(content)),
         lines_(content_ ? *content_ : *source_),
-        opening_(read_text_opening(lines_, source_->name())),
+        opening_(read_text_opening(lines_, source_->name(), columns)),
         columns_(opening_.columns),
         piece_bytes_(piece_bytes) {
     has_first_ = opening_.first_row.has_value();
@@ -143,8 +144,10 @@ class TextReader : public PointReader {
 std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputBytes> source,
                                               const std::string& path,
                                               std::unique_ptr<InputFile> content,
+                                              const std::optional<std::array<int, 3>>& columns,
                                               std::uint64_t piece_bytes) {
-  return std::make_unique<TextReader>(std::move(source), path, std::move(content), piece_bytes);
+  return std::make_unique<TextReader>(std::move(source), path, std::move(content), columns,
+                                      piece_bytes);
 }
 
 }  // namespace spillway::detail

@@ -1,5 +1,7 @@
 #include "stream/library/meshes/opened_mesh.h"
 
+#include <fmt/format.h>
+
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,6 +15,15 @@
 #include "stream/library/meshes/whole_mesh.h"
 
 namespace spillway::detail {
+
+CheckReport count_stream(MeshStreamReader& reader, const CheckOptions& options,
+                         const std::string& path) {
+  CheckReport found = count_mesh_stream(reader, options);
+  if (found.fault_count == 0) return found;
+  throw Error(
+      fmt::format("{}: {}; the file is corrupt, write it again", path, found.faults.front()),
+      ErrorCode::kBadInput, {.file = path});
+}
 
 OpenedMesh::OpenedMesh(std::string path, const MeshOptions& options, const Context& context)
     : path_(std::move(path)),
@@ -82,14 +93,7 @@ OpenedMesh::Extent2 OpenedMesh::find_extent(RunWatch& watch) {
     const auto& whole = static_cast<const WholeMesh&>(*reader_);
     return {whole.extent(), whole.totals().vertices};
   }
-  if (input_->is_pipe()) {
-    if (stream_) {
-      throw InvalidArgument(path_ +
-                            ": of a mesh from a pipe that is read twice the header cannot "
-                            "be asked for beforehand");
-    }
-    keep_copy(watch);
-  }
+  keep_copy(watch);
   const std::unique_ptr<MeshStreamReader> reader = open_stream();
   Extent2 found;
   if (reader->header().dimension != 2) return found;
@@ -104,7 +108,28 @@ OpenedMesh::Extent2 OpenedMesh::find_extent(RunWatch& watch) {
   return found;
 }
 
+void OpenedMesh::check_totals(RunWatch& watch) {
+  if (!is_stream_ || !format_->has_totals) {
+    return static_cast<const WholeMesh&>(reader(watch, true)).refuse_crowded_facet(path_);
+  }
+  keep_copy(watch);
+  const std::unique_ptr<MeshStreamReader> reader = open_stream();
+  CheckOptions options;
+  options.threads = context_.threads();
+  options.progress = [&](std::uint64_t simplices, std::optional<double> fraction) {
+    watch.tell(simplices, fraction);
+  };
+  watch.begin("check totals", "simplices");
+  watch.end(count_stream(*reader, options, path_).simplices);
+}
+
 void OpenedMesh::keep_copy(RunWatch& watch) {
+  if (!input_->is_pipe() || copy_) return;
+  if (stream_) {
+    throw InvalidArgument(path_ +
+                          ": of a mesh from a pipe that is read twice the header cannot be asked "
+                          "for beforehand");
+  }
   scratch_ = context_.state().scratch(context_);
   copy_ = scratch_->create("mesh");
   const std::unique_ptr<InputFile> pipe = input_->open(path_);

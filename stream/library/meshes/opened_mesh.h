@@ -12,9 +12,14 @@
 #include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/geometry/box.h"
+#include "stream/checker/checker.h"
 #include "stream/library/context/run_watch.h"
 
 namespace spillway::detail {
+
+/// What count_mesh_stream() finds. Throws Error with this name for totals that are wrong.
+CheckReport count_stream(MeshStreamReader& reader, const CheckOptions& options,
+                         const std::string& path);
 
 /// A mesh file that is read.
 class OpenedMesh final : public spillway::MeshSource {
@@ -54,8 +59,13 @@ class OpenedMesh final : public spillway::MeshSource {
   };
   Extent2 find_extent(RunWatch& watch);
 
+  /// Throws Error if the totals are not those of what the mesh holds, or if no totals can tell
+  /// what it holds. A stream is read once more for that, as by find_extent().
+  void check_totals(RunWatch& watch);
+
  private:
   std::unique_ptr<MeshStreamReader> open_stream();
+  /// Of a pipe.
   void keep_copy(RunWatch& watch);
   MeshStreamReader& public_reader();
 

@@ -1,6 +1,7 @@
 #include "stream/library/meshes/whole_mesh.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -16,9 +17,15 @@
 namespace spillway::detail {
 namespace {
 
-/// `corners` is the number of vertices of a facet.
+/// How many facets one simplex has, and one that more than two have, if there is any.
+struct FacetCounts {
+  std::uint64_t single = 0;
+  std::vector<std::uint64_t> crowded{};  ///< its vertices
+};
+
+/// `Corners` is the number of vertices of a facet.
 template <std::size_t Corners>
-std::uint64_t count_single(const Mesh& mesh) {
+FacetCounts count_facets(const Mesh& mesh) {
   using Facet = std::array<std::uint64_t, Corners>;
   std::vector<Facet> facets;
   facets.reserve(mesh.corners.size());
@@ -34,14 +41,19 @@ std::uint64_t count_single(const Mesh& mesh) {
     }
   }
   std::sort(facets.begin(), facets.end());
-  std::uint64_t single = 0;
+  FacetCounts counts;
   for (auto facet = facets.begin(); facet != facets.end();) {
     const auto next =
         std::find_if(facet, facets.end(), [&](const Facet& f) { return f != *facet; });
-    if (next - facet == 1) ++single;
+    if (next - facet == 1) ++counts.single;
+    if (next - facet > 2) counts.crowded.assign(facet->begin(), facet->end());
     facet = next;
   }
-  return single;
+  return counts;
+}
+
+FacetCounts facets_of(const Mesh& mesh) {
+  return mesh.header.dimension == 2 ? count_facets<2>(mesh) : count_facets<3>(mesh);
 }
 
 /// The vertices as a stream with this lattice has them. In the plane heights need not be on it;
@@ -58,24 +70,25 @@ std::vector<LatticePoint> stream_vertices(const Mesh& mesh, std::optional<Lattic
   return vertices_without_lattice(mesh);
 }
 
-MeshTotals totals_of(const Mesh& mesh, bool all) {
+MeshTotals totals_of(const Mesh& mesh) {
   MeshTotals totals;
   totals.vertices = totals.points = mesh.vertices.size();
   totals.simplices = mesh.corners.size() / mesh.corners_per_simplex();
-  if (!all) return totals;
-  totals.hull_facets = count_boundary_facets(mesh);
-  totals.canonical_hash = canonical_hash(mesh);
   return totals;
 }
 
 }  // namespace
 
-std::uint64_t count_boundary_facets(const Mesh& mesh) {
-  return mesh.header.dimension == 2 ? count_single<2>(mesh) : count_single<3>(mesh);
-}
+std::uint64_t count_boundary_facets(const Mesh& mesh) { return facets_of(mesh).single; }
 
 WholeMesh::WholeMesh(Mesh mesh, const std::string& name, bool all_totals)
-    : all_totals_(all_totals), totals_(totals_of(mesh, all_totals)) {
+    : all_totals_(all_totals), totals_(totals_of(mesh)) {
+  if (all_totals) {
+    const FacetCounts facets = facets_of(mesh);
+    totals_.hull_facets = facets.single;
+    totals_.canonical_hash = canonical_hash(mesh);
+    crowded_ = facets.crowded;
+  }
   if (mesh.vertices.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw Error(fmt::format("{}: {} vertices are too many for a mesh that is not a stream; make it "
                             "as spm from the points",
@@ -94,6 +107,17 @@ WholeMesh::WholeMesh(Mesh mesh, const std::string& name, bool all_totals)
   block_.corners.assign(mesh.corners.begin(), mesh.corners.end());
   block_.finalized.resize(block_.vertices.size());
   std::iota(block_.finalized.begin(), block_.finalized.end(), 0U);
+}
+
+void WholeMesh::refuse_crowded_facet(const std::string& name) const {
+  if (crowded_.empty()) return;
+  const bool plane = header_.dimension == 2;
+  throw Error(
+      fmt::format("{}: more than two {} have the {} of the vertices {} (counted from 0), which spm "
+                  "cannot hold; remove what is there twice",
+                  name, plane ? "triangles" : "tetrahedra", plane ? "edge" : "facet",
+                  fmt::join(crowded_, ", ")),
+      ErrorCode::kBadInput, {.file = name});
 }
 
 bool WholeMesh::read(MeshBlock& block) {

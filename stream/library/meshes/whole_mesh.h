@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/mesh_stream.h"
@@ -26,6 +27,10 @@ class WholeMesh final : public MeshStreamReader {
   [[nodiscard]] bool has_hash() const override { return all_totals_; }
   [[nodiscard]] std::optional<double> fraction_read() const override { return std::nullopt; }
 
+  /// Throws Error if more than two simplices have a facet, so that the totals are not those that a
+  /// reader of a stream counts. Only where all totals were wanted.
+  void refuse_crowded_facet(const std::string& name) const;
+
   /// The box around all vertices in x and y, as they are in the block.
   [[nodiscard]] const Box<2>& extent() const { return extent_; }
 
@@ -34,6 +39,7 @@ class WholeMesh final : public MeshStreamReader {
   bool is_read_ = false;
   MeshStreamHeader header_;
   MeshTotals totals_;
+  std::vector<std::uint64_t> crowded_;  ///< vertices of a facet of more than two simplices
   Box<2> extent_;
   MeshBlock block_;
 };

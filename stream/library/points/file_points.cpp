@@ -5,8 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "formats/points/point_formats.h"
 #include "src/error.h"
@@ -16,6 +19,9 @@
 
 namespace spillway::detail {
 namespace {
+
+/// No table of points has more.
+constexpr int kMostColumns = 10'000;
 
 void set_classes(const std::vector<int>& classes, bool used, std::bitset<256>& filter) {
   for (const int number : classes) {
@@ -74,6 +80,38 @@ ThinningRequest thinning_of(const Thin& thin, std::uint64_t memory, ScratchFolde
           .scratch = &scratch};
 }
 
+/// Counted from 0, that of z -1 where there is none; nothing if none are chosen.
+std::optional<std::array<int, 3>> columns_of(const std::vector<int>& chosen) {
+  if (chosen.empty()) return std::nullopt;
+  if (chosen.size() != 2 && chosen.size() != 3) {
+    throw InvalidArgument(fmt::format("2 or 3 columns are x, y and z, not {}", chosen.size()));
+  }
+  std::array<int, 3> columns = {0, 0, -1};
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    if (chosen[k] < 1 || chosen[k] > kMostColumns) {
+      throw InvalidArgument(fmt::format("there is no column {}: they are counted from 1 to {}",
+                                        chosen[k], kMostColumns));
+    }
+    if (std::ranges::count(chosen, chosen[k]) > 1) {
+      throw InvalidArgument(fmt::format("column {} is chosen twice", chosen[k]));
+    }
+    columns[k] = chosen[k] - 1;
+  }
+  return columns;
+}
+
+/// Throws unless there is an input that has columns to choose.
+void check_columns(const std::vector<PointHeader>& headers) {
+  const auto is_table = [](const PointHeader& header) {
+    const PointFormat* const format = find_point_format(header.format);
+    return format != nullptr && format->is_text;
+  };
+  if (std::ranges::any_of(headers, is_table)) return;
+  throw InvalidArgument(fmt::format(
+      "{}, so there are no columns to choose",
+      headers.size() == 1 ? headers.front().name + " is not text" : "no input is text"));
+}
+
 /// Tells how many inputs have no levels that a resolution could choose from. Throws if none has.
 void check_levels(const std::vector<PointHeader>& headers, const ContextOptions& tell) {
   const auto whole = std::ranges::count_if(headers, [](const PointHeader& header) {
@@ -122,6 +160,7 @@ PointSourceOptions FilePoints::source_options(const PointOptions& options, const
   how.dimension = options.dimension;
   how.index = true;
   how.reader.format = options.format;
+  how.reader.columns = columns_of(options.columns);
   how.reader.keep_withheld = options.keep_withheld;
   how.reader.attributes = options.attributes;
   how.reader.resolution = options.resolution;
@@ -154,6 +193,7 @@ PointSourceOptions FilePoints::source_options(const PointOptions& options, const
 }
 
 void FilePoints::check_input(const PointOptions& options, const Context& context) const {
+  if (!options.columns.empty()) check_columns(input_->headers());
   if (options.resolution > 0) check_levels(input_->headers(), context.options());
   const bool by_height = options.thin && (options.thin->choice == spillway::ThinChoice::kLowest ||
                                           options.thin->choice == spillway::ThinChoice::kHighest);

@@ -1,9 +1,7 @@
 #include <spillway/info.h>
 #include <spillway/input.h>
 
-#include <fmt/format.h>
-
-#include <filesystem>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -11,7 +9,6 @@
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 #include "src/geometry/lattice_check.h"
-#include "stream/checker/checker.h"
 #include "stream/library/context/run_watch.h"
 #include "stream/library/meshes/opened_mesh.h"
 #include "stream/library/meshes/whole_mesh.h"
@@ -22,7 +19,12 @@ namespace {
 
 std::optional<Extent> extent_of(const Box<3>& box) {
   if (box.empty()) return std::nullopt;
-  return Extent{box.lo, box.hi};
+  Extent extent{box.lo, box.hi};
+  for (std::size_t k = 0; k < 3; ++k) {
+    extent.low[k] += 0.0;  // -0 becomes 0
+    extent.high[k] += 0.0;
+  }
+  return extent;
 }
 
 std::optional<LatticeInfo> lattice_info(const std::optional<Lattice>& lattice) {
@@ -35,9 +37,7 @@ MeshInfo describe_whole(OpenedMesh& file, RunWatch& watch) {
   const Mesh mesh = file.read_whole();
   watch.end(mesh.vertices.size());
   MeshInfo info;
-  const std::string extension = std::filesystem::path(file.path()).extension().string();
-  if (!extension.empty()) info.format = extension.substr(1);
-  if (file.format() != nullptr) info.format = file.format()->name;
+  info.format = mesh.format;
   info.dimension = mesh.header.dimension;
   info.has_input_index = mesh.header.has_input_index;
   info.totals.vertices = mesh.vertices.size();
@@ -60,13 +60,8 @@ MeshInfo describe_stream(OpenedMesh& file, RunWatch& watch) {
     watch.tell(simplices, fraction);
   };
   watch.begin("read", "simplices");
-  const CheckReport found = count_mesh_stream(reader, options);
+  const CheckReport found = count_stream(reader, options, file.path());
   watch.end(found.simplices);
-  if (found.fault_count > 0) {
-    throw Error(fmt::format("{}: {}; the file is corrupt, write it again", file.path(),
-                            found.faults.front()),
-                ErrorCode::kBadInput, {.file = file.path()});
-  }
   MeshInfo info;
   info.format = file.format()->name;
   info.dimension = reader.header().dimension;

@@ -59,6 +59,44 @@ TEST_F(InputListTest, AFolderStandsForItsPointFilesSorted) {
   EXPECT_THAT(error_of(files_.path("")), HasSubstr("the folder has no point files"));
 }
 
+TEST_F(InputListTest, AFolderStandsForFilesOfOneKindAndOthersAreSaid) {
+  std::string said;
+  const auto names_in = [&](const std::string& folder) {
+    said.clear();
+    std::string names;
+    for (const std::string& file : expand_inputs({files_.path(folder)}, [&](std::string_view text) {
+           said += std::string(text) + "\n";
+         })) {
+      names += (names.empty() ? "" : " ") + std::filesystem::path(file).filename().string();
+    }
+    return names;
+  };
+  const auto put = [&](const std::string& name) { static_cast<void>(files_.put(name, "")); };
+  for (const char* name : {"checkpoints.csv", "more.csv", "readme.txt", "x.xyz.gz", "y.npy"}) {
+    put(std::string("clouds/") + name);
+  }
+  EXPECT_EQ(names_in("clouds"), "a.laz b.las");
+  EXPECT_EQ(said, files_.path("clouds") +
+                      ": the 2 files of LAS and LAZ are taken, and not checkpoints.csv, more.csv, "
+                      "readme.txt and 2 more; name what else is wanted\n");
+
+  for (const char* name : {"1.xyz", "2.xyz.gz", "3.XYZ", "marks.csv", "README.txt"}) {
+    put(std::string("tables/") + name);
+  }
+  EXPECT_EQ(names_in("tables"), "1.xyz 2.xyz.gz 3.XYZ");
+  EXPECT_THAT(said, HasSubstr("the 3 files of .xyz are taken, and not README.txt, marks.csv;"));
+
+  for (const char* name : {"1.txt", "readme.txt", "License.txt"}) put(std::string("words/") + name);
+  EXPECT_EQ(names_in("words"), "1.txt");
+  for (const char* name : {"1.txt", "1.spp"}) put(std::string("even/") + name);
+  EXPECT_EQ(names_in("even"), "1.spp");
+  put("only/readme.txt");
+  EXPECT_THAT(error_of(files_.path("only")), HasSubstr("the folder has no point files"));
+  put("one/1.csv");
+  EXPECT_EQ(names_in("one"), "1.csv");
+  EXPECT_EQ(said, "");
+}
+
 TEST_F(InputListTest, APatternStandsForWhatItMatchesSorted) {
   EXPECT_THAT(expand_inputs({folder_ + "/?.la[sz]"}), ElementsAre(a_, b_));
   EXPECT_TRUE(stands_for_several(folder_ + "/*.las"));

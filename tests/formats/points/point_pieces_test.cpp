@@ -222,7 +222,7 @@ TEST(PointPieces, SharedFiles) {
 Open open_text(FaultyFileSystem& files, std::uint64_t piece_bytes) {
   return [&files, piece_bytes] {
     return open_text_reader(std::make_unique<InputBytes>(files.open("a.txt")), "a.txt", nullptr,
-                            piece_bytes);
+                            std::nullopt, piece_bytes);
   };
 }
 

@@ -232,7 +232,7 @@ TEST(ConvertPoints, JoinsAndFiltersInputs) {
             "1 2 3\n4 5 6\n7 8 9\n10 11 12\n");
   EXPECT_EQ(work.succeed("spillway convert -q '?.*' -o - --output-format text --bounds 2,2,8,8"),
             "4 5 6\n7 8 9\n");
-  work.succeed("spillway convert -q . -o all.las --scale 1 --every 2");
+  work.succeed("spillway convert -q a.txt b.csv -o all.las --scale 1 --every 2");
   EXPECT_EQ(work.info("all.las")["points"], 2);
 }
 

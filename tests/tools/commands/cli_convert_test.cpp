@@ -80,5 +80,21 @@ TEST(Convert, RefusesWhatItCannotDoAndLeavesNothing) {
   EXPECT_EQ(work.names(), (std::vector<std::string>{"in.npy", "mesh.spm", "short.spm"}));
 }
 
+/// A square of two triangles, the first one twice.
+constexpr const char* kTwice = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\nf 1 2 3\n";
+
+TEST(Convert, WhatSpmCannotHoldIsRefused) {
+  const Workspace work;
+  work.write("twice.obj", kTwice);
+  work.succeed("spillway convert -q twice.obj -o twice.sma");
+  for (const std::string input : {"twice.obj", "twice.sma", "- < twice.sma"}) {
+    const Result result = work.run("spillway convert -q -o o.spm " + input);
+    EXPECT_EQ(result.exit_code, 1) << input;
+    EXPECT_THAT(result.err, HasSubstr("more than two triangles have the edge of the vertices"));
+    EXPECT_FALSE(work.has("o.spm"));
+  }
+  work.succeed("spillway convert -q twice.obj -o twice.ply\nspillway info -q twice.ply");
+}
+
 }  // namespace
 }  // namespace spillway::detail::test

@@ -187,9 +187,9 @@ bool is_good(const std::string& option, const std::string& value) {
     return option == "--nodata" || option == "--base" || option == "--levels" ||
            option == "--offset";
   }
-  return value == "1,5" &&
-         (option == "--levels" || option == "--view" || option == "--returns" ||
-          option == "--keep-class" || option == "--drop-class" || option == "--simulate-cores");
+  return value == "1,5" && (option == "--levels" || option == "--view" || option == "--returns" ||
+                            option == "--keep-class" || option == "--columns" ||
+                            option == "--drop-class" || option == "--simulate-cores");
 }
 
 TEST(Usage, BadNumbersAreRefusedByEveryOptionOfEverySubcommand) {

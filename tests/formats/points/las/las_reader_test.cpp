@@ -13,6 +13,8 @@ namespace spillway::detail::testing {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 /// (minor version, point format)
 class LasFormats : public ::testing::TestWithParam<std::tuple<int, int>> {
@@ -75,8 +77,39 @@ TEST(LasReader, TakesTheLegacyCountWhereTheLongOneIsZero) {
   EXPECT_EQ(read_content("a.las", bytes).points.size(), 2U);
 }
 
-TEST(LasReader, IgnoresWhatFollowsThePoints) {
-  EXPECT_EQ(read_content("a.las", LasFile().bytes() + std::string(1000, 'E')).points.size(), 2U);
+TEST(LasReader, LeavesOutWhatFollowsThePointsAndSaysSo) {
+  const LasFile file;
+  const auto notices = [](const std::string& bytes) {
+    const AllPoints all = read_content("a.las", bytes);
+    EXPECT_EQ(all.points.size(), 2U);
+    return all.header.notices;
+  };
+  EXPECT_THAT(notices(file.bytes()), IsEmpty());
+  EXPECT_THAT(notices(file.bytes() + std::string(file.record_length() - 1, 'E')), IsEmpty());
+  EXPECT_THAT(notices(file.bytes() + std::string(1000, 'E')),
+              ElementsAre(fmt::format(
+                  "the header counts 3 points, but 1000 bytes follow them, room for {} more, which "
+                  "are not read; if they are points, correct the count in the header (4 bytes from "
+                  "byte 107 on)",
+                  1000 / file.record_length())));
+}
+
+TEST(LasReader, SaysWhatFollowsAHeaderThatCountsNoPoints) {
+  std::string bytes = LasFile().bytes();
+  put(bytes, 107, std::uint32_t{0});
+  const AllPoints all = read_content("a.las", bytes);
+  EXPECT_EQ(all.points.size(), 0U);
+  EXPECT_THAT(all.header.notices, ElementsAre(HasSubstr("the header counts 0 points, but")));
+}
+
+TEST(LasReader, ExtendedRecordsBehindThePointsAreNoPoints) {
+  LasFile file;
+  file.minor = 4;
+  file.point_format = 6;
+  std::string bytes = file.bytes();
+  put(bytes, 235, std::uint64_t{bytes.size()});
+  put(bytes, 243, std::uint32_t{1});
+  EXPECT_THAT(read_content("a.las", bytes + std::string(1000, '\0')).header.notices, IsEmpty());
 }
 
 TEST(LasReader, ReadsSeveralBlocks) {

@@ -11,6 +11,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
 LazFormat format_of(int compressor, std::uint32_t chunk_size = 100) {
@@ -55,6 +56,20 @@ TEST(LazReader, TellsWhatTheHeaderSays) {
   EXPECT_EQ(header.point_format, 3);
   EXPECT_EQ(header.count, 250U);
   EXPECT_EQ(header.software, "by hand");
+}
+
+TEST(LazReader, ChunksThatTheHeaderDoesNotCountAreLeftOutAndSaid) {
+  for (const int compressor : {2, 3}) {
+    std::string bytes = file_of(format_of(compressor), 950);
+    EXPECT_THAT(read_content("a.laz", bytes).header.notices, IsEmpty());
+    put(bytes, 107, std::uint32_t{700});
+    if (compressor == 3) put(bytes, 247, std::uint64_t{700});
+    const AllPoints all = read_content("a.laz", bytes, all_points());
+    EXPECT_EQ(all.points.size(), 700U);
+    EXPECT_THAT(all.header.notices,
+                ElementsAre(HasSubstr("the header counts 700 points, but 3 more chunks of them "
+                                      "follow, which are not read")));
+  }
 }
 
 TEST(LazReader, AllThreeNamesOfTheFormatWillDo) {

@@ -20,6 +20,7 @@ namespace spillway::detail::testing {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 class OpenedMeshTest : public ::testing::Test {
@@ -131,6 +132,28 @@ TEST_F(OpenedMeshTest, OfAPipeThatIsReadTwiceTheHeaderCannotBeAskedForBefore) {
   const auto error = thrown_by([&] { mesh.find_extent(watch_); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kInvalidArgument);
+  expect_all_blocks(mesh);
+}
+
+TEST_F(OpenedMeshTest, TotalsThatAreWrongAreFoundOutBeforeTheyArePassedOn) {
+  const auto fault = [&](const std::string& path) {
+    OpenedMesh mesh(path, {}, context_);
+    const auto error = thrown_by([&] { mesh.check_totals(watch_); });
+    return error ? std::string(error->what()) : std::string();
+  };
+  EXPECT_THAT(fault(write("wrong.spm")), HasSubstr("but its trailer says"));
+  const FullPipe wrong_pipe(spm_bytes());
+  EXPECT_THAT(fault(wrong_pipe.path()), HasSubstr("but its trailer says"));
+  {
+    OpenedMesh mesh(write("a.ply"), {}, context_);
+    mesh_.totals = mesh.reader(watch_, true).totals();
+  }
+  EXPECT_EQ(fault(write("right.spm")), "");
+  phases_.clear();
+  const FullPipe pipe(spm_bytes());
+  OpenedMesh mesh(pipe.path(), {}, context_);
+  mesh.check_totals(watch_);
+  EXPECT_THAT(phases_, ElementsAre("copy", "check totals"));
   expect_all_blocks(mesh);
 }
 

@@ -13,7 +13,7 @@ LazExcerpts::LazExcerpts(std::string bytes) : bytes_(std::move(bytes)) {
   InputBytes source(files.open("whole.laz"));
   las_ = read_las_header(source);
   if (las_.laz && las_.laz->compressor != LazCompressor::kPointwise) {
-    chunks_ = read_chunk_table(source, las_).value_or(std::vector<LazChunk>());
+    chunks_ = read_chunk_table(source, las_).value_or(LazChunkTable()).chunks;
   }
 }
 
