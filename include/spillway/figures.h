@@ -28,6 +28,7 @@ struct MeshTotals {
 /// What became of the points of a source. A point is counted where it is dropped first.
 struct PointCounts {
   std::uint64_t read = 0;      ///< records
+  std::uint64_t invalid = 0;   ///< dropped by PointOptions::skip_invalid
   std::uint64_t withheld = 0;  ///< dropped since flagged so
   std::uint64_t skipped = 0;   ///< by PointOptions::every
   std::uint64_t classes = 0;   ///< of other classes
@@ -37,6 +38,7 @@ struct PointCounts {
 
   PointCounts& operator+=(const PointCounts& other) {
     read += other.read;
+    invalid += other.invalid;
     withheld += other.withheld;
     skipped += other.skipped;
     classes += other.classes;
@@ -48,7 +50,7 @@ struct PointCounts {
   bool operator==(const PointCounts&) const = default;
 
   [[nodiscard]] std::uint64_t dropped() const {
-    return withheld + skipped + classes + returns + bounds + thinned;
+    return invalid + withheld + skipped + classes + returns + bounds + thinned;
   }
   [[nodiscard]] std::uint64_t kept() const { return read - dropped(); }
 };

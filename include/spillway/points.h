@@ -61,6 +61,9 @@ struct PointOptions {
   /// Of text: the columns of x, y and, if there is a third one, z, counted from 1; empty: by their
   /// names, or, where these are missing, the first ones.
   std::vector<int> columns{};
+  /// Leave out and count rows of text and npy that are no points: what is no number, or not
+  /// finite, or lacks a column. Without it they are an error.
+  bool skip_invalid = false;
   bool keep_withheld = false;        ///< use points that LAS flags as withheld
   std::uint64_t every = 1;           ///< use records 0, n, 2n, ... of each file
   std::vector<int> classes{};        ///< use points of these classes, 0 to 255; empty: all

@@ -365,10 +365,10 @@ std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<s
 }
 
 PointCounts shared_counts(const PointCounts& own, const Ranks& ranks) {
-  std::vector<std::uint64_t> sums = {own.read,    own.withheld, own.skipped, own.classes,
-                                     own.returns, own.bounds,   own.thinned};
+  std::vector<std::uint64_t> sums = {own.read,    own.invalid, own.withheld, own.skipped,
+                                     own.classes, own.returns, own.bounds,   own.thinned};
   ranks.reduce(sums, Reduction::kSum);
-  return {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6]};
+  return {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7]};
 }
 
 }  // namespace spillway::detail

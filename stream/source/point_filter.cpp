@@ -65,8 +65,9 @@ namespace spillway {
 
 std::string describe(const PointCounts& counts) {
   std::string text = fmt::format("{} points read", counts.read);
-  const std::array<std::pair<std::uint64_t, const char*>, 6> dropped = {
-      {{counts.withheld, "withheld"},
+  const std::array<std::pair<std::uint64_t, const char*>, 7> dropped = {
+      {{counts.invalid, "invalid"},
+       {counts.withheld, "withheld"},
        {counts.skipped, "skipped"},
        {counts.classes, "of other classes"},
        {counts.returns, "of other returns"},

@@ -155,8 +155,9 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   piece.reader->decode(piece.raw, block);
   coordinates_.bring(piece.input, block);
   PointCounts counts;
+  counts.invalid = block.invalid;
   counts.withheld = block.withheld;
-  counts.read = block.size() + block.withheld;
+  counts.read = block.size() + block.invalid + block.withheld;
   if (options_.filter.active()) apply_filter(options_.filter, lattice(), block, counts);
   if (!positions_.empty()) {
     regions_.check(block, regions_.number(piece.input, piece.raw.region));

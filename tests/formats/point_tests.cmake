@@ -11,6 +11,7 @@ spillway_test(points_test unit
     formats/points/las/las_reader_test.cpp
     formats/points/las/las_shared_data_test.cpp
     formats/points/npy/npy_reader_test.cpp
+    formats/points/invalid_rows_test.cpp
     formats/points/point_format_test.cpp
     formats/points/point_writer_test.cpp
     formats/points/text/pts_test.cpp

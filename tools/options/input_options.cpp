@@ -55,6 +55,9 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   const auto add = [&](const char* name, std::string& value, const char* type, const char* what) {
     return app.add_option(name, value, what).value_name(type).group(group);
   };
+  app.add_flag("--skip-invalid", options.skip_invalid,
+               "Leave out rows of text and npy that are no points, and count them")
+      .group(group);
   app.add_flag("--keep-withheld", options.keep_withheld,
                "Use points that LAS files flag as withheld, too")
       .group(group);
@@ -207,6 +210,7 @@ PointOptions point_options(const InputOptions& options, int dimension) {
   points.dimension = dimension;
   points.format = options.format;
   if (!options.columns.empty()) points.columns = parse_columns(options.columns);
+  points.skip_invalid = options.skip_invalid;
   points.keep_withheld = options.keep_withheld;
   points.every = options.every;
   if (!options.keep_class.empty()) points.classes = parse_classes(options.keep_class);

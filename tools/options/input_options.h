@@ -18,6 +18,7 @@ struct InputOptions {
   std::string format;
   std::string columns;
   bool force_crs = false;
+  bool skip_invalid = false;
   bool keep_withheld = false;
   std::uint64_t every = 1;
   std::string keep_class;
@@ -32,9 +33,10 @@ struct InputOptions {
 };
 
 /// The names of the options that add_input_options() adds.
-inline constexpr std::array<std::string_view, 11> kInputOptionNames = {
-    "--input-format", "--columns", "--force-crs", "--keep-withheld", "--every",     "--keep-class",
-    "--drop-class",   "--returns", "--bounds",    "--thin",          "--resolution"};
+inline constexpr std::array<std::string_view, 12> kInputOptionNames = {
+    "--input-format",  "--skip-invalid", "--columns",    "--force-crs",
+    "--keep-withheld", "--every",        "--keep-class", "--drop-class",
+    "--returns",       "--bounds",       "--thin",       "--resolution"};
 
 /// --input-format, --columns, --force-crs, and the group "Filters".
 void add_input_options(CommandLine& app, InputOptions& options);

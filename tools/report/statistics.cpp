@@ -104,9 +104,9 @@ Json ranks(const Report& report) {
 }  // namespace
 
 Json to_json(const PointCounts& counts) {
-  return {{"read", counts.read},       {"withheld", counts.withheld}, {"every", counts.skipped},
-          {"class", counts.classes},   {"returns", counts.returns},   {"bounds", counts.bounds},
-          {"thinned", counts.thinned}, {"kept", counts.kept()}};
+  return {{"read", counts.read},     {"invalid", counts.invalid}, {"withheld", counts.withheld},
+          {"every", counts.skipped}, {"class", counts.classes},   {"returns", counts.returns},
+          {"bounds", counts.bounds}, {"thinned", counts.thinned}, {"kept", counts.kept()}};
 }
 
 Json to_json(const Report& report, const RunFacts& facts) {

@@ -23,13 +23,16 @@ void PointReader::begin_piece(std::uint64_t piece) {
 bool PointReader::read(PointBlock& block) {
   RawPoints raw;
   std::uint64_t withheld = 0;
+  std::uint64_t invalid = 0;
   block.clear();
   while (block.size() == 0 && fetch(raw)) {
     decode(raw, block);
     raw.clear();
     withheld += std::exchange(block.withheld, 0);
+    invalid += std::exchange(block.invalid, 0);
   }
   block.withheld = withheld;
+  block.invalid = invalid;
   return block.size() > 0;
 }
 

@@ -41,13 +41,15 @@ struct PointBlock {
   std::vector<PointAttributes> attributes;
   /// Records left out of this block because they are flagged as withheld.
   std::uint64_t withheld = 0;
+  /// Records left out of it because they are no points (PointReaderOptions::skip_invalid).
+  std::uint64_t invalid = 0;
 
   [[nodiscard]] std::size_t size() const { return points.size(); }
   void clear() {
     points.clear();
     index.clear();
     attributes.clear();
-    withheld = 0;
+    withheld = invalid = 0;
   }
 };
 
@@ -68,7 +70,9 @@ struct RawPoints {
   /// Of PointHeader::regions, that all records of the batch belong to, where there are any.
   std::uint64_t region = 0;
 
-  [[nodiscard]] std::uint64_t records() const { return count + decoded.size() + decoded.withheld; }
+  [[nodiscard]] std::uint64_t records() const {
+    return count + decoded.size() + decoded.withheld + decoded.invalid;
+  }
   /// As new, but for the memory it has.
   void clear() {
     decoded.clear();
@@ -107,10 +111,12 @@ struct PointReaderOptions {
   /// Only points in this box (output coordinates, closed) are wanted: a reader that knows where its
   /// points lie leaves out parts that have none there, but may give others too.
   std::optional<Box<3>> bounds{};
-  /// Of text: the columns of x, y and z, counted from 0; that of z is -1 where there is none.
-  std::optional<std::array<int, 3>> columns{};
   /// Of COPC, levels of the octree finer than this spacing are left out; 0: all are read.
   double resolution = 0;
+  /// Of text: the columns of x, y and z, counted from 0; that of z is -1 where there is none.
+  std::optional<std::array<int, 3>> columns{};
+  /// Of text and npy: leave out and count rows that are no points.
+  bool skip_invalid = false;
 };
 
 /// A stream of points from one source. fetch() takes the next batch of the input, in order;
@@ -132,7 +138,7 @@ class PointReader {
   virtual void decode(RawPoints& raw, PointBlock& block) const;
 
   /// Both steps: replaces `block` by the next points, at least one; false at the end, where
-  /// `block.withheld` still counts.
+  /// `block.withheld` and `block.invalid` still count.
   bool read(PointBlock& block);
 
   /// Into how many pieces the source falls that can be read in any order, also by readers of it in

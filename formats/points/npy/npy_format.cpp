@@ -19,8 +19,8 @@ constinit const PointFormat kNpyPoints = {
     .extensions = kExtensions,
     .recognises = [](std::string_view text) { return text.starts_with(kNpyMagic); },
     .open_reader =
-        [](PointInput input, const PointReaderOptions& /*options*/) {
-          return open_npy_reader(std::move(input.source), input.path);
+        [](PointInput input, const PointReaderOptions& options) {
+          return open_npy_reader(std::move(input.source), input.path, options.skip_invalid);
         },
     .open_writer =
         [](std::unique_ptr<OutputFile> file, const std::string& /*path*/,

@@ -20,8 +20,8 @@ constexpr std::int64_t kLargestExact = std::int64_t{1} << 53;
 
 class NpyReader : public PointReader {
  public:
-  NpyReader(std::unique_ptr<InputBytes> source, const std::string& path)
-      : source_(std::move(source)) {
+  NpyReader(std::unique_ptr<InputBytes> source, const std::string& path, bool skip_invalid)
+      : source_(std::move(source)), skips_invalid_(skip_invalid) {
     const NpyHeader npy = read_npy_header(*source_);
     choose_type(npy.type);
     if (npy.shape.size() != 2 || (npy.shape[1] != 2 && npy.shape[1] != 3)) {
@@ -153,7 +153,27 @@ class NpyReader : public PointReader {
       block.points[i] = p;
       block.index[i] = next_ + i;
     }
-    if (!valid) fail_at_first_invalid<T>();
+    if (valid) return;
+    if (!skips_invalid_) fail_at_first_invalid<T>();
+    drop_invalid<T>(block);
+  }
+
+  template <typename T>
+  void drop_invalid(PointBlock& block) const {
+    const std::size_t count = block.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      bool valid = true;
+      for (int axis = 0; axis < columns_; ++axis) {
+        valid &= representable(load<T>(rows_.data() + (i * columns_ + axis) * sizeof(T)));
+      }
+      block.points[kept] = block.points[i];
+      block.index[kept] = block.index[i];
+      kept += valid ? 1 : 0;
+    }
+    block.points.resize(kept);
+    block.index.resize(kept);
+    block.invalid = count - kept;
   }
 
   template <typename T>
@@ -181,6 +201,7 @@ class NpyReader : public PointReader {
   void (NpyReader::*decode_)(PointBlock&) const = nullptr;
   std::size_t element_size_ = 0;
   int columns_ = 0;
+  bool skips_invalid_;
   std::uint64_t count_ = 0;
   bool in_pieces_ = false;
   std::uint64_t begin_ = 0;  // byte of the first point
@@ -192,8 +213,8 @@ class NpyReader : public PointReader {
 }  // namespace
 
 std::unique_ptr<PointReader> open_npy_reader(std::unique_ptr<InputBytes> source,
-                                             const std::string& path) {
-  return std::make_unique<NpyReader>(std::move(source), path);
+                                             const std::string& path, bool skip_invalid) {
+  return std::make_unique<NpyReader>(std::move(source), path, skip_invalid);
 }
 
 }  // namespace spillway::detail

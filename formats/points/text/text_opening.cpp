@@ -186,9 +186,8 @@ struct RowLayout {
 
 class Opening {
  public:
-  Opening(LineReader& lines, const std::string& name,
-          const std::optional<std::array<int, 3>>& columns)
-      : lines_(lines), name_(name), chosen_(columns) {}
+  Opening(LineReader& lines, const std::string& name, const TextRows& rows)
+      : lines_(lines), name_(name), chosen_(rows.columns), skips_invalid_(rows.skip_invalid) {}
 
   TextOpening read() {
     if (!next_data_line()) return without_rows(first_columns({}));
@@ -215,6 +214,7 @@ class Opening {
       }
       lines_.pass_over();
     }
+    at_end_ = true;
     return false;
   }
 
@@ -254,9 +254,25 @@ class Opening {
     });
     if (is_header) {
       if (!next_data_line()) return without_rows(first_columns(layout));
-      layout = layout_of_row();
+      layout = layout_of_first_point();
     }
     return with_row(first_columns(layout));
+  }
+
+  /// Why the first row cannot be one under these names; empty if it can.
+  [[nodiscard]] std::string fault_under(const NamesLine& names) const {
+    std::vector<std::string_view> fields = text_fields(line_, names.separator);
+    const std::size_t all_fields = fields.size();
+    while (!fields.empty() && fields.back().empty()) fields.pop_back();
+    if (all_fields > 1 && all_fields < names.names.size()) {
+      return fmt::format(
+          "has {} columns, but the header names {}: {}; write names without blanks, or fill in the "
+          "missing column",
+          all_fields, names.names.size(), listed(names.names));
+    }
+    if (fields.size() <= names.names.size()) return "";
+    return fmt::format("has {} columns, but the header names {}: {}; name all of them, or none",
+                       fields.size(), names.names.size(), listed(names.names));
   }
 
   TextOpening under_header() {
@@ -270,22 +286,15 @@ class Opening {
     }
     if (!names.choice.notice.empty()) notices_.push_back(names.choice.notice);
     const std::array<int, 3>& column = names.choice.column;
-    if (!next_data_line()) {
+    bool has_row = next_data_line();
+    std::string fault;
+    while (has_row && !(fault = fault_under(names)).empty() && skips_invalid_) {
+      has_row = leave_out_row();
+    }
+    if (!has_row) {
       return without_rows(TextColumns(names.separator, false, column, names.names.size(), true));
     }
-    std::vector<std::string_view> fields = text_fields(line_, names.separator);
-    const std::size_t all_fields = fields.size();
-    while (!fields.empty() && fields.back().empty()) fields.pop_back();
-    if (all_fields > 1 && all_fields < names.names.size()) {
-      fail(fmt::format(
-          "has {} columns, but the header names {}: {}; write names without blanks, or fill in the "
-          "missing column",
-          all_fields, names.names.size(), listed(names.names)));
-    }
-    if (fields.size() > names.names.size()) {
-      fail(fmt::format("has {} columns, but the header names {}: {}; name all of them, or none",
-                       fields.size(), names.names.size(), listed(names.names)));
-    }
+    if (!fault.empty()) fail(fault);
     return with_row(
         named_columns(names, names.separator, has_decimal_commas(names.separator, column)));
   }
@@ -297,7 +306,7 @@ class Opening {
     for (auto comment = comments_.rbegin(); comment != comments_.rend(); ++comment) {
       if (std::optional<TextColumns> columns = columns_of_comment(*comment)) return *columns;
     }
-    const RowLayout layout = layout_of_row();
+    const RowLayout layout = layout_of_first_point();
     check_comments(layout.count);
     check_first_column(layout);
     return first_columns(layout);
@@ -376,7 +385,7 @@ class Opening {
 
   /// Throws Error if column 1 of a table without names may be the number of a point, or is none.
   void check_first_column(const RowLayout& layout) {
-    if (scan_points_) return;
+    if (scan_points_ || at_end_) return;
     if (!layout.are_numbers) {
       const std::vector<std::string_view> fields = text_fields(line_, layout.separator);
       const auto numbers = std::ranges::count_if(fields, resembles_number);
@@ -396,6 +405,22 @@ class Opening {
       throw BadInput(name_, judged.fault, lines_.place(), Remedy::kColumns);
     }
     if (!judged.notice.empty()) notices_.push_back(judged.notice);
+  }
+
+  /// The layout of the first row that is a point, where others are left out: one that cannot be
+  /// read tells nothing.
+  RowLayout layout_of_first_point() {
+    RowLayout layout = layout_of_row();
+    while (!layout.are_numbers && leave_out_row()) layout = layout_of_row();
+    return layout;
+  }
+
+  /// Goes on to the next row, if rows that are no points may be left out. False if they may not, or
+  /// if that was the last one.
+  bool leave_out_row() {
+    if (!skips_invalid_) return false;
+    ++invalid_;
+    return next_data_line();
   }
 
   /// The first separator with which the columns that are read are numbers.
@@ -513,17 +538,20 @@ class Opening {
                       "rows have three or more; remove that line if it is not a count",
                       scan_line_));
     }
-    if (!columns.parse(line_, point)) {
+    while (!at_end_ && !columns.parse(line_, point)) {
+      if (leave_out_row() || at_end_) continue;
       throw BadInput(name_, fmt::format("{}, {}", lines_.line_name(), columns.fault(line_)),
                      lines_.place());
     }
+    if (at_end_) return without_rows(std::move(columns));
     TextOpening opening = without_rows(std::move(columns));
     opening.first_row = line_;
     return opening;
   }
 
   TextOpening without_rows(TextColumns columns) {
-    return {std::move(columns), std::nullopt, scan_points_, scan_line_, std::move(notices_)};
+    return {std::move(columns), std::nullopt, scan_points_,
+            scan_line_,         invalid_,     std::move(notices_)};
   }
 
   [[noreturn]] void fail(const std::string& what, Remedy remedy = Remedy::kNone) const {
@@ -533,6 +561,9 @@ class Opening {
   LineReader& lines_;
   const std::string& name_;
   std::optional<std::array<int, 3>> chosen_;
+  bool skips_invalid_;
+  std::uint64_t invalid_ = 0;  // rows that were left out
+  bool at_end_ = false;        // there is no line any more
   std::string_view line_;
   std::vector<CommentHeader> comments_;
   std::optional<std::uint64_t> scan_points_;
@@ -542,9 +573,8 @@ class Opening {
 
 }  // namespace
 
-TextOpening read_text_opening(LineReader& lines, const std::string& name,
-                              const std::optional<std::array<int, 3>>& columns) {
-  return Opening(lines, name, columns).read();
+TextOpening read_text_opening(LineReader& lines, const std::string& name, const TextRows& rows) {
+  return Opening(lines, name, rows).read();
 }
 
 std::optional<std::uint64_t> point_count_of_line(std::string_view line) {

@@ -21,15 +21,23 @@ struct TextOpening {
   /// PTS: the number in the line before the first point, and that line's number.
   std::optional<std::uint64_t> scan_points;
   std::uint64_t scan_line = 0;
+  std::uint64_t invalid = 0;         ///< rows that were left out before the first point
   std::vector<std::string> notices;  ///< of what was taken where the file leaves some doubt
 };
 
-/// Reads up to the first point. `columns` of x, y and z, counted from 0, go before what names and
-/// rows tell; that of z is -1 where there is none. Throws Error that names `name` and the line for
+/// How rows are to be read.
+struct TextRows {
+  /// The columns of x, y and z, counted from 0, that of z -1 where there is none: they go before
+  /// what names and rows tell.
+  std::optional<std::array<int, 3>> columns{};
+  bool skip_invalid = false;  ///< rows that are no points are left out
+};
+
+/// Reads up to the first point. Throws Error that names `name` and the line for
 /// a header that does not say which columns are x and y, and for a first row whose columns cannot
 /// be told for sure.
 TextOpening read_text_opening(LineReader& lines, const std::string& name,
-                              const std::optional<std::array<int, 3>>& columns = {});
+                              const TextRows& rows = {});
 
 /// The number of points that a line of PTS with nothing else tells; nothing for any other line.
 std::optional<std::uint64_t> point_count_of_line(std::string_view line);

@@ -21,13 +21,13 @@ constexpr std::size_t kBlockPoints = 65536;
 class TextReader : public PointReader {
  public:
   TextReader(std::unique_ptr<InputBytes> source, const std::string& path,
-             std::unique_ptr<InputFile> content, const std::optional<std::array<int, 3>>& columns,
-             std::uint64_t piece_bytes)
+             std::unique_ptr<InputFile> content, const TextRows& rows, std::uint64_t piece_bytes)
       : source_(std::move(source)),
         content_(std::move(content)),
         lines_(content_ ? *content_ : *source_),
-        opening_(read_text_opening(lines_, source_->name(), columns)),
+        opening_(read_text_opening(lines_, source_->name(), rows)),
         columns_(opening_.columns),
+        skips_invalid_(rows.skip_invalid),
         piece_bytes_(piece_bytes) {
     has_first_ = opening_.first_row.has_value();
     if (has_first_) line_ = *opening_.first_row;
@@ -45,6 +45,8 @@ class TextReader : public PointReader {
   bool fetch(RawPoints& raw) override {
     PointBlock& block = raw.decoded;
     block.clear();
+    block.invalid = std::exchange(opening_.invalid, 0);
+    next_ += block.invalid;
     LatticePoint point;
     if (has_first_ && columns_.parse(line_, point)) append(point, block);
     has_first_ = false;
@@ -54,12 +56,14 @@ class TextReader : public PointReader {
         append(point, block);
       } else if (is_comment(line_)) {
         lines_.pass_over();
+      } else if (skips_invalid_ && !is_scan_count()) {
+        leave_out(block);
       } else {
         begin_scan();
       }
     }
     if (block.size() == 0) check_scan();
-    return block.size() > 0;
+    return raw.records() > 0;
   }
 
   [[nodiscard]] std::optional<std::uint64_t> pieces() const override {
@@ -79,6 +83,16 @@ class TextReader : public PointReader {
     end_ = from + piece_bytes_;
     next_ = 0;
     has_first_ = false;
+  }
+
+  [[nodiscard]] bool is_scan_count() const {
+    return opening_.scan_points && point_count_of_line(line_);
+  }
+
+  /// Counts a row that is no point. It has a number, as any other one.
+  void leave_out(PointBlock& block) {
+    ++block.invalid;
+    ++next_;
   }
 
   /// Takes a line that holds no point: the count of the next scan in a PTS, or an error.
@@ -105,6 +119,7 @@ class TextReader : public PointReader {
 
   void append(const LatticePoint& point, PointBlock& block) {
     if (!std::isfinite(point[0] + point[1] + point[2]) && !all_finite(point)) {
+      if (skips_invalid_) return leave_out(block);
       fail(fmt::format("{} in {} is not finite: {}; correct or remove it",
                        lines_.numbered() ? fmt::format("point {}", next_) : "the point",
                        lines_.line_name(), quoted(line_)),
@@ -133,6 +148,7 @@ class TextReader : public PointReader {
   std::uint64_t next_ = 0;        // number of the next point, in its piece if that was asked for
   std::uint64_t scan_begin_ = 0;  // number of the first point after the last count line
 
+  bool skips_invalid_;
   std::uint64_t piece_bytes_;
   bool in_pieces_ = false;
   std::uint64_t begin_ = 0;  // byte where the first point's line begins
@@ -144,9 +160,8 @@ class TextReader : public PointReader {
 std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputBytes> source,
                                               const std::string& path,
                                               std::unique_ptr<InputFile> content,
-                                              const std::optional<std::array<int, 3>>& columns,
-                                              std::uint64_t piece_bytes) {
-  return std::make_unique<TextReader>(std::move(source), path, std::move(content), columns,
+                                              const TextRows& rows, std::uint64_t piece_bytes) {
+  return std::make_unique<TextReader>(std::move(source), path, std::move(content), rows,
                                       piece_bytes);
 }
 

@@ -161,6 +161,7 @@ PointSourceOptions FilePoints::source_options(const PointOptions& options, const
   how.index = true;
   how.reader.format = options.format;
   how.reader.columns = columns_of(options.columns);
+  how.reader.skip_invalid = options.skip_invalid;
   how.reader.keep_withheld = options.keep_withheld;
   how.reader.attributes = options.attributes;
   how.reader.resolution = options.resolution;

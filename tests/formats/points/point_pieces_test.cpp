@@ -221,8 +221,8 @@ TEST(PointPieces, SharedFiles) {
 /// Text in pieces of that many bytes.
 Open open_text(FaultyFileSystem& files, std::uint64_t piece_bytes) {
   return [&files, piece_bytes] {
-    return open_text_reader(std::make_unique<InputBytes>(files.open("a.txt")), "a.txt", nullptr,
-                            std::nullopt, piece_bytes);
+    return open_text_reader(std::make_unique<InputBytes>(files.open("a.txt")), "a.txt", nullptr, {},
+                            piece_bytes);
   };
 }
 

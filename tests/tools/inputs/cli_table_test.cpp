@@ -65,5 +65,20 @@ TEST_F(Table, ChoicesThatCannotBeAreWrongUsage) {
   EXPECT_EQ(work_.run("spillway dem right.ply -o o.tif --resolution 1 --columns XYZ").exit_code, 2);
 }
 
+TEST_F(Table, RowsThatAreNoPointsAreLeftOutAndCountedOnDemand) {
+  work_.write("holes.csv", "x,y,z\n0,0,1\n1,0,\n0,1,2\nnan,1,2\n1,1,3\n");
+  const Result strict = work_.run("spillway triangulate -q holes.csv -o o.ply");
+  EXPECT_EQ(strict.exit_code, 1);
+  EXPECT_THAT(strict.err, HasSubstr("line 3, column 3"));
+  const Result result =
+      work_.run("spillway triangulate holes.csv -o o.ply --skip-invalid --stats stats.json");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("5 points read, 2 invalid, 3 kept"));
+  const auto stats = nlohmann::json::parse(work_.read("stats.json"));
+  EXPECT_EQ(stats["filters"]["invalid"], 2);
+  EXPECT_EQ(stats["points"], 3);
+  work_.succeed("spillway check -q o.ply --points holes.csv --skip-invalid");
+}
+
 }  // namespace
 }  // namespace spillway::detail::test
