@@ -7,6 +7,7 @@
 #include "tools/process/standard_descriptors.h"
 
 int main(int argc, char** argv) {
+  spillway::detail::block_interrupts();
   spillway::detail::open_standard_descriptors();
   spillway::detail::handle_uncaught_exceptions();
   try {

@@ -35,6 +35,9 @@ namespace fs = std::filesystem;
 /// names are longer still.
 constexpr std::size_t kLongestName = 140;
 
+constexpr std::string_view kEnding = ".part";
+constexpr std::size_t kRandomCharacters = 6;
+
 constexpr int kMostAttempts = 100;
 
 constexpr std::size_t kSpareMemory = std::size_t{1} << 20;
@@ -75,7 +78,7 @@ std::unique_lock<std::recursive_mutex> lock_to_create() {
 std::string random_characters() {
   constexpr std::string_view kCharacters =
       "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
-  std::array<unsigned char, 6> bytes{};
+  std::array<unsigned char, kRandomCharacters> bytes{};
   if (::getrandom(bytes.data(), bytes.size(), GRND_NONBLOCK) < 0) {
     auto ticks = static_cast<std::uint64_t>(
         std::chrono::steady_clock::now().time_since_epoch().count() ^ ::getpid());
@@ -107,7 +110,7 @@ std::string under_a_new_name(const std::string& final_path,
   const fs::path target(final_path);
   const std::string name = target.filename().string();
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-    const std::string ending = fmt::format(".{}.part", random_characters());
+    const std::string ending = fmt::format(".{}{}", random_characters(), kEnding);
     std::string path =
         (target.parent_path() / fmt::format("{}{}", shortened(name, ending.size()), ending))
             .string();
@@ -222,6 +225,16 @@ void create_in_temporary_folder(const std::string& folder, const std::string& na
     throw SystemRefusal(fmt::format("cannot create {}: {}", path, reason(error)), path, error);
   }
   ::close(descriptor);
+}
+
+bool is_temporary_path(const std::string& path, const std::string& final_path) {
+  constexpr std::size_t kAdded = 1 + kRandomCharacters + kEnding.size();
+  const std::string name = fs::path(path).filename().string();
+  if (fs::path(path).parent_path() != fs::path(final_path).parent_path()) return false;
+  if (name.size() <= kAdded || !name.ends_with(kEnding)) return false;
+  const std::size_t kept = name.size() - kAdded;
+  return name[kept] == '.' &&
+         name.substr(0, kept) == shortened(fs::path(final_path).filename().string(), kAdded);
 }
 
 void remove_temporary_folder(const std::string& folder) {

@@ -61,7 +61,11 @@ std::string make_folder_beside(const std::string& final_path, const std::string&
 /// Creates an empty file in such a folder. Throws Error likewise.
 void create_in_temporary_folder(const std::string& folder, const std::string& name);
 
-/// Removes such a folder with all that is in it.
+/// Whether `path` is what an unfinished file, or a folder beside it, is called that becomes
+/// `final_path`.
+bool is_temporary_path(const std::string& path, const std::string& final_path);
+
+/// Removes a folder of make_temporary_folder() or make_folder_beside() with all that is in it.
 void remove_temporary_folder(const std::string& folder);
 
 /// Removes every file that is still under its temporary name, and the temporary folders with all

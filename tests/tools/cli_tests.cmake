@@ -24,6 +24,7 @@ spillway_command_test(cli_tests cli
   tools/options/cli_unused_options_test.cpp
   tools/options/cli_usage_test.cpp)
 spillway_command_test(cli_fault_tests fault
+  tools/process/cli_batch_signal_test.cpp
   tools/process/cli_descriptor_test.cpp
   tools/process/cli_fault_test.cpp
   tools/process/cli_limit_test.cpp

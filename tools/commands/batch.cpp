@@ -24,6 +24,7 @@
 #include "tools/batch/job_steps.h"
 #include "tools/commands/command.h"
 #include "tools/options/command_options.h"
+#include "tools/process/interrupts.h"
 #include "tools/report/json_text.h"
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
@@ -128,7 +129,10 @@ class Batch {
         free_memory_(memory_limit(options.memory)),
         temporary_(make_scratch(options.memory)) {}
 
-  ~Batch() { remove_temporary_folder(temporary_); }
+  ~Batch() {
+    children_.stop();
+    remove_temporary_folder(temporary_);
+  }
   Batch(const Batch&) = delete;
   Batch& operator=(const Batch&) = delete;
 
@@ -139,7 +143,7 @@ class Batch {
     progress_.begin("batch", "jobs");
     while (!waiting_.empty() || !running_.empty()) {
       while (!waiting_.empty() && running_.size() < at_a_time()) start_next();
-      if (!running_.empty()) finish_step(wait_for_any_child());
+      if (!running_.empty()) finish_step(children_.wait_for_any());
       progress_.update(ended_, static_cast<double>(ended_) / static_cast<double>(runs_.size()));
     }
     progress_.end(ended_);
@@ -233,9 +237,10 @@ class Batch {
     };
     add("threads", std::to_string(job.threads));
     add("memory", std::to_string(job.memory));
-    add("tmpdir", scratch_parent(options_.memory.scratch_parent));
+    add("tmpdir", temporary_);
     add("progress", "none");
-    running_[start_child(arguments, job.log->descriptor()).id] = job;
+    const std::string& output = job.run->steps[job.step].output;
+    running_[children_.start(arguments, output, job.log->descriptor())] = job;
   }
 
   void finish_step(const ChildEnd& end) {
@@ -313,7 +318,9 @@ class Batch {
   int free_threads_;         ///< below 0 with more jobs than threads
   std::uint64_t free_memory_;
   std::size_t ended_ = 0;
-  std::string temporary_;
+  std::string temporary_;  ///< has what jobs leave there that are killed
+  ChildProcesses children_;
+  const InterruptAction interrupt_{[this] { children_.stop(); }};
 };
 
 }  // namespace

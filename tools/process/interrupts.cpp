@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <exception>
+#include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "formats/disk/unfinished_files.h"
@@ -28,8 +30,27 @@ std::string message_of(int number, std::vector<std::string> outputs) {
   return more == 0 ? text : fmt::format("{} and {} more", text, more);
 }
 
+struct FirstAction {
+  std::mutex mutex;
+  std::function<void()> what;  // guarded by mutex
+};
+
+FirstAction& first_action() {
+  static FirstAction instance;
+  return instance;
+}
+
+sigset_t interrupts() {
+  sigset_t all;
+  sigemptyset(&all);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&all, number);
+  return all;
+}
+
 [[noreturn]] void end_run(int number, bool tell) {
+  const std::lock_guard lock(first_action().mutex);
   try {
+    if (first_action().what) first_action().what();
     const std::vector<std::string> outputs = remove_unfinished_files();
     if (tell) last_message(message_of(number, outputs));
   } catch (const std::exception&) {  // no memory for words
@@ -39,19 +60,30 @@ std::string message_of(int number, std::vector<std::string> outputs) {
 
 }  // namespace
 
+void block_interrupts() {
+  const sigset_t signals = interrupts();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
 void handle_interrupts() {
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
-  sigset_t interrupts;
-  sigemptyset(&interrupts);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&interrupts, number);
-  pthread_sigmask(SIG_BLOCK, &interrupts, nullptr);
-  std::thread([interrupts, tell = distributed::launch().rank == 0] {
+  std::thread([signals = interrupts(), tell = distributed::launch().rank == 0] {
     int number = 0;
-    while (sigwait(&interrupts, &number) != 0) {
+    while (sigwait(&signals, &number) != 0) {
     }
     end_run(number, tell);
   }).detach();
+}
+
+InterruptAction::InterruptAction(std::function<void()> action) {
+  const std::lock_guard lock(first_action().mutex);
+  first_action().what = std::move(action);
+}
+
+InterruptAction::~InterruptAction() {
+  const std::lock_guard lock(first_action().mutex);
+  first_action().what = nullptr;
 }
 
 }  // namespace spillway::detail

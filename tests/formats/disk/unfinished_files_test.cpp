@@ -124,6 +124,23 @@ TEST_F(Unfinished, NamesMayBeAsLongAsTheSystemTakes) {
               HasSubstr("File name too long; choose a shorter name"));
 }
 
+TEST_F(Unfinished, TemporaryPathsAreToldFromOthers) {
+  for (const std::string& name : {std::string("a.ply"), std::string(200, 'n')}) {
+    const auto file = disk().create(path(name));
+    const std::string folder = make_folder_beside(path(name), name);
+    for (const std::string& temporary : {file->temporary_path(), folder}) {
+      EXPECT_TRUE(is_temporary_path(temporary, path(name))) << temporary;
+      EXPECT_FALSE(is_temporary_path(temporary, path("b.ply")));
+      EXPECT_FALSE(is_temporary_path(temporary, path("folder/" + name)));
+    }
+    remove_temporary_folder(folder);
+  }
+  for (const char* const other :
+       {"a.ply", "a.ply.part", "a.ply.log", "a.ply.xyz", "a.plyABCDEFG.part"}) {
+    EXPECT_FALSE(is_temporary_path(path(other), path("a.ply"))) << other;
+  }
+}
+
 TEST_F(Unfinished, ALinkToWhatIsYetToBeMadeIsFollowed) {
   fs::create_directory(path("folder"));
   fs::create_symlink("folder/next", path("link"));

@@ -1,10 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <unistd.h>
-
-#include <chrono>
-#include <thread>
 
 #include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
@@ -220,22 +216,6 @@ TEST_F(Batch, GoesOnWhenInputsOrRecordsOfAJobMakeNoSense) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.err, HasSubstr("2 jobs: 1 done, 1 failed"));
   EXPECT_TRUE(space.has("out/north.ply"));
-}
-
-TEST_F(Batch, EndsItsJobsWhenItIsInterrupted) {
-  space.succeed("mkdir tmp && spillway generate uniform -n 3e6 -o large.spp");
-  const std::string folder = space.folder().string();
-  const pid_t process = space.start({"batch", folder + "/large.spp", "--output-dir",
-                                     folder + "/out", "--to", "ply", "--tmpdir", folder + "/tmp"});
-  while (!space.has_unfinished("out/large.ply"))
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  kill(process, SIGTERM);
-  EXPECT_EQ(wait_for_exit(process), 128 + SIGTERM);
-  for (int i = 0; i < 2000 && space.has_unfinished("out/large.ply"); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  EXPECT_FALSE(space.has_unfinished("out/large.ply"));
-  EXPECT_FALSE(space.has("out/large.ply"));
 }
 
 }  // namespace

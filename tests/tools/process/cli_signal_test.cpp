@@ -1,9 +1,11 @@
 // Signals: the exit code, a line that tells, and nothing left behind, at whatever moment they come.
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <array>
 #include <chrono>
@@ -102,6 +104,47 @@ TEST_P(Interrupted, WaitingForInputEnds) {
 INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, testing::Values(SIGINT, SIGTERM, SIGHUP),
                          [](const auto& test) { return std::string(sigabbrev_np(test.param)); });
 
+TEST(Signals, OfTheFirstMomentsLeaveNothing) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 1e6 -o in.las; mkdir tmp");
+  const auto before = work.names();
+  std::mt19937 random(22);
+  for (int run = 0; run < 40; ++run) {
+    const pid_t process =
+        work.start({"triangulate", "-q", "in.las", "-o", "mesh.ply", "--tmpdir", "tmp"});
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 40000));
+    kill(process, SIGTERM);
+    EXPECT_EQ(wait_for_exit(process), 128 + SIGTERM);
+    EXPECT_THAT(work.messages(), testing::AnyOf("", StartsWith("spillway: interrupted by SIG")))
+        << "before main a signal ends the process at once";
+    ASSERT_EQ(work.names(), before) << "run " << run;
+    ASSERT_TRUE(std::filesystem::is_empty(work.folder() / "tmp")) << "run " << run;
+  }
+}
+
+/// As what a batch starts: a signal that comes between fork and main waits.
+TEST(Signals, ThatWaitWhereTheyAreBlockedAreTakenInMain) {
+  const Workspace work;
+  const std::string output = (work.folder() / "long.las").string();
+  const std::string messages = (work.folder() / "messages").string();
+  const pid_t process = fork();
+  ASSERT_GE(process, 0);
+  if (process == 0) {
+    sigset_t term;
+    sigemptyset(&term);
+    sigaddset(&term, SIGTERM);
+    sigprocmask(SIG_BLOCK, &term, nullptr);
+    kill(getpid(), SIGTERM);
+    dup2(open(messages.c_str(), O_WRONLY | O_CREAT, 0666), STDERR_FILENO);
+    execl(command_path().c_str(), "spillway", "generate", "terrain", "-n", "1e9", "-q", "-o",
+          output.c_str(), nullptr);
+    _exit(1);
+  }
+  EXPECT_EQ(wait_for_exit(process), 128 + SIGTERM);
+  EXPECT_THAT(work.read("messages"), StartsWith("spillway: interrupted by SIGTERM"));
+  EXPECT_THAT(work.names(), testing::ElementsAre("messages"));
+}
+
 TEST(Signals, WhileScratchFilesComeAndGoLeaveNothing) {
   const Workspace work;
   work.succeed("spillway generate -q terrain -n 1e6 -o in.las; mkdir tmp");
@@ -120,7 +163,7 @@ TEST(Signals, WhileScratchFilesComeAndGoLeaveNothing) {
       std::filesystem::remove(work.folder() / "mesh.ply");
     } else if (exit_code == 128 + number) {
       ++interrupted;
-      // Before its handler is there, a signal ends the process at once.
+      // Before main a signal ends the process at once.
       EXPECT_THAT(work.messages(), testing::AnyOf("", StartsWith("spillway: interrupted by SIG")));
     } else {
       ADD_FAILURE() << exit_code << ": " << work.messages();
