@@ -4,6 +4,7 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <set>
 #include <utility>
@@ -68,11 +69,12 @@ class ListReader {
   std::vector<Job> read(const std::vector<std::string>& to, const JobOptions& options) {
     const Json list = parse_list(path_);
     where_ = path_;
-    expect_keys(list, {"to", "options", "jobs"});
+    expect_keys(list, {"to", "options", "buffer", "jobs"});
     Job defaults;
     const Json* const outputs = list.find("to");
     defaults.to = outputs != nullptr ? texts(*outputs, "to") : to;
     if (const Json* const common = list.find("options")) add_options(*common, defaults.options);
+    if (const Json* const buffer = list.find("buffer")) defaults.buffer = length(*buffer, "buffer");
     const Json* const entries = list.find("jobs");
     if (entries == nullptr || !entries->is_array() || entries->elements().empty()) {
       fail("there is no list \"jobs\" with at least one job");
@@ -99,7 +101,7 @@ class ListReader {
   }
 
   Job read_job(const Json& entry, const Job& defaults) const {
-    expect_keys(entry, {"name", "in", "to", "options"});
+    expect_keys(entry, {"name", "in", "to", "options", "buffer"});
     Job job = defaults;
     const Json* const inputs = entry.find("in");
     if (inputs == nullptr) fail("the key \"in\" is missing: it names the points");
@@ -112,6 +114,7 @@ class ListReader {
     if (const Json* const to = entry.find("to")) job.to = texts(*to, "to");
     if (job.to.empty()) fail("\"to\" is missing: it names the outputs, like [\"ply\"]");
     if (const Json* const own = entry.find("options")) add_options(*own, job.options);
+    if (const Json* const own = entry.find("buffer")) job.buffer = length(*own, "buffer");
     const Json* const name = entry.find("name");
     job.name = name != nullptr ? text(*name, "name")
                                : std::filesystem::path(job.inputs.front()).stem().string();
@@ -141,6 +144,13 @@ class ListReader {
     if (value.is_text()) return value.text();
     if (value.is_number()) return json_to_text(value);
     fail(fmt::format("\"{}\" is neither text nor a number", key));
+  }
+
+  double length(const Json& value, const std::string& key) const {
+    if (value.is_number() && value.number() >= 0 && std::isfinite(value.number())) {
+      return value.number();
+    }
+    fail(fmt::format("\"{}\" is not a length: give a number of at least 0", key));
   }
 
   std::string path_;
@@ -188,7 +198,10 @@ std::vector<Job> jobs_of_files(const std::vector<std::string>& files,
   std::vector<Job> jobs;
   jobs.reserve(files.size());
   for (const std::string& file : files) {
-    jobs.push_back({std::filesystem::path(file).stem().string(), {file}, to, options});
+    jobs.push_back({.name = std::filesystem::path(file).stem().string(),
+                    .inputs = {file},
+                    .to = to,
+                    .options = options});
   }
   check_jobs(jobs);
   return jobs;

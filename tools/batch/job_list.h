@@ -2,13 +2,22 @@
 // What `spillway batch` is to do: docs/batch.md.
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "src/geometry/box.h"
 
 namespace spillway::detail {
 
 /// Options by their long names without dashes; flags have no values.
 using JobOptions = std::map<std::string, std::vector<std::string>>;
+
+/// Where a job's points lie that has others' around its own.
+struct JobArea {
+  Box<2> points;  ///< that are read
+  Box<2> raster;  ///< what a raster of them covers
+};
 
 /// One job: some inputs, and what is to be made of them.
 struct Job {
@@ -16,6 +25,10 @@ struct Job {
   std::vector<std::string> inputs;  ///< as the command line takes them
   std::vector<std::string> to;      ///< kinds of output: "ply", "dem.tif"
   JobOptions options;
+  /// How far around its own points those of other jobs are read, too; nothing if that is not said.
+  std::optional<double> buffer{};
+  /// With a buffer, once it is known where the points of all jobs lie (job_buffers.h).
+  std::optional<JobArea> area{};
 };
 
 /// The jobs of a list, a file in JSON or TOML; `to` and `options` are what the command line says:

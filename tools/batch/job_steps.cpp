@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 
 #include "formats/meshes/mesh_formats.h"
+#include "tools/options/input_options.h"
 #include "tools/report/usage_error.h"
 
 namespace spillway::detail {
@@ -77,6 +79,35 @@ OutputKind kind_by_name(const Job& job, const std::string& name) {
   return kind;
 }
 
+bool makes_any(const Job& job, std::string_view subcommand) {
+  return std::ranges::any_of(job.to, [&](const std::string& name) {
+    return kind_by_name(job, name).subcommand == subcommand;
+  });
+}
+
+bool makes_raster(const Job& job) { return makes_any(job, "dem"); }
+
+/// The filter of points by place, where a raster is made, whose --bounds are its own.
+constexpr std::string_view kClip = "clip-bounds";
+
+/// What this filter is called where such an output is made of points.
+std::string filter_by_place(const OutputKind& kind) {
+  return kind.subcommand == "dem" ? std::string(kClip) : "bounds";
+}
+
+std::string text_of(const Box<2>& box) {
+  return fmt::format("{},{},{},{}", box.lo[0], box.lo[1], box.hi[0], box.hi[1]);
+}
+
+/// What a filter by place leaves of a box that it meets.
+std::string common_text(const std::string& filter, const Box<2>& box) {
+  const Extent given = parse_bounds(filter);
+  const Box<2> common = common_part(plane_of(Box<3>{given.low, given.high}), box);
+  if (std::isinf(given.low[2])) return text_of(common);
+  return fmt::format("{},{},{},{},{},{}", common.lo[0], common.lo[1], given.low[2], common.hi[0],
+                     common.hi[1], given.high[2]);
+}
+
 /// The value of --product with which a raster of this kind is made.
 std::string products_of(const OutputKind& kind, const Job& job) {
   if (!kind.arguments.empty()) return kind.arguments.back();
@@ -94,6 +125,15 @@ std::string path_argument(const std::string& path) {
 std::string stream_kind() { return std::string(own_mesh_stream().name); }
 
 }  // namespace
+
+bool has_seams(const Job& job) { return makes_raster(job) || makes_any(job, "contour"); }
+
+Box<2> wanted_place(const Job& job) {
+  const auto filter = job.options.find(makes_raster(job) ? std::string(kClip) : "bounds");
+  if (filter == job.options.end()) return whole_space<2>();
+  const Extent box = parse_bounds(filter->second.front());
+  return plane_of(Box<3>{box.low, box.high});
+}
 
 const std::vector<std::string>& job_subcommands() {
   static const std::vector<std::string> names = {"triangulate", "dem", "contour", "render"};
@@ -146,9 +186,7 @@ JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
   step.arguments = {kind.subcommand};
   for (const std::string& input : inputs) step.arguments.push_back(path_argument(input));
   step.arguments.insert(step.arguments.end(), kind.arguments.begin(), kind.arguments.end());
-  for (const auto& [name, values] : job.options) {
-    if (!takes_option(job, kind, of_points, name)) continue;
-    step.options.push_back(name);
+  for (const auto& [name, values] : options_of_step(job, kind, of_points, step.options)) {
     if (values.empty()) step.arguments.push_back("--" + name);
     for (const std::string& value : values) {
       step.arguments.push_back(fmt::format("--{}={}", name, value));
@@ -160,6 +198,29 @@ JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
   return step;
 }
 
+/// The options of one step; `taken` gets the names of the job's own among them.
+JobOptions JobPlanner::options_of_step(const Job& job, const OutputKind& kind, bool of_points,
+                                       std::vector<std::string>& taken) const {
+  const bool is_raster = kind.subcommand == "dem";
+  JobOptions options;
+  for (const auto& [name, values] : job.options) {
+    if (!takes_option(job, kind, of_points, name)) continue;
+    taken.push_back(name);
+    options[name == kClip ? filter_by_place(kind) : name] = values;
+  }
+  if (!job.area) return options;
+  if (of_points) {
+    std::vector<std::string>& filter = options[filter_by_place(kind)];
+    filter = {filter.empty() ? text_of(job.area->points)
+                             : common_text(filter.front(), job.area->points)};
+  }
+  if (is_raster && !options.contains("bounds")) {
+    options["bounds"] = {text_of(job.area->raster)};
+    options["align"] = {};
+  }
+  return options;
+}
+
 /// Whether an option of a job has an effect on this step. What triangulate has concerns the points,
 /// and is nothing for a step that begins with a mesh, but that --force-crs is about --like, too.
 /// Where a job makes a raster, --bounds and --resolution are the raster's, whatever else it makes:
@@ -167,6 +228,7 @@ JobStep JobPlanner::step(const Job& job, const std::string& kind_name,
 bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_points,
                               const std::string& name) const {
   const std::string& subcommand = kind.subcommand;
+  if (name == kClip) return of_points && makes_raster(job);
   if (!has_option(subcommand, name)) return false;
   if (subcommand == "dem") {
     const std::string products = products_of(kind, job);
@@ -177,10 +239,7 @@ bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_po
     if (name == "force-crs" && job.options.contains("like")) return true;
     if (products == "density" && (name == "max-edge" || name == "duplicates")) return false;
   }
-  const bool makes_raster = std::any_of(
-      job.to.begin(), job.to.end(),
-      [&](const std::string& other) { return kind_by_name(job, other).subcommand == "dem"; });
-  if (makes_raster && (name == "bounds" || name == "resolution")) return subcommand == "dem";
+  if (makes_raster(job) && (name == "bounds" || name == "resolution")) return subcommand == "dem";
   return of_points || !has_option("triangulate", name);
 }
 
@@ -196,21 +255,32 @@ void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps
                                    needed.meaning, needed.other));
     }
   }
+  if (job.buffer.value_or(0) > 0 && makes_raster(job)) {
+    for (const char* const other : {"like", "force-size"}) {
+      if (!job.options.contains(other)) continue;
+      throw UsageError(
+          fmt::format("{}: --{} says what a raster covers, which --buffer does, too: give one of "
+                      "them",
+                      job.name, other));
+    }
+  }
   for (const auto& [name, values] : job.options) {
     if (std::find(kShared.begin(), kShared.end(), name) != kShared.end()) {
       throw UsageError(fmt::format("{}: --{} is for all jobs together: give it to batch itself",
                                    job.name, name));
     }
-    const auto taker = std::ranges::find_if(steps, [&, &name = name](const JobStep& step) {
-      const bool used =
-          std::find(step.options.begin(), step.options.end(), name) != step.options.end();
-      return used && has_option(step.arguments.front(), name);
+    const bool used = std::ranges::any_of(steps, [&, &name = name](const JobStep& step) {
+      return std::ranges::find(step.options, name) != step.options.end();
     });
-    if (taker == steps.end()) {
+    if (!used) {
       throw UsageError(fmt::format("{}: none of its outputs uses the option --{}", job.name, name));
     }
     // The parser would take the next argument for it.
-    const bool wants_value = root_.subcommand(taker->arguments.front()).takes_value("--" + name);
+    const bool wants_value =
+        std::ranges::any_of(job_subcommands(), [&, &name = name](const std::string& subcommand) {
+          return has_option(subcommand, name) &&
+                 root_.subcommand(subcommand).takes_value("--" + name);
+        });
     const bool empty = std::find(values.begin(), values.end(), "") != values.end();
     if (empty || (wants_value && values.empty())) {
       throw UsageError(

@@ -40,6 +40,8 @@ class JobPlanner {
  private:
   [[nodiscard]] JobStep step(const Job& job, const std::string& kind,
                              const std::vector<std::string>& inputs, bool of_points) const;
+  [[nodiscard]] JobOptions options_of_step(const Job& job, const OutputKind& kind, bool of_points,
+                                           std::vector<std::string>& taken) const;
   [[nodiscard]] bool takes_option(const Job& job, const OutputKind& kind, bool of_points,
                                   const std::string& name) const;
   void check_options(const Job& job, const std::vector<JobStep>& steps) const;
@@ -48,6 +50,13 @@ class JobPlanner {
   std::string folder_;
   std::string scratch_;
 };
+
+/// Whether a job makes what is wrong along the joins with its neighbours, of which it has no
+/// points: rasters and contours.
+bool has_seams(const Job& job);
+
+/// What the filter by place among a job's options leaves of the plane.
+Box<2> wanted_place(const Job& job);
 
 /// The subcommands whose options a job may have.
 const std::vector<std::string>& job_subcommands();

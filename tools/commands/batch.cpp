@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "src/distributed/ranks.h"
 #include "src/parallel/parallel.h"
 #include "tools/batch/child_process.h"
+#include "tools/batch/job_buffers.h"
 #include "tools/batch/job_log.h"
 #include "tools/batch/job_record.h"
 #include "tools/batch/job_steps.h"
@@ -45,6 +47,8 @@ constexpr const char* kExamples =
 /// A job needs so much memory to be worth starting.
 constexpr std::uint64_t kLeastMemory = std::uint64_t{128} << 20;
 
+constexpr double kMostBuffer = 1e9;
+
 struct BatchOptions {
   std::vector<std::string> sources;
   std::string folder;
@@ -52,6 +56,7 @@ struct BatchOptions {
   unsigned at_a_time = 0;
   unsigned threads = 0;
   bool resume = false;
+  std::optional<double> buffer;
   MemoryOptions memory;
   ReportOptions report;
   /// The options for the jobs' steps, as batch's own parser has them.
@@ -167,10 +172,18 @@ class Batch {
   void prepare() {
     const JobPlanner planner(root_, options_.folder, temporary_);
     const auto base = std::filesystem::path(options_.folder);
-    for (Job& job : jobs()) {
+    std::vector<Job> jobs = all_jobs();
+    for (const Job& job : jobs) {
+      for (const JobStep& step : planner.plan(job)) check_command_line(step.arguments);
+    }
+    add_buffers(jobs,
+                Context({.memory = fmt::format("{}", free_memory_),
+                         .threads = static_cast<unsigned>(free_threads_),
+                         .scratch_folder = temporary_}),
+                [this](const std::string& text) { progress_.say(text); });
+    for (Job& job : jobs) {
       JobRun run;
       run.steps = planner.plan(job);
-      for (const JobStep& step : run.steps) check_command_line(step.arguments);
       run.log = base / (job.name + ".log");
       run.record = base / (job.name + ".status.json");
       run.job = std::move(job);
@@ -190,7 +203,15 @@ class Batch {
         std::min<std::uint64_t>(limit_, std::max<std::uint64_t>(1, free_memory_ / kLeastMemory));
   }
 
-  [[nodiscard]] std::vector<Job> jobs() {
+  [[nodiscard]] std::vector<Job> all_jobs() {
+    std::vector<Job> jobs = jobs_as_listed();
+    if (options_.buffer) {
+      for (Job& job : jobs) job.buffer = options_.buffer;
+    }
+    return jobs;
+  }
+
+  [[nodiscard]] std::vector<Job> jobs_as_listed() {
     const auto passed_on = options_.passed_on();
     if (options_.sources.size() == 1 && is_job_list(options_.sources.front())) {
       return read_job_list(options_.sources.front(), options_.to, passed_on);
@@ -345,6 +366,11 @@ Subcommand add_batch(CommandLine& root) {
       kMostThreads)
       .value_name("N")
       .show_default();
+  take_number_between(
+      app.add_option("--buffer", options->buffer,
+                     "Read what other jobs have so near to a job's own points, too"),
+      0, kMostBuffer)
+      .value_name("M");
   app.add_flag("--resume", options->resume, "Leave out jobs that are complete and unchanged");
   take_whole_number(app.add_option("--threads", options->threads,
                                    "Threads of all jobs together; 0: all there are"),

@@ -79,6 +79,11 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
   app.remove_option("--bounds");
   app.remove_option("--resolution");
   options.own_options = {"--bounds", "--resolution"};
+  take_parsed(app.add_option("--clip-bounds", options.input.bounds,
+                             "Use points in this box, like --bounds elsewhere"),
+              parse_bounds)
+      .value_name("BOX")
+      .group(kFilterGroup);
   const std::string group = "Raster";
   take_parsed(
       app.add_option("--resolution", options.resolution, "Side of a pixel, in units of x and y"),

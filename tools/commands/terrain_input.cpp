@@ -21,7 +21,7 @@ namespace {
 void refuse_options_of_points(const TerrainOptions& options) {
   std::vector<std::string_view> names(kInputOptionNames.begin(), kInputOptionNames.end());
   names.insert(names.end(), kTriangulationOptionNames.begin(), kTriangulationOptionNames.end());
-  names.emplace_back("--dim");
+  names.insert(names.end(), {"--dim", "--clip-bounds"});
   std::erase_if(names, [&](std::string_view name) {
     return std::ranges::find(options.own_options, name) != options.own_options.end();
   });

@@ -51,7 +51,7 @@ void add_input_options(CommandLine& app, InputOptions& options) {
               parse_columns);
   app.add_flag("--force-crs", options.force_crs,
                "Take coordinates as they are, though inputs have different coordinate systems");
-  const std::string group = "Filters (of the points that are read)";
+  const std::string group = kFilterGroup;
   const auto add = [&](const char* name, std::string& value, const char* type, const char* what) {
     return app.add_option(name, value, what).value_name(type).group(group);
   };

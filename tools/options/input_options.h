@@ -38,7 +38,10 @@ inline constexpr std::array<std::string_view, 12> kInputOptionNames = {
     "--keep-withheld", "--every",        "--keep-class", "--drop-class",
     "--returns",       "--bounds",       "--thin",       "--resolution"};
 
-/// --input-format, --columns, --force-crs, and the group "Filters".
+/// The heading in help of the options that are filters.
+inline constexpr const char* kFilterGroup = "Filters (of the points that are read)";
+
+/// --input-format, --columns, --force-crs, and the filters.
 void add_input_options(CommandLine& app, InputOptions& options);
 
 /// The same for open_points(). Throws UsageError for wrong options.
