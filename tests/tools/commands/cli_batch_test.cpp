@@ -36,7 +36,7 @@ class Batch : public ::testing::Test {
 };
 
 TEST_F(Batch, DoesTheOtherJobsWhenOneFails) {
-  const Result result = space.run("spillway batch in --output-dir out --to ply");
+  const Result result = space.run("spillway batch 'in/*' --output-dir out --to ply");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_TRUE(space.has("out/north.ply"));
   EXPECT_TRUE(space.has("out/south.ply"));
@@ -166,12 +166,13 @@ TEST_F(Batch, TakesNoValueForAnOptionAndNoOptionForAValue) {
 
 TEST_F(Batch, SaysThatAFolderCannotBeWritten) {
   space.write("file", "");
-  const Result no_folder = space.run("spillway batch in --output-dir file/out --to ply");
+  const Result no_folder = space.run("spillway batch 'in/*' --output-dir file/out --to ply");
   EXPECT_EQ(no_folder.exit_code, 1);
   EXPECT_EQ(no_folder.err,
             "spillway: error: --output-dir: cannot create the folder file/out: Not a directory; "
             "choose another one\n");
-  const Result no_scratch = space.run("TMPDIR=none spillway batch in --output-dir out --to ply");
+  const Result no_scratch =
+      space.run("TMPDIR=none spillway batch 'in/*' --output-dir out --to ply");
   EXPECT_EQ(no_scratch.exit_code, 1);
   EXPECT_THAT(no_scratch.err, HasSubstr("cannot create a temporary folder in none: No such file or "
                                         "directory; choose another folder with --tmpdir"));
@@ -186,7 +187,7 @@ TEST_F(Batch, SaysThatAFolderIsProtected) {
     GTEST_SKIP() << "cannot run as another user";
   }
   const Result result =
-      space.run(other + command_path() + " batch in --output-dir locked --to ply");
+      space.run(other + command_path() + " batch 'in/*' --output-dir locked --to ply");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.err,
             "spillway: error: --output-dir: cannot write to locked: Permission denied; choose "
@@ -195,7 +196,7 @@ TEST_F(Batch, SaysThatAFolderIsProtected) {
 
 TEST_F(Batch, ResumeLeavesOutWhatIsCompleteAndUnchanged) {
   space.succeed("rm in/bad.las");
-  const std::string command = "spillway batch in --output-dir out --to ply --resume";
+  const std::string command = "spillway batch 'in/*' --output-dir out --to ply --resume";
   EXPECT_THAT(space.run(command).err, HasSubstr("2 done, 0 failed, 0 unchanged"));
   EXPECT_THAT(space.run(command).err, HasSubstr("0 done, 0 failed, 2 unchanged"));
   EXPECT_THAT(space.run(command + " --max-edge 100").err, HasSubstr("2 done"));
