@@ -34,6 +34,7 @@ std::vector<InputPlace> places_of(const Job& job, PlaceSurvey how, const Context
   InputOptions given;
   given.format = value_of(job, "input-format");
   given.columns = value_of(job, "columns");
+  given.skip_invalid = job.options.contains("skip-invalid");
   const PointOptions options = point_options(given, 2);
   const bool distrusts = job.options.contains("distrust-headers");
   std::vector<InputPlace> places;

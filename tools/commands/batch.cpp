@@ -19,6 +19,7 @@
 #include "formats/disk/unfinished_files.h"
 #include "src/distributed/ranks.h"
 #include "src/parallel/parallel.h"
+#include "src/runtime/memory_budget.h"
 #include "tools/batch/child_process.h"
 #include "tools/batch/job_buffers.h"
 #include "tools/batch/job_log.h"
@@ -258,6 +259,9 @@ class Batch {
     };
     add("threads", std::to_string(job.threads));
     add("memory", std::to_string(job.memory));
+    if (const std::string& cap = options_.memory.scratch_cap; !cap.empty()) {
+      add("max-tmp", std::to_string(parse_memory_size(cap) / limit_));
+    }
     add("tmpdir", temporary_);
     add("progress", "none");
     const std::string& output = job.run->steps[job.step].output;

@@ -70,6 +70,15 @@ TEST_F(Batch, PassesOptionsOnToTheJobs) {
   EXPECT_EQ(space.info("out/south.ply")["dimension"], 3);
 }
 
+TEST_F(Batch, SharesTheDiskOutAmongTheJobs) {
+  space.succeed("spillway generate -q terrain -n 2e6 -o large.las");
+  const std::string command = "spillway batch large.las --output-dir out --to spm --memory 64M";
+  const Result result = space.run(command + " --max-tmp 1M");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(space.read("out/large.log"), HasSubstr("raise --max-tmp or --memory"));
+  space.succeed(command + " --max-tmp 64M");
+}
+
 TEST_F(Batch, TakesFlagsWithoutValues) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   space.succeed(
