@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "formats/gdal/geotiff_key_records.h"
 #include "formats/gdal/raster.h"
 #include "formats/gdal/vector_layer.h"
 
@@ -19,6 +20,15 @@ enum class CrsKind : std::uint8_t {
   kGeocentric,  ///< x, y, z from the centre of the earth
   kOther,       ///< heights alone, several systems together, a site's own
   kUnknown,     ///< none that GDAL knows
+};
+
+/// How coordinates of a system are measured.
+struct CrsUnits {
+  bool is_geographic = false;  ///< x and y are longitude and latitude, perhaps with a height
+  double horizontal = 1;       ///< metres in a unit of x and y; degrees, if they are angles
+  double vertical = 0;         ///< metres in a unit of z; 0: not told
+  double semi_major = 0;       ///< of the ellipsoid, in metres
+  double flattening = 0;       ///< of the ellipsoid
 };
 
 /// What the module offers. A coordinate system is given as WKT (1 or 2), as "EPSG:n" or as PROJ
@@ -47,6 +57,18 @@ class Gdal {
 
   /// What kind of system it is.
   [[nodiscard]] virtual CrsKind crs_kind(const std::string& crs) const = 0;
+
+  /// How x, y and z are measured.
+  [[nodiscard]] virtual CrsUnits crs_units(const std::string& crs) const = 0;
+
+  /// The system that GeoTIFF keys define, with its heights, as crs_to_wkt() gives it; empty if
+  /// they define none whose horizontal part is of this kind.
+  [[nodiscard]] virtual std::string crs_of_geotiff_keys(const GeotiffKeys& keys,
+                                                        CrsKind kind) const = 0;
+
+  /// Why coordinates cannot be brought to longitude and latitude of WGS 84, in words; empty if they
+  /// can.
+  [[nodiscard]] virtual std::string why_not_lonlat(const std::string& crs) const = 0;
 
   /// Begins a vector file of one layer.
   [[nodiscard]] virtual std::unique_ptr<VectorLayer> create_layer(

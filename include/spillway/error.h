@@ -41,6 +41,9 @@ enum class Remedy {
   kPointLattice,     ///< rounding points to another lattice
   kDistrustHeaders,  ///< not relying on what headers tell of where points lie
   kColumns,          ///< saying which columns of a table are x, y and z
+  kUnknownCrs,       ///< naming the coordinate system, or taking coordinates as they are
+  kWrongCrs,         ///< naming another coordinate system than that which an input names
+  kGroundScale,      ///< saying how heights relate to x and y, or which system these are in
 };
 
 /// What a place in a file is counted in.

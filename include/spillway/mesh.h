@@ -63,6 +63,10 @@ class SPILLWAY_API MeshSink {
 /// How a mesh file is read.
 struct MeshOptions {
   std::string format{};  ///< "spm", "ply", "vtu", ...; empty: by first bytes and name
+  /// The coordinate system of a mesh that names none, as WKT or "EPSG:n"; empty: as the mesh says.
+  /// Nothing is transformed. With `foreign_crs` also of a mesh that names another one.
+  std::string crs{};
+  bool foreign_crs = false;
 };
 
 /// A mesh file of any format that is read; "-" is standard input, for formats of streams. Throws

@@ -73,6 +73,9 @@ struct PointOptions {
   std::optional<Thin> thin{};
   /// Of COPC files, read the levels that are needed for points so far apart; 0: all.
   double resolution = 0;
+  /// The coordinate system of inputs that name none, as WKT or "EPSG:n"; empty: as inputs say.
+  /// Nothing is transformed. With `foreign_crs` also of inputs that name another one.
+  std::string crs{};
   bool foreign_crs = false;  ///< take coordinates as they are, whatever their coordinate systems
   bool attributes = false;   ///< read classes, returns and flags, too, for convert()
 };

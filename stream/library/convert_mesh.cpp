@@ -10,6 +10,7 @@
 #include "src/geometry/simplex_name.h"
 #include "src/parallel/parallel.h"
 #include "stream/library/context/context_state.h"
+#include "stream/library/given_crs.h"
 #include "stream/library/meshes/opened_mesh.h"
 #include "stream/library/meshes/program_mesh.h"
 #include "stream/library/meshes/program_sink.h"
@@ -60,10 +61,12 @@ class MeshPassage {
 };
 
 Report convert(MeshStreamReader& reader, const std::string& name,
-               const std::optional<OpenedMesh::Extent2>& extent, EngineSink& sink,
-               const Context& context, RunWatch& watch) {
+               const std::optional<OpenedMesh::Extent2>& extent, const std::string& crs,
+               EngineSink& sink, const Context& context, RunWatch& watch) {
   const int dimension = reader.header().dimension;
-  BlockSink& blocks = sink.start({.header = reader.header(), .name = name});
+  MeshStart start{.header = reader.header(), .name = name};
+  start.header.crs = crs;
+  BlockSink& blocks = sink.start(start);
   if (extent) sink.extent_known(extent->box, extent->vertices);
   watch.begin(simplices_of(dimension), simplices_of(dimension));
   MeshPassage passage(reader, blocks, watch);
@@ -106,7 +109,9 @@ Report convert(MeshSource& source, MeshSink& sink, const Context& context) {
     if (target->tells_hash()) file->check_totals(watch);
     if (target->wants_extent()) extent = file->find_extent(watch);
     MeshStreamReader& reader = file->reader(watch, !target->is_product());
-    return detail::convert(reader, file->path(), extent, *target, context, watch);
+    const std::string crs = crs_of_mesh(file->path(), reader.header().crs, file->crs_choice(),
+                                        target->crs_need(), context);
+    return detail::convert(reader, file->path(), extent, crs, *target, context, watch);
   }
   ProgramMesh reader(source);
   if (target->wants_extent() && reader.header().dimension == 2) {
@@ -115,7 +120,7 @@ Report convert(MeshSource& source, MeshSink& sink, const Context& context) {
     }
     extent = {plane_of(*reader.header().extent), reader.header().points.value_or(0)};
   }
-  return detail::convert(reader, "the mesh", extent, *target, context, watch);
+  return detail::convert(reader, "the mesh", extent, reader.header().crs, *target, context, watch);
 }
 
 }  // namespace spillway

@@ -77,8 +77,9 @@ PointConversion convert(PointSource& source, PointSink& sink, const Context& con
   std::optional<ProgramPoints> program_points;
   auto* points = dynamic_cast<EnginePoints*>(&source);
   if (points == nullptr) points = &program_points.emplace(source);
-  const RunPoints run = points->begin(watch, true);
   auto* const file = dynamic_cast<PointFile*>(&sink);
+  if (file != nullptr) points->settle_crs(file->crs_need());
+  const RunPoints run = points->begin(watch, true);
   if (file != nullptr && file->sorted()) return sort_points(run, *file, context, watch);
   watch.begin(points->phase(), "points");
   PointConversion done = file != nullptr ? to_file(run, *file, context.threads(), watch)

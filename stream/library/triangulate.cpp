@@ -123,6 +123,7 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   std::optional<ProgramSink> program_sink;
   auto* target = dynamic_cast<EngineSink*>(&sink);
   if (target == nullptr) target = &program_sink.emplace(sink);
+  points->settle_crs(target->crs_need());
   const std::uint64_t own = target->own_memory(context.memory());
   Executor* const executor = context.options().executor.get();
   // Processes tell by the index which of several equal points comes first.

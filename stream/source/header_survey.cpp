@@ -10,7 +10,7 @@
 #include "formats/inputs/open_points.h"
 #include "src/error.h"
 #include "stream/source/changed_input.h"
-#include "stream/source/input_crs.h"
+#include "stream/source/source_crs.h"
 
 namespace spillway::detail {
 namespace {
@@ -79,18 +79,6 @@ void tell_notices(const SourceFacts& facts, const HeaderSurveyOptions& options) 
   }
 }
 
-std::string find_crs(const SourceFacts& facts, const HeaderSurveyOptions& options) {
-  std::vector<InputCrs> systems;
-  for (const SourceFacts::Input& input : facts.inputs) {
-    const PointHeader& header = input.header;
-    systems.push_back({header.name, header.crs, header.crs_note});
-    if (!header.crs.empty() && !header.crs_note.empty()) {
-      options.detail(fmt::format("{}: {}", header.name, header.crs_note));
-    }
-  }
-  return common_crs(systems, options.force_crs, options.warn);
-}
-
 }  // namespace
 
 HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& paths,
@@ -113,7 +101,7 @@ HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& p
                     std::move(faults));
   }
   tell_notices(all.facts, options);
-  all.facts.crs = find_crs(all.facts, options);
+  all.facts.crs = find_crs(all.facts, {options.crs, options.warn, options.detail});
   return all;
 }
 

@@ -8,6 +8,7 @@
 
 #include "formats/disk/file_system.h"
 #include "formats/points/common/point_reader.h"
+#include "stream/source/input_crs.h"
 #include "stream/source/point_filter.h"
 #include "stream/source/source_facts.h"
 
@@ -16,9 +17,9 @@ namespace spillway::detail {
 struct HeaderSurveyOptions {
   int dimension = 2;
   PointReaderOptions reader{};
-  PointFilter filter{};    ///< says what inputs must have
-  bool force_crs = false;  ///< inputs of different coordinate systems are no error
-  bool digests = false;    ///< facts have digests of files
+  PointFilter filter{};  ///< says what inputs must have
+  CrsChoice crs{};
+  bool digests = false;  ///< facts have digests of files
   /// Receives what is worth a warning, and what only -v shows.
   std::function<void(std::string_view)> warn = [](std::string_view) {};
   std::function<void(std::string_view)> detail = [](std::string_view) {};

@@ -53,10 +53,32 @@ void tell_notes(std::span<const InputCrs> inputs, std::string_view taken,
   }
 }
 
+/// `choice.given`, which inputs that name another system refute.
+std::string given_crs(std::span<const InputCrs> inputs, const CrsChoice& choice,
+                      const std::function<void(std::string_view)>& warn) {
+  std::set<std::string> seen = {"", choice.given};
+  for (const InputCrs& input : inputs) {
+    if (!seen.insert(input.crs).second || same(choice.given, input.crs)) continue;
+    if (!choice.force) {
+      throw Error(
+          fmt::format("{} has the coordinate system {}, but {} is given; leave that out, or "
+                      "put it in the place of what files tell",
+                      input.name, crs_name(input.crs), crs_name(choice.given)),
+          ErrorCode::kBadInput, {.file = input.name, .remedy = Remedy::kForeignCrs});
+    }
+    warn(
+        fmt::format("warning: {} has the coordinate system {}; coordinates are taken as they are, "
+                    "to be in {}",
+                    input.name, crs_name(input.crs), crs_name(choice.given)));
+  }
+  return choice.given;
+}
+
 }  // namespace
 
-std::string common_crs(std::span<const InputCrs> inputs, bool force,
+std::string common_crs(std::span<const InputCrs> inputs, const CrsChoice& choice,
                        const std::function<void(std::string_view)>& warn) {
+  if (!choice.given.empty()) return given_crs(inputs, choice, warn);
   const auto first = std::find_if(inputs.begin(), inputs.end(),
                                   [](const InputCrs& input) { return !input.crs.empty(); });
   const bool none = first == inputs.end();
@@ -78,7 +100,7 @@ std::string common_crs(std::span<const InputCrs> inputs, bool force,
         const std::string what =
             fmt::format("{} has the coordinate system {}, but {} has {}", input.name,
                         crs_name(input.crs), first->name, crs_name(first->crs));
-        if (!force) {
+        if (!choice.force) {
           throw Error(what + "; bring them to one system, or take coordinates as they are",
                       ErrorCode::kBadInput, {.file = input.name, .remedy = Remedy::kForeignCrs});
         }

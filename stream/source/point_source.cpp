@@ -20,7 +20,7 @@ HeaderSurveyOptions survey_options(const PointSourceOptions& options) {
   return {.dimension = options.dimension,
           .reader = reader_options(options),
           .filter = options.filter,
-          .force_crs = options.force_crs,
+          .crs = options.crs,
           .digests = options.digests,
           .warn = options.warn,
           .detail = options.detail};
@@ -110,6 +110,10 @@ bool PointSource::read_again() {
   const std::lock_guard lock(counts_mutex_);
   counts_ = {};
   return true;
+}
+
+void PointSource::settle_crs(CrsNeed need) {
+  facts_.crs = settled_crs(facts_, need, {options_.crs, options_.warn, options_.detail});
 }
 
 std::vector<PointHeader> PointSource::headers() const {

@@ -15,11 +15,13 @@
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 #include "stream/source/header_survey.h"
+#include "stream/source/input_crs.h"
 #include "stream/source/input_regions.h"
 #include "stream/source/piece_sequence.h"
 #include "stream/source/point_filter.h"
 #include "stream/source/point_stream.h"
 #include "stream/source/source_coordinates.h"
+#include "stream/source/source_crs.h"
 #include "stream/source/source_facts.h"
 #include "stream/source/thinning/thinning.h"
 #include "stream/tiles/point_feed.h"
@@ -41,9 +43,9 @@ struct PointSourceOptions {
   PointReaderOptions reader{};  ///< bounds are set by the filter
   PointFilter filter{};
   std::optional<ThinningRequest> thinning{};
-  bool force_crs = false;  ///< inputs of different coordinate systems are no error
-  bool digests = false;    ///< facts() have digests, for other processes to compare files by
-  std::string viewer{};    ///< who reads files that another process has looked at, for messages
+  CrsChoice crs{};
+  bool digests = false;  ///< facts() have digests, for other processes to compare files by
+  std::string viewer{};  ///< who reads files that another process has looked at, for messages
   /// Receives what is worth a warning, and what only -v shows.
   std::function<void(std::string_view)> warn = [](std::string_view) {};
   std::function<void(std::string_view)> detail = [](std::string_view) {};
@@ -101,8 +103,10 @@ class PointSource : public PointStream {
   [[nodiscard]] const std::optional<Box<3>>& extent() const override { return extent_; }
   /// The same in output coordinates.
   [[nodiscard]] const std::optional<Box<3>>& world_extent() const { return world_extent_; }
-  /// Of the first input that names a coordinate system.
+  /// Of the first input that names a coordinate system; or the one that is given.
   [[nodiscard]] const std::string& crs() const { return facts_.crs; }
+  /// Makes crs() what an output needs. Throws Error if that takes GDAL, and it is not there.
+  void settle_crs(CrsNeed need);
   /// Of all inputs, in their order.
   [[nodiscard]] std::vector<PointHeader> headers() const;
   /// Whether the points of any input have z.

@@ -26,7 +26,7 @@ struct SourceFacts {
     [[nodiscard]] bool has_attributes() const { return header.point_format >= 0; }
   };
   std::vector<Input> inputs;
-  std::string crs;  ///< of the first input that names a coordinate system
+  std::string crs;  ///< of all inputs together: find_crs(), settled_crs()
 
   /// Whether the points of any input have z.
   [[nodiscard]] bool has_heights() const;

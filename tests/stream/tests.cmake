@@ -34,7 +34,7 @@ spillway_test(point_input_test unit
           stream/source/ordered_blocks_test.cpp stream/source/piece_sequence_test.cpp
           stream/source/point_filter_test.cpp stream/source/thinning/point_runs_test.cpp
           stream/source/point_source_test.cpp stream/source/source_coordinates_test.cpp
-          stream/source/source_facts_test.cpp stream/source/thinning/thinning_test.cpp
+          stream/source/source_crs_test.cpp stream/source/source_facts_test.cpp stream/source/thinning/thinning_test.cpp
   LIBS spillway_stream fmt::fmt)
 
 spillway_test(dem_test property

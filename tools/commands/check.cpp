@@ -157,6 +157,7 @@ Subcommand add_check(CommandLine& root) {
       .show_default();
   add_memory_options(app, options->memory);
   add_input_options(app, options->input);
+  app.remove_option("--crs");  // points and mesh are compared by their coordinates
   add_report_options(app, options->report);
   return {&app, [options] { return run(*options); }};
 }

@@ -96,6 +96,7 @@ Subcommand add_contour(CommandLine& root) {
   add_number_list(app, "--levels", options->levels, "Heights of lines, instead of an interval")
       .value_name("H,...");
   add_terrain_options(app, *options);
+  options->uses_crs = true;
   add_report_options(app, options->report);
   return {&app, [options] { return run(*options); }};
 }

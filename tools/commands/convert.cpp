@@ -176,6 +176,9 @@ void run_mesh(const ConvertCommandOptions& options, const Context& context, Prog
     throw UsageError("several meshes do not become one: convert them one by one");
   }
   std::vector<std::string_view> of_points(kInputOptionNames.begin(), kInputOptionNames.end());
+  if (!options.input.crs.empty()) {
+    std::erase_if(of_points, [](auto name) { return name == "--crs" || name == "--force-crs"; });
+  }
   of_points.insert(of_points.end(),
                    {"--scale", "--offset", "--las-version", "--sorted", "--cell-points", "--dim"});
   refuse_given(*options.app, of_points, fmt::format("on {}, which is a mesh", input));
@@ -185,7 +188,7 @@ void run_mesh(const ConvertCommandOptions& options, const Context& context, Prog
   if (output.path == "-" && ::isatty(STDOUT_FILENO) != 0 && output.format.empty()) {
     throw UsageError("a mesh stream cannot go to a terminal: name a file, or pipe it on");
   }
-  const auto mesh = open_mesh(input, {.format = options.mesh_format}, context);
+  const auto mesh = open_mesh(input, mesh_options(options.input, options.mesh_format), context);
   const auto file = create_mesh(output.path, {.format = output.format}, context);
   const MeshTotals totals = convert(*mesh, *file, context).mesh;
   progress.say(fmt::format("{} vertices, {} simplices in {}", totals.vertices, totals.simplices,

@@ -84,6 +84,7 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
               parse_bounds)
       .value_name("BOX")
       .group(kFilterGroup);
+  options.uses_crs = true;
   const std::string group = "Raster";
   take_parsed(
       app.add_option("--resolution", options.resolution, "Side of a pixel, in units of x and y"),

@@ -241,6 +241,7 @@ Subcommand add_info(CommandLine& root) {
       .required();
   app.add_flag("--json", options->json, "One JSON object a line for each file");
   add_input_options(app, options->input);
+  app.remove_option("--crs");
   app.remove_option("--force-crs");  // each file is told of for itself
   add_memory_options(app, options->memory);
   add_report_options(app, options->report);

@@ -23,6 +23,8 @@ void refuse_options_of_points(const TerrainOptions& options) {
   names.insert(names.end(), kTriangulationOptionNames.begin(), kTriangulationOptionNames.end());
   names.insert(names.end(), {"--dim", "--clip-bounds"});
   std::erase_if(names, [&](std::string_view name) {
+    const bool is_of_crs = name == "--crs" || name == "--force-crs";
+    if (is_of_crs && options.uses_crs && !options.input.crs.empty()) return true;
     return std::ranges::find(options.own_options, name) != options.own_options.end();
   });
   refuse_given(*options.app, names, fmt::format("on {}, which is a mesh", options.inputs.front()));
@@ -76,7 +78,8 @@ Context terrain_context(const TerrainOptions& options, Progress& progress) {
 Report send_terrain(const TerrainOptions& options, MeshSink& sink, const Context& context) {
   if (is_mesh(options, context)) {
     refuse_options_of_points(options);
-    const auto mesh = open_mesh(options.inputs.front(), {.format = options.mesh_format}, context);
+    const auto mesh = open_mesh(options.inputs.front(),
+                                mesh_options(options.input, options.mesh_format), context);
     return convert(*mesh, sink, context);
   }
   const auto points =

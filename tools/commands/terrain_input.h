@@ -21,6 +21,7 @@ struct TerrainOptions : TriangulationOptions {
   int dimension = 2;  ///< in which points are triangulated: 2 or 3
   /// Options that tell of points elsewhere, and have a meaning of their own here.
   std::vector<std::string_view> own_options;
+  bool uses_crs = false;  ///< the coordinate system of a mesh makes a difference
 };
 
 /// IN, --mesh-format and what triangulate has.

@@ -6,9 +6,15 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <limits>
+#include <memory>
 #include <system_error>
 
+#include "formats/bytes/bytes.h"
+#include "formats/disk/file_system.h"
+#include "formats/gdal/crs_text.h"
 #include "formats/points/point_formats.h"
 #include "tools/options/command_options.h"
 #include "tools/report/usage_error.h"
@@ -49,8 +55,13 @@ void add_input_options(CommandLine& app, InputOptions& options) {
                              "Of text, the columns of x, y, z: as 3,2,4, or as PNEZD")
                   .value_name("LIST"),
               parse_columns);
+  take_parsed(
+      app.add_option("--crs", options.crs,
+                     "Coordinate system of inputs that name none: EPSG:n, WKT, or a file with WKT"),
+      parse_crs)
+      .value_name("CRS");
   app.add_flag("--force-crs", options.force_crs,
-               "Take coordinates as they are, though inputs have different coordinate systems");
+               "Take coordinates as they are, whatever coordinate systems inputs have");
   const std::string group = kFilterGroup;
   const auto add = [&](const char* name, std::string& value, const char* type, const char* what) {
     return app.add_option(name, value, what).value_name(type).group(group);
@@ -205,6 +216,29 @@ Thin parse_thinning(std::string_view text) {
   return thin;
 }
 
+std::string parse_crs(std::string_view text) {
+  constexpr std::uint64_t kLongest = std::uint64_t{1} << 20;
+  const std::string crs(text);
+  if (looks_like_wkt(crs) || crs.starts_with("EPSG:")) return crs;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(crs, ignored)) {
+    if (looks_like_crs(crs)) return crs;
+    throw UsageError(
+        fmt::format("\"{}\" is no coordinate system; give EPSG:n, WKT, or the name of a file "
+                    "with WKT (.prj, .wkt)",
+                    crs));
+  }
+  const std::unique_ptr<InputFile> file = disk().open(crs);
+  std::vector<std::byte> content(std::min(file->size().value_or(kLongest), kLongest));
+  content.resize(file->read(content));
+  std::string wkt(as_text(content));
+  std::ranges::replace_if(
+      wkt, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  wkt.erase(0, wkt.find_first_not_of(' '));
+  if (looks_like_crs(wkt)) return wkt;
+  throw UsageError(fmt::format("{} holds no WKT of a coordinate system", crs));
+}
+
 PointOptions point_options(const InputOptions& options, int dimension) {
   PointOptions points;
   points.dimension = dimension;
@@ -219,8 +253,17 @@ PointOptions point_options(const InputOptions& options, int dimension) {
   if (!options.bounds.empty()) points.bounds = parse_bounds(options.bounds);
   if (!options.thin.empty()) points.thin = parse_thinning(options.thin);
   points.resolution = options.resolution;
+  if (!options.crs.empty()) points.crs = parse_crs(options.crs);
   points.foreign_crs = options.force_crs;
   return points;
+}
+
+MeshOptions mesh_options(const InputOptions& options, const std::string& format) {
+  MeshOptions mesh;
+  mesh.format = format;
+  if (!options.crs.empty()) mesh.crs = parse_crs(options.crs);
+  mesh.foreign_crs = options.force_crs;
+  return mesh;
 }
 
 }  // namespace spillway::detail

@@ -1,6 +1,7 @@
 #pragma once
 // What all subcommands that read points have in common: which inputs, and which of their points.
 
+#include <spillway/mesh.h>
 #include <spillway/points.h>
 
 #include <array>
@@ -17,6 +18,7 @@ namespace spillway::detail {
 struct InputOptions {
   std::string format;
   std::string columns;
+  std::string crs;
   bool force_crs = false;
   bool skip_invalid = false;
   bool keep_withheld = false;
@@ -33,22 +35,28 @@ struct InputOptions {
 };
 
 /// The names of the options that add_input_options() adds.
-inline constexpr std::array<std::string_view, 12> kInputOptionNames = {
-    "--input-format",  "--skip-invalid", "--columns",    "--force-crs",
-    "--keep-withheld", "--every",        "--keep-class", "--drop-class",
-    "--returns",       "--bounds",       "--thin",       "--resolution"};
+inline constexpr std::array<std::string_view, 13> kInputOptionNames = {
+    "--input-format",  "--columns", "--crs",        "--force-crs",  "--skip-invalid",
+    "--keep-withheld", "--every",   "--keep-class", "--drop-class", "--returns",
+    "--bounds",        "--thin",    "--resolution"};
 
 /// The heading in help of the options that are filters.
 inline constexpr const char* kFilterGroup = "Filters (of the points that are read)";
 
-/// --input-format, --columns, --force-crs, and the filters.
+/// --input-format, --columns, --crs, --force-crs, and the filters.
 void add_input_options(CommandLine& app, InputOptions& options);
 
 /// The same for open_points(). Throws UsageError for wrong options.
 PointOptions point_options(const InputOptions& options, int dimension);
 
-/// Reads the value of --keep-class: numbers and ranges, "2,3-5". This and what follows throws
-/// UsageError that says what is expected, for take_parsed().
+/// Options of a mesh of this format, which has the same ones about coordinate systems.
+MeshOptions mesh_options(const InputOptions& options, const std::string& format);
+
+/// Reads the value of --crs: a code or WKT as it is, or what stands in the file that it names. This
+/// and what follows throws UsageError that says what is expected, for take_parsed().
+std::string parse_crs(std::string_view text);
+
+/// Reads the value of --keep-class: numbers and ranges, "2,3-5".
 std::vector<int> parse_classes(std::string_view text);
 
 /// Reads the value of --columns: the numbers of x, y and z, "3,2,4" or "3,2", or a letter for each

@@ -62,6 +62,15 @@ std::string advice(const ErrorFacts& facts) {
     case Remedy::kColumns:
       return "; say which columns are x, y and z, as --columns PNEZD (point, northing, easting, "
              "height, description) or --columns 3,2,4";
+    case Remedy::kUnknownCrs:
+      return "; name their coordinate system with --crs, or write them as they are with "
+             "--force-crs";
+    case Remedy::kWrongCrs:
+      return "; name the right coordinate system with --crs and --force-crs";
+    case Remedy::kGroundScale:
+      return "; name the right coordinate system with --crs and --force-crs, or say with "
+             "--z-factor "
+             "what heights are to be multiplied by";
     case Remedy::kPointLattice:
       return "; choose another --scale or --offset";
     case Remedy::kRanks:

@@ -112,11 +112,6 @@ bool equal_but_for_spelling(const OGRSpatialReference& a, const OGRSpatialRefere
                     });
 }
 
-OGRSpatialReference horizontal(OGRSpatialReference crs) {
-  crs.StripVertical();
-  return crs;
-}
-
 }  // namespace
 
 OGRSpatialReference parse_crs(const std::string& crs) {
@@ -137,14 +132,19 @@ OGRSpatialReference parse_crs(const std::string& crs) {
   return result;
 }
 
+OGRSpatialReference horizontal_part(OGRSpatialReference crs) {
+  crs.StripVertical();
+  return crs;
+}
+
 bool same_crs(const std::string& a, const std::string& b) {
   if (a == b) return true;
   const OGRSpatialReference first = parse_crs(a);
   const OGRSpatialReference second = parse_crs(b);
   if (equal(first, second)) return true;
   if (first.IsCompound() != 0 && second.IsCompound() != 0) return false;
-  const OGRSpatialReference flat_first = horizontal(first);
-  const OGRSpatialReference flat_second = horizontal(second);
+  const OGRSpatialReference flat_first = horizontal_part(first);
+  const OGRSpatialReference flat_second = horizontal_part(second);
   if (equal(flat_first, flat_second)) return true;
   if (equal_but_for_spelling(flat_first, flat_second)) return true;
   const std::string code = best_code(flat_first);

@@ -12,6 +12,9 @@ namespace spillway::detail {
 /// The coordinate system that a text names, x east and y north. Throws Error if it names none.
 OGRSpatialReference parse_crs(const std::string& crs);
 
+/// Without what it says of heights.
+OGRSpatialReference horizontal_part(OGRSpatialReference crs);
+
 /// What the members of Gdal of these names return.
 bool same_crs(const std::string& a, const std::string& b);
 std::string crs_to_wkt(const std::string& crs);

@@ -5,8 +5,10 @@
 
 #include "formats/gdal/gdal.h"
 #include "formats/gdal/module/crs.h"
+#include "formats/gdal/module/crs_units.h"
 #include "formats/gdal/module/gdal_errors.h"
 #include "formats/gdal/module/geotiff.h"
+#include "formats/gdal/module/geotiff_crs.h"
 #include "formats/gdal/vector_drivers.h"
 
 namespace spillway::detail {
@@ -36,6 +38,16 @@ class LoadedGdal : public Gdal {
   }
   [[nodiscard]] CrsKind crs_kind(const std::string& crs) const override {
     return spillway::detail::crs_kind(crs);
+  }
+  [[nodiscard]] CrsUnits crs_units(const std::string& crs) const override {
+    return spillway::detail::crs_units(crs);
+  }
+  [[nodiscard]] std::string crs_of_geotiff_keys(const GeotiffKeys& keys,
+                                                CrsKind kind) const override {
+    return spillway::detail::crs_of_geotiff_keys(keys, kind);
+  }
+  [[nodiscard]] std::string why_not_lonlat(const std::string& crs) const override {
+    return spillway::detail::why_not_lonlat(crs);
   }
   [[nodiscard]] std::unique_ptr<VectorLayer> create_layer(
       const VectorLayerOptions& options) const override {

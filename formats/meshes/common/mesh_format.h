@@ -67,6 +67,7 @@ struct MeshFormat {
   bool holds_input_index = false;
   bool rounds_coordinates = false;  ///< to 32-bit floats
   bool needs_regular_file = false;  ///< its beginning is written last
+  bool reads_crs = false;           ///< GDAL is asked about a coordinate system
   bool stands_in_parts = false;     ///< over ranks it may be a file for each
   /// Whether as a stream it ends with its totals, the canonical hash among them.
   bool has_totals = false;

@@ -17,6 +17,7 @@ constinit const MeshFormat kLandXmlMesh = {
     .title = "LandXML",
     .extensions = kExtensions,
     .name_tells = false,
+    .reads_crs = true,
     .recognises = [](std::string_view text) { return text.find("<LandXML") != text.npos; },
     .read = read_landxml,
     .open_writer =

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats/disk/file_system.h"
+#include "formats/gdal/geotiff_key_records.h"
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
@@ -95,9 +96,12 @@ struct PointHeader {
   std::string crs;                     ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
   std::string crs_note;                ///< why there is none, though the source tells of one; or
                                        ///< what is not read of it; empty: neither
-  std::string software;                ///< generating software, LAS only
-  std::size_t extra_bytes = 0;         ///< of each record, after what the LAS point format has
-  std::vector<std::string> notices;    ///< what was taken where the source leaves some doubt
+  /// What LAS tells besides: of heights, or of a system in case that `crs` cannot be read. Empty if
+  /// there is nothing of either.
+  GeotiffKeys crs_keys;
+  std::string software;              ///< generating software, LAS only
+  std::size_t extra_bytes = 0;       ///< of each record, after what the LAS point format has
+  std::vector<std::string> notices;  ///< what was taken where the source leaves some doubt
   /// What the source tells of where its points lie: parts that come one after the other, in this
   /// order. Empty where it does not tell.
   std::vector<PointRegion> regions;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "formats/bytes/bytes.h"
+#include "formats/gdal/crs_text.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -138,6 +139,22 @@ class Directory {
 
 GeotiffCrs none(std::string why) { return {"", std::move(why)}; }
 
+/// The text in quotes, if it is long its beginning.
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  return fmt::format("\"{}{}\"", text.substr(0, kLongest), text.size() > kLongest ? "..." : "");
+}
+
+/// The system that keys define by parameters; nothing if GDAL makes none of them, or is not there.
+std::optional<GeotiffCrs> defined(const GeotiffKeys& records, CrsKind kind) {
+  try {
+    std::string crs = gdal().crs_of_geotiff_keys(records, kind);
+    if (!crs.empty()) return GeotiffCrs{std::move(crs), ""};
+  } catch (const Error&) {  // then they are not read
+  }
+  return std::nullopt;
+}
+
 /// What kind of system GDAL says a code of EPSG is; nothing if its module is not installed.
 std::optional<CrsKind> kind_by_gdal(std::uint16_t code) {
   try {
@@ -205,14 +222,18 @@ double length_of(std::uint16_t unit) {
   }
 }
 
-GeotiffCrs projected(const Directory& keys) {
+GeotiffCrs projected(const Directory& keys, const GeotiffKeys& records) {
   const std::uint16_t code = keys.code(kProjectedCrs);
   if (code == 0) {
-    return none(fmt::format("its GeoTIFF keys {}{}, which is not read",
-                            keys.user_defined(kProjectedCrs) || keys.has_projection()
-                                ? "define a projected system of their own"
+    const bool own = keys.user_defined(kProjectedCrs) || keys.has_projection();
+    if (own) {
+      if (auto crs = defined(records, CrsKind::kProjected)) return *crs;
+    }
+    return none(fmt::format("its GeoTIFF keys {}{}, which {}",
+                            own ? "define a projected system of their own"
                                 : "tell of a projected system without a code",
-                            keys.citation(kProjectedCitation)));
+                            keys.citation(kProjectedCitation),
+                            own ? "cannot be read" : "is not read"));
   }
   const std::uint16_t unit = keys.number(kProjectedUnit).value_or(0);
   std::optional<CrsKind> known_kind = kind_of_epsg(code);
@@ -229,7 +250,7 @@ GeotiffCrs projected(const Directory& keys) {
       fmt::format("its GeoTIFF keys say {}, but lengths in another unit (EPSG:{})", crs.crs, unit));
 }
 
-GeotiffCrs geodetic(const Directory& keys, CrsKind kind) {
+GeotiffCrs geodetic(const Directory& keys, CrsKind kind, const GeotiffKeys& records) {
   const std::uint16_t code = keys.code(kGeodeticCrs);
   if (keys.code(kProjectedCrs) != 0) {
     return none(
@@ -238,18 +259,21 @@ GeotiffCrs geodetic(const Directory& keys, CrsKind kind) {
                     name_of(kind), epsg(keys.code(kProjectedCrs))));
   }
   if (code != 0) return named(code, kind, kind_of_epsg(code));
+  if (kind == CrsKind::kGeographic && keys.user_defined(kGeodeticCrs)) {
+    if (auto crs = defined(records, kind)) return *crs;
+  }
   return none(fmt::format("its GeoTIFF keys {} a {} system{}, which is not read",
                           keys.user_defined(kGeodeticCrs) ? "define" : "tell without a code of",
                           name_of(kind), keys.citation(kGeodeticCitation)));
 }
 
 /// Where no key says what coordinates are.
-GeotiffCrs without_model(const Directory& keys) {
-  if (keys.code(kProjectedCrs) != 0) return projected(keys);
+GeotiffCrs without_model(const Directory& keys, const GeotiffKeys& records) {
+  if (keys.code(kProjectedCrs) != 0) return projected(keys, records);
   const bool alone =
       !keys.number(kModelType) && !keys.number(kProjectedCrs) && !keys.has_projection();
   const std::uint16_t code = keys.code(kGeodeticCrs);
-  if (code != 0 && alone) return geodetic(keys, CrsKind::kGeographic);
+  if (code != 0 && alone) return geodetic(keys, CrsKind::kGeographic, records);
   if (code != 0) {
     return none(
         fmt::format("its GeoTIFF keys name {}, but not whether coordinates are in it or in "
@@ -264,18 +288,18 @@ GeotiffCrs without_model(const Directory& keys) {
               : GeotiffCrs{};
 }
 
-GeotiffCrs horizontal(const Directory& keys) {
+GeotiffCrs horizontal(const Directory& keys, const GeotiffKeys& records) {
   const std::uint16_t model = keys.number(kModelType).value_or(0);
   switch (model) {
     case kProjectedModel:
-      return projected(keys);
+      return projected(keys, records);
     case kGeographicModel:
-      return geodetic(keys, CrsKind::kGeographic);
+      return geodetic(keys, CrsKind::kGeographic, records);
     case kGeocentricModel:
-      return geodetic(keys, CrsKind::kGeocentric);
+      return geodetic(keys, CrsKind::kGeocentric, records);
     case 0:
     case kGeotiffUserDefined:
-      return without_model(keys);
+      return without_model(keys, records);
     default:
       return none(
           fmt::format("its GeoTIFF keys tell of a kind of system, {}, that does not exist", model));
@@ -284,16 +308,38 @@ GeotiffCrs horizontal(const Directory& keys) {
 
 }  // namespace
 
-GeotiffCrs read_geotiff_keys(std::span<const std::byte> directory, std::string_view text) {
-  const Directory keys(directory, text);
+GeotiffCrs read_geotiff_keys(const GeotiffKeys& records) {
+  const Directory keys(records.directory, records.text);
   if (keys.cut_short()) return none("its GeoTIFF keys are cut short");
-  GeotiffCrs crs = horizontal(keys);
+  GeotiffCrs crs = horizontal(keys, records);
+  if (is_compound_wkt(crs.crs)) return crs;
   if (const std::uint16_t heights = keys.number(kVerticalCrs).value_or(0);
       heights != 0 && crs.note.empty()) {
-    crs.note = fmt::format("its GeoTIFF keys tell a system of heights ({}), which is not read",
-                           keys.user_defined(kVerticalCrs) ? "user-defined" : epsg(heights));
+    crs.has_more = !crs.crs.empty();
+    crs.note = fmt::format(
+        "its GeoTIFF keys tell a system of heights ({}), which {}",
+        keys.user_defined(kVerticalCrs) ? "user-defined" : epsg(heights),
+        crs.has_more ? "is kept by outputs that GDAL writes, and by LAS" : "is not read");
   }
   return crs;
+}
+
+std::string whole_geotiff_crs(const std::string& crs, const GeotiffKeys& keys) {
+  for (const CrsKind kind : {CrsKind::kProjected, CrsKind::kGeographic}) {
+    const std::string whole = gdal().crs_of_geotiff_keys(keys, kind);
+    if (!is_compound_wkt(whole) || !gdal().same_crs(whole, crs)) continue;
+    // With the names that EPSG has, if its codes tell all.
+    const std::string coded =
+        fmt::format("{}+{}", crs, Directory(keys.directory, keys.text).code(kVerticalCrs));
+    const bool is_coded = gdal().crs_kind(coded) != CrsKind::kUnknown;
+    return is_coded && gdal().same_crs(whole, coded) ? gdal().crs_to_wkt(coded) : whole;
+  }
+  return crs;
+}
+
+std::string unreadable_crs(std::string_view text, std::string_view and_so) {
+  return fmt::format("what it tells of its coordinate system cannot be read: {}{}{}", quoted(text),
+                     and_so.empty() ? "" : ", and ", and_so);
 }
 
 std::optional<CrsKind> kind_of_epsg(std::uint16_t code) {

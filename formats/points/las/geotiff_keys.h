@@ -21,13 +21,21 @@ inline constexpr std::uint16_t kGeotiffUserDefined = 32767;
 struct GeotiffCrs {
   std::string crs;   ///< "EPSG:n"; empty if the keys tell none for certain
   std::string note;  ///< why they do not, or what is left out of what they tell; empty: nothing
+  bool has_more = false;  ///< besides `crs` they tell a system of heights: whole_geotiff_crs()
 };
 
-/// Reads a directory of keys and the text that they refer to. Only what is certain is a system:
-/// codes that contradict the model, as EPSG knows them, or the unit are none, and so are codes that
-/// GDAL does not know. It is asked where the codes alone do not tell; where its module is not
+/// Reads keys. Only what is certain is a system: codes that contradict the model, as EPSG knows
+/// them, or the unit are none, and so are codes that GDAL does not know. It is asked where the
+/// codes alone do not tell, and for systems that keys define by parameters; where its module is not
 /// installed, the keys of a projected or geographic system are believed.
-GeotiffCrs read_geotiff_keys(std::span<const std::byte> directory, std::string_view text);
+GeotiffCrs read_geotiff_keys(const GeotiffKeys& keys);
+
+/// `crs`, which read_geotiff_keys() has found, with the system of heights that the keys tell, if
+/// GDAL makes one of them. Throws Error if GDAL is not there.
+std::string whole_geotiff_crs(const std::string& crs, const GeotiffKeys& keys);
+
+/// A note: the text of a coordinate system is none; and what that means, if there is more to say.
+std::string unreadable_crs(std::string_view text, std::string_view and_so);
 
 /// What kind of system a code of EPSG is: known for some ranges, else GDAL is asked; nothing if its
 /// module is not installed.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/bytes/bytes.h"
+#include "formats/gdal/crs_text.h"
 #include "formats/points/las/geotiff_keys.h"
 #include "src/error.h"
 
@@ -166,29 +167,40 @@ Box<3> read_extent(std::span<const std::byte> bytes) {
 class CrsRecords {
  public:
   static bool tells_crs(std::string_view user, std::uint16_t record) {
-    return user == kLasCrsUser && (record == kLasWktRecord || record == kLasGeotiffRecord ||
-                                   record == kLasGeotiffTextRecord);
+    return user == kLasCrsUser &&
+           (record == kLasWktRecord || record == kLasGeotiffRecord ||
+            record == kLasGeotiffNumberRecord || record == kLasGeotiffTextRecord);
   }
 
   /// Keeps what a record tells that tells_crs().
   void take(std::uint16_t record, std::span<const std::byte> content) {
     if (record == kLasWktRecord) wkt_ = clean_text(as_text(content));
-    if (record == kLasGeotiffRecord) keys_.emplace(content.begin(), content.end());
-    if (record == kLasGeotiffTextRecord) text_ = as_text(content);
+    if (record == kLasGeotiffRecord) keys_.directory.assign(content.begin(), content.end());
+    if (record == kLasGeotiffNumberRecord) keys_.numbers.assign(content.begin(), content.end());
+    if (record == kLasGeotiffTextRecord) keys_.text = as_text(content);
   }
 
-  /// Puts what they tell into the header: WKT before keys.
+  /// Puts what they tell into the header: WKT before keys, unless it plainly is none.
   void tell(LasHeader& header) const {
-    if (wkt_.empty() && !keys_) return;
-    GeotiffCrs told = wkt_.empty() ? read_geotiff_keys(*keys_, text_) : GeotiffCrs{wkt_, ""};
+    if (looks_like_crs(wkt_)) {
+      header.crs = wkt_;
+      header.crs_note.clear();
+      header.crs_keys = keys_;
+      return;
+    }
+    if (wkt_.empty() && keys_.empty()) return;
+    GeotiffCrs told = keys_.empty() ? GeotiffCrs{} : read_geotiff_keys(keys_);
     header.crs = std::move(told.crs);
     header.crs_note = std::move(told.note);
+    if (told.has_more) header.crs_keys = keys_;
+    if (wkt_.empty()) return;
+    header.crs_note = unreadable_crs(
+        wkt_, header.crs.empty() ? header.crs_note : "its GeoTIFF keys are taken instead");
   }
 
  private:
   std::string wkt_;
-  std::optional<std::vector<std::byte>> keys_;
-  std::string text_;
+  GeotiffKeys keys_;
 };
 
 /// Reads the variable length records up to the points into `header`.
@@ -399,6 +411,7 @@ PointHeader las_point_header(const LasHeader& las, const std::string& path) {
   if (!las.extent.empty()) header.extent = las.extent;
   header.crs = las.crs;
   header.crs_note = las.crs_note;
+  header.crs_keys = las.crs_keys;
   header.software = las.software;
   header.notices = las.notices;
   header.extra_bytes = las.record_length - kLasRecordLengths.at(las.point_format);

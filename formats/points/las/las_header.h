@@ -50,10 +50,11 @@ inline constexpr std::size_t kLasVlrHeaderSize = 54;
 inline constexpr std::size_t kLasEvlrHeaderSize = 60;  ///< of the records after the points
 
 /// Records that tell the coordinate system: their user, WKT, and a directory of GeoTIFF keys with
-/// the text that keys refer to.
+/// the numbers and the text that keys refer to.
 inline constexpr std::string_view kLasCrsUser = "LASF_Projection";
 inline constexpr std::uint16_t kLasWktRecord = 2112;
 inline constexpr std::uint16_t kLasGeotiffRecord = 34735;
+inline constexpr std::uint16_t kLasGeotiffNumberRecord = 34736;
 inline constexpr std::uint16_t kLasGeotiffTextRecord = 34737;
 
 /// Shortest record of each point format, in bytes; longer ones carry extra bytes at their end.
@@ -76,6 +77,7 @@ struct LasHeader {
   Box<3> extent;                       ///< empty if the header's bounds are not ordered
   std::string crs;                     ///< WKT, or "EPSG:n", or empty
   std::string crs_note;                ///< as PointHeader has it
+  GeotiffKeys crs_keys;                ///< likewise
   std::string software;                ///< generating software
   std::vector<std::string> notices;    ///< as PointHeader has them
   std::uint64_t offset_to_points = 0;  ///< compressed or not

@@ -12,6 +12,7 @@
 #include "src/geometry/box.h"
 #include "stream/library/context/run_watch.h"
 #include "stream/library/meshes/public_values.h"
+#include "stream/source/source_crs.h"
 
 namespace spillway::detail {
 
@@ -47,6 +48,8 @@ class EngineSink {
 
   /// The bytes of a memory limit that it takes for itself.
   [[nodiscard]] virtual std::uint64_t own_memory(std::uint64_t /*limit*/) const { return 0; }
+  /// What it needs of the coordinate system.
+  [[nodiscard]] virtual CrsNeed crs_need() const { return CrsNeed::kNone; }
   /// Whether what it makes ends with a canonical hash.
   [[nodiscard]] virtual bool tells_hash() const { return false; }
   /// By how many of so many threads it can be fed at a time.

@@ -29,6 +29,9 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   MeshFile(const std::string& path, const MeshFileOptions& options, const Context& context);
 
   [[nodiscard]] bool is_product() const override { return false; }
+  [[nodiscard]] CrsNeed crs_need() const override {
+    return target_.format->reads_crs ? CrsNeed::kAll : CrsNeed::kNone;
+  }
   [[nodiscard]] bool tells_hash() const override { return target_.format->has_totals; }
   /// Blocks are written one after the other, and nothing is done before.
   [[nodiscard]] unsigned feeding_threads(unsigned /*threads*/) const override { return 1; }

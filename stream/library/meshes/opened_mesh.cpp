@@ -11,6 +11,7 @@
 #include "formats/meshes/mesh_formats.h"
 #include "src/error.h"
 #include "stream/library/context/context_state.h"
+#include "stream/library/given_crs.h"
 #include "stream/library/meshes/public_values.h"
 #include "stream/library/meshes/whole_mesh.h"
 
@@ -28,6 +29,7 @@ CheckReport count_stream(MeshStreamReader& reader, const CheckOptions& options,
 OpenedMesh::OpenedMesh(std::string path, const MeshOptions& options, const Context& context)
     : path_(std::move(path)),
       format_name_(options.format),
+      crs_choice_{checked_crs(options.crs), options.foreign_crs},
       context_(context),
       input_(context_.state().input(path_)) {
   if (!format_name_.empty()) {

@@ -14,6 +14,7 @@
 #include "src/geometry/box.h"
 #include "stream/checker/checker.h"
 #include "stream/library/context/run_watch.h"
+#include "stream/source/input_crs.h"
 
 namespace spillway::detail {
 
@@ -34,6 +35,8 @@ class OpenedMesh final : public spillway::MeshSource {
   /// Notes that the mesh is being read. Throws Error(kInvalidArgument) if it was before.
   void take();
 
+  /// What the caller says of the coordinate system.
+  [[nodiscard]] const CrsChoice& crs_choice() const { return crs_choice_; }
   [[nodiscard]] const std::string& path() const { return path_; }
   /// The format's name, where that is known without reading.
   [[nodiscard]] const MeshFormat* format() const { return format_; }
@@ -71,6 +74,7 @@ class OpenedMesh final : public spillway::MeshSource {
 
   std::string path_;
   std::string format_name_;
+  CrsChoice crs_choice_;
   const Context context_;
   const std::shared_ptr<ProbedInput> input_;
   const MeshFormat* format_ = nullptr;

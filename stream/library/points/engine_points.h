@@ -9,6 +9,7 @@
 #include "src/geometry/box.h"
 #include "stream/library/context/run_watch.h"
 #include "stream/source/point_stream.h"
+#include "stream/source/source_crs.h"
 
 namespace spillway::detail {
 
@@ -30,6 +31,9 @@ struct RunPoints {
 class EnginePoints {
  public:
   virtual ~EnginePoints() = default;
+
+  /// To be called before begin(): makes RunPoints::crs what an output needs.
+  virtual void settle_crs(CrsNeed /*need*/) {}
 
   /// To be called once, and not beside the program's own reading. What follows is told to `watch`,
   /// which must live as long as points are read, and each point has its index if `index`.

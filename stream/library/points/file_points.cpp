@@ -15,6 +15,7 @@
 #include "src/error.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
+#include "stream/library/given_crs.h"
 #include "stream/library/points/public_points.h"
 
 namespace spillway::detail {
@@ -166,7 +167,7 @@ PointSourceOptions FilePoints::source_options(const PointOptions& options, const
   how.reader.attributes = options.attributes;
   how.reader.resolution = options.resolution;
   how.filter = filter_of(options);
-  how.force_crs = options.foreign_crs;
+  how.crs = {checked_crs(options.crs), options.foreign_crs};
   if (context.options().warning) how.warn = context.options().warning;
   if (context.options().detail) how.detail = context.options().detail;
   // Over ranks the exchange of the points is still to come.
@@ -220,6 +221,8 @@ bool FilePoints::read(std::vector<spillway::Point<3>>& points) {
   points = public_points(input_->lattice(), block.points);
   return true;
 }
+
+void FilePoints::settle_crs(CrsNeed need) { input_->settle_crs(need); }
 
 RunPoints FilePoints::begin(RunWatch& watch, bool index) {
   refuse_taken_points(std::exchange(is_taken_, true));

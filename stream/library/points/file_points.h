@@ -21,6 +21,7 @@ class FilePoints final : public spillway::PointSource, public EnginePoints {
   [[nodiscard]] PointsHeader header() const override;
   bool read(std::vector<spillway::Point<3>>& points) override;
 
+  void settle_crs(CrsNeed need) override;
   RunPoints begin(RunWatch& watch, bool index) override;
 
   [[nodiscard]] detail::PointSource& input() { return *input_; }

@@ -32,6 +32,11 @@ class PointFile final : public spillway::PointSink {
   void write(std::span<const spillway::Point<3>> points) override;
   void finish() override;
 
+  /// What the format needs of the coordinate system. WKT goes into LAS as it is.
+  [[nodiscard]] CrsNeed crs_need() const {
+    return format_.wants_wkt ? CrsNeed::kCodes : CrsNeed::kNone;
+  }
+
   /// Decides how these points are written. Where a lattice is to be chosen and no extent is known,
   /// the first block decides, and the file is created then.
   void start(const RunPoints& points);

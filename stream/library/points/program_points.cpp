@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "src/error.h"
+#include "stream/library/given_crs.h"
 #include "stream/library/points/public_points.h"
 
 namespace spillway::detail {
@@ -16,6 +17,10 @@ ProgramPoints::ProgramPoints(spillway::PointSource& source)
 
 void refuse_taken_points(bool is_taken) {
   if (is_taken) throw InvalidArgument("the points have been read: open them again");
+}
+
+void ProgramPoints::settle_crs(CrsNeed need) {
+  if (need == CrsNeed::kAll) static_cast<void>(checked_crs(header_.crs));
 }
 
 RunPoints ProgramPoints::begin(RunWatch& /*watch*/, bool /*index*/) {

@@ -28,6 +28,7 @@ class ProgramPoints final : public PointStream, public EnginePoints {
   [[nodiscard]] std::uint64_t points_read() const override { return read_; }
   [[nodiscard]] std::optional<double> fraction_read() const override;
 
+  void settle_crs(CrsNeed need) override;
   RunPoints begin(RunWatch& watch, bool index) override;
 
  private:

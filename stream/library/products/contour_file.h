@@ -24,6 +24,7 @@ class ContourFile final : public OwnSink<ContourSink> {
 
   [[nodiscard]] const ContourReport& report() const override { return report_; }
 
+  [[nodiscard]] CrsNeed crs_need() const override { return CrsNeed::kAll; }
   [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override;
   void complete(RunWatch& watch, Report& report) override;
 

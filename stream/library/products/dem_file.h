@@ -23,6 +23,7 @@ class DemFile final : public OwnSink<DemSink> {
 
   [[nodiscard]] const DemReport& report() const override { return report_; }
 
+  [[nodiscard]] CrsNeed crs_need() const override { return CrsNeed::kAll; }
   [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override;
   [[nodiscard]] unsigned feeding_threads(unsigned threads) const override;
   [[nodiscard]] bool wants_extent() const override;

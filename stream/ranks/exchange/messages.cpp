@@ -31,6 +31,9 @@ void pack_header(Packer& message, const PointHeader& header) {
   pack_optional(message, header.extent);
   message.put_list(header.crs);
   message.put_list(header.crs_note);
+  message.put_list(header.crs_keys.directory);
+  message.put_list(header.crs_keys.numbers);
+  message.put_list(header.crs_keys.text);
   message.put_list(header.software);
   message.put(static_cast<std::uint64_t>(header.extra_bytes));
 }
@@ -47,6 +50,9 @@ PointHeader unpack_header(Unpacker& message) {
   header.extent = unpack_optional<Box<3>>(message);
   header.crs = message.take_list<std::string>();
   header.crs_note = message.take_list<std::string>();
+  header.crs_keys.directory = message.take_list<std::vector<std::byte>>();
+  header.crs_keys.numbers = message.take_list<std::vector<std::byte>>();
+  header.crs_keys.text = message.take_list<std::string>();
   header.software = message.take_list<std::string>();
   header.extra_bytes = message.take<std::uint64_t>();
   return header;

@@ -74,6 +74,32 @@ TEST(GdalCrs, UnitsAreInMetres) {
   EXPECT_EQ(gdal().crs_unit("EPSG:4326"), 0);
 }
 
+TEST(GdalCrs, HeightsHaveTheirOwnUnit) {
+  EXPECT_EQ(gdal().crs_units(kUtm).vertical, 0) << "not told";
+  EXPECT_EQ(gdal().crs_units("EPSG:25832+5783").vertical, 1);
+  EXPECT_NEAR(gdal().crs_units("EPSG:26918+6360").vertical, 1200.0 / 3937, 1e-12);
+  EXPECT_EQ(gdal().crs_units("EPSG:26918+6360").horizontal, 1);
+  EXPECT_NEAR(gdal().crs_units("EPSG:2927+5703").horizontal, 1200.0 / 3937, 1e-12);
+}
+
+TEST(GdalCrs, AnglesAreInDegrees) {
+  const CrsUnits units = gdal().crs_units("EPSG:4326");
+  EXPECT_TRUE(units.is_geographic);
+  EXPECT_NEAR(units.horizontal, 1, 1e-12);
+  EXPECT_EQ(units.semi_major, 6378137);
+  EXPECT_NEAR(units.flattening, 1 / 298.257223563, 1e-15);
+  EXPECT_NEAR(gdal().crs_units("EPSG:4807").horizontal, 0.9, 1e-12) << "grads, from Paris";
+  EXPECT_EQ(gdal().crs_units("EPSG:4979").vertical, 1);
+  EXPECT_FALSE(gdal().crs_units(kUtm).is_geographic);
+}
+
+TEST(GdalCrs, LongitudeAndLatitudeFollowFromPlacesOnTheEarthOnly) {
+  for (const char* const crs : {"EPSG:4326", "EPSG:2927", "EPSG:25832+5783", kUtmOfEsri}) {
+    EXPECT_EQ(gdal().why_not_lonlat(crs), "") << crs;
+  }
+  EXPECT_NE(gdal().why_not_lonlat("LOCAL_CS[\"site\",UNIT[\"metre\",1]]"), "");
+}
+
 TEST(GdalCrs, NonsenseIsAnErrorInOneLine) {
   for (const char* const text :
        {"", "nonsense", "EPSG:999999", "PROJCS[\"a\"]", "/etc/passwd", "EPSG:2927+"}) {

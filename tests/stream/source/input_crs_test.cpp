@@ -17,8 +17,9 @@ using ::testing::HasSubstr;
 
 class InputCrsTest : public ::testing::Test {
  protected:
-  std::string common(const std::vector<InputCrs>& inputs, bool force = false) {
-    return common_crs(inputs, force,
+  std::string common(const std::vector<InputCrs>& inputs, bool force = false,
+                     const std::string& given = "") {
+    return common_crs(inputs, {given, force},
                       [this](std::string_view text) { said_ += std::string(text) + "\n"; });
   }
 
@@ -64,6 +65,29 @@ TEST_F(InputCrsTest, DifferentSystemsAreSaidOnceEachWhereTheyAreForced) {
   EXPECT_EQ(said_,
             "warning: b has the coordinate system there, but a has here; coordinates are taken as "
             "they are\n");
+}
+
+TEST_F(InputCrsTest, TheGivenOneIsThatOfInputsThatNameNone) {
+  EXPECT_EQ(common({{"a", ""}, {"b", "", "odd"}, {"c", "here"}}, false, "here"), "here");
+  EXPECT_EQ(said_, "") << "whoever gives it knows";
+}
+
+TEST_F(InputCrsTest, TheGivenOneReplacesOthersOnlyWhereThatIsForced) {
+  const std::vector<InputCrs> inputs = {{"a", ""}, {"b", "there"}, {"c", "there"}};
+  try {
+    common(inputs, false, "here");
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "b has the coordinate system there, but here is given; leave that out, or put it "
+                 "in the place of what files tell");
+    EXPECT_EQ(error.facts().file, "b");
+    EXPECT_EQ(error.facts().remedy, Remedy::kForeignCrs);
+  }
+  EXPECT_EQ(common(inputs, true, "here"), "here");
+  EXPECT_EQ(said_,
+            "warning: b has the coordinate system there; coordinates are taken as they are, to be "
+            "in here\n");
 }
 
 TEST_F(InputCrsTest, ALongTextWithoutANameIsCutInMessages) {

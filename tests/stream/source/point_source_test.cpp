@@ -252,7 +252,7 @@ TEST_F(PointSourceTest, DifferentCoordinateSystemsAreRefusedUnlessForced) {
               AllOf(HasSubstr("here.las"), HasSubstr("there.las"), HasSubstr("32632"),
                     HasSubstr("32633"), HasSubstr("take coordinates as they are")));
   PointSourceOptions options;
-  options.force_crs = true;
+  options.crs.force = true;
   EXPECT_EQ(read({"here.las", "there.las"}, options).points.size(), 18U);
   EXPECT_THAT(warnings_, HasSubstr("warning: there.las has the coordinate system"));
 }

@@ -20,10 +20,14 @@ using ::testing::HasSubstr;
 
 using Keys = std::vector<std::array<std::uint16_t, 4>>;
 
+GeotiffKeys records_of(std::span<const std::byte> directory, const std::string& text = "") {
+  return {.directory = {directory.begin(), directory.end()}, .text = text};
+}
+
 GeotiffCrs crs_of(const Keys& keys, const std::string& text = "") {
   std::vector<std::uint16_t> numbers = {1, 1, 0, static_cast<std::uint16_t>(keys.size())};
   for (const auto& key : keys) numbers.insert(numbers.end(), key.begin(), key.end());
-  return read_geotiff_keys(std::as_bytes(std::span(numbers)), text);
+  return read_geotiff_keys(records_of(std::as_bytes(std::span(numbers)), text));
 }
 
 /// The reason why there is no system.
@@ -144,12 +148,62 @@ TEST(GeotiffKeys, HeightsAreNotedAndDoNotCount) {
   EXPECT_THAT(reason({{4096, 0, 1, 5783}}), HasSubstr("heights"));
 }
 
+/// A transverse Mercator of its own: longitude 9, scale 0.9996, false easting 500000.
+GeotiffKeys own_projection(std::uint16_t heights) {
+  const Keys keys = {{1024, 0, 1, 1},     {2048, 0, 1, 4258},  {3072, 0, 1, 32767},
+                     {3074, 0, 1, 32767}, {3075, 0, 1, 1},     {3076, 0, 1, 9001},
+                     {3080, 34736, 1, 0}, {3081, 34736, 1, 1}, {3082, 34736, 1, 3},
+                     {3083, 34736, 1, 4}, {3092, 34736, 1, 2}, {4096, 0, 1, heights}};
+  std::vector<std::uint16_t> directory = {1, 1, 0, static_cast<std::uint16_t>(keys.size())};
+  for (const auto& key : keys) directory.insert(directory.end(), key.begin(), key.end());
+  GeotiffKeys records = records_of(std::as_bytes(std::span(directory)));
+  const std::array<double, 5> numbers = {9, 0, 0.9996, 500000, 0};
+  const auto bytes = std::as_bytes(std::span(numbers));
+  records.numbers.assign(bytes.begin(), bytes.end());
+  return records;
+}
+
+TEST(GeotiffKeys, ProjectionsOfTheirOwnAreReadByGdal) {
+  if (!with_gdal()) GTEST_SKIP() << "GDAL reads parameters";
+  const GeotiffCrs crs = read_geotiff_keys(own_projection(0));
+  EXPECT_TRUE(gdal().same_crs(crs.crs, "EPSG:25832")) << crs.crs;
+  EXPECT_EQ(crs.note, "");
+  const GeotiffCrs with_heights = read_geotiff_keys(own_projection(5783));
+  EXPECT_TRUE(gdal().same_crs(with_heights.crs, "EPSG:25832+5783")) << with_heights.crs;
+  EXPECT_EQ(with_heights.note, "");
+}
+
+TEST(GeotiffKeys, OfDamagedProjectionsAreNone) {
+  if (!with_gdal()) GTEST_SKIP() << "GDAL reads parameters";
+  GeotiffKeys records = own_projection(0);
+  records.numbers.resize(17);
+  const GeotiffCrs crs = read_geotiff_keys(records);
+  EXPECT_TRUE(crs.crs.empty() || gdal().crs_kind(crs.crs) == CrsKind::kProjected);
+  for (std::size_t i = 8; i < records.directory.size(); ++i) {
+    GeotiffKeys damaged = own_projection(0);
+    damaged.directory[i] ^= std::byte{0xff};
+    const GeotiffCrs read = read_geotiff_keys(damaged);
+    EXPECT_TRUE(read.crs.empty() || gdal().crs_kind(read.crs) != CrsKind::kUnknown) << i;
+  }
+}
+
+TEST(GeotiffKeys, HeightsGoAlongWhereGdalIsAsked) {
+  if (!with_gdal()) GTEST_SKIP() << "GDAL knows systems of heights";
+  const std::vector<std::uint16_t> numbers = {1,    1, 0, 3,     1024, 0, 1, 1,
+                                              3072, 0, 1, 26918, 4096, 0, 1, 6360};
+  const GeotiffKeys records = records_of(std::as_bytes(std::span(numbers)));
+  EXPECT_TRUE(read_geotiff_keys(records).has_more);
+  const std::string whole = whole_geotiff_crs("EPSG:26918", records);
+  EXPECT_TRUE(gdal().same_crs(whole, "EPSG:26918+6360"));
+  EXPECT_THAT(whole, HasSubstr("NAVD88 height (ftUS)"));
+}
+
 TEST(GeotiffKeys, CutShortAreNone) {
   const std::array<std::uint16_t, 8> keys = {1, 1, 0, 2, 3072, 0, 1, 25832};
-  const GeotiffCrs crs = read_geotiff_keys(std::as_bytes(std::span(keys)), "");
+  const GeotiffCrs crs = read_geotiff_keys(records_of(std::as_bytes(std::span(keys))));
   EXPECT_EQ(crs.crs, "");
   EXPECT_THAT(crs.note, HasSubstr("cut short"));
-  EXPECT_THAT(read_geotiff_keys({}, "").note, HasSubstr("cut short"));
+  EXPECT_THAT(read_geotiff_keys({}).note, HasSubstr("cut short"));
 }
 
 TEST(GeotiffKeys, WrittenOnesAreReadAsTheSameSystem) {
@@ -157,7 +211,7 @@ TEST(GeotiffKeys, WrittenOnesAreReadAsTheSameSystem) {
                               std::pair{std::uint16_t{7844}, CrsKind::kGeographic},
                               std::pair{std::uint16_t{4978}, CrsKind::kGeocentric}};
   for (const auto& [code, kind] : systems) {
-    const GeotiffCrs crs = read_geotiff_keys(geotiff_keys_of(code, kind), "");
+    const GeotiffCrs crs = read_geotiff_keys(records_of(geotiff_keys_of(code, kind)));
     EXPECT_EQ(crs.crs, "EPSG:" + std::to_string(code));
     EXPECT_EQ(crs.note, "");
   }

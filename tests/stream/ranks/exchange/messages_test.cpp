@@ -31,6 +31,7 @@ SourceFacts some_facts() {
   full.header.extent->expand(Point<3>{7, 8, 9});
   full.header.crs = "EPSG:25832";
   full.header.crs_note = "a note";
+  full.header.crs_keys = {{std::byte{1}}, {std::byte{2}, std::byte{3}}, "text"};
   full.header.software = "a program";
   full.header.extra_bytes = 5;
   full.pieces = 77;
@@ -63,6 +64,7 @@ TEST(Messages, HoldWhatIsKnownOfTheInputs) {
     EXPECT_EQ(is.header.extent, was.header.extent);
     EXPECT_EQ(is.header.crs, was.header.crs);
     EXPECT_EQ(is.header.crs_note, was.header.crs_note);
+    EXPECT_EQ(is.header.crs_keys, was.header.crs_keys);
     EXPECT_EQ(is.header.software, was.header.software);
     EXPECT_EQ(is.header.extra_bytes, was.header.extra_bytes);
     EXPECT_EQ(is.pieces, was.pieces);

@@ -1,0 +1,13 @@
+#pragma once
+// The coordinate system of GeoTIFF keys, within the module.
+
+#include <string>
+
+#include "formats/gdal/gdal.h"
+
+namespace spillway::detail {
+
+/// What Gdal::crs_of_geotiff_keys() returns.
+std::string crs_of_geotiff_keys(const GeotiffKeys& keys, CrsKind kind);
+
+}  // namespace spillway::detail
