@@ -18,6 +18,9 @@ struct VectorLayerOptions {
   std::string layer;   ///< the layer's name; a shapefile takes it from its path instead
   bool lines = false;  ///< lines with an elevation; else triangles
   std::string crs;     ///< as Gdal takes it; empty: unknown
+  /// Where the driver brings coordinates to longitude and latitude (GeoJSON), and it is not known
+  /// from what: write them as they are, instead of an error.
+  bool as_they_are = false;
   /// Said about the layer where the driver can hold it (GeoPackage); dropped elsewhere.
   std::map<std::string, std::string> metadata;
 };

@@ -17,6 +17,7 @@ struct VectorFormat {
   /// Of the files beside itself that belong to it, with the dot.
   std::span<const std::string_view> part_extensions{};
   bool takes_backslash = true;  ///< in its path
+  bool is_lonlat = false;       ///< holds longitude and latitude in WGS 84, and nothing else
 };
 
 namespace vector_names {
@@ -35,8 +36,11 @@ inline constexpr VectorFormat kShapefile = {.name = "shp",
                                             .extensions = vector_names::kShp,
                                             .part_extensions = vector_names::kShpParts,
                                             .takes_backslash = false};
-inline constexpr VectorFormat kGeoJson = {
-    .name = "geojson", .title = "GeoJSON", .driver = "GeoJSON", .extensions = vector_names::kJson};
+inline constexpr VectorFormat kGeoJson = {.name = "geojson",
+                                          .title = "GeoJSON",
+                                          .driver = "GeoJSON",
+                                          .extensions = vector_names::kJson,
+                                          .is_lonlat = true};
 
 /// All of them.
 std::span<const VectorFormat* const> vector_formats();

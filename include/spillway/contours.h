@@ -15,9 +15,12 @@ namespace spillway {
 
 /// Which lines are drawn. Either `interval` is above 0, or there are levels.
 struct ContourOptions {
-  double interval = 0;               ///< height between two lines
-  double base = 0;                   ///< a height that intervals are counted from
-  std::vector<double> levels{};      ///< heights of lines
+  double interval = 0;           ///< height between two lines
+  double base = 0;               ///< a height that intervals are counted from
+  std::vector<double> levels{};  ///< heights of lines
+  /// GeoJSON holds longitude and latitude: where it is not known how to get them, write coordinates
+  /// as they are, with a warning, instead of an error.
+  bool foreign_crs = false;
   std::optional<double> max_edge{};  ///< of a mesh, leave out triangles with a longer edge
 };
 

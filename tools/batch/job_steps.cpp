@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "formats/meshes/mesh_formats.h"
+#include "formats/vectors/vector_formats.h"
 #include "tools/options/input_options.h"
 #include "tools/report/usage_error.h"
 
@@ -73,6 +74,8 @@ OutputKind kind_by_name(const Job& job, const std::string& name) {
                     job.name, name, fmt::join(names, ", ")));
   }
   OutputKind kind{std::string(product->subcommand), {}};
+  const VectorFormat* const format = vector_format_of_path("x." + name);
+  kind.is_lonlat = format != nullptr && format->is_lonlat;
   if (!product->option.empty()) {
     kind.arguments = {std::string(product->option), std::string(product->value)};
   }
@@ -222,7 +225,8 @@ JobOptions JobPlanner::options_of_step(const Job& job, const OutputKind& kind, b
 }
 
 /// Whether an option of a job has an effect on this step. What triangulate has concerns the points,
-/// and is nothing for a step that begins with a mesh, but that --force-crs is about --like, too.
+/// and is nothing for a step that begins with a mesh, but that --force-crs is about --like and
+/// GeoJSON, too.
 /// Where a job makes a raster, --bounds and --resolution are the raster's, whatever else it makes:
 /// they do not change the triangulation then.
 bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_points,
@@ -230,6 +234,7 @@ bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_po
   const std::string& subcommand = kind.subcommand;
   if (name == kClip) return of_points && makes_raster(job);
   if (!has_option(subcommand, name)) return false;
+  if (name == "force-crs" && kind.is_lonlat) return true;
   if (subcommand == "dem") {
     const std::string products = products_of(kind, job);
     if (name == "product") return kind.arguments.empty();

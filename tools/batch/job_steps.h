@@ -12,6 +12,7 @@ namespace spillway::detail {
 struct OutputKind {
   std::string subcommand;
   std::vector<std::string> arguments;
+  bool is_lonlat = false;  ///< longitude and latitude, which --force-crs permits to be others
 };
 
 /// One run of a subcommand within a job.

@@ -37,6 +37,7 @@ spillway::ContourOptions contour_options(const ContourCommandOptions& options) {
   spillway::ContourOptions contours;
   contours.levels = options.levels;
   contours.max_edge = max_edge(options);
+  contours.foreign_crs = options.input.force_crs;
   if (!options.levels.empty()) {
     refuse_given(*options.app, {"--interval", "--base"}, "with --levels, which names all heights");
     return contours;
@@ -87,7 +88,13 @@ Subcommand add_contour(CommandLine& root) {
   app.set_footer(kExamples);
   app.add_option("-o,--output", options->output, "Vector file: " + vector_extensions(false))
       .required()
-      .value_name("FILE");
+      .value_name("FILE")
+      // It also permits longitude and latitude to be something else.
+      .each([options = options.get()](const std::string& path) {
+        const VectorFormat* const format = vector_format_of_path(path);
+        if (format != nullptr && format->is_lonlat)
+          options->own_options.emplace_back("--force-crs");
+      });
   take_positive_number(app.add_option("--interval", options->interval, "Height between two lines"))
       .value_name("H");
   take_number(app.add_option("--base", options->base, "A height that intervals are counted from"))

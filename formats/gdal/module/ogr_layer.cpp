@@ -7,9 +7,12 @@
 
 #include <cctype>
 #include <cerrno>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "formats/gdal/module/crs.h"
 #include "formats/gdal/module/gdal_errors.h"
@@ -83,6 +86,7 @@ class OgrLayer : public VectorLayer {
 
   void add_line(std::span<const WorldPoint> points, double elevation) override {
     take_space(points.size());
+    if (is_lonlat_) check_lonlat(points);
     OGRLineString line;
     line.setNumPoints(static_cast<int>(points.size()), FALSE);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -102,9 +106,20 @@ class OgrLayer : public VectorLayer {
  private:
   void create_layer(const VectorLayerOptions& options) {
     OGRSpatialReference crs;
-    if (!options.crs.empty()) crs = parse_crs(options.crs);
-    layer_ = file_->CreateLayer(options.layer.c_str(), options.crs.empty() ? nullptr : &crs,
-                                options.lines ? wkbLineString25D : wkbPolygon25D, nullptr);
+    std::vector<const char*> how = {nullptr};
+    bool has_crs = !options.crs.empty();
+    if (has_crs) crs = parse_crs(options.crs);
+    if (is_json_) {
+      // The driver brings coordinates to longitude and latitude, and leaves heights as they are if
+      // their system is not known to it.
+      crs = horizontal_part(crs);
+      is_lonlat_ = !options.as_they_are && crs.IsGeographic() != 0;
+      has_crs = has_crs && !options.as_they_are;
+      if (!options.as_they_are) how.insert(how.begin(), "RFC7946=YES");
+    }
+    layer_ = file_->CreateLayer(options.layer.c_str(), has_crs ? &crs : nullptr,
+                                options.lines ? wkbLineString25D : wkbPolygon25D,
+                                const_cast<char**>(how.data()));
     if (layer_ == nullptr) fail(gdal_reason());
     if (options.lines) {
       OGRFieldDefn field(kElevation, OFTReal);
@@ -132,7 +147,11 @@ class OgrLayer : public VectorLayer {
     OGRFeature feature(layer_->GetLayerDefn());
     feature.SetGeometry(&geometry);
     if (elevation != nullptr) feature.SetField(0, *elevation);
-    if (layer_->CreateFeature(&feature) != OGRERR_NONE) fail(gdal_reason());
+    if (layer_->CreateFeature(&feature) != OGRERR_NONE) {
+      // GDAL's driver for GeoJSON refuses nothing but places.
+      if (is_json_) fail_for_place(gdal_reason());
+      fail(gdal_reason());
+    }
     ++features_;
     // GDAL's driver for GeoJSON does not notice that its writes fail.
     if (is_json_ && features_ % kFeaturesPerLook == 0 && disk_is_full(path_)) {
@@ -144,6 +163,22 @@ class OgrLayer : public VectorLayer {
     }
   }
 
+  /// What the driver does not transform, it does not look at either.
+  void check_lonlat(std::span<const WorldPoint> points) const {
+    for (const WorldPoint& point : points) {
+      if (std::abs(point[0]) <= 180 && std::abs(point[1]) <= 90) continue;
+      fail_for_place(fmt::format("{:.15g}, {:.15g}", point[0], point[1]));
+    }
+  }
+
+  [[noreturn]] void fail_for_place(const std::string& reason) const {
+    throw CannotWrite(name_,
+                      fmt::format("coordinates do not become longitude and latitude ({}), as if "
+                                  "their coordinate system were another one",
+                                  reason),
+                      ErrorCode::kBadInput, at_record(features_), Remedy::kWrongCrs);
+  }
+
   /// Because of the system, as far as GDAL tells: it gives a text and no number.
   [[noreturn]] void fail(const std::string& what, int system_error = 0) const {
     throw SystemRefusal(fmt::format("cannot write {}: {}", name_, what), name_, system_error);
@@ -153,6 +188,7 @@ class OgrLayer : public VectorLayer {
   std::string path_;
   bool is_shapefile_;
   bool is_json_;
+  bool is_lonlat_ = false;  ///< coordinates have to be longitude and latitude as they come
   GDALDatasetUniquePtr file_;
   OGRLayer* layer_ = nullptr;  // owned by file_
   bool in_transaction_ = false;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "formats/disk/output_check.h"
+#include "formats/gdal/gdal.h"
 #include "formats/vectors/vector_formats.h"
 #include "stream/library/context/context_state.h"
 
@@ -52,6 +53,7 @@ BlockSink& ContourFile::open(const MeshStart& start) {
   layer.path = path_;
   layer.lines = true;
   layer.crs = start.header.crs;
+  layer.as_they_are = keeps_coordinates(start);
   file_.emplace(format_, std::move(layer));
   return writer_.emplace(
       ContourOptions{.levels = levels_,
@@ -59,6 +61,30 @@ BlockSink& ContourFile::open(const MeshStart& start) {
                      .max_edge = start.is_triangulated ? std::nullopt : options_.max_edge,
                      .memory = own_memory(context().memory())},
       [this](std::span<const Point<2>> points, double height) { add(points, height); }, *scratch_);
+}
+
+/// Whether coordinates are written as they are, though they are to be longitude and latitude.
+/// Throws Error if that is so, and not agreed to.
+bool ContourFile::keeps_coordinates(const MeshStart& start) const {
+  if (!format_.is_lonlat) return false;
+  const std::string& crs = start.header.crs;
+  std::string reason = fmt::format("{} names no coordinate system to find them by", start.name);
+  if (!crs.empty()) {
+    reason = gdal().why_not_lonlat(crs);
+    if (reason.empty()) return false;
+    reason = fmt::format("that of {}, {}, does not tell them: {}", start.name, gdal().crs_name(crs),
+                         reason);
+  }
+  const std::string what =
+      fmt::format("{} holds longitude and latitude in WGS 84, and {}", format_.title, reason);
+  if (!options_.foreign_crs) {
+    throw Error(what, ErrorCode::kBadInput, {.file = start.name, .remedy = Remedy::kUnknownCrs});
+  }
+  if (context().options().warning) {
+    context().options().warning(
+        fmt::format("warning: {}; coordinates are written as they are", what));
+  }
+  return true;
 }
 
 void ContourFile::add(std::span<const Point<2>> points, double height) {

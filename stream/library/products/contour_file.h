@@ -31,6 +31,7 @@ class ContourFile final : public OwnSink<ContourSink> {
  private:
   BlockSink& open(const MeshStart& start) override;
 
+  [[nodiscard]] bool keeps_coordinates(const MeshStart& start) const;
   void add(std::span<const Point<2>> points, double height);
 
   std::string path_;

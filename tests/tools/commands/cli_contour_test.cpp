@@ -39,7 +39,7 @@ class Contour : public ::testing::Test {
 
 TEST_F(Contour, DrawsClosedRingsWithTheirElevation) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
-  space.succeed("spillway contour cone.txt -o c.geojson --interval 5 --base 2.5");
+  space.succeed("spillway contour cone.txt -o c.geojson --force-crs --interval 5 --base 2.5");
   int rings = 0;
   for (const nlohmann::json& line : features(space, "c.geojson")) {
     const auto& points = line["geometry"]["coordinates"];
@@ -59,10 +59,10 @@ TEST_F(Contour, DrawsTheSameOfPointsMeshesAndStreams) {
   space.succeed(
       "spillway triangulate cone.txt -o cone.ply && spillway triangulate cone.txt -o cone.spm "
       "--tile 100");
-  space.succeed("spillway contour cone.txt -o points.geojson --levels 3,9.5");
-  space.succeed("spillway contour cone.ply -o mesh.geojson --levels 3,9.5");
-  space.succeed("spillway contour cone.spm -o stream.geojson --levels 3,9.5");
-  space.succeed("spillway contour - -o pipe.geojson --levels 3,9.5 < cone.spm");
+  space.succeed("spillway contour cone.txt -o points.geojson --force-crs --levels 3,9.5");
+  space.succeed("spillway contour cone.ply -o mesh.geojson --force-crs --levels 3,9.5");
+  space.succeed("spillway contour cone.spm -o stream.geojson --force-crs --levels 3,9.5");
+  space.succeed("spillway contour - -o pipe.geojson --force-crs --levels 3,9.5 < cone.spm");
   const auto lines = [&](const std::string& name) {
     std::multiset<std::string> set;
     for (const nlohmann::json& line : features(space, name)) set.insert(line["geometry"].dump());
@@ -92,7 +92,8 @@ std::string whole_heights(unsigned seed) {
 TEST_F(Contour, ThatMeetThemselvesDependOnNoTilesThreadsAndOrders) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   const auto lines = [&](const std::string& input, const std::string& options) {
-    space.succeed("spillway contour -q " + input + " -o c.geojson --interval 1 " + options);
+    space.succeed("spillway contour -q " + input + " -o c.geojson --force-crs --interval 1 " +
+                  options);
     std::multiset<std::string> set;
     for (const nlohmann::json& line : features(space, "c.geojson")) set.insert(line.dump());
     return set;
@@ -125,19 +126,21 @@ TEST_F(Contour, WritesGeoPackagesAndShapefiles) {
 
 TEST_F(Contour, DropsNothingSilently) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
-  const Result result =
-      space.run("spillway contour cone.txt -o c.geojson --interval 5 --max-edge 1 --stats s.json");
+  const Result result = space.run(
+      "spillway contour cone.txt -o c.geojson --force-crs --interval 5 --max-edge 1 --stats "
+      "s.json");
   EXPECT_NE(result.exit_code, 0);  // every triangle has a diagonal
   EXPECT_THAT(result.err, HasSubstr("nothing is left"));
   EXPECT_FALSE(space.has("c.geojson"));
-  space.succeed("spillway contour cone.txt -o c.geojson --interval 5 --stats s.json");
+  space.succeed("spillway contour cone.txt -o c.geojson --force-crs --interval 5 --stats s.json");
   const auto stats = nlohmann::json::parse(space.read("s.json"));
   EXPECT_EQ(stats["contours"]["lines"], features(space, "c.geojson").size());
 }
 
 TEST_F(Contour, NoLinesAreAWarningWithQuietToo) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
-  const Result result = space.run("spillway contour -q cone.txt -o c.json --levels 1e6");
+  const Result result =
+      space.run("spillway contour -q cone.txt -o c.json --force-crs --levels 1e6");
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.err, HasSubstr("warning: no lines: no level lies within the heights"));
   EXPECT_EQ(features(space, "c.json").size(), 0U);
@@ -172,6 +175,62 @@ TEST_F(Contour, RefusesAMeshOfTetrahedra) {
   const Result result = space.run("spillway contour m.spm -o c.gpkg --interval 1");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.err, HasSubstr("tetrahedra"));
+}
+
+/// Four points around a place of zone 32 at about 10.27 degrees east, 45.14 north.
+constexpr const char* kUtmPoints =
+    "600000 5000000 1\n600010 5000000 2\n600000 5000010 3\n600010 5000010 4\n";
+
+TEST_F(Contour, GeoJsonIsLongitudeAndLatitude) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  space.write("utm.xyz", kUtmPoints);
+  space.succeed("spillway contour -q utm.xyz -o c.geojson --levels 1.5 --crs EPSG:32632");
+  const nlohmann::json lines = features(space, "c.geojson");
+  ASSERT_EQ(lines.size(), 1U);
+  for (const auto& point : lines[0]["geometry"]["coordinates"]) {
+    EXPECT_NEAR(point[0].get<double>(), 10.2721, 1e-3);
+    EXPECT_NEAR(point[1].get<double>(), 45.1464, 1e-3);
+    EXPECT_EQ(point[2], 1.5);
+  }
+  EXPECT_FALSE(nlohmann::json::parse(space.read("c.geojson")).contains("crs"));
+  // As a mesh that tells its system.
+  space.succeed("spillway triangulate -q utm.xyz -o utm.spm --crs EPSG:32632");
+  space.succeed("spillway contour -q utm.spm -o mesh.geojson --levels 1.5");
+  EXPECT_EQ(features(space, "mesh.geojson"), lines);
+}
+
+TEST_F(Contour, GeoJsonOfUnknownCoordinatesIsRefusedBeforeWork) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  space.write("utm.xyz", kUtmPoints);
+  space.succeed("spillway triangulate -q utm.xyz -o utm.spm");
+  const std::string local = " --crs 'LOCAL_CS[\"site\",UNIT[\"metre\",1]]'";
+  for (const std::string input : {"utm.xyz", "utm.spm"}) {
+    for (const std::string& crs : {std::string(), local}) {
+      const std::string run = "spillway contour -o c.geojson --levels 1.5 " + input + crs;
+      const Result result = space.run(run);
+      EXPECT_EQ(result.exit_code, 1);
+      EXPECT_THAT(result.err, HasSubstr("GeoJSON holds longitude and latitude in WGS 84, and"));
+      EXPECT_THAT(result.err, HasSubstr(input));
+      EXPECT_THAT(result.err, HasSubstr("with --crs, or write them as they are with --force-crs"));
+      EXPECT_EQ(result.err.find("read:"), std::string::npos);
+      const Result forced = space.run(run + " --force-crs");
+      EXPECT_EQ(forced.exit_code, 0) << forced.err;
+      EXPECT_THAT(forced.err, HasSubstr("coordinates are written as they are"));
+      const auto point = features(space, "c.geojson")[0]["geometry"]["coordinates"][0];
+      EXPECT_GE(point[0].get<double>(), 600000);
+    }
+  }
+}
+
+TEST_F(Contour, GeoJsonRefusesDegreesThatAreNone) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  space.write("utm.xyz", kUtmPoints);
+  const Result result =
+      space.run("spillway contour utm.xyz -o c.geojson --levels 1.5 --crs EPSG:4326");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("do not become longitude and latitude"));
+  EXPECT_THAT(result.err, HasSubstr("name the right coordinate system with --crs and --force-crs"));
+  EXPECT_FALSE(space.has("c.geojson"));
 }
 
 }  // namespace

@@ -201,7 +201,7 @@ TEST(Lattices, OfMeshesAreChecked) {
   for (const std::string mesh : {"m.obj", "m.sma"}) {
     for (const std::string& command :
          {"info -q " + mesh, "check -q " + mesh, "dem -q " + mesh + " --resolution 1 -o out.tif",
-          "contour -q " + mesh + " --interval 1 -o out.geojson",
+          "contour -q " + mesh + " --interval 1 --force-crs -o out.geojson",
           "convert -q " + mesh + " -o out.ply"}) {
       expect_error(work, "spillway " + command,
                    AllOf(HasSubstr(mesh), HasSubstr("x is an integer times 0.01")));

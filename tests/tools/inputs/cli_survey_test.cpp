@@ -154,8 +154,9 @@ TEST_F(Survey, PipesAmongFilesAreReadInTheirTurn) {
 TEST_F(Survey, ContoursAreThoseOfAllPoints) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   work_.succeed(
-      "spillway contour t_*.las -q --tile 2000 --interval 5 -o early.geojson --stats stats.json && "
-      "spillway contour t_*.las -q --distrust-headers --interval 5 -o late.geojson");
+      "spillway contour t_*.las -q --tile 2000 --interval 5 -o early.geojson --force-crs --stats "
+      "stats.json && "
+      "spillway contour t_*.las -q --distrust-headers --interval 5 -o late.geojson --force-crs");
   EXPECT_TRUE(is_early(nlohmann::json::parse(work_.read("stats.json"))));
   const auto lines = [&](const std::string& name) {
     std::vector<std::string> all;

@@ -39,7 +39,7 @@ TEST(ClosedDescriptors, GetIntoNoOutputOfOtherSubcommands) {
   work.succeed("spillway generate -q terrain -n 3000 -o in.las");
   const std::string commands =
       "spillway convert in.las -o points.txt CLOSED && "
-      "spillway contour in.las --interval 20 -o lines.geojson CLOSED && "
+      "spillway contour in.las --interval 20 -o lines.geojson --force-crs CLOSED && "
       "spillway dem in.las --resolution 20 -o dem.tif --stats stats.json CLOSED && "
       "spillway batch in.las --output-dir out --to ply CLOSED";
   const auto results = [&](const std::string& closed) {

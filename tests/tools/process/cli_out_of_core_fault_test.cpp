@@ -142,8 +142,8 @@ std::string size_after(const std::string& message, const std::string& words) {
 
 TEST_F(OutOfCoreFault, TheLeastMemoryIsNamedWithWhatOutputsTakeThemselves) {
   generate("in.las", 3000);
-  for (const std::string command :
-       {"contour in.las -o c.geojson --interval 5", "render --dim 3 in.las -o p.png --size 100"}) {
+  for (const std::string command : {"contour in.las -o c.geojson --interval 5 --force-crs",
+                                    "render --dim 3 in.las -o p.png --size 100"}) {
     const std::string limited = "spillway " + command + " -q --memory ";
     const std::string message = work_.run(limited + (command[0] == 'c' ? "20M" : "96M")).err;
     EXPECT_THAT(message, HasSubstr("MiB are the least"));

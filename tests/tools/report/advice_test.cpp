@@ -43,7 +43,8 @@ TEST(Advice, IsAnotherForEachRemedy) {
        {Remedy::kNone, Remedy::kMemory, Remedy::kScratchFolder, Remedy::kScratchLimit,
         Remedy::kRasterSize, Remedy::kRasterMemory, Remedy::kPlane, Remedy::kFilters,
         Remedy::kForeignCrs, Remedy::kOneFile, Remedy::kLas14, Remedy::kRanks,
-        Remedy::kRasterExtent, Remedy::kPointLattice}) {
+        Remedy::kRasterExtent, Remedy::kPointLattice, Remedy::kDistrustHeaders, Remedy::kUnknownCrs,
+        Remedy::kWrongCrs, Remedy::kGroundScale}) {
     EXPECT_TRUE(texts.insert(advice({.remedy = remedy})).second);
   }
 }

@@ -128,7 +128,8 @@ TEST_F(ProgressOfTheCommand, TerrainIsReadAndDrawnInPhases) {
     EXPECT_EQ(render, expected) << name;
     if (name != "- < in.spm") {
       std::erase(expected, extent);
-      const Phases contour = phases("contour --stats run.json --interval 5 -o a.geojson " + name);
+      const Phases contour =
+          phases("contour --stats run.json --interval 5 --force-crs -o a.geojson " + name);
       expected.back() = {"write", figure("/contours/lines"), "lines"};
       EXPECT_EQ(contour, expected) << name;
     }

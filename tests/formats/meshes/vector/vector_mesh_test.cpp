@@ -213,21 +213,56 @@ TEST(VectorMesh, OnlyTrianglesAreRead) {
               HasSubstr("feature 1: it is a LINESTRING, and only triangles are read"));
 }
 
-TEST(VectorMesh, ContoursAsGeoJsonHaveTheirElevation) {
-  TestFolder folder;
+VectorLayerOptions lines_as_json(const TestFolder& folder, const std::string& crs) {
   VectorLayerOptions options;
   options.path = options.name = folder.file("contours.geojson");
   options.driver = "GeoJSON";
   options.layer = "contours";
   options.lines = true;
-  options.crs = "EPSG:32632";
+  options.crs = crs;
+  return options;
+}
+
+TEST(VectorMesh, ContoursAsGeoJsonAreLongitudeAndLatitudeWithTheirHeight) {
+  TestFolder folder;
+  // In feet as heights are: these stay what they are.
+  const VectorLayerOptions options = lines_as_json(folder, "EPSG:32632+6360");
   const auto layer = gdal().create_layer(options);
-  layer->add_line(std::vector<WorldPoint>{{0, 0, 2.5}, {1, 0, 2.5}}, 2.5);
+  layer->add_line(std::vector<WorldPoint>{{500000, 0, 2.5}, {500000, 1000, 2.5}}, 2.5);
   layer->finish();
   const nlohmann::json json = nlohmann::json::parse(content_of(options.path));
   EXPECT_EQ(json["features"][0]["properties"]["elevation"], 2.5);
-  EXPECT_EQ(json["features"][0]["geometry"]["coordinates"][1], nlohmann::json({1.0, 0.0, 2.5}));
-  EXPECT_THAT(json["crs"].dump(), HasSubstr("32632"));
+  const auto& points = json["features"][0]["geometry"]["coordinates"];
+  EXPECT_EQ(points[0], nlohmann::json({9.0, 0.0, 2.5}));
+  EXPECT_NEAR(points[1][1].get<double>(), 0.0090471, 1e-6);
+  EXPECT_EQ(points[1][2], 2.5);
+  EXPECT_FALSE(json.contains("crs")) << "RFC 7946 has none";
+}
+
+TEST(VectorMesh, ContoursAsGeoJsonMayBeAsTheyAre) {
+  TestFolder folder;
+  VectorLayerOptions options = lines_as_json(folder, "");
+  options.as_they_are = true;
+  const auto layer = gdal().create_layer(options);
+  layer->add_line(std::vector<WorldPoint>{{500000, 0, 2.5}, {500000.25, 1000, 2.5}}, 2.5);
+  layer->finish();
+  const nlohmann::json json = nlohmann::json::parse(content_of(options.path));
+  EXPECT_EQ(json["features"][0]["geometry"]["coordinates"][1],
+            nlohmann::json({500000.25, 1000.0, 2.5}));
+  EXPECT_FALSE(json.contains("crs"));
+}
+
+TEST(VectorMesh, GeoJsonRefusesWhatIsNoPlaceOnTheEarth) {
+  TestFolder folder;
+  for (const char* const crs : {"EPSG:4326", "EPSG:4269", "EPSG:32632"}) {
+    const VectorLayerOptions options = lines_as_json(folder, crs);
+    std::filesystem::remove(options.path);
+    const auto layer = gdal().create_layer(options);
+    const std::vector<WorldPoint> far = {{1e9, 5e9, 1}, {2e9, 5e9, 1}};
+    EXPECT_THAT(error_of([&] { layer->add_line(far, 1); }),
+                HasSubstr("do not become longitude and latitude"))
+        << crs;
+  }
 }
 
 }  // namespace

@@ -187,12 +187,12 @@ TEST_F(Products, ADemIsTheSameOfPointsOfAMeshAndByAProgram) {
 TEST_F(Products, ContoursTellTheirLinesAndTheHeights) {
   const auto points = ramp();
   const auto source = points_in_memory(points);
-  const auto contours = create_contours(file("lines.geojson"), {.interval = 2.5}, context_);
+  const auto contours = create_contours(file("lines.gpkg"), {.interval = 2.5}, context_);
   const Report report = triangulate(*source, *contours, {}, context_);
   EXPECT_EQ(contours->report().lines, 4U) << "at 2.5, 5, 7.5 and, along the edge, 10";
   EXPECT_EQ(contours->report().lowest, 0);
   EXPECT_EQ(contours->report().highest, 10);
-  EXPECT_EQ(report.output_bytes, fs::file_size(file("lines.geojson")));
+  EXPECT_EQ(report.output_bytes, fs::file_size(file("lines.gpkg")));
 }
 
 TEST_F(Products, ATerrainHasHeightsAndTriangles) {
