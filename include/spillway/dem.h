@@ -28,9 +28,12 @@ struct DemOptions {
   bool many_pixels = false;  ///< cover all vertices, though some may lie far away
   /// A raster whose pixels are taken over, instead of the four members above.
   std::string like{};
-  bool foreign_crs = false;          ///< though it has another coordinate system
-  double azimuth = 315;              ///< of a hillshade's light, in degrees from north
-  double altitude = 45;              ///< its height above the horizon, in degrees
+  bool foreign_crs = false;  ///< though it has another coordinate system
+  double azimuth = 315;      ///< of a hillshade's light, in degrees from north
+  double altitude = 45;      ///< its height above the horizon, in degrees
+  /// Of slope, aspect and hillshade: what heights are multiplied by, to have the unit of x and y.
+  /// Nothing: by what the coordinate system tells of its units.
+  std::optional<double> z_factor{};
   std::optional<double> max_edge{};  ///< of a mesh, leave out triangles with a longer edge
   float nodata = -9999;
   std::string compression = "deflate";  ///< or "zstd", "none"

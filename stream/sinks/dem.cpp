@@ -250,10 +250,22 @@ void Dem::paint_pixels(const Triangle& canonical, const PixelWindow& window, Wor
   const Point<2> scale =
       on_lattice_ ? Point<2>{lattice_->scale[0], lattice_->scale[1]} : Point<2>{1, 1};
   const TrianglePlane plane(canonical, scale);
+  const Gradient gradient = on_ground(plane, canonical);
   for (std::size_t b = 0; b < work.values.size(); ++b) {
-    work.values[b] = value_of(options_.products[b], plane.gradient(), light_direction_);
+    work.values[b] = value_of(options_.products[b], gradient, light_direction_);
   }
   for (const PixelRun& run : work.runs) paint_run(run, plane, work);
+}
+
+/// A degree has the length that it has at the first corner, so that it is the same in all pixels of
+/// the triangle and in all rasters.
+Gradient Dem::on_ground(const TrianglePlane& plane, const Triangle& canonical) const {
+  const Gradient gradient = plane.gradient();
+  const GroundScale& ground = options_.ground;
+  if (ground.changes_nothing()) return gradient;
+  const double y = canonical[0][1];
+  const Point<2> lengths = lengths_at(ground, on_lattice_ ? lattice_->to_world(1, y) : y);
+  return {gradient[0] * ground.height / lengths[0], gradient[1] * ground.height / lengths[1]};
 }
 
 void Dem::paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work) {

@@ -17,6 +17,7 @@
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 #include "src/terrain/grid_choice.h"
+#include "src/terrain/ground_scale.h"
 #include "src/terrain/pixel_centres.h"
 #include "src/terrain/pixel_values.h"
 #include "stream/sinks/raster_store.h"
@@ -27,6 +28,7 @@ struct DemOptions {
   std::vector<DemProduct> products{DemProduct::kHeight};  ///< the bands
   GridRequest grid{};
   Light light{};
+  GroundScale ground{};              ///< of slope, aspect and hillshade
   std::optional<double> max_edge{};  ///< leave out triangles with a longer edge, in output units
   float nodata = -9999;
   std::uint64_t memory = 0;  ///< for pixels; above it they go to the disk
@@ -101,6 +103,7 @@ class Dem {
   [[nodiscard]] PlacedPoint placed(const LatticePoint& vertex) const;
   [[nodiscard]] Triangle in_output(const Triangle& placed) const;
   void paint_pixels(const Triangle& canonical, const PixelWindow& window, Work& work);
+  [[nodiscard]] Gradient on_ground(const TrianglePlane& plane, const Triangle& canonical) const;
   void paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work);
   void paint_large(const Triangle& canonical, const PixelWindow& whole);
   void finish_tile(std::uint64_t number, std::span<const std::vector<std::byte>> others,

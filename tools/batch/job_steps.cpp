@@ -241,6 +241,11 @@ bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_po
     if (name == "azimuth" || name == "altitude") {
       return products.find("hillshade") != std::string::npos;
     }
+    if (name == "z-factor") {
+      return std::ranges::any_of(std::array{"slope", "aspect", "hillshade"}, [&](const char* one) {
+        return products.find(one) != std::string::npos;
+      });
+    }
     if (name == "force-crs" && job.options.contains("like")) return true;
     if (products == "density" && (name == "max-edge" || name == "duplicates")) return false;
   }

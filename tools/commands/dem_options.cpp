@@ -23,6 +23,14 @@ double parse_resolution(const std::string& text) {
   return *resolution;
 }
 
+double parse_factor(const std::string& text) {
+  const auto factor = parse_number(text);
+  if (!factor || !(*factor > 0) || std::isinf(*factor)) {
+    throw UsageError(fmt::format("\"{}\" is not a factor; give a number above 0", text));
+  }
+  return *factor;
+}
+
 float parse_nodata(const std::string& text) {
   if (text == "nan" || text == "NaN") return std::numeric_limits<float>::quiet_NaN();
   const auto value = parse_number(text);
@@ -56,6 +64,9 @@ void check_products(const CommandLine& app, const std::vector<DemProduct>& produ
   };
   if (!has(DemProduct::kHillshade)) {
     refuse_given(app, {"--azimuth", "--altitude"}, "without hillshade among the products");
+  }
+  if (!has(DemProduct::kSlope) && !has(DemProduct::kAspect) && !has(DemProduct::kHillshade)) {
+    refuse_given(app, {"--z-factor"}, "without slope, aspect or hillshade among the products");
   }
   if (products == std::vector{DemProduct::kDensity}) {
     refuse_given(app, {"--duplicates", "--max-edge"}, "on density, which counts vertices");
@@ -121,6 +132,11 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
       .value_name("DEGREES")
       .show_default()
       .group(group);
+  take_parsed(app.add_option("--z-factor", options.z_factor,
+                             "Multiply heights by this for slope, aspect and hillshade [by units]"),
+              parse_factor)
+      .value_name("F")
+      .group(group);
   take_parsed(app.add_option("--nodata", options.nodata, "Value of pixels without data"),
               parse_nodata)
       .value_name("V")
@@ -157,6 +173,7 @@ spillway::DemOptions dem_options(const DemCommandOptions& options) {
   check_products(*options.app, dem.products);
   dem.azimuth = options.azimuth;
   dem.altitude = options.altitude;
+  if (!options.z_factor.empty()) dem.z_factor = parse_factor(options.z_factor);
   dem.max_edge = max_edge(options);
   dem.nodata = parse_nodata(options.nodata);
   dem.compression = options.compression;

@@ -22,6 +22,7 @@ struct DemCommandOptions : TerrainOptions {
   bool cloud_optimized = false;
   double azimuth = 315;
   double altitude = 45;
+  std::string z_factor;
 };
 
 void add_dem_options(CommandLine& app, DemCommandOptions& options);

@@ -62,6 +62,18 @@ void check_products(const std::vector<DemProduct>& products) {
   }
 }
 
+/// Whether a product tells how the surface leans.
+bool is_of_gradient(DemProduct product) {
+  return product == DemProduct::kSlope || product == DemProduct::kAspect ||
+         product == DemProduct::kHillshade;
+}
+
+void check_z_factor(const std::optional<double>& factor) {
+  if (!factor || (*factor > 0 && std::isfinite(*factor))) return;
+  throw InvalidArgument(
+      fmt::format("heights are multiplied by a number above 0, not by {}", *factor));
+}
+
 void check_light_and_file(const spillway::DemOptions& options) {
   if (!(options.azimuth >= 0 && options.azimuth <= 360)) {
     throw InvalidArgument(
@@ -109,6 +121,7 @@ DemFile::DemFile(const std::string& path, const spillway::DemOptions& options,
   check_path(path_);
   check_products(options_.products);
   check_light_and_file(options_);
+  check_z_factor(options_.z_factor);
   check_max_edge(options_.max_edge);
   if (context.memory() < kLeastMemory) {
     throw TooSmallLimit("the memory limit is too small: 64 MiB are the least for a DEM",
@@ -148,6 +161,8 @@ BlockSink& DemFile::open(const MeshStart& start) {
   ask_gdal();
   check_crs(start);
   crs_ = start.header.crs.empty() ? like_.crs : start.header.crs;
+  dem_options_.ground = ground();
+  if (const auto& extent = start.header.extent) check_latitudes(plane_of(*extent));
   if (!start.is_triangulated) dem_options_.max_edge = options_.max_edge;
   // Pixels of other meshes may be painted twice, and those of ranks by others, too.
   dem_options_.closes_tiles = start.is_triangulated && context().options().executor == nullptr;
@@ -159,6 +174,7 @@ BlockSink& DemFile::open(const MeshStart& start) {
 
 void DemFile::extent_known(const Box<2>& extent, std::uint64_t vertices) {
   if (!wants_extent()) return;
+  check_latitudes(dem_->in_output(extent));
   check_size(extent, vertices);
   writer_.emplace(*dem_);  // in its place, without vertices that came before
   dem_->begin(extent);
@@ -167,6 +183,7 @@ void DemFile::extent_known(const Box<2>& extent, std::uint64_t vertices) {
 /// A raster that is refused, or that a warning tells of, is so when the extent is certain.
 bool DemFile::extent_told(const Box<2>& extent, std::uint64_t vertices) {
   try {
+    check_latitudes(dem_->in_output(extent));
     if (is_large(grid_of(extent), vertices)) return false;
     dem_->begin(extent);
   } catch (const Error&) {
@@ -183,6 +200,48 @@ bool DemFile::extent_holds(const Box<2>& extent) {
         "raster's place is known");
   }
   return false;
+}
+
+/// Heights without a unit are in that of x and y, and in metres above degrees.
+GroundScale DemFile::ground() const {
+  if (!std::ranges::any_of(options_.products, is_of_gradient)) return {};
+  if (options_.z_factor) return {.height = *options_.z_factor};
+  if (crs_.empty()) return {};
+  const CrsUnits units = gdal().crs_units(crs_);
+  if (units.is_geographic) {
+    if (context().options().detail) {
+      context().options().detail(fmt::format(
+          "{}: slope, aspect and hillshade take x and y for degrees, and heights for {}",
+          gdal().crs_name(crs_),
+          units.vertical > 0 ? fmt::format("{:.12g} metres", units.vertical) : "metres"));
+    }
+    return {.height = units.vertical > 0 ? units.vertical : 1,
+            .degrees = units.horizontal,
+            .semi_major = units.semi_major,
+            .flattening = units.flattening};
+  }
+  constexpr double kRounding = 1e-9;  // the two feet differ by 2e-6
+  const double factor = units.vertical / units.horizontal;
+  if (!(factor > 0) || !std::isfinite(factor) || std::abs(factor - 1) <= kRounding) return {};
+  if (context().options().detail) {
+    context().options().detail(
+        fmt::format("{}: slope, aspect and hillshade multiply heights by {:.12g}",
+                    gdal().crs_name(crs_), factor));
+  }
+  return {.height = factor};
+}
+
+/// Refuses a box in output coordinates that has no latitudes, where these are expected.
+void DemFile::check_latitudes(const Box<2>& extent) const {
+  constexpr double kRounding = 1e-6;
+  const double degrees = dem_options_.ground.degrees;
+  const double farthest = std::max(std::abs(extent.lo[1]), std::abs(extent.hi[1]));
+  if (extent.empty() || farthest * degrees <= 90 + kRounding) return;
+  throw Error(
+      fmt::format("y reaches from {:.15g} to {:.15g}, which are no latitudes of {}: how x and "
+                  "y relate to heights is not known, as slope, aspect and hillshade need it",
+                  extent.lo[1], extent.hi[1], gdal().crs_name(crs_)),
+      ErrorCode::kBadInput, {.remedy = Remedy::kGroundScale});
 }
 
 PixelGrid DemFile::grid_of(const Box<2>& extent) const {

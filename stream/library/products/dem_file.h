@@ -46,6 +46,8 @@ class DemFile final : public OwnSink<DemSink> {
   /// Once all is found that is wrong without it: the driver there is, and the raster to be like.
   void ask_gdal();
   void check_crs(const MeshStart& start) const;
+  [[nodiscard]] GroundScale ground() const;
+  void check_latitudes(const Box<2>& extent) const;
   [[nodiscard]] PixelGrid grid_of(const Box<2>& extent) const;
   void check_size(const Box<2>& extent, std::uint64_t vertices) const;
 
