@@ -39,6 +39,14 @@ class Blocks final : public spillway::PointSource {
   std::size_t next_ = 0;
 };
 
+TEST(ProgramPoints, OfASystemThatNobodyKnowsAreRefusedWhereAnOutputNeedsIt) {
+  Blocks source({}, {.crs = "nonsense"});
+  ProgramPoints points(source);
+  points.settle_crs(CrsNeed::kNone);
+  points.settle_crs(CrsNeed::kCodes);
+  EXPECT_THROW(points.settle_crs(CrsNeed::kAll), Error);
+}
+
 TEST(ProgramPoints, ComeAsTheyAreAndAreNumberedThrough) {
   Blocks source({{{0.5, 1, 2}, {3, 4, 5}}, {{6, 7, 8}}});
   ProgramPoints points(source);

@@ -195,6 +195,29 @@ TEST_F(Products, ContoursTellTheirLinesAndTheHeights) {
   EXPECT_EQ(report.output_bytes, fs::file_size(file("lines.gpkg")));
 }
 
+TEST_F(Products, ContoursAsGeoJsonTakeAWordAboutCoordinates) {
+  const auto points = ramp();
+  ContourOptions how{.interval = 2.5};
+  const auto refused = create_contours(file("lines.geojson"), how, context_);
+  const auto source = points_in_memory(points);
+  EXPECT_EQ(code_of([&] { triangulate(*source, *refused, {}, context_); }), ErrorCode::kBadInput);
+  how.foreign_crs = true;
+  const auto agreed = create_contours(file("lines.geojson"), how, context_);
+  const auto again = points_in_memory(points);
+  triangulate(*again, *agreed, {}, context_);
+  EXPECT_EQ(agreed->report().lines, 4U);
+}
+
+TEST_F(Products, AFileHasTheSystemThatIsGivenForIt) {
+  std::ofstream(file("points.txt")) << "0 0 1\n9 0 2\n0 9 3\n";
+  PointOptions how;
+  how.crs = "EPSG:25832";
+  EXPECT_EQ(open_points({file("points.txt")}, how, context_)->header().crs, "EPSG:25832");
+  how.crs = "nonsense";
+  EXPECT_EQ(code_of([&] { open_points({file("points.txt")}, how, context_); }),
+            ErrorCode::kInvalidArgument);
+}
+
 TEST_F(Products, ATerrainHasHeightsAndTriangles) {
   const std::vector<Point<2>> flat{{0, 0}, {1, 0}, {0, 1}, {1, 1}};
   for (const int fault : {0, 1}) {
