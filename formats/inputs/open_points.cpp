@@ -11,6 +11,7 @@
 #include "formats/bytes/input_bytes.h"
 #include "formats/bytes/line_reader.h"
 #include "formats/compression/decompress.h"
+#include "formats/inputs/unread_points.h"
 #include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/points/open_las.h"
@@ -49,6 +50,12 @@ void refuse_meshes(InputBytes& source) {
 void refuse_what_is_no_points(InputBytes& source) {
   refuse_meshes(source);
   const std::string_view text = as_text(source.peek(kProbe));
+  if (const std::string_view what = unread_points(text); !what.empty()) {
+    throw BadInput(source.name(),
+                   fmt::format("this is {}, which is not read; convert it to {}", what,
+                               list_of_points(is_written, "or")),
+                   at_byte(0));
+  }
   if (text.starts_with("<?xml")) {
     throw BadInput(source.name(),
                    fmt::format("this is XML, from which points are not read; save them as {}",

@@ -1,6 +1,8 @@
 #include "src/library/interpolation.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include "src/geometry/constructions/barycentric.h"
 
@@ -11,11 +13,18 @@ double interpolated_value(const MeshView<D, Index>& mesh, std::span<const double
                           Index cell, const Point<D>& place) {
   const auto coordinates = barycentric_coordinates<D>(mesh.corners(cell), place);
   double value = 0;
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
   for (int i = 0; i <= D; ++i) {
     // They are at most 1, so no product overflows.
-    if (coordinates[i] > 0) value += coordinates[i] * values[mesh.vertex(cell, i)];
+    if (!(coordinates[i] > 0)) continue;
+    const double corner = values[mesh.vertex(cell, i)];
+    value += coordinates[i] * corner;
+    least = std::min(least, corner);
+    most = std::max(most, corner);
   }
-  return value;
+  // Coordinates are rounded, so their sum may be some more than 1. What is not a number stays so.
+  return value < least ? least : value > most ? most : value;
 }
 
 template double interpolated_value<2>(const MeshView<2, std::int32_t>&, std::span<const double>,

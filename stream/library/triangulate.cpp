@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "src/error.h"
+#include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
 #include "stream/library/meshes/program_sink.h"
@@ -19,6 +20,9 @@ void check(const TriangulateOptions& options) {
   if (options.dimension != 2 && options.dimension != 3) {
     throw InvalidArgument(fmt::format("there are 2 or 3 dimensions, not {}", options.dimension));
   }
+  check_choice(options.heights, Heights::kMean, "choice of heights");
+  check_choice(options.division, Division::kConstantAxis, "division");
+  check_choice(options.kernel, Kernel::kCgal, "kernel");
   check_max_edge(options.max_edge);
   if (options.children < 2 || options.children > 1024) {
     throw InvalidArgument(

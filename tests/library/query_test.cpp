@@ -68,6 +68,26 @@ TYPED_TEST(InMemoryQuery, LocateFindsTheLowestCellThatHasThePlace) {
   }
 }
 
+TYPED_TEST(InMemoryQuery, InterpolatedValuesStayWithinThoseOfTheCorners) {
+  constexpr int D = TypeParam::value;
+  const Points<D> points = testing::random_points<D>(3'000, 21);
+  const Delaunay<D> mesh(points);
+  const Points<D> places = places_around<D>(points, 20'000, 22);
+  const auto cells = mesh.locate(places);
+  const std::vector<double> alike(points.size(), 0.1);
+  std::vector<double> heights(points.size());
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    heights[i] = 0.1 + 1e-15 * static_cast<double>(i % 3);
+  const auto of_alike = mesh.interpolate(alike, places);
+  const auto of_heights = mesh.interpolate(heights, places);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (cells[i] < 0) continue;
+    ASSERT_EQ(of_alike[i], 0.1);
+    ASSERT_GE(of_heights[i], heights[0]);
+    ASSERT_LE(of_heights[i], heights[2]);
+  }
+}
+
 TYPED_TEST(InMemoryQuery, NearestVertexIsTheLowestOfTheNearest) {
   constexpr int D = TypeParam::value;
   for (const auto& [name, points] : point_sets<D>()) {

@@ -76,6 +76,17 @@ struct BatchOptions {
   }
 };
 
+/// What an option means to a job, where that is not what it means to a subcommand.
+std::string meaning_in_jobs(const OptionInfo& option) {
+  const std::string& flag = option.names.back();
+  if (flag == "--bounds")
+    return "What rasters cover; of jobs without any, the box of points to use";
+  if (flag == "--resolution") {
+    return "Side of a raster's pixel; of jobs without any, as for triangulate";
+  }
+  return option.description;
+}
+
 /// Takes every option of the subcommands that make outputs, those apart that batch decides on.
 void add_options_of_subcommands(const CommandLine& root, CommandLine& app, BatchOptions& options) {
   for (const std::string& subcommand : job_subcommands()) {
@@ -88,9 +99,9 @@ void add_options_of_subcommands(const CommandLine& root, CommandLine& app, Batch
       if (own || app.has_option(flag)) continue;
       const std::string group = "Passed on to the jobs";
       if (option.value_name.empty()) {
-        app.add_flag(flag, options.passed_flags[name], option.description).group(group);
+        app.add_flag(flag, options.passed_flags[name], meaning_in_jobs(option)).group(group);
       } else {
-        app.add_option(flag, options.passed_values[name], option.description)
+        app.add_option(flag, options.passed_values[name], meaning_in_jobs(option))
             .once()
             .value_name(option.value_name)
             .group(group);

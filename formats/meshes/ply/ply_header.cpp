@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/fields.h"
@@ -60,6 +61,13 @@ std::string_view header_text(InputBytes& source) {
                      at_byte(text.size()));
     }
   }
+}
+
+/// Programs write X and x.
+std::string in_lower_case(std::string_view name) {
+  std::string lower(name);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return lower;
 }
 
 class HeaderParser {
@@ -145,7 +153,7 @@ class HeaderParser {
       type = fields.word();
     }
     property.type = type_called(type);
-    property.name = fields.word();
+    property.name = in_lower_case(fields.word());
     if (property.name.empty() || !fields.at_end()) {
       fail("a property is given as \"property TYPE NAME\" or \"property list TYPE TYPE NAME\"");
     }

@@ -18,7 +18,7 @@ enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
 
 /// One value of each item of an element, or a list of values.
 struct PlyProperty {
-  std::string name;
+  std::string name;                        ///< in lower case
   NumberType type = NumberType::kFloat64;  ///< of the value, or of the values of a list
   std::optional<NumberType> length_type;   ///< of a list's length; nothing if this is no list
 };

@@ -13,6 +13,7 @@
 
 #include "formats/points/point_formats.h"
 #include "src/error.h"
+#include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
 #include "stream/library/given_crs.h"
@@ -71,6 +72,7 @@ PointFilter filter_of(const PointOptions& options) {
 }
 
 ThinningRequest thinning_of(const Thin& thin, std::uint64_t memory, ScratchFolder& scratch) {
+  check_choice(thin.choice, spillway::ThinChoice::kCenter, "choice of a cell's point");
   if (!(thin.cell > 0) || !std::isfinite(thin.cell)) {
     throw InvalidArgument(
         fmt::format("cells of {} do not thin points: give a side above 0", thin.cell));
@@ -142,6 +144,10 @@ FilePoints::FilePoints(const std::vector<std::string>& paths, const PointOptions
       context_(context) {
   if (options.dimension != 2 && options.dimension != 3) {
     throw InvalidArgument(fmt::format("there are 2 or 3 dimensions, not {}", options.dimension));
+  }
+  if (!(options.resolution >= 0) || std::isinf(options.resolution)) {
+    throw InvalidArgument(fmt::format("points are not {} apart: give 0 for all of them, or more",
+                                      options.resolution));
   }
   PointSourceOptions how = source_options(options, context);
   Executor* const executor = context.options().executor.get();

@@ -15,6 +15,7 @@
 #include "src/parallel/parallel.h"
 #include "src/runtime/memory_budget.h"
 #include "src/terrain/grid_choice.h"
+#include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
 #include "stream/plan/memory_plan.h"
@@ -53,9 +54,7 @@ void check_path(const std::string& path) {
 void check_products(const std::vector<DemProduct>& products) {
   if (products.empty()) throw InvalidArgument("a DEM has a product at least: none is given");
   for (const DemProduct product : products) {
-    if (static_cast<std::size_t>(product) < dem_product_names().size()) continue;
-    throw InvalidArgument("there is no product of number " +
-                          std::to_string(static_cast<int>(product)));
+    check_choice(product, DemProduct::kDensity, "product");
   }
   if (std::set<DemProduct>(products.begin(), products.end()).size() < products.size()) {
     throw InvalidArgument("a product is there twice");

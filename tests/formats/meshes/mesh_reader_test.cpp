@@ -111,6 +111,12 @@ TEST(PlyReader, OtherElementsAndPropertiesArePassedOverInAnyOrder) {
   EXPECT_THAT(mesh.input_index, ElementsAre(4294967295, 4294967294, 4294967293, 4294967292));
 }
 
+TEST(PlyReader, NamesOfPropertiesAreOfAnyCase) {
+  std::string text = replaced(ascii_ply(), "property double x", "property double X");
+  text = replaced(text, "property double z", "property double Z");
+  expect_square(read_both("a.ply", replaced(text, "vertex_indices", "Vertex_Indices")));
+}
+
 TEST(PlyReader, VerticesWithoutZLieAtHeightZero) {
   const std::string text = replaced(ascii_ply(), "property double z", "property double height");
   EXPECT_EQ(read_both("a.ply", text).vertices[3], (WorldPoint{1, 1, 0}));

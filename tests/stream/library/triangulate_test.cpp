@@ -255,6 +255,9 @@ TEST_F(Streams, RefuseWhatCannotBe) {
   EXPECT_EQ(run(points, {.dimension = 4}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(run(points, {.max_edge = 0.0}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(run(points, {.children = 1}), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(run(points, {.heights = static_cast<Heights>(4)}), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(run(points, {.division = static_cast<Division>(-1)}), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(run(points, {.kernel = static_cast<Kernel>(2)}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(run(points, {.max_edge = 1e-9}), ErrorCode::kDegenerateInput);
   EXPECT_EQ(run({}, {}), ErrorCode::kDegenerateInput);
   EXPECT_EQ(run({{0, 0, 0}, {1, 1, 0}, {2, 2, 5}}, {}), ErrorCode::kDegenerateInput);
@@ -305,8 +308,16 @@ TEST_F(Streams, ReadFilesWithFilters) {
   EXPECT_GT(report.points.thinned, 0U);
   EXPECT_EQ(code_of([&] { open_points({folder_ + "/none.txt"}, {}, context); }),
             ErrorCode::kInputOutput);
-  EXPECT_EQ(code_of([&] { open_points({folder_}, {.classes = {300}}, context); }),
-            ErrorCode::kInvalidArgument);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Thin no_choice{4, static_cast<ThinChoice>(9)};
+  for (const PointOptions& wrong :
+       {PointOptions{.classes = {300}}, PointOptions{.resolution = nan},
+        PointOptions{.resolution = -1}, PointOptions{.columns = {1}},
+        PointOptions{.columns = {0, 1}}, PointOptions{.columns = {2, 2}},
+        PointOptions{.thin = no_choice}}) {
+    EXPECT_EQ(code_of([&] { open_points({folder_}, wrong, context); }),
+              ErrorCode::kInvalidArgument);
+  }
   const auto again = open_points({folder_}, {}, context);
   EXPECT_EQ(code_of([&] { triangulate(*again, mesh, {.dimension = 3}, context); }),
             ErrorCode::kInvalidArgument);

@@ -139,7 +139,7 @@ TEST_F(Neighbours, AreReadByTheOptionsOfTheJobs) {
 
 TEST_F(Neighbours, AreReadByWhatMakesSeveralOutputsOfOneTriangulation) {
   space.succeed(
-      "spillway batch in --output-dir out --buffer 15 --to dem.tif,ply,contour.geojson "
+      "spillway batch in --output-dir out --buffer 15 --to dem.tif,ply,contour.gpkg "
       "--resolution 0.5 --interval 1 -q");
   expect_the_whole({"a", "b", "c", "d"});
   const auto vertices = space.info("out/a.ply")["vertices"].get<int>();
@@ -166,7 +166,7 @@ TEST_F(Neighbours, WithoutABufferAreWarnedOf) {
       "4 of 4 jobs touch others, but know their own points only: rasters and contours are not "
       "right along the joins; --buffer M reads what others have within M, too";
   EXPECT_THAT(warning_of("in", "--to dem.tif --resolution 2"), HasSubstr(warning));
-  EXPECT_THAT(warning_of("in", "--to contour.geojson --interval 1"), HasSubstr(warning));
+  EXPECT_THAT(warning_of("in", "--to contour.gpkg --interval 1"), HasSubstr(warning));
   for (const char* const fine :
        {"--to ply", "--to dem.tif --resolution 2 --buffer 9", "--to dem.tif --resolution 2 -q",
         "--to dem.tif --resolution 2 --buffer 0"}) {

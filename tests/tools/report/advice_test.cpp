@@ -44,7 +44,7 @@ TEST(Advice, IsAnotherForEachRemedy) {
         Remedy::kRasterSize, Remedy::kRasterMemory, Remedy::kPlane, Remedy::kFilters,
         Remedy::kForeignCrs, Remedy::kOneFile, Remedy::kLas14, Remedy::kRanks,
         Remedy::kRasterExtent, Remedy::kPointLattice, Remedy::kDistrustHeaders, Remedy::kUnknownCrs,
-        Remedy::kWrongCrs, Remedy::kGroundScale}) {
+        Remedy::kWrongCrs, Remedy::kGroundScale, Remedy::kColumns}) {
     EXPECT_TRUE(texts.insert(advice({.remedy = remedy})).second);
   }
 }

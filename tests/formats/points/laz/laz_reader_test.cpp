@@ -244,9 +244,9 @@ TEST(LasExtendedRecords, TellTheCoordinateSystemOfFilesButNotOfPipes) {
 }
 
 TEST(LasExtendedRecords, AreNotAskedWhereTheOthersTell) {
-  LazFile file = file_with_evlrs({{"LASF_Projection", 2112, "behind"}});
-  file.las.vlrs = {{"LASF_Projection", 2112, "before"}};
-  EXPECT_EQ(read_content("a.laz", file.bytes()).header.crs, "before");
+  LazFile file = file_with_evlrs({{"LASF_Projection", 2112, "PROJCS[behind]"}});
+  file.las.vlrs = {{"LASF_Projection", 2112, "PROJCS[before]"}};
+  EXPECT_EQ(read_content("a.laz", file.bytes()).header.crs, "PROJCS[before]");
 }
 
 TEST(LasExtendedRecords, DamageIsPassedOver) {
