@@ -31,11 +31,6 @@ struct Found {
   std::vector<std::string> notices{};  ///< of other files in folders that were left out
 };
 
-/// The names of the formats of meshes in several files.
-std::string formats_in_files() {
-  return list_of_formats([](const MeshFormat& format) { return format.file_set != nullptr; }, "or");
-}
-
 /// Says which point files of a folder it does not stand for.
 std::string left_out_text(const std::string& folder, const PointFolder& found) {
   constexpr std::size_t kMostNamed = 3;

@@ -58,12 +58,11 @@ Kind kind_of(const std::string& path, const PointFormat& format) {
   return kind;
 }
 
-/// The names of the formats of meshes in several files.
+}  // namespace
+
 std::string formats_in_files() {
   return list_of_formats([](const MeshFormat& format) { return format.file_set != nullptr; }, "or");
 }
-
-}  // namespace
 
 PointFolder look_into_folder(const std::string& folder) {
   PointFolder found;

@@ -16,6 +16,9 @@ struct PointFolder {
   std::size_t of_meshes = 0;  ///< files of meshes in several files, which are left out, too
 };
 
+/// The names of the formats of meshes in several files, for messages.
+std::string formats_in_files();
+
 /// Looks at the names in a folder. What lies beside tiles is not meant by the folder's name, so it
 /// stands for files of one kind: LAS and LAZ if there are any, else those with the extension that
 /// most files have; of as many, those that are not text. Hidden files and folders below are not

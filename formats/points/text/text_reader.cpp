@@ -28,6 +28,7 @@ class TextReader : public PointReader {
         opening_(read_text_opening(lines_, source_->name(), rows)),
         columns_(opening_.columns),
         skips_invalid_(rows.skip_invalid),
+        invalid_before_(opening_.invalid),
         piece_bytes_(piece_bytes) {
     has_first_ = opening_.first_row.has_value();
     if (has_first_) line_ = *opening_.first_row;
@@ -82,6 +83,7 @@ class TextReader : public PointReader {
     lines_.seek(from);
     end_ = from + piece_bytes_;
     next_ = 0;
+    opening_.invalid = piece == 0 ? invalid_before_ : 0;
     has_first_ = false;
   }
 
@@ -149,6 +151,7 @@ class TextReader : public PointReader {
   std::uint64_t scan_begin_ = 0;  // number of the first point after the last count line
 
   bool skips_invalid_;
+  std::uint64_t invalid_before_;  // rows that are no points, before the first one
   std::uint64_t piece_bytes_;
   bool in_pieces_ = false;
   std::uint64_t begin_ = 0;  // byte where the first point's line begins

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/inputs/open_points.h"
+#include "formats/points/text/text_reader.h"
 #include "tests/formats/point_test_helpers.h"
 
 namespace spillway::detail::testing {
@@ -71,6 +72,30 @@ TEST(InvalidRows, MayBeAllThereAre) {
     EXPECT_THAT(none.points, IsEmpty()) << text;
     EXPECT_EQ(none.invalid, 2U) << text;
   }
+}
+
+TEST(InvalidRows, BeforeTheFirstPointBelongToTheFirstPiece) {
+  FaultyFileSystem files;
+  std::string text = "x,y,z\n,,\n-,,\n";
+  for (int i = 0; i < 50; ++i) text += i % 10 == 9 ? "nan,1,2\n" : "1,2,3\n";
+  files.files["a.csv"] = text;
+  std::uint64_t invalid = 0;
+  std::uint64_t points = 0;
+  for (std::uint64_t piece = 0, pieces = 1; piece < pieces; ++piece) {
+    const auto reader = open_text_reader(std::make_unique<InputBytes>(files.open("a.csv")), "a.csv",
+                                         nullptr, {.skip_invalid = true}, 100);
+    pieces = reader->pieces().value();
+    reader->begin_piece(piece);
+    PointBlock block;
+    for (bool more = true; more;) {
+      more = reader->read(block);
+      invalid += block.invalid;
+      points += block.size();
+    }
+    EXPECT_GT(pieces, 2U);
+  }
+  EXPECT_EQ(invalid, 2U + 5U);
+  EXPECT_EQ(points, 45U);
 }
 
 TEST(InvalidRows, OfScansCountAsTheirPoints) {

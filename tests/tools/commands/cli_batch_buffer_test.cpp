@@ -1,11 +1,9 @@
 // Jobs side by side: what they know of their neighbours, and who is told that they know nothing.
 
 #include <fmt/format.h>
-#include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "tests/tools/command_runner.h"
+#include "tests/tools/commands/opened_raster.h"
 
 namespace spillway::detail::test {
 namespace {
@@ -28,27 +27,14 @@ constexpr int kSide = 50;  ///< points along a side of the whole, 2 apart
 using Pixels = std::map<std::pair<int, int>, float>;
 
 Pixels pixels_of(const Workspace& space, const std::string& name) {
-  GDALAllRegister();
-  const GDALDatasetUniquePtr file(
-      GDALDataset::Open((space.folder() / name).c_str(), GDAL_OF_RASTER));
-  if (!file) {
-    ADD_FAILURE() << "GDAL cannot open " << name;
-    return {};
-  }
-  std::array<double, 6> transform{};
-  file->GetGeoTransform(transform.data());
-  const int columns = file->GetRasterXSize();
-  const int rows = file->GetRasterYSize();
-  std::vector<float> values(static_cast<std::size_t>(columns) * rows);
-  EXPECT_EQ(file->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, columns, rows, values.data(), columns,
-                                             rows, GDT_Float32, 0, 0),
-            CE_None);
-  const int west = static_cast<int>(std::lround(transform[0] / kPixel));
-  const int north = static_cast<int>(std::lround(transform[3] / kPixel));
+  const OpenedRaster raster(space, name);
+  const std::vector<float> values = raster.pixels();
+  const int west = static_cast<int>(std::lround(raster.transform[0] / kPixel));
+  const int north = static_cast<int>(std::lround(raster.transform[3] / kPixel));
   Pixels pixels;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const int row = static_cast<int>(i) / columns;
-    pixels[{west + static_cast<int>(i) % columns, north - row}] = values[i];
+    const int row = static_cast<int>(i) / raster.columns();
+    pixels[{west + static_cast<int>(i) % raster.columns(), north - row}] = values[i];
   }
   return pixels;
 }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tests/tools/command_runner.h"
+#include "tests/tools/commands/opened_raster.h"
 
 namespace spillway::detail::test {
 namespace {
@@ -22,41 +23,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-/// A raster as GDAL reads it.
-class Opened {
- public:
-  Opened(const Workspace& work, const std::string& name) {
-    GDALAllRegister();
-    file_.reset(GDALDataset::Open((work.folder() / name).c_str(), GDAL_OF_RASTER));
-    if (!file_) {
-      ADD_FAILURE() << "GDAL cannot open " << name;
-      std::abort();
-    }
-    file_->GetGeoTransform(transform.data());
-  }
-
-  [[nodiscard]] int columns() const { return file_->GetRasterXSize(); }
-  [[nodiscard]] int rows() const { return file_->GetRasterYSize(); }
-  [[nodiscard]] GDALDataset& file() const { return *file_; }
-  [[nodiscard]] GDALRasterBand& band(int number = 1) const { return *file_->GetRasterBand(number); }
-  [[nodiscard]] std::vector<float> pixels(int number = 1) const {
-    std::vector<float> values(static_cast<std::size_t>(columns()) * rows());
-    EXPECT_EQ(band(number).RasterIO(GF_Read, 0, 0, columns(), rows(), values.data(), columns(),
-                                    rows(), GDT_Float32, 0, 0),
-              CE_None);
-    return values;
-  }
-  [[nodiscard]] std::string structure(const char* name) const {
-    const char* const value = file_->GetMetadataItem(name, "IMAGE_STRUCTURE");
-    return value == nullptr ? "" : value;
-  }
-
-  std::array<double, 6> transform{};
-
- private:
-  GDALDatasetUniquePtr file_;
-};
 
 /// x, y and z of a quadratic surface on a grid of `side` x `side` points, `step` apart.
 std::string surface(int side, double step) {
@@ -74,7 +40,7 @@ TEST(Dem, FileIsATiledCompressedGeoTiffWithNodata) {
   work.write("points.txt", surface(40, 1));
   work.succeed("spillway dem -q points.txt -o dem.tif --resolution 0.5");
   EXPECT_THAT(work.names(), ElementsAre("dem.tif", "points.txt"));
-  const Opened dem(work, "dem.tif");
+  const OpenedRaster dem(work, "dem.tif");
   EXPECT_EQ(dem.structure("COMPRESSION"), "DEFLATE");
   int width = 0;
   int height = 0;
@@ -91,7 +57,7 @@ TEST(Dem, HeightsAreTheSurfacesWithinTheInterpolationBound) {
   const Workspace work;
   work.write("points.txt", surface(60, 0.5));
   work.succeed("spillway dem -q points.txt -o dem.tif --resolution 0.25 --bounds 1,1,28,28");
-  const Opened dem(work, "dem.tif");
+  const OpenedRaster dem(work, "dem.tif");
   const std::vector<float> pixels = dem.pixels();
   ASSERT_EQ(pixels.size(), 108U * 108);
   for (int i = 0; i < 108 * 108; ++i) {
@@ -118,8 +84,8 @@ TEST(Dem, EqualsWhatGdalGridInterpolates) {
       "end\n"
       "gdal_grid -q -a linear:radius=0:nodata=-9999 -txe 0.1 0.9 -tye 0.9 0.1 -outsize 80 80 "
       "-ot Float32 -l table table.vrt grid.tif");
-  const std::vector<float> ours = Opened(work, "dem.tif").pixels();
-  const Opened grid(work, "grid.tif");
+  const std::vector<float> ours = OpenedRaster(work, "dem.tif").pixels();
+  const OpenedRaster grid(work, "grid.tif");
   EXPECT_LT(grid.transform[5], 0);
   const std::vector<float> theirs = grid.pixels();
   ASSERT_EQ(ours.size(), theirs.size());
@@ -227,7 +193,7 @@ TEST(Dem, AFacetThatFallsDueNorthHasNoSayBesideTheOneThatOwnsTheCentre) {
                  ".tif --resolution 1 --bounds=-6.5,-0.5,9.5,8.5 --product aspect");
   }
   EXPECT_TRUE(work.read("one.tif") == work.read("other.tif"));
-  const Opened dem(work, "one.tif");
+  const OpenedRaster dem(work, "one.tif");
   EXPECT_NEAR(dem.pixels()[6 * 16 + 7], 66.0375, 1e-4);  // the centre (1, 2), on the common edge
   EXPECT_EQ(dem.pixels()[2 * 16 + 6], 0);                // (0, 6), due north
 }
@@ -236,7 +202,7 @@ TEST(Dem, HeightsEqualToNodataStayValidForGdal) {
   const Workspace work;
   work.write("level.txt", "0 0 7\n10 0 7\n0 10 7\n10 10 7\n");
   work.succeed("spillway dem -q level.txt -o level.tif --resolution 1 --nodata 7");
-  const Opened dem(work, "level.tif");
+  const OpenedRaster dem(work, "level.tif");
   double mean = 0;
   ASSERT_EQ(dem.band().ComputeStatistics(0, nullptr, nullptr, &mean, nullptr, nullptr, nullptr),
             CE_None);
@@ -261,7 +227,7 @@ TEST(Dem, ProductsBecomeBandsWithTheirNames) {
   work.succeed(
       "spillway dem -q points.txt -o dem.tif --resolution 1 --product slope,aspect,hillshade "
       "--azimuth 270 --altitude 45 --nodata -1");
-  const Opened dem(work, "dem.tif");
+  const OpenedRaster dem(work, "dem.tif");
   ASSERT_EQ(dem.file().GetRasterCount(), 3);
   EXPECT_STREQ(dem.band(1).GetDescription(), "slope");
   EXPECT_STREQ(dem.band(3).GetDescription(), "hillshade");
@@ -276,7 +242,7 @@ TEST(Dem, LikeTakesGridAndCoordinateSystemOfAnotherRaster) {
   work.write("points.txt", surface(20, 1));
   work.succeed("spillway dem -q points.txt -o first.tif --resolution 2 --align");
   {
-    const Opened first(work, "first.tif");
+    const OpenedRaster first(work, "first.tif");
     EXPECT_EQ(first.transform, (std::array{0.0, 2.0, 0.0, 20.0, 0.0, -2.0}));
     EXPECT_EQ(first.columns(), 10);
   }
@@ -290,7 +256,7 @@ TEST(Dem, LikeTakesGridAndCoordinateSystemOfAnotherRaster) {
     file->SetGeoTransform(moved.data());
   }
   work.succeed("spillway dem -q points.txt -o second.tif --like first.tif");
-  const Opened second(work, "second.tif");
+  const OpenedRaster second(work, "second.tif");
   EXPECT_EQ(second.transform, (std::array{-3.0, 2.5, 0.0, 12.0, 0.0, -2.5}));
   EXPECT_EQ(second.columns(), 10);
   ASSERT_NE(second.file().GetSpatialRef(), nullptr);
@@ -306,11 +272,11 @@ TEST(Dem, CloudOptimizedFilesHaveOverviews) {
       "spillway dem -q in.las -o one.tif --resolution 0.1 --cog --threads 1 --compress zstd\n"
       "spillway dem -q in.las -o two.tif --resolution 0.1 --cog --threads 2 --compress zstd");
   EXPECT_THAT(work.names(), ElementsAre("in.las", "one.tif", "plain.tif", "two.tif"));
-  const Opened cog(work, "one.tif");
+  const OpenedRaster cog(work, "one.tif");
   EXPECT_EQ(cog.structure("LAYOUT"), "COG");
   EXPECT_EQ(cog.structure("COMPRESSION"), "ZSTD");
   EXPECT_GE(cog.band().GetOverviewCount(), 1);
-  EXPECT_EQ(cog.pixels(), Opened(work, "plain.tif").pixels());
+  EXPECT_EQ(cog.pixels(), OpenedRaster(work, "plain.tif").pixels());
   EXPECT_TRUE(work.read("one.tif") == work.read("two.tif"));
 }
 
@@ -318,7 +284,7 @@ TEST(Dem, UncompressedOnRequest) {
   const Workspace work;
   work.write("points.txt", surface(10, 1));
   work.succeed("spillway dem -q points.txt -o dem.tif --resolution 1 --compress none");
-  EXPECT_EQ(Opened(work, "dem.tif").structure("COMPRESSION"), "");
+  EXPECT_EQ(OpenedRaster(work, "dem.tif").structure("COMPRESSION"), "");
 }
 
 TEST(Dem, FiguresTellTheRastersSizeAndItsData) {
@@ -504,90 +470,6 @@ TEST(DemFaults, AFailedRunKeepsTheFileThatWasThere) {
   const Result result = work.run("spillway dem -q points.txt -o dem.tif --resolution 1");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(work.read("dem.tif"), "old");
-}
-
-/// A plane that rises by `rise` metres for each metre to the east at 47 degrees north, in degrees.
-std::string plane_in_degrees(double rise) {
-  constexpr double kMetresEast = 76055.5;  // of a degree of longitude there (WGS 84)
-  std::string text;
-  for (int i = 0; i < 100; ++i) {
-    const double x = 8 + 0.0001 * (i % 10);
-    const double y = 47 + 0.0001 * (i / 10);
-    text += fmt::format("{:.6f} {:.6f} {:.9f}\n", x, y, 400 + rise * kMetresEast * (x - 8));
-  }
-  return text;
-}
-
-float middle_of(const Workspace& work, const std::string& name, int band = 1) {
-  const Opened dem(work, name);
-  return dem.pixels(
-      band)[static_cast<std::size_t>(dem.rows() / 2 * dem.columns() + dem.columns() / 2)];
-}
-
-TEST(DemUnits, DegreesHaveTheirLengthForSlopes) {
-  const Workspace work;
-  work.write("points.txt", plane_in_degrees(1));
-  const std::string dem =
-      "spillway dem -q points.txt -o dem.tif --resolution 0.0001 "
-      "--product height,slope,aspect,hillshade --azimuth 270 ";
-  work.succeed(dem + "--crs EPSG:4326");
-  EXPECT_NEAR(middle_of(work, "dem.tif", 2), 45, 0.01);
-  EXPECT_NEAR(middle_of(work, "dem.tif", 3), 270, 0.01);
-  EXPECT_NEAR(middle_of(work, "dem.tif", 4), 255, 0.01);
-  const float height = middle_of(work, "dem.tif", 1);
-  // No guess, and what is said by hand.
-  work.succeed(dem);
-  EXPECT_GT(middle_of(work, "dem.tif", 2), 89.99);
-  work.succeed(dem + "--crs EPSG:4326 --z-factor 1");
-  EXPECT_GT(middle_of(work, "dem.tif", 2), 89.99);
-  work.succeed(dem + "--crs EPSG:4326 --z-factor 1.31483e-05");
-  EXPECT_NEAR(middle_of(work, "dem.tif", 2), 45, 0.01);
-  EXPECT_EQ(middle_of(work, "dem.tif", 1), height) << "heights are what they were";
-}
-
-TEST(DemUnits, HeightsInFeetAboveMetresAreScaledForSlopes) {
-  const Workspace work;
-  std::string text;
-  for (int i = 0; i < 100; ++i) text += fmt::format("{} {} {}\n", i % 10, i / 10, i % 10 / 0.3048);
-  work.write("points.txt", text);
-  const std::string dem = "spillway dem -q points.txt -o dem.tif --resolution 1 --product slope ";
-  work.succeed(dem + "--crs EPSG:26918+6360");
-  EXPECT_NEAR(middle_of(work, "dem.tif"), 45, 0.01);
-  for (const std::string unchanged :
-       {"", "--crs EPSG:26918", "--crs EPSG:26918+5703", "--crs EPSG:2927", "--z-factor 1"}) {
-    work.succeed(dem + unchanged);
-    EXPECT_NEAR(middle_of(work, "dem.tif"), 73.04, 0.01) << unchanged;
-  }
-  work.succeed(dem + "--z-factor 0.3048");
-  EXPECT_NEAR(middle_of(work, "dem.tif"), 45, 0.01);
-}
-
-TEST(DemUnits, DegreesGiveTheSameBytesHoweverTheyCome) {
-  const Workspace work;
-  work.write("points.txt", plane_in_degrees(0.3));
-  const std::string dem = " -o {} --resolution 0.00003 --product slope,aspect,hillshade -q ";
-  const auto run = [&](const std::string& input, const std::string& output) {
-    work.succeed("spillway dem " + input + fmt::format(fmt::runtime(dem), output));
-    return work.read(output);
-  };
-  const std::string crs = " --crs EPSG:4326 ";
-  const std::string one = run("points.txt --threads 1" + crs, "one.tif");
-  EXPECT_EQ(run("points.txt --threads 3 --tile 30" + crs, "more.tif"), one);
-  work.succeed("spillway triangulate -q points.txt -o tin.spm" + crs);
-  EXPECT_EQ(run("tin.spm", "mesh.tif"), one);
-}
-
-TEST(DemUnits, DegreesThatAreNoneAreRefusedWhereTheyCount) {
-  const Workspace work;
-  work.write("points.txt", "600000 5000000 1\n600010 5000000 2\n600000 5000010 3\n");
-  const std::string dem = "spillway dem points.txt -o dem.tif --resolution 1 --crs EPSG:4326 ";
-  const Result result = work.run(dem + "--product slope");
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err,
-              HasSubstr("y reaches from 5000000 to 5000010, which are no latitudes of"));
-  EXPECT_THAT(result.err, HasSubstr("--z-factor"));
-  work.succeed(dem);
-  work.succeed(dem + "--product slope --z-factor 1");
 }
 
 TEST(DemFaults, PointsWithoutHeightsHaveNone) {
