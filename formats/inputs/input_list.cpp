@@ -16,7 +16,6 @@
 #include "formats/bytes/line_reader.h"
 #include "formats/disk/file_system.h"
 #include "formats/inputs/point_folder.h"
-#include "formats/meshes/mesh_formats.h"
 #include "src/error.h"
 
 namespace spillway::detail {
