@@ -146,8 +146,13 @@ void release_threads() {
   if (started > 1 && ThreadDemand::release()) started = 1;
 }
 
+/// Nobody but the group's own tasks can cancel these: if a task that made them were cancelled,
+/// wait() would return though some were never run, and what they were to make would be missing.
 struct TaskGroup::Tasks {
-  tbb::task_group group;
+  tbb::task_group_context context{
+      tbb::task_group_context::isolated,
+      tbb::task_group_context::default_traits | tbb::task_group_context::concurrent_wait};
+  tbb::task_group group{context};
 };
 
 TaskGroup::TaskGroup() : tasks_(std::make_unique<Tasks>()) {}
@@ -228,8 +233,11 @@ void run_pipeline(std::size_t slots, const std::function<bool(std::size_t slot)>
                     });
   }
   const AcquireAtEnd acquire(&handed_over);
-  tbb::parallel_pipeline(slots, chain & tbb::make_filter<std::size_t, void>(
-                                            tbb::filter_mode::parallel, [](std::size_t) {}));
+  tbb::task_group_context context(tbb::task_group_context::isolated);  // as a TaskGroup's
+  tbb::parallel_pipeline(
+      slots,
+      chain & tbb::make_filter<std::size_t, void>(tbb::filter_mode::parallel, [](std::size_t) {}),
+      context);
 }
 
 }  // namespace spillway::detail

@@ -34,7 +34,8 @@ class TaskGroup {
 
   void run(std::function<void()> work);
 
-  /// Waits for all tasks, lends a hand meanwhile, and throws what one of them threw.
+  /// Waits for all tasks, lends a hand meanwhile, and throws what one of them threw. When it returns
+  /// all have been run, whatever tasks elsewhere have thrown.
   void wait();
 
  private:

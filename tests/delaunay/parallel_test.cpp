@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
 #include <thread>
 
@@ -56,6 +57,33 @@ TEST_P(Parallel, ErrorsOfWorkersReachTheCaller) {
     group.wait();
   };
   EXPECT_THROW(with_threads(GetParam(), fail_in_group), std::runtime_error);
+}
+
+TEST_P(Parallel, GroupsInsideOfATaskAreDoneThoughAnotherTaskFails) {
+  constexpr int kTasks = 100;
+  std::atomic<bool> failed = false;
+  std::atomic<int> done = 0;
+  std::atomic<int> done_when_it_returned = kTasks;
+  const auto work = [&] {
+    TaskGroup group;
+    group.run([&] {  // begun first, by whichever thread: waits for the failure of the other one
+      for (int i = 0; i < 200 && !failed; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      TaskGroup inside;
+      for (int i = 0; i < kTasks; ++i) inside.run([&] { ++done; });
+      inside.wait();
+      done_when_it_returned = done.load();
+    });
+    group.run([&] {
+      failed = true;
+      throw std::runtime_error("the other one");
+    });
+    group.wait();
+  };
+  EXPECT_THROW(with_threads(GetParam(), work), std::runtime_error);
+  EXPECT_EQ(done_when_it_returned, kTasks);
 }
 
 TEST_P(Parallel, IndexFindsAllItemsInsertedAtOnceInspiteOfEqualHashes) {
