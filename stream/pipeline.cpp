@@ -56,7 +56,7 @@ void run(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
   if (!root) refuse_empty_input(source.counts());
   refuse_flat_points(engine.span(), engine.points());
   options.extent_known(plane_of(root->box), root->points);
-  budget.set_enough(enough_memory<D>(root->points));
+  if constexpr (D == 2) budget.set_enough(enough_memory<D>(root->points));
   engine.triangulate(*root, {});
   options.end_phase(engine.points());
 }
@@ -88,7 +88,7 @@ class SeenExtent {
 template <int D>
 bool run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
                const StreamOptions& options, std::optional<Box<2>>& extent) {
-  budget.set_enough(enough_memory<D>(source.expected().value_or(0)));
+  if constexpr (D == 2) budget.set_enough(enough_memory<D>(source.expected().value_or(0)));
   options.begin_phase("read");
   SeenExtent seen;
   PointFeed feed = feed_of(source, options, engine.times());

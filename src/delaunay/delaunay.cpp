@@ -139,7 +139,8 @@ class Run {
          .first_vertex = part.begin,
          .clear_box = clear_box,
          .in_place = in_place_,
-         .kernel = options_.kernel});
+         .kernel = options_.kernel,
+         .memory = options_.memory});
     if (part.list != root_list_) {
       boxes_[part.list] = RunBoxes<D>(result_.points.span().subspan(part.begin, part.size()));
     }
@@ -270,10 +271,11 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
 }
 
 template <int D>
-Triangulation<D> border_delaunay(SlabArray<Point<D>> points, Kernel kernel, Task& task) {
+Triangulation<D> border_delaunay(SlabArray<Point<D>> points, Kernel kernel, WorkLease* memory,
+                                 Task& task) {
   const std::size_t base_case_size =
       std::max<std::size_t>(points.size() / 4, kGoodBorderBaseCase<D>);
-  const DelaunayOptions options{.kernel = kernel};
+  const DelaunayOptions options{.kernel = kernel, .memory = memory};
   return Run<D>(std::move(points), options, false)
       .triangulate(base_case_size, kSmallestJudgedBorder<D>, task);
 }
@@ -283,8 +285,8 @@ void recycle(Triangulation<D> used) {
   for (SimplexList<D>& list : used.lists) recycle<D>(std::move(list.simplices));
 }
 
-template Triangulation<2> border_delaunay<2>(SlabArray<Point<2>>, Kernel, Task&);
-template Triangulation<3> border_delaunay<3>(SlabArray<Point<3>>, Kernel, Task&);
+template Triangulation<2> border_delaunay<2>(SlabArray<Point<2>>, Kernel, WorkLease*, Task&);
+template Triangulation<3> border_delaunay<3>(SlabArray<Point<3>>, Kernel, WorkLease*, Task&);
 template Triangulation<2> delaunay<2>(std::span<const Point<2>>, const DelaunayOptions&);
 template Triangulation<3> delaunay<3>(std::span<const Point<3>>, const DelaunayOptions&);
 template void recycle<2>(Triangulation<2>);

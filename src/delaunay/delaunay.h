@@ -30,6 +30,7 @@ struct DelaunayOptions {
   Task* tasks = nullptr;  ///< if set, receives the tree of tasks with their durations
   /// Looked at before each task: once a stop is requested no further one begins.
   std::stop_token stop{};
+  WorkLease* memory = nullptr;  ///< as in BaseCaseInput
 };
 
 /// The Delaunay triangulation of all points, exact, ties broken as src/geometry/predicates.h says:
@@ -43,9 +44,11 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
 
 /// The same, of a border's points, for a caller that is itself one of the tasks of with_threads():
 /// runs on its threads, divides only what is large (a border's parts are nearly all border, so that
-/// merging them costs as much again), and keeps memory for the base cases to come.
+/// merging them costs as much again), and keeps memory for the base cases to come. What it takes
+/// beyond the usual for so many points `memory`, if it is set, grows by.
 template <int D>
-Triangulation<D> border_delaunay(SlabArray<Point<D>> points, Kernel kernel, Task& task);
+Triangulation<D> border_delaunay(SlabArray<Point<D>> points, Kernel kernel, WorkLease* memory,
+                                 Task& task);
 
 /// Keeps the memory of the simplices of a triangulation that is no longer needed for the next call
 /// of delaunay(), which at its end gives the system what it did not use. Without

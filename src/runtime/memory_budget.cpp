@@ -61,10 +61,15 @@ std::string memory_size_text(std::uint64_t bytes) {
                           : fmt::format("{:.4g} GiB", mebibytes / 1024);
 }
 
-void MemoryBudget::take(std::uint64_t bytes, const char* purpose) {
-  const std::uint64_t used = used_ += bytes;
-  if (used <= limit_) return;
+bool MemoryBudget::try_take(std::uint64_t bytes) {
+  if ((used_ += bytes) <= limit_) return true;
   used_ -= bytes;
+  return false;
+}
+
+void MemoryBudget::take(std::uint64_t bytes, const char* purpose, const WorkForecast* forecast) {
+  if (try_take(bytes)) return;
+  const std::uint64_t used = used_ + bytes;
   const double parts = static_cast<double>(whole_) / static_cast<double>(limit_);
   const auto whole_mebibytes = [parts](std::uint64_t least) {
     const double mebibytes = std::floor(static_cast<double>(least) * parts / kMiB) + 1;
@@ -74,7 +79,7 @@ void MemoryBudget::take(std::uint64_t bytes, const char* purpose) {
   facts.remedy = Remedy::kMemory;
   const bool known = enough_ >= used;
   if (known) facts.enough = whole_mebibytes(enough_);
-  const std::uint64_t estimate = estimate_ ? estimate_(used - bytes, bytes) : 0;
+  const std::uint64_t estimate = estimate_ ? estimate_({used - bytes, bytes, forecast}) : 0;
   const std::uint64_t perhaps = std::max(estimate, used + used / 4);
   if (!known || (estimate > 0 && perhaps < enough_)) facts.perhaps = whole_mebibytes(perhaps);
   throw Error(fmt::format("{} of memory are too little for {}", memory_size_text(whole_), purpose),

@@ -1,13 +1,18 @@
 #pragma once
 // One limit for the whole process. Whoever is about to hold much memory takes a lease first.
 
+#include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <utility>
 
 #include "src/runtime/freed_memory.h"
+#include "src/runtime/work_forecast.h"
 
 namespace spillway::detail {
 
@@ -21,6 +26,15 @@ std::uint64_t parse_memory_size(const std::string& text);
 
 /// "512 MiB", "1.5 GiB": for messages.
 std::string memory_size_text(std::uint64_t bytes);
+
+/// The work that holds a WorkLease.
+struct WorkUnderWay {
+  std::mutex mutex;  ///< guards all others
+  std::condition_variable changed;
+  unsigned running = 0;           ///< leases that do not wait until they may grow
+  std::exception_ptr refusal;     ///< once some was refused: of all the others, too
+  const void* growing = nullptr;  ///< the one that has grown, until its end
+};
 
 /// Bytes promised to the stages of a run.
 class MemoryBudget {
@@ -39,29 +53,67 @@ class MemoryBudget {
   /// Tells how much is enough for the run whatever it meets, for errors to name it.
   void set_enough(std::uint64_t bytes) { enough_ = bytes; }
 
-  /// Sets what a refusal asks how much will do as things look: a function of the bytes in use and
-  /// of those that are refused; 0 if it cannot tell. To be set while nobody takes anything.
-  void set_estimate(
-      std::function<std::uint64_t(std::uint64_t used, std::uint64_t refused)> estimate) {
+  /// What is refused.
+  struct Refusal {
+    std::uint64_t used = 0;                  ///< bytes in use
+    std::uint64_t bytes = 0;                 ///< that are asked for
+    const WorkForecast* forecast = nullptr;  ///< of the work that asks, or none
+  };
+
+  /// Sets what a refusal asks how much will do as things look; 0 if it cannot tell. To be set while
+  /// nobody takes anything.
+  void set_estimate(std::function<std::uint64_t(const Refusal&)> estimate) {
     estimate_ = std::move(estimate);
   }
 
   /// For holders whose size changes; where it will do a MemoryLease is better. take() throws Error
   /// as that does.
-  void take(std::uint64_t bytes, const char* purpose);
+  void take(std::uint64_t bytes, const char* purpose, const WorkForecast* forecast = nullptr);
+  /// The same, but returns whether there is that much.
+  [[nodiscard]] bool try_take(std::uint64_t bytes);
   void give_back(std::uint64_t bytes) { used_ -= bytes; }
 
   /// For whoever is about to use much memory, leased or not: gives the system what has been freed,
   /// if the process has outgrown the limit by it, or would with so many bytes more.
   void give_back_freed(std::uint64_t wanted = 0) { freed_.give_back(wanted); }
 
+  /// For WorkLease.
+  [[nodiscard]] WorkUnderWay& work() { return work_; }
+
  private:
   const std::uint64_t limit_;
   const std::uint64_t whole_;
   std::atomic<std::uint64_t> enough_ = 0;
-  std::function<std::uint64_t(std::uint64_t, std::uint64_t)> estimate_;
+  std::function<std::uint64_t(const Refusal&)> estimate_;
   std::atomic<std::uint64_t> used_ = 0;
   FreedMemory freed_;
+  WorkUnderWay work_;
+};
+
+/// A share of a budget that is given back in parts, by any thread.
+class ShrinkingLease {
+ public:
+  explicit ShrinkingLease(MemoryBudget& budget) : budget_(budget) {}
+  ~ShrinkingLease() { budget_.give_back(bytes_); }
+  ShrinkingLease(const ShrinkingLease&) = delete;
+  ShrinkingLease& operator=(const ShrinkingLease&) = delete;
+
+  /// Throws Error as MemoryLease does.
+  void take(std::uint64_t bytes, const char* purpose) {
+    budget_.take(bytes, purpose);
+    bytes_ += bytes;
+  }
+  /// Gives back so many bytes, or all where that is less.
+  void give_back(std::uint64_t bytes) {
+    std::uint64_t before = bytes_;
+    while (!bytes_.compare_exchange_weak(before, before - std::min(before, bytes))) {
+    }
+    budget_.give_back(std::min(before, bytes));
+  }
+
+ private:
+  MemoryBudget& budget_;
+  std::atomic<std::uint64_t> bytes_ = 0;
 };
 
 /// A share of a budget, held as long as the object lives.

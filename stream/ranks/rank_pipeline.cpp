@@ -71,7 +71,9 @@ class RankRun {
       const TileNode<D>& all = *tree.nodes().back().tiles;
       refuse_flat(all.points);
       run_collective_step(ranks_, [&] { options_.extent_known(plane_of(all.box), all.points); });
-      budget_.set_enough(enough_memory<D>(all.points) + all.points * kMergedBytes);
+      if constexpr (D == 2) {
+        budget_.set_enough(enough_memory<D>(all.points) + all.points * kMergedBytes);
+      }
       if (tree.own_node()) triangulate(tree);
       collect(tree);
       options_.end_phase(result_.totals.points);

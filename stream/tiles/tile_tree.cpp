@@ -228,6 +228,14 @@ std::vector<std::uint32_t> TileTree::finish() {
   return std::move(last.cells_done);
 }
 
+std::uint64_t TileTree::held_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const Tile& tile : tiles_) bytes += tile.held_bytes();
+  const std::lock_guard lock(taken_mutex_);
+  for (const auto& [number, tile] : taken_) bytes += tile.held_bytes();
+  return bytes;
+}
+
 /// Room for points that wait, besides what the tiles themselves take.
 std::size_t TileTree::most_room() const {
   const std::size_t taken =

@@ -95,6 +95,8 @@ class TileTree {
   template <int D>
   TilePoints<D> decode(StoredTile stored) const;
 
+  /// What points take that wait in memory, of tiles that have not been read. Not beside fill().
+  [[nodiscard]] std::uint64_t held_bytes() const;
   /// Most points of one tile, as many points as have been dealt so far.
   [[nodiscard]] std::size_t capacity() const { return capacity_; }
   /// Points dealt so far.

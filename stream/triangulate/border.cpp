@@ -11,7 +11,6 @@
 #include "src/delaunay/delaunay.h"
 #include "src/delaunay/division/divide.h"
 #include "src/parallel/parallel.h"
-#include "src/runtime/memory_budget.h"
 #include "stream/tiles/tile_tree.h"
 
 namespace spillway::detail {
@@ -25,13 +24,13 @@ constexpr std::size_t kGrain = 4096;
 template <int D>
 constexpr std::uint64_t kMergeBytes = D == 2 ? 320 : 900;
 template <int D>
-constexpr std::uint64_t kAllBorderMergeBytes = D == 2 ? 320 : 1400;
+constexpr std::uint64_t kAllBorderMergeBytes = D == 2 ? 360 : 1400;
 
-/// Memory for each point of a border, where there are this many simplices for each of them: all
-/// there can be in the plane, and more than there usually are in space.
-template <int D>
-constexpr std::uint64_t kBorderBytes = sizeof(BorderVertex<D>) +
-                                       (D == 2 ? 2 : 8) * sizeof(std::array<VertexId, D + 1>);
+/// The same for each simplex, where there are very many for a point.
+constexpr std::uint64_t kMergedSimplexBytes = 180;
+
+/// A merge that takes more than this share of the limit has no use for what leaves have kept.
+constexpr std::uint64_t kLargeMergeShare = 4;
 
 template <int D, PointTree Tree>
 class Merge {
@@ -47,13 +46,14 @@ class Merge {
     task.after.resize(3);
     std::uint64_t bytes = 0;
     for (const Border<D>& child : children_) bytes += child.bytes();
-    const MemoryLease copy(budget_, bytes, "the merge of borders");
+    result_.memory = WorkLease(budget_, bytes, "the merge of borders");
     find_exposed(task.after[0]);
     if (border_vertices_.empty()) return std::move(result_);  // one child, with nothing beside it
     const std::uint64_t wanted = merge_bytes<D>(border_vertices_.size(), points_below());
-    const MemoryLease lease(budget_, wanted, "the triangulation of a border");
+    result_.memory.extend(wanted, "the triangulation of a border");
+    if (wanted > budget_.limit() / kLargeMergeShare) release_base_case_memory();
     budget_.give_back_freed(wanted);
-    triangulate(task.after[1]);
+    isolated([&] { triangulate(task.after[1]); });
     accept(task.after[2]);
     return std::move(result_);
   }
@@ -163,7 +163,7 @@ class Merge {
     SlabArray<Point<D>> points(border_vertices_.size());
     std::transform(border_vertices_.begin(), border_vertices_.end(), points.begin(),
                    [&](VertexId v) { return result_.border.vertices[v].position; });
-    mesh_ = border_delaunay<D>(std::move(points), kernel_, task);
+    mesh_ = border_delaunay<D>(std::move(points), kernel_, &result_.memory, task);
     result_.border.dimension = std::max(result_.border.dimension, mesh_.dimension);
   }
 
@@ -226,8 +226,20 @@ class Merge {
 }  // namespace
 
 template <int D>
-std::uint64_t enough_memory(std::uint64_t points) {
-  return points * (kLoadedPointBytes + 2 * kBorderBytes<D> + kAllBorderMergeBytes<D>);
+std::uint64_t enough_memory(std::uint64_t points, std::uint64_t simplices_a_point) {
+  const std::uint64_t border =
+      sizeof(BorderVertex<D>) + simplices_a_point * sizeof(std::array<VertexId, D + 1>);
+  const std::uint64_t merge =
+      std::max(kAllBorderMergeBytes<D>, simplices_a_point * kMergedSimplexBytes);
+  return points * (kLoadedPointBytes + 2 * border + merge);
+}
+
+template <int D>
+std::uint64_t enough_for(const WorkForecast& forecast, std::uint64_t points) {
+  constexpr double kMargin = 1.25;
+  const auto count = static_cast<double>(points);
+  return static_cast<std::uint64_t>(
+      std::min(0x1p62, kMargin * (count * kLoadedPointBytes + forecast.bytes_for(count))));
 }
 
 template <int D>
@@ -241,8 +253,10 @@ MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tre
   return Merge<D, Tree>(children, trees, budget, kernel).run(task);
 }
 
-template std::uint64_t enough_memory<2>(std::uint64_t);
-template std::uint64_t enough_memory<3>(std::uint64_t);
+template std::uint64_t enough_memory<2>(std::uint64_t, std::uint64_t);
+template std::uint64_t enough_memory<3>(std::uint64_t, std::uint64_t);
+template std::uint64_t enough_for<2>(const WorkForecast&, std::uint64_t);
+template std::uint64_t enough_for<3>(const WorkForecast&, std::uint64_t);
 template std::uint64_t merge_bytes<2>(std::uint64_t, std::uint64_t);
 template std::uint64_t merge_bytes<3>(std::uint64_t, std::uint64_t);
 template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const Part<2>* const>,

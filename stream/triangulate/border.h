@@ -9,6 +9,7 @@
 #include "src/delaunay/base_case/base_case.h"
 #include "src/delaunay/division/point_tree.h"
 #include "src/geometry/point.h"
+#include "src/runtime/work_lease.h"
 #include "stream/output/stream_place.h"
 
 namespace spillway {
@@ -16,8 +17,6 @@ struct Task;
 }
 
 namespace spillway::detail {
-
-class MemoryBudget;
 
 template <int D>
 struct BorderVertex {
@@ -62,12 +61,20 @@ struct MergedBorder {
   std::size_t tested = 0;            ///< how many simplices in front are known not to be final
   bool exposure_is_known = true;     ///< of these
   std::uint64_t retriangulated = 0;  ///< points of the triangulation of the borders
+  WorkLease memory;  ///< of the merge: enough to settle it, too, and to be given back then
 };
 
 /// Bytes of memory that are enough to triangulate `points` points, even if all of them stay in the
-/// border to the end. In space that holds for borders of up to 8 simplices a point.
+/// border to the end, where there are at most so many simplices for each. In the plane there are
+/// two; in space there may be as many as there are points.
 template <int D>
-std::uint64_t enough_memory(std::uint64_t points);
+std::uint64_t enough_memory(std::uint64_t points, std::uint64_t simplices_a_point = 2);
+
+/// Bytes of memory that are likely to be enough for `points` points if base cases go on as this
+/// forecast of one says, whatever is divided: where many simplices meet in each point, the borders
+/// of parts have nearly all points.
+template <int D>
+std::uint64_t enough_for(const WorkForecast& forecast, std::uint64_t points);
 
 /// Bytes of memory for the triangulation of so many points of a border, where there are `below`
 /// points below the merge.
@@ -79,7 +86,8 @@ std::uint64_t merge_bytes(std::uint64_t border_points, std::uint64_t below);
 /// of open children, are triangulated; of that, simplices are accepted that span children, or that
 /// their own child has in its border, facing the same way (Funke, Sanders 2017, Algorithm 1). All
 /// others of the children are kept as they are.
-/// Leases the memory of that from `budget`; throws Error if there is not enough.
+/// Leases the memory of that from `budget`, which must outlive the result; throws Error if there is
+/// not enough.
 template <int D, PointTree Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
                               MemoryBudget& budget, Task& task, Kernel kernel = Kernel::kSpillway);

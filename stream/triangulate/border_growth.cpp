@@ -84,7 +84,11 @@ double BorderGrowth<D>::growth_exponent() const {
 template <int D>
 std::uint64_t BorderGrowth<D>::enough_for(const Shortage& shortage) const {
   const std::lock_guard lock(mutex_);
-  if (points_ == 0) return 0;
+  if (tile_vertices_ >= points_ / 2) {
+    const double all_in_borders =
+        static_cast<double>(enough_memory<D>(shortage.all_points, shortage.densest));
+    return static_cast<std::uint64_t>(kReserve * all_in_borders);
+  }
   const auto limit = static_cast<double>(shortage.limit);
   const auto all = static_cast<double>(shortage.all_points);
   const double exponent = growth_exponent();

@@ -22,6 +22,7 @@ class BorderGrowth {
     std::uint64_t refused = 0;     ///< bytes, to the thread that asks
     std::uint64_t loaded = 0;      ///< most points of tiles in memory, which grow with the limit
     std::uint64_t all_points = 0;  ///< of the whole run
+    std::uint64_t densest = 0;     ///< simplices for each point of a leaf, at most
   };
 
   /// A tile of so many points is done.
@@ -37,7 +38,8 @@ class BorderGrowth {
 
   /// A limit with which the rest of the points does as what has been done so far; 0 if nothing can
   /// be told. Borders are taken to grow on as they have grown with the points that are done, at
-  /// least as the surface of what they surround; all else grows with the limit.
+  /// least as the surface of what they surround; all else grows with the limit. If most points have
+  /// stayed in borders, or no tile is done yet, all may stay there.
   [[nodiscard]] std::uint64_t enough_for(const Shortage& shortage) const;
 
  private:

@@ -41,6 +41,7 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
       plan_(plan_memory(budget.limit(), D, options.threads, budget.whole(),
                         expected.plan != nullptr)),
       counts_(budget),
+      held_points_(budget),
       expected_points_(expected.count.value_or(0)),
       tree_(tree_options(expected), scratch, counts_.times),
       sequencer_(sink, budget, {.max_edge = options.max_edge}, counts_.times),
@@ -139,6 +140,12 @@ std::uint64_t TileEngine<D>::divide_large() {
              });
 }
 
+/// From now on what waits gets less: as much as there is of it is leased.
+template <int D>
+void TileEngine<D>::lease_held_points() {
+  held_points_.take(tree_.held_bytes(), "points that wait to be triangulated");
+}
+
 template <int D>
 void TileEngine<D>::begin_triangulating(std::uint64_t points, std::uint64_t all_points) {
   context_.options.leaf_size =
@@ -152,6 +159,7 @@ Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& 
   const Stopwatch watch(figures_.triangulate_seconds);
   std::uint64_t all_points = root.points;
   for (const TileNode<D>* const other : outside) all_points += other->points;
+  lease_held_points();
   begin_triangulating(tree_.points(), all_points);
   tells_progress_ = true;
   Node* const top = add_nodes(root, outside, nullptr);
@@ -162,6 +170,7 @@ Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& 
 template <int D>
 std::uint64_t TileEngine<D>::triangulate_rest() {
   const Stopwatch watch(figures_.triangulate_seconds);
+  lease_held_points();
   points_before_ = counts_.points;
   tells_progress_ = true;
   for (const std::uint32_t cell : tree_.finish()) add_cell(cell);
@@ -175,12 +184,17 @@ std::uint64_t TileEngine<D>::triangulate_rest() {
 /// From now on refusals tell what will do for so many points.
 template <int D>
 void TileEngine<D>::estimate_shortages(std::uint64_t all_points) {
-  budget_.set_estimate([this, all_points](std::uint64_t used, std::uint64_t refused) {
-    return growth_.enough_for({.limit = budget_.limit(),
-                               .used = used,
-                               .refused = refused,
-                               .loaded = kTilesAtATime * plan_.tile_room,
-                               .all_points = all_points});
+  budget_.set_estimate([this, all_points](const MemoryBudget::Refusal& refusal) {
+    const std::uint64_t by_growth = growth_.enough_for({.limit = budget_.limit(),
+                                                        .used = refusal.used,
+                                                        .refused = refusal.bytes,
+                                                        .loaded = kTilesAtATime * plan_.tile_room,
+                                                        .all_points = all_points,
+                                                        .densest = counts_.densest_leaf});
+    if (refusal.forecast == nullptr) return by_growth;
+    // Work has outgrown what is usual: perhaps all points make that many simplices.
+    return std::max({by_growth, enough_for<D>(*refusal.forecast, all_points),
+                     enough_for<D>(sample_.forecast(), all_points)});
   });
 }
 
@@ -281,7 +295,9 @@ void TileEngine<D>::work_off(Node& node) {
     Task task;
     {
       const MemoryLease lease(budget_, loaded_points(node) * kLoadedPointBytes, "a tile");
+      held_points_.give_back(node.stored.held_bytes());
       TilePoints<D> points = tree_.template decode<D>(std::move(node.stored));
+      sample_.note(points.points);
       if (replace_indices_) replace_indices_(points.index);
       node.border =
           triangulate_tile<D>(context_, {std::move(points), node.outside, node.number}, task);

@@ -23,6 +23,7 @@
 #include "stream/triangulate/border_growth.h"
 #include "stream/triangulate/cell_tree.h"
 #include "stream/triangulate/merge_forest.h"
+#include "stream/triangulate/sample_forecast.h"
 #include "stream/triangulate/task_sums.h"
 #include "stream/triangulate/tile_triangulation.h"
 #include "stream/triangulate/work_lanes.h"
@@ -130,6 +131,7 @@ class TileEngine {
 
   [[nodiscard]] TileOptions tile_options(const std::optional<Lattice>& lattice) const;
   TileTreeOptions tree_options(const ExpectedPoints& expected);
+  void lease_held_points();
   void begin_triangulating(std::uint64_t points, std::uint64_t all_points);
   void add_cell(std::uint32_t cell);
   Node* add_nodes(const TileNode<D>& tree, const Outside<D>& outside,
@@ -150,6 +152,7 @@ class TileEngine {
   MemoryBudget& budget_;
   MemoryPlan plan_;
   StreamCounts counts_;
+  ShrinkingLease held_points_;  ///< in memory when all are read, until their tile is loaded
   PointSpan<D> span_;
   const std::uint64_t expected_points_;  ///< 0: not known
   TileTree tree_;
@@ -167,6 +170,7 @@ class TileEngine {
   std::future<StoredTile> reading_ahead_;
   TaskSums tasks_;
   BorderGrowth<D> growth_;
+  SampleForecast<D> sample_;
   std::mutex tell_mutex_;     ///< held while options_.task_done is called
   std::mutex figures_mutex_;  ///< guards the next one
   RunFigures figures_;

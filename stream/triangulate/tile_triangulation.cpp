@@ -18,6 +18,11 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
+/// Memory for each point of a leaf while it is triangulated, where it makes as many simplices as
+/// usual: the records of the kernel, and then what is made of them.
+template <int D>
+constexpr std::uint64_t kLeafBytes = D == 2 ? 160 : 540;
+
 template <int D>
 void count_settled(const Settled<D>& settled, StreamCounts& counts) {
   counts.hull_facets += settled.hull_facets;
@@ -67,6 +72,29 @@ MergedBorder<D> merge_resident(const TileContext<D>& context, std::span<Border<D
   context.counts.retriangulated += merged.retriangulated;
   return merged;
 }
+
+/// The lease of a leaf, or of a merge inside of a tile. When it has grown, the memory that base
+/// cases keep goes at its end: of what is more than leaves of `leaf_size` points need.
+template <int D>
+class WorkingMemory {
+ public:
+  WorkingMemory(WorkLease lease, std::size_t leaf_size)
+      : lease_(std::move(lease)), leaf_size_(leaf_size) {}
+  ~WorkingMemory() { give_back(); }
+  WorkingMemory(const WorkingMemory&) = delete;
+  WorkingMemory& operator=(const WorkingMemory&) = delete;
+
+  void give_back() {
+    if (lease_.grown()) release_base_case_memory_above<D>(leaf_size_);
+    lease_ = {};
+  }
+
+  [[nodiscard]] WorkLease& lease() { return lease_; }
+
+ private:
+  WorkLease lease_;
+  std::size_t leaf_size_;
+};
 
 /// What may change simplices of a part of a tile: the siblings of the part, of the node above it,
 /// and so on, by level, and other tiles.
@@ -226,10 +254,14 @@ class TileRun {
     context_.budget.give_back_freed();
     const Part<D>& part = *node.tree;
     const auto points = std::span(tile_.points).subspan(part.begin, part.size());
-    BaseCase<D> leaf = base_case(node, points);
+    WorkingMemory<D> memory(
+        WorkLease(context_.budget, part.size() * kLeafBytes<D>, "the triangulation of a leaf"),
+        context_.options.leaf_size);
+    BaseCase<D> leaf = base_case(node, points, memory.lease());
     counts_.points += part.size();
     counts_.duplicates += leaf.duplicates.size();
     ++counts_.leaves;
+    raise(counts_.densest_leaf, leaf.corners.size() / part.size() + 1);
     if constexpr (D == 2) {
       choose_heights(leaf.duplicates, context_.options.heights, input_index_, tile_.heights,
                      tile_.index);
@@ -237,10 +269,12 @@ class TileRun {
       keep_first(leaf.duplicates, input_index_, tile_.index);
     }
     if (leaf.dimension < D) {
+      memory.give_back();
       return pass_up(context_, open_border(part, leaf), place_of(node));
     }
     Settled<D> settled = settle_leaf(node, leaf);
     recycle(std::move(leaf));
+    memory.give_back();
     counts_.final_in_leaves += settled.final_simplices;
     return pass_on(context_, std::move(settled), place_of(node));
   }
@@ -259,7 +293,7 @@ class TileRun {
     return settle<D>(leaf, context_.options.output);
   }
 
-  BaseCase<D> base_case(const Node& node, std::span<const Point<D>> points) {
+  BaseCase<D> base_case(const Node& node, std::span<const Point<D>> points, WorkLease& memory) {
     const StageTimer timer(counts_.times, Stage::kLeaves);
     const Part<D>& part = *node.tree;
     const Box<D> clear_box = clear_box_of(node);
@@ -270,7 +304,8 @@ class TileRun {
          .clear_box = clear_box,
          .in_place = true,
          .corners_only = true,
-         .kernel = context_.options.kernel});
+         .kernel = context_.options.kernel,
+         .memory = &memory});
     if (!base_case.simplices.empty()) tell_corners(base_case, points, part.begin, clear_box);
     return base_case;
   }
@@ -360,10 +395,15 @@ class TileRun {
     std::vector<Border<D>> children;
     for (Node* child : node.children) children.push_back(std::exchange(child->border, {}));
     MergedBorder<D> merged = merge_resident<D>(context_, children, *node.tree, node.task);
+    WorkingMemory<D> memory(std::move(merged.memory), context_.options.leaf_size);
     const BlockPlace block = place_of(node);
-    if (merged.border.open()) return pass_up(context_, std::move(merged.border), block);
+    if (merged.border.open()) {
+      memory.give_back();
+      return pass_up(context_, std::move(merged.border), block);
+    }
     Settled<D> settled =
         settle_merged(merged, block, context_.options.output, surroundings_of(node), counts_.times);
+    memory.give_back();
     counts_.final_in_tiles += settled.final_simplices;
     return pass_on(context_, std::move(settled), block);
   }
@@ -403,6 +443,7 @@ Settled<D> merge_borders_of(const TileContext<D>& context, const MergeInput<D>& 
     settled = settle_merged<D>(merged, input.place, output,
                                {.levels = {}, .outside = input.outside}, context.counts.times);
   }
+  merged.memory = {};
   count_settled(settled, context.counts);
   return settled;
 }

@@ -29,6 +29,13 @@ struct TileOptions {
   OutputOptions output;
 };
 
+/// Sets `most` to `now` if that is more; for any thread.
+inline void raise(std::atomic<std::uint64_t>& most, std::uint64_t now) {
+  std::uint64_t seen = most;
+  while (seen < now && !most.compare_exchange_weak(seen, now)) {
+  }
+}
+
 /// How much of borders is in memory, and the most there was. It grows with the input: the budget
 /// refuses what outgrows it.
 class ResidentBorders {
@@ -52,12 +59,6 @@ class ResidentBorders {
   [[nodiscard]] std::uint64_t most_bytes() const { return most_bytes_; }
 
  private:
-  static void raise(std::atomic<std::uint64_t>& most, std::uint64_t now) {
-    std::uint64_t seen = most;
-    while (seen < now && !most.compare_exchange_weak(seen, now)) {
-    }
-  }
-
   MemoryBudget& budget_;
   std::atomic<std::uint64_t> simplices_ = 0;
   std::atomic<std::uint64_t> bytes_ = 0;
@@ -78,6 +79,7 @@ struct StreamCounts {
   std::atomic<std::uint64_t> final_in_leaves = 0;  ///< simplices, infinite ones included
   std::atomic<std::uint64_t> final_in_tiles = 0;   ///< in merges inside tiles
   std::atomic<std::uint64_t> leaves = 0;
+  std::atomic<std::uint64_t> densest_leaf = 0;    ///< simplices for each of its points, rounded up
   std::atomic<std::uint64_t> retriangulated = 0;  ///< points in triangulations of borders
 };
 

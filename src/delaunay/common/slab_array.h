@@ -52,6 +52,9 @@ class SlabArray {
   /// Lets the system have the huge pages that no item uses when it is short of memory.
   void shrink() { slab_.give_back_behind(size_ * sizeof(T)); }
 
+  /// Gives the system these pages now.
+  void release_rest() { slab_.release_behind(size_ * sizeof(T)); }
+
   /// The slab; the array is empty then.
   Slab take_slab() {
     size_ = 0;

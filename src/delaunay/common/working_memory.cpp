@@ -95,8 +95,16 @@ void* Slab::reserve(std::size_t bytes) {
 
 void* Slab::grow(std::size_t bytes, std::size_t used) {
   if (bytes > capacity()) {
-    Slab larger = of(bytes + bytes / 2);
-    std::memcpy(larger.memory_.get(), memory_.get(), used);
+    // In stretches, whose old place is given back at once: so the old slab and the new one never
+    // take memory for the same.
+    constexpr std::size_t kStretch = 4 * kHugePage;
+    Slab larger = of(bytes);
+    for (std::size_t done = 0; done < used; done += kStretch) {
+      const std::size_t size = std::min(kStretch, used - done);
+      std::memcpy(larger.memory_.get() + done, memory_.get() + done, size);
+      for_huge_pages(memory_.get() + done, memory_.get() + done + size,
+                     [](std::byte* first, std::size_t s) { madvise(first, s, MADV_DONTNEED); });
+    }
     *this = std::move(larger);
   }
   return memory_.get();
@@ -105,6 +113,11 @@ void* Slab::grow(std::size_t bytes, std::size_t used) {
 void Slab::give_back_behind(std::size_t used) {
   for_huge_pages(memory_.get() + used, memory_.get() + capacity(),
                  [](std::byte* first, std::size_t size) { madvise(first, size, MADV_FREE); });
+}
+
+void Slab::release_behind(std::size_t used) {
+  for_huge_pages(memory_.get() + used, memory_.get() + capacity(),
+                 [](std::byte* first, std::size_t size) { madvise(first, size, MADV_DONTNEED); });
 }
 
 Slab kept_or_new_slab(SlabUse use, std::size_t bytes) {

@@ -22,11 +22,14 @@ class Slab {
   /// has to be larger than it was. Throws std::bad_alloc.
   void* reserve(std::size_t bytes);
 
-  /// The same, but the first `used` bytes stay what they are.
+  /// The same without room to spare, but the first `used` bytes stay what they are.
   void* grow(std::size_t bytes, std::size_t used);
 
   /// Lets the system have the huge pages after the first `used` bytes when it is short of memory.
   void give_back_behind(std::size_t used);
+
+  /// Gives the system those pages now.
+  void release_behind(std::size_t used);
 
   [[nodiscard]] void* data() const { return memory_.get(); }
   [[nodiscard]] std::size_t capacity() const { return memory_ ? memory_.get_deleter().bytes : 0; }

@@ -26,12 +26,12 @@ SPILLWAY_INLINE double power(const Cell& cell, const double* query) {
 }  // namespace
 
 template <bool kHasOrderKeys>
-Insertion<kHasOrderKeys>::Insertion(const WorkingPoints& points, Slab& memory,
+Insertion<kHasOrderKeys>::Insertion(const WorkingPoints& points, CellMemory memory,
                                     const std::array<VertexId, 4>& first, int width)
     : points_(points),
       memory_(memory),
-      cells_(memory.reserve(kFirstListSize * sizeof(Cell))),
-      capacity_(std::min(memory.capacity() / sizeof(Cell), CellArray::kMaxCells)),
+      cells_(memory_.first(kFirstListSize)),
+      capacity_(memory_.capacity()),
       width_(width),
       star_maker_(points.count) {
   resize_lists(kFirstListSize);
@@ -163,8 +163,13 @@ template <bool kHasOrderKeys>
                     points_.count - 1, CellArray::kMaxCells),
         ErrorCode::kTooLarge);
   }
-  cells_ = CellArray(memory_.grow(count * sizeof(Cell), cell_count_ * sizeof(Cell)));
-  capacity_ = std::min(memory_.capacity() / sizeof(Cell), CellArray::kMaxCells);
+  cells_ = memory_.grow(count, cell_count_, forecast());
+  capacity_ = memory_.capacity();
+}
+
+template <bool kHasOrderKeys>
+WorkForecast Insertion<kHasOrderKeys>::forecast() const {
+  return WorkForecast::of(before_, sample_, CellMemory::kBytesOfCell);
 }
 
 /// The half-spaces of the star's infinite cells. Those in conflict with the next point join the

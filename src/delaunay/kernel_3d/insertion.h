@@ -6,10 +6,10 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
+#include <utility>
 #include <vector>
 
-#include "src/delaunay/common/working_memory.h"
+#include "src/delaunay/kernel_3d/cell_memory.h"
 #include "src/delaunay/kernel_3d/cells.h"
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_3d/star_maker.h"
@@ -38,15 +38,21 @@ class Insertion {
  public:
   /// Starts with the cell of four points that are not coplanar. `width` is what
   /// lane_width() says.
-  Insertion(const WorkingPoints& points, Slab& memory, const std::array<VertexId, 4>& first,
+  Insertion(const WorkingPoints& points, CellMemory memory, const std::array<VertexId, 4>& first,
             int width);
 
   /// Inserts a point. `next` is the one that will come next.
   void insert(VertexId point, VertexId next);
 
+  /// So many points, spread evenly over all, are inserted now, or all but the last one of them.
+  void end_round(std::size_t points) { before_ = std::exchange(sample_, {points, cell_count_}); }
+
   /// Moves the last cells to where cells are free, so that those that are left, cell_count() of
   /// them, infinite ones included, fill the array from its beginning.
   void close_gaps();
+
+  /// Of the cells' memory, by the samples that the rounds have left.
+  [[nodiscard]] WorkForecast forecast() const;
 
   [[nodiscard]] std::uint32_t cell_count() const { return cell_count_; }
   [[nodiscard]] const CellArray& cells() const { return cells_; }
@@ -100,12 +106,14 @@ class Insertion {
   void grow_cells(std::size_t count);
 
   const WorkingPoints points_;
-  Slab& memory_;
+  CellMemory memory_;
   CellArray cells_;
   std::size_t capacity_;
   const int width_;
   std::uint32_t cell_count_ = 5;
   std::size_t free_count_ = 0;
+  SampleSize sample_{.points = 4, .simplices = 5};
+  SampleSize before_ = sample_;      ///< the one before that
   std::size_t known_conflicts_ = 0;  ///< at the beginning of conflicts_, of the next point
   /// Whether they are all there are in the newest star, and all cells beside them are tested.
   bool star_is_certain_ = false;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "src/delaunay/common/working_memory.h"
+#include "src/delaunay/kernel_3d/cell_memory.h"
 #include "src/delaunay/kernel_3d/insertion.h"
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_3d/working_points.h"
@@ -118,7 +119,8 @@ void list_range(const CellArray& cells, std::uint32_t begin, std::uint32_t end,
 template <bool kHasOrderKeys>
 BaseCase<3> triangulate(const BaseCaseInput<3>& input, std::span<const VertexId> basis,
                         const WorkingPoints& points, Slab& memory) {
-  Insertion<kHasOrderKeys> insertion(points, memory,
+  const std::size_t usual = kUsualCells * input.points.size();
+  Insertion<kHasOrderKeys> insertion(points, CellMemory(memory, usual + usual / 8, input.memory),
                                      {basis[0] + kFirstPoint, basis[1] + kFirstPoint,
                                       basis[2] + kFirstPoint, basis[3] + kFirstPoint},
                                      lane_width());
@@ -128,6 +130,11 @@ BaseCase<3> triangulate(const BaseCaseInput<3>& input, std::span<const VertexId>
   result.dimension = 3;
   const VertexId shift = input.first_vertex - kFirstPoint;
   const std::size_t count = insertion.cell_count();
+  if (input.memory != nullptr && !input.in_place && count > usual) {
+    // The list, and what a merge makes of it.
+    const std::uint64_t bytes = 2 * (count - usual) * sizeof(Simplex<3>);
+    input.memory->grow(bytes, insertion.forecast());
+  }
   const auto list_as = [&](const auto& number, auto* made) {
     list_simplices<3>(result, count, points.clear_box.has_value(),
                       [&](std::uint32_t begin, std::uint32_t end, ListingNotes<3>& notes) {
@@ -139,6 +146,7 @@ BaseCase<3> triangulate(const BaseCaseInput<3>& input, std::span<const VertexId>
     if (input.corners_only) {
       result.corners = make_corners<3>(memory, count);
       list_as(number, result.corners.data());
+      if (count > usual) result.corners.release_rest();  // for what is made of them
     } else {
       result.simplices = make_list<3>(input, memory, count);
       list_as(number, result.simplices.data());

@@ -30,33 +30,42 @@ struct Rounds {
 };
 
 /// Calls visit(i) for all i < count in rounds, each in ascending order and spread evenly over
-/// the numbers.
-template <typename Visit>
-void for_each_in_rounds(std::size_t count, const Rounds& rounds, const Visit& visit) {
+/// the numbers, and end_round(n) after each, when n have been visited.
+template <typename Visit, typename EndRound>
+void for_each_in_rounds(std::size_t count, const Rounds& rounds, const Visit& visit,
+                        const EndRound& end_round) {
   std::size_t stride = 1;
   while (count / stride > rounds.first) stride *= rounds.factor;
   for (std::size_t i = 0; i < count; i += stride) visit(i);
+  end_round((count + stride - 1) / stride);
   for (; stride > 1; stride /= rounds.factor) {
     const std::size_t step = stride / rounds.factor;
     for (std::size_t group = 0; group < count; group += stride) {
       const std::size_t end = std::min(count, group + stride);
       for (std::size_t i = group + step; i < end; i += step) visit(i);
     }
+    end_round((count + step - 1) / step);
   }
 }
 
-/// Calls insertion.insert(point, next) in rounds for all `count` points but those of the basis.
+/// Calls insertion.insert(point, next) in rounds for all `count` points but those of the basis, and
+/// insertion.end_round(points), if there is such a thing, after each round.
 template <typename Insertion>
 void insert_in_rounds(Insertion& insertion, std::size_t count, std::span<const VertexId> basis,
                       const Rounds& rounds) {
   // One after the rounds, so that an insertion knows which point comes next.
   VertexId pending = kInfinite;
-  for_each_in_rounds(count, rounds, [&](std::size_t i) {
-    if (std::find(basis.begin(), basis.end(), i) != basis.end()) return;
-    const auto next = static_cast<VertexId>(i + kFirstPoint);
-    if (pending != kInfinite) insertion.insert(pending, next);
-    pending = next;
-  });
+  for_each_in_rounds(
+      count, rounds,
+      [&](std::size_t i) {
+        if (std::find(basis.begin(), basis.end(), i) != basis.end()) return;
+        const auto next = static_cast<VertexId>(i + kFirstPoint);
+        if (pending != kInfinite) insertion.insert(pending, next);
+        pending = next;
+      },
+      [&](std::size_t points) {
+        if constexpr (requires { insertion.end_round(points); }) insertion.end_round(points);
+      });
   if (pending != kInfinite) insertion.insert(pending, pending);
 }
 

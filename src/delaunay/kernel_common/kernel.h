@@ -16,6 +16,8 @@
 
 namespace spillway::detail {
 
+class WorkLease;
+
 /// The points of one base case, neighbours near each other in the list (a Hilbert curve's order, as
 /// divide() leaves them; any order is correct, but slower): point i is vertex first_vertex + i, and
 /// of equal points the one of the lowest input index is kept.
@@ -33,6 +35,9 @@ struct BaseCaseInput {
   /// is a clear box: half as much to write and to read. Kernels may give simplices nevertheless.
   bool corners_only = false;
   Kernel kernel = Kernel::kSpillway;
+  /// If set, grows by what the kernel's own records and the list of simplices take beyond what is
+  /// usual for so many points; grow() may throw.
+  WorkLease* memory = nullptr;
 };
 
 /// The triangulation of one base case: a single simplex list, its neighbours all inside it.

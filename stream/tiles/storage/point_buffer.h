@@ -50,6 +50,9 @@ class PointBuffer {
   /// Number of points that it has memory for.
   [[nodiscard]] std::size_t room() const { return pages_.size() * page_points_; }
 
+  /// What that takes, in bytes.
+  [[nodiscard]] std::uint64_t bytes() const { return pages_.size() * PagePool::kPageBytes; }
+
   /// Calls f(points) for some points at a time, in order.
   template <typename F>
   void visit(F&& f) const {

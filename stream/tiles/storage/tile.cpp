@@ -14,4 +14,16 @@ std::size_t Tile::waiting() const {
   return waiting;
 }
 
+std::uint64_t Tile::held_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const HeldPoints& some : held) bytes += some.buffer.bytes();
+  return bytes;
+}
+
+std::uint64_t StoredTile::held_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const Segment& segment : segments) bytes += segment.buffer.bytes();
+  return bytes;
+}
+
 }  // namespace spillway::detail

@@ -39,6 +39,7 @@ struct Tile {
 
   [[nodiscard]] std::size_t room() const;     ///< of what is held, in points
   [[nodiscard]] std::size_t waiting() const;  ///< points held
+  [[nodiscard]] std::uint64_t held_bytes() const;
 };
 
 /// Points on their way from one tile's buffer to its file.
@@ -61,6 +62,8 @@ struct StoredTile {
   /// Of points that are one vertex, and more than a tile has memory for, all but one: they are not
   /// among the points.
   std::uint64_t left_out = 0;
+
+  [[nodiscard]] std::uint64_t held_bytes() const;  ///< of points in memory that are not encoded
 };
 
 }  // namespace spillway::detail

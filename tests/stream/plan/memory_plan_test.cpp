@@ -51,9 +51,9 @@ TEST(MemoryBudget, NamesWhatMayBeEnoughAndWhatIs) {
   EXPECT_EQ(facts(20 * kMiB).enough, 100 * kMiB);
   std::uint64_t estimate = 60 * kMiB - 1;
   std::uint64_t wanted = 0;
-  budget.set_estimate([&](std::uint64_t used, std::uint64_t refused) {
-    EXPECT_EQ(used, 20 * kMiB);
-    wanted = used + refused;
+  budget.set_estimate([&](const MemoryBudget::Refusal& refusal) {
+    EXPECT_EQ(refusal.used, 20 * kMiB);
+    wanted = refusal.used + refusal.bytes;
     return estimate;
   });
   EXPECT_EQ(facts(20 * kMiB).perhaps, 60 * kMiB);
@@ -71,7 +71,8 @@ TEST(MemoryBudget, NamesWhatMayBeEnoughAndWhatIs) {
 TEST(MemoryBudget, SpeaksOfTheWholeThatItIsAPartOf) {
   MemoryBudget budget(24 * kMiB, 32 * kMiB);
   budget.set_enough(60 * kMiB);
-  budget.set_estimate([](std::uint64_t used, std::uint64_t refused) { return used + refused; });
+  budget.set_estimate(
+      [](const MemoryBudget::Refusal& refusal) { return refusal.used + refusal.bytes; });
   try {
     const MemoryLease lease(budget, 40 * kMiB, "one thing");
     FAIL();

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <string>
 
@@ -77,6 +78,19 @@ TEST_F(ResidentMemory, IsTheLeastLimitWhateverIsWritten) {
     const auto stats = triangulate("--memory 32M in.las -o " + output);
     EXPECT_GT(stats["spilled_points"], 0);
     EXPECT_LE(peak(stats), 32 + kBeside) << output;
+  }
+}
+
+TEST_F(ResidentMemory, IsTheLimitWhereMorePointsMakeMoreAndMoreSimplices) {
+  for (const std::string points : {"lines -n 6000", "lines -n 60000", "ellipsoid -n 400000"}) {
+    work_.succeed("spillway generate -q --dim 3 -o in.spp " + points);
+    const Result refused =
+        work_.run("spillway triangulate -q --dim 3 --threads 2 --memory 96M in.spp -o mesh.spm");
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.err, HasSubstr("of memory are too little for"));
+    rusage most{};  // of the processes so far
+    ASSERT_EQ(getrusage(RUSAGE_CHILDREN, &most), 0);
+    EXPECT_LE(static_cast<double>(most.ru_maxrss) / 1024, 96 + kBeside) << points;
   }
 }
 
