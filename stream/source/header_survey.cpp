@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <system_error>
 #include <utility>
 
@@ -29,11 +30,15 @@ void check_points_have(const SourceFacts::Input& input, const HeaderSurveyOption
   }
 }
 
+/// The texts of coordinate systems that have been met, so that equal ones are kept once.
+using KnownTexts = std::map<std::string_view, SharedText>;
+
 void survey(FileSystem& files, const std::string& path, const HeaderSurveyOptions& options,
-            HeaderSurvey& all) {
+            KnownTexts& known, HeaderSurvey& all) {
   std::shared_ptr<PointReader> reader = open_point_reader(files, path, options.reader);
   SourceFacts::Input input;
   input.header = reader->header();
+  input.header.crs = known.emplace(input.header.crs, input.header.crs).first->second;
   check_points_have(input, options);
   std::error_code unknown;
   input.bytes = bytes_of_file(path);
@@ -84,10 +89,11 @@ void tell_notices(const SourceFacts& facts, const HeaderSurveyOptions& options) 
 HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& paths,
                             const HeaderSurveyOptions& options) {
   HeaderSurvey all;
+  KnownTexts known;
   std::vector<Error> faults;
   for (const std::string& path : paths) {
     try {
-      survey(files, path, options, all);
+      survey(files, path, options, known, all);
     } catch (const InvalidArgument&) {
       throw;
     } catch (const Error& error) {

@@ -5,12 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "formats/bytes/shared_text.h"
+
 namespace spillway::detail {
 
 /// An input and the coordinate system that it names, or none.
 struct InputCrs {
   std::string name;
-  std::string crs;     ///< WKT or "EPSG:n"; empty: unknown
+  SharedText crs;      ///< WKT or "EPSG:n"; empty: unknown
   std::string note{};  ///< PointHeader::crs_note
 };
 

@@ -7,5 +7,5 @@ spillway_test(blocks_test unit
     formats/points/spp/spp_test.cpp
   LIBS spillway_formats fmt::fmt)
 spillway_test(json_test unit
-  SOURCES formats/bytes/json_test.cpp
+  SOURCES formats/bytes/json_test.cpp formats/bytes/shared_text_test.cpp
   LIBS spillway_formats)

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/bytes/shared_text.h"
 #include "formats/disk/file_system.h"
 #include "formats/gdal/geotiff_key_records.h"
 #include "src/geometry/box.h"
@@ -93,7 +94,7 @@ struct PointHeader {
   std::optional<std::uint64_t> count;  ///< records in the source, where known beforehand
   std::optional<Lattice> lattice;      ///< set if the points come as integers
   std::optional<Box<3>> extent;        ///< in output coordinates, where the header gives it
-  std::string crs;                     ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
+  SharedText crs;                      ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
   std::string crs_note;                ///< why there is none, though the source tells of one; or
                                        ///< what is not read of it; empty: neither
   /// What LAS tells besides: of heights, or of a system in case that `crs` cannot be read. Empty if

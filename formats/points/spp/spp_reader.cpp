@@ -85,7 +85,7 @@ class SppReader : public PointReader {
     if ((flags & kSppHasCount) != 0) header_.count = stream_.take<std::uint64_t>();
     if ((flags & kSppHasExtent) != 0) header_.extent = stream_.take_extent();
     const auto cells = is_sorted ? stream_.take<std::uint64_t>() : 0;
-    header_.crs = as_text(stream_.left());
+    header_.crs = std::string(as_text(stream_.left()));
     if (is_sorted) parse_cells(cells);
   }
 

@@ -29,7 +29,7 @@ void pack_header(Packer& message, const PointHeader& header) {
   pack_optional(message, header.count);
   pack_optional(message, header.lattice);
   pack_optional(message, header.extent);
-  message.put_list(header.crs);
+  message.put_list(header.crs.text());
   message.put_list(header.crs_note);
   message.put_list(header.crs_keys.directory);
   message.put_list(header.crs_keys.numbers);
