@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/meshes/mesh_formats.h"
+#include "formats/points/npy/npy_format.h"
 #include "formats/points/point_formats.h"
 #include "formats/rasters/raster_formats.h"
 #include "formats/vectors/vector_formats.h"
@@ -89,6 +90,21 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
               parse_point_count)
       .value_name("N");
   add_report_options(app, options.report);
+}
+
+/// Says what the third column of npy is taken for, which has numbers without names.
+void say_what_heights_are(const TriangulateCommandOptions& options, const PointsHeader& points,
+                          Progress& progress) {
+  if (options.app->is_given("--dim") || points.coordinates == 2 || !is_first_rank()) return;
+  const auto is_npy = [](const std::string& input) {
+    return point_format_of_path(input) == &kNpyPoints;
+  };
+  if (options.input.format != kNpyPoints.name && std::ranges::none_of(options.inputs, is_npy)) {
+    return;
+  }
+  progress.say(
+      "npy does not tell what its columns are: x and y are triangulated, and z is carried along; "
+      "--dim 3 makes tetrahedra");
 }
 
 void say(const TriangulateCommandOptions& options, const Report& report, const RunFacts& facts,
@@ -200,6 +216,7 @@ int run(const TriangulateCommandOptions& options) {
   const auto points =
       open_points(options.inputs, point_options(options.input, options.dimension), context);
   check_heights(options, points->header());
+  say_what_heights_are(options, points->header(), progress);
   TriangulateOptions how = triangulate_options(options, options.dimension);
   how.input_index = options.input_index;
   if (options.simulates()) {
