@@ -52,7 +52,8 @@ if(SPILLWAY_GDAL)
   spillway_command_test(cli_dem_tests cli
     tools/commands/cli_batch_buffer_test.cpp
     tools/commands/cli_dem_test.cpp tools/commands/cli_dem_survey_test.cpp
-    tools/commands/cli_dem_units_test.cpp)
+    tools/commands/cli_dem_units_test.cpp
+    tools/commands/cli_layers_test.cpp)
   target_link_libraries(cli_dem_tests PRIVATE PkgConfig::gdal)
 else()
   add_test(NAME cli_dem_tests COMMAND ${CMAKE_COMMAND} -E echo "rasters need GDAL, which this build has not")
