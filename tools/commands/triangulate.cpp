@@ -128,7 +128,8 @@ void say(const TriangulateCommandOptions& options, const Report& report, const R
                            report.mesh.simplices, simplices_of(report.dimension),
                            hash_to_hex(report.mesh.canonical_hash), facts.seconds));
   const MeshFormat& format = mesh_format(options.output, report.output_format);
-  if (const std::string note = rounding_note(format); !note.empty()) progress.say(note);
+  const std::string note = rounding_note(format, options.output);
+  if (!note.empty()) progress.say(note);
   if (facts.simulated.empty()) return;
   // The table is what was asked for; it gives way only to a mesh on standard output.
   const std::string table =
