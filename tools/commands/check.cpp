@@ -171,6 +171,7 @@ Subcommand add_check(CommandLine& root) {
                                    "Threads to prove a mesh stream with; 0: all there are"),
                     0, kMostThreads)
       .value_name("N")
+      .group(kResourceGroup)
       .show_default();
   add_memory_options(app, options->memory);
   add_input_options(app, options->input);

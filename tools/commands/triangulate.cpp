@@ -79,16 +79,19 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
                   "--simulate-cores", options.core_list,
                   "Run on one thread and print what so many cores would take, as 1,2,4,...,1024"),
               parse_core_list)
-      .value_name("LIST");
+      .value_name("LIST")
+      .group(kTuningGroup);
   take_parsed(app.add_option("--simulate-disk", options.disk_speed,
                              "Bytes a second of the simulated disk, as 500M or 2G; none: as many "
                              "as are needed"),
               parse_memory_size)
-      .value_name("SPEED");
+      .value_name("SPEED")
+      .group(kTuningGroup);
   take_parsed(app.add_option("--simulate-points", options.simulated_points,
                              "Points of the simulated run, made of copies of the one measured"),
               parse_point_count)
-      .value_name("N");
+      .value_name("N")
+      .group(kTuningGroup);
   add_report_options(app, options.report);
 }
 
