@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "formats/gdal/geotiff_key_records.h"
 #include "formats/gdal/raster.h"
@@ -77,6 +78,10 @@ class Gdal {
   /// Opens the one layer of triangles of a vector file.
   [[nodiscard]] virtual std::unique_ptr<TriangleLayer> open_layer(
       const std::string& path) const = 0;
+
+  /// The names of all tables of a GeoPackage, of features, attributes and tiles; none if it cannot
+  /// be read.
+  [[nodiscard]] virtual std::vector<std::string> table_names(const std::string& path) const = 0;
 
   /// Throws Error if GDAL lacks what create_raster() needs for these options, of which name,
   /// compression and cloud_optimized are looked at.

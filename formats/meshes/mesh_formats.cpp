@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <system_error>
 
+#include "formats/bytes/input_bytes.h"
 #include "formats/bytes/word_list.h"
 #include "formats/disk/extension.h"
+#include "formats/disk/file_system.h"
 #include "formats/meshes/glb/glb_format.h"
 #include "formats/meshes/landxml/landxml_format.h"
 #include "formats/meshes/npy/npy_format.h"
@@ -125,11 +130,23 @@ std::string list_of_formats(bool (*chosen)(const MeshFormat&), std::string_view 
   return word_list(names_of_formats(chosen, formats), last);
 }
 
-std::string rounding_note(const MeshFormat& format) {
+std::string rounding_note(const MeshFormat& format, const std::string& path) {
   if (!format.rounds_coordinates) return "";
-  return fmt::format(
+  std::string note = fmt::format(
       "{} has 32-bit floats: coordinates are rounded, so info and check find another hash there",
       format.title);
+  std::error_code ignored;
+  if (format.unknown_origin != nullptr && std::filesystem::is_regular_file(path, ignored)) {
+    InputBytes source(disk().open(path));
+    const std::optional<WorldPoint> origin = format.unknown_origin(source);
+    if (origin && *origin != WorldPoint{}) {
+      note += fmt::format(
+          "; other programs find them without {}, {}, {}, the origin that {} names in "
+          "its first bytes",
+          (*origin)[0], (*origin)[1], (*origin)[2], path);
+    }
+  }
+  return note;
 }
 
 }  // namespace spillway::detail

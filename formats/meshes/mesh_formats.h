@@ -54,7 +54,8 @@ std::vector<std::string> names_of_formats(bool (*chosen)(const MeshFormat&),
 std::string list_of_formats(bool (*chosen)(const MeshFormat&), std::string_view last,
                             MeshFormats formats = mesh_formats());
 
-/// What is to be said of a mesh in a format that rounds its coordinates; empty for others.
-std::string rounding_note(const MeshFormat& format);
+/// What is to be said of a mesh that was written to `path` in a format that rounds its coordinates,
+/// or sees them from an origin; empty for others.
+std::string rounding_note(const MeshFormat& format, const std::string& path);
 
 }  // namespace spillway::detail

@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <vector>
 
+#include "formats/disk/output_target.h"
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
 
@@ -27,6 +32,24 @@ std::string layer_name(std::string stem) {
 }
 
 }  // namespace
+
+std::string lost_layers_text(const VectorFormat& format, const std::string& path) {
+  constexpr std::size_t kMostNamed = 5;
+  if (!format.holds_layers) return "";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return "";
+  if (std::filesystem::file_size(path, ignored) == 0) return "";
+  const std::filesystem::path target = output_target(path).path;
+  std::vector<std::string> lost = gdal().table_names(target.string());
+  std::erase(lost, layer_name(target.stem().string()));
+  if (lost.empty()) return "";
+  const std::size_t named = std::min(lost.size(), kMostNamed);
+  return fmt::format(
+      "{} is replaced as a whole: its other layer{} {}{} {} lost; name another file to keep {}",
+      path, lost.size() == 1 ? "" : "s", fmt::join(lost.begin(), lost.begin() + named, ", "),
+      lost.size() > named ? fmt::format(" and {} more", lost.size() - named) : "",
+      lost.size() == 1 ? "is" : "are", lost.size() == 1 ? "it" : "them");
+}
 
 VectorFile::VectorFile(const VectorFormat& format, VectorLayerOptions options)
     : format_(format), output_(options.path) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "formats/disk/private_output.h"
 #include "formats/gdal/vector_layer.h"
@@ -9,9 +10,14 @@
 
 namespace spillway::detail {
 
-/// A vector file being written. GDAL writes it into a private
-/// folder beside the target; finish() gives all its files (a shapefile is five) their names. If
-/// destroyed without, or after a signal, nothing is left.
+/// Says which layers of the file at `path` are lost when a vector file takes its place: all but the
+/// one that is written again. Empty if there are none, or nothing is there, or the format holds one
+/// layer only.
+std::string lost_layers_text(const VectorFormat& format, const std::string& path);
+
+/// A vector file being written. GDAL writes it into a private folder beside the target; finish()
+/// gives all its files (a shapefile is five) their names. If destroyed without, or after a signal,
+/// nothing is left.
 class VectorFile {
  public:
   /// Begins the file `options.path` with a layer that is named after it; name, layer and driver of

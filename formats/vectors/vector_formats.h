@@ -18,6 +18,7 @@ struct VectorFormat {
   std::span<const std::string_view> part_extensions{};
   bool takes_backslash = true;  ///< in its path
   bool is_lonlat = false;       ///< holds longitude and latitude in WGS 84, and nothing else
+  bool holds_layers = false;    ///< perhaps several, made by other programs
 };
 
 namespace vector_names {
@@ -28,8 +29,11 @@ inline constexpr std::string_view kShpParts[] = {".shx", ".dbf", ".prj", ".cpg",
 inline constexpr std::string_view kJson[] = {"geojson", "json"};
 }  // namespace vector_names
 
-inline constexpr VectorFormat kGeoPackage = {
-    .name = "gpkg", .title = "GeoPackage", .driver = "GPKG", .extensions = vector_names::kGpkg};
+inline constexpr VectorFormat kGeoPackage = {.name = "gpkg",
+                                             .title = "GeoPackage",
+                                             .driver = "GPKG",
+                                             .extensions = vector_names::kGpkg,
+                                             .holds_layers = true};
 inline constexpr VectorFormat kShapefile = {.name = "shp",
                                             .title = "Shapefile",
                                             .driver = "ESRI Shapefile",

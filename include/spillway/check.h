@@ -41,6 +41,9 @@ struct CheckReport {
   std::uint64_t peak_live_vertices = 0;
   std::uint64_t peak_open_facets = 0;
   PointCounts points{};  ///< of `points` of check()
+  /// Faults that are none with CheckOptions::any_delaunay: facets between cocircular or cospherical
+  /// vertices that are split another way than ties are broken here.
+  std::uint64_t other_ties = 0;
 };
 
 /// Proves or refutes: every vertex number valid and every vertex used, no simplex twice, every

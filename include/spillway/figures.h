@@ -3,6 +3,7 @@
 
 #include <spillway/export.h>
 
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -35,6 +36,8 @@ struct PointCounts {
   std::uint64_t returns = 0;   ///< of other returns
   std::uint64_t bounds = 0;    ///< outside of the bounds
   std::uint64_t thinned = 0;   ///< another one stands for their cell
+  /// Bit n: points of class n are among those that `classes` counts.
+  std::bitset<256> other_classes{};
 
   PointCounts& operator+=(const PointCounts& other) {
     read += other.read;
@@ -45,6 +48,7 @@ struct PointCounts {
     returns += other.returns;
     bounds += other.bounds;
     thinned += other.thinned;
+    other_classes |= other.other_classes;
     return *this;
   }
   bool operator==(const PointCounts&) const = default;
@@ -55,7 +59,8 @@ struct PointCounts {
   [[nodiscard]] std::uint64_t kept() const { return read - dropped(); }
 };
 
-/// One line: "500 points read, 12 withheld, 300 outside the bounds, 188 kept".
+/// One line: "500 points read, 12 withheld, 300 outside the bounds, 188 kept". Where none are kept,
+/// it names other classes: "500 points read, 500 of other classes (1, 3-5), 0 kept".
 SPILLWAY_API std::string describe(const PointCounts& counts);
 
 /// What a task does.

@@ -64,6 +64,10 @@ std::string simplex_text(std::uint64_t number, const std::array<NamedVertex<D>, 
   return fmt::format("{} {} (vertices {})", Words<D>::kSimplex, number, list_text<D>(vertices));
 }
 
+/// How the apex of one simplex at a facet lies to the circumsphere of the other. On the sphere,
+/// ties are broken: it is outside, or inside.
+enum class ApexSide { kOutside, kInsideByTie, kInside };
+
 /// Adds faults to a report, described as long as there are few.
 class Faults {
  public:
@@ -77,9 +81,19 @@ class Faults {
     }
   }
 
+  /// Adds that the apex of `other` is not outside of the circumsphere of `simplex`, all in words.
+  void add_apex(ApexSide side, const std::string& simplex, const std::string& apex,
+                const std::string& other) {
+    const bool tie = side == ApexSide::kInsideByTie;
+    if (tie) ++report_.other_ties;
+    add("{} is not Delaunay: {} of {} {} its circumsphere", simplex, apex, other,
+        tie ? "lies, as ties are broken, inside" : "lies inside");
+  }
+
   /// Adds those of another report, in their order.
   void add(const CheckReport& other) {
     report_.fault_count += other.fault_count;
+    report_.other_ties += other.other_ties;
     for (const std::string& fault : other.faults) {
       if (report_.faults.size() < most_) report_.faults.push_back(fault);
     }

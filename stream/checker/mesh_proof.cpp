@@ -24,13 +24,13 @@ std::string MeshView<D>::simplex_text(std::uint64_t simplex) const {
 }
 
 template <int D>
-const char* apex_fault(const std::array<Point<D>, D + 1>& simplex, const Point<D>& apex,
-                       const CheckOptions& options) {
+ApexSide apex_side(const std::array<Point<D>, D + 1>& simplex, const Point<D>& apex,
+                   const CheckOptions& options) {
   const int side =
       options.any_delaunay ? side_of_sphere<D>(simplex, apex) : in_sphere<D>(simplex, apex);
-  if (side <= 0) return nullptr;
+  if (side <= 0) return ApexSide::kOutside;
   const bool tie = !options.any_delaunay && side_of_sphere<D>(simplex, apex) == 0;
-  return tie ? "lies, as ties are broken, inside" : "lies inside";
+  return tie ? ApexSide::kInsideByTie : ApexSide::kInside;
 }
 
 namespace {
@@ -240,11 +240,10 @@ class MeshProof {
 
   bool locally_delaunay(const Face<D>& a, const Face<D>& b) {
     const std::uint64_t apex = mesh_.corners[b.owner];
-    const char* fault =
-        apex_fault<D>(view_.simplex(a.owner / (D + 1)), view_.point(apex), options_);
-    if (fault == nullptr) return true;
-    faults_.add("{} is not Delaunay: {} of {} {} its circumsphere", owner_text(a),
-                view_.vertex_text(apex), owner_text(b), fault);
+    const ApexSide side =
+        apex_side<D>(view_.simplex(a.owner / (D + 1)), view_.point(apex), options_);
+    if (side == ApexSide::kOutside) return true;
+    faults_.add_apex(side, owner_text(a), view_.vertex_text(apex), owner_text(b));
     return false;
   }
 
@@ -267,10 +266,10 @@ void prove_mesh(const Mesh& mesh, const CheckOptions& options, CheckReport& repo
 
 template class MeshView<2>;
 template class MeshView<3>;
-template const char* apex_fault<2>(const std::array<Point<2>, 3>&, const Point<2>&,
-                                   const CheckOptions&);
-template const char* apex_fault<3>(const std::array<Point<3>, 4>&, const Point<3>&,
-                                   const CheckOptions&);
+template ApexSide apex_side<2>(const std::array<Point<2>, 3>&, const Point<2>&,
+                               const CheckOptions&);
+template ApexSide apex_side<3>(const std::array<Point<3>, 4>&, const Point<3>&,
+                               const CheckOptions&);
 template void prove_mesh<2>(const Mesh&, const CheckOptions&, CheckReport&);
 template void prove_mesh<3>(const Mesh&, const CheckOptions&, CheckReport&);
 

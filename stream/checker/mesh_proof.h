@@ -107,11 +107,11 @@ class MeshView {
   std::vector<Point<D>> points_;
 };
 
-/// How the apex of one simplex at a facet lies to the circumsphere of the other, in words, if that
-/// is wrong; nullptr if it is outside, ties broken as `options` says.
+/// How the apex of one simplex at a facet lies to the circumsphere of the other, ties broken as
+/// `options` says.
 template <int D>
-const char* apex_fault(const std::array<Point<D>, D + 1>& simplex, const Point<D>& apex,
-                       const CheckOptions& options);
+ApexSide apex_side(const std::array<Point<D>, D + 1>& simplex, const Point<D>& apex,
+                   const CheckOptions& options);
 
 /// Runs the whole proof and writes its outcome into the report.
 template <int D>

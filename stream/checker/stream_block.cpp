@@ -110,11 +110,11 @@ void StreamBlock<D>::prove_facet(std::uint32_t older, std::uint32_t newer, bool 
   }
   ++inner_facets;
   const std::uint32_t apex = block.corners[older];
-  const char* fault = apex_fault<D>(simplex(a), points[apex], options);
-  if (fault == nullptr) return;
+  const ApexSide side = apex_side<D>(simplex(a), points[apex], options);
+  if (side == ApexSide::kOutside) return;
   ++not_delaunay;
-  faults.add("{} is not Delaunay: {} of {} {} its circumsphere", text(a, coordinates),
-             vertex_text<D>(named(apex, coordinates)), text(b, coordinates), fault);
+  faults.add_apex(side, text(a, coordinates), vertex_text<D>(named(apex, coordinates)),
+                  text(b, coordinates));
 }
 
 template class StreamBlock<2>;

@@ -197,11 +197,10 @@ class StreamProof {
     }
     ++inner_;
     const auto& apex = vertices_[older.apex];
-    const char* fault = apex_fault<D>(block.simplex(s), apex.point, options_);
-    if (fault == nullptr) return;
+    const ApexSide side = apex_side<D>(block.simplex(s), apex.point, options_);
+    if (side == ApexSide::kOutside) return;
     ++not_delaunay_;
-    faults_.add("{} is not Delaunay: {} of {} {} its circumsphere", block.text(s, coordinates_),
-                vertex_text<D>(named(apex)), text(older), fault);
+    faults_.add_apex(side, block.text(s, coordinates_), vertex_text<D>(named(apex)), text(older));
   }
 
   [[nodiscard]] NamedVertex<D> named(const typename OpenVertices<D>::Vertex& vertex) const {

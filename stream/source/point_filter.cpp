@@ -3,12 +3,38 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <bitset>
 #include <cmath>
+#include <cstddef>
+#include <string>
 #include <utility>
 
 #include "src/error.h"
 
 namespace spillway::detail {
+namespace {
+
+/// "1, 3-5, 9": the numbers of the bits that are set.
+std::string list_text(const std::bitset<256>& bits) {
+  std::string text;
+  for (std::size_t first = 0; first < bits.size(); ++first) {
+    if (!bits.test(first)) continue;
+    std::size_t last = first;
+    while (last + 1 < bits.size() && bits.test(last + 1)) ++last;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", first);
+    if (last > first) text += fmt::format("-{}", last);
+    first = last;
+  }
+  return text;
+}
+
+/// Which ones the other classes are is of use where they are all there is.
+std::string other_classes_text(const PointCounts& counts) {
+  if (counts.kept() > 0 || counts.other_classes.none()) return "of other classes";
+  return fmt::format("of other classes ({})", list_text(counts.other_classes));
+}
+
+}  // namespace
 
 bool ReturnFilter::keeps(const PointAttributes& point) const {
   const bool known = point.return_number > 0 && point.return_count > 0;
@@ -43,6 +69,7 @@ void apply_filter(const PointFilter& filter, const std::optional<Lattice>& latti
       ++counts.skipped;
     } else if (filter.classes && !filter.classes->test(block.attributes[i].classification)) {
       ++counts.classes;
+      counts.other_classes.set(block.attributes[i].classification);
     } else if (filter.returns && !filter.returns->keeps(block.attributes[i])) {
       ++counts.returns;
     } else if (filter.bounds && !filter.bounds->contains(in_world(lattice, block.points[i]))) {
@@ -65,11 +92,11 @@ namespace spillway {
 
 std::string describe(const PointCounts& counts) {
   std::string text = fmt::format("{} points read", counts.read);
-  const std::array<std::pair<std::uint64_t, const char*>, 7> dropped = {
+  const std::array<std::pair<std::uint64_t, std::string>, 7> dropped = {
       {{counts.invalid, "invalid"},
        {counts.withheld, "withheld"},
        {counts.skipped, "skipped"},
-       {counts.classes, "of other classes"},
+       {counts.classes, detail::other_classes_text(counts)},
        {counts.returns, "of other returns"},
        {counts.bounds, "outside the bounds"},
        {counts.thinned, "thinned"}}};

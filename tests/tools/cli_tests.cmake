@@ -1,6 +1,7 @@
 # The command, run as a process, and its parts that need none.
 spillway_test(command_unit_tests unit
-  SOURCES tools/command_unit_test.cpp tools/report/advice_test.cpp
+  SOURCES tools/command_unit_test.cpp tools/options/help_layout_test.cpp
+    tools/options/suggestion_test.cpp tools/report/advice_test.cpp
     tools/simulate/core_simulation_test.cpp tools/simulate/machine_test.cpp
     tools/simulate/run_player_test.cpp tools/simulate/run_recorder_test.cpp
   LIBS spillway_command nlohmann_json::nlohmann_json)
@@ -52,7 +53,8 @@ if(SPILLWAY_GDAL)
   spillway_command_test(cli_dem_tests cli
     tools/commands/cli_batch_buffer_test.cpp
     tools/commands/cli_dem_test.cpp tools/commands/cli_dem_survey_test.cpp
-    tools/commands/cli_dem_units_test.cpp)
+    tools/commands/cli_dem_units_test.cpp
+    tools/commands/cli_layers_test.cpp)
   target_link_libraries(cli_dem_tests PRIVATE PkgConfig::gdal)
 else()
   add_test(NAME cli_dem_tests COMMAND ${CMAKE_COMMAND} -E echo "rasters need GDAL, which this build has not")

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -160,7 +161,7 @@ class ListReader {
 
 /// Names become names of files, so each has to be one, and its own; inputs are files.
 void check_jobs(const std::vector<Job>& jobs) {
-  std::set<std::string> names;
+  std::map<std::string, std::string> input_of_name;
   for (const Job& job : jobs) {
     if (std::find(job.inputs.begin(), job.inputs.end(), "-") != job.inputs.end()) {
       throw UsageError(
@@ -170,11 +171,12 @@ void check_jobs(const std::vector<Job>& jobs) {
       throw Error(fmt::format("\"{}\" cannot be the name of a job: its files are named after it",
                               job.name));
     }
-    if (!names.insert(job.name).second) {
-      throw UsageError(
-          fmt::format("two jobs are called {}: give them names of their own in a list of "
-                      "jobs",
-                      job.name));
+    const auto [known, is_new] = input_of_name.try_emplace(job.name, job.inputs.front());
+    if (!is_new) {
+      throw UsageError(fmt::format(
+          "two jobs are called {}, one of {} and one of {}: their files would have the "
+          "same names; leave one out, or give them names of their own in a list of jobs",
+          job.name, known->second, job.inputs.front()));
     }
   }
 }

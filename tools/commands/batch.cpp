@@ -391,6 +391,7 @@ Subcommand add_batch(CommandLine& root) {
                                    "Threads of all jobs together; 0: all there are"),
                     0, kMostThreads)
       .value_name("N")
+      .group(kResourceGroup)
       .show_default();
   add_memory_options(app, options->memory);
   add_report_options(app, options->report);

@@ -82,6 +82,7 @@ std::string json_report(const Outcome& outcome, const CheckCommandOptions& optio
   json["peak_open_facets"] = report.peak_open_facets;
   json["properties"] = report.proved;
   json["fault_count"] = report.fault_count;
+  json["other_ties"] = report.other_ties;
   json["faults"] = report.faults;
   return json_text(json) + "\n";
 }
@@ -95,6 +96,11 @@ std::vector<std::string> rounding_formats() {
   const auto rounds = [](const MeshFormat& format) { return format.rounds_coordinates; };
   std::ranges::move(names_of_formats(rounds), std::back_inserter(names));
   return names;
+}
+
+const char* facets_text(int dimension, std::uint64_t count) {
+  if (dimension == 2) return count == 1 ? "edge" : "edges";
+  return count == 1 ? "facet" : "facets";
 }
 
 std::string text_report(const Outcome& outcome, const CheckCommandOptions& options) {
@@ -114,11 +120,22 @@ std::string text_report(const Outcome& outcome, const CheckCommandOptions& optio
   text += fmt::format("{} vertices, {} {}, {} hull facets, hash {}\n", report.vertices,
                       report.simplices, simplices_of(outcome.dimension), report.hull_facets,
                       hash_to_hex(report.canonical_hash));
+  const char* const points = options.points.empty() ? "its vertices" : "the input's points";
+  if (report.other_ties > 0 && report.other_ties == report.fault_count) {
+    return text + fmt::format(
+                      "{}: a Delaunay triangulation of {}, but NOT the one in which ties are "
+                      "broken as Spillway does: {} {} between {} vertices differ{}; "
+                      "--any-delaunay accepts that\n",
+                      printable(options.mesh), points, report.other_ties,
+                      facets_text(outcome.dimension, report.other_ties),
+                      outcome.dimension == 2 ? "cocircular" : "cospherical",
+                      report.other_ties == 1 ? "s" : "");
+  }
   return text + fmt::format("{}: {} Delaunay triangulation of {}\n", printable(options.mesh),
                             report.fault_count > 0 ? "NOT the"
                             : options.any_delaunay ? "proved to be a"
                                                    : "proved to be the",
-                            options.points.empty() ? "its vertices" : "the input's points");
+                            points);
 }
 
 int run(const CheckCommandOptions& options) {
@@ -154,6 +171,7 @@ Subcommand add_check(CommandLine& root) {
                                    "Threads to prove a mesh stream with; 0: all there are"),
                     0, kMostThreads)
       .value_name("N")
+      .group(kResourceGroup)
       .show_default();
   add_memory_options(app, options->memory);
   add_input_options(app, options->input);

@@ -18,7 +18,7 @@ namespace spillway::detail {
 namespace {
 
 constexpr const char* kDescription =
-    "Exact, parallel Delaunay triangulation of point clouds. Every result is the one canonical\n"
+    "Exact, parallel Delaunay triangulation of point clouds. Every result is the one canonical "
     "triangulation of its points, whatever the number of threads or the order of the work.";
 
 constexpr const char* kExamples =

@@ -55,7 +55,8 @@ void say(const ContourCommandOptions& options, const Report& report, const Conto
   say_what_is_left_out(options, report, progress);
   if (contours.lines == 0) {
     progress.insist(
-        fmt::format("warning: no lines: no level lies within the heights, which are {} to {}",
+        fmt::format("warning: no lines: no level lies above the lowest height, {}, and up to the "
+                    "highest, {}",
                     contours.lowest, contours.highest));
   }
   progress.say(fmt::format("{} vertices, {} triangles; {} lines of {} points, {:.2f} s",

@@ -193,7 +193,8 @@ void run_mesh(const ConvertCommandOptions& options, const Context& context, Prog
   const MeshTotals totals = convert(*mesh, *file, context).mesh;
   progress.say(fmt::format("{} vertices, {} simplices in {}", totals.vertices, totals.simplices,
                            files_of(output.path, format)));
-  if (const std::string note = rounding_note(format); !note.empty()) progress.say(note);
+  const std::string note = rounding_note(format, output.path);
+  if (!note.empty()) progress.say(note);
 }
 
 /// One number for all axes, or one each.

@@ -26,6 +26,24 @@ constexpr const char* kExamples =
     "  spillway triangulate survey.las -o - | spillway dem - -o dem.tif --resolution 1\n"
     "The DEM is interpolated linearly within the triangles; docs/dem.md tells more.";
 
+/// Why no pixel has a value, and what helps.
+std::string why_empty(const DemCommandOptions& options, const DemReport& raster) {
+  if (options.bounds.empty() && options.like.empty()) {
+    return fmt::format(
+        "pixels of {} are so large that none has its centre in a triangle of the points; give a "
+        "smaller --resolution",
+        raster.resolution);
+  }
+  const bool like = !options.like.empty();
+  return fmt::format(
+      "the raster of {} x {} pixels of {}, from {},{} to {},{}, lies beside the points, or its "
+      "pixels are too large for them; choose another {}{}",
+      raster.columns, raster.rows, raster.resolution, raster.west,
+      raster.north - raster.rows * raster.resolution,
+      raster.west + raster.columns * raster.resolution, raster.north, like ? "--like" : "--bounds",
+      like ? "" : " or a smaller --resolution");
+}
+
 void say(const DemCommandOptions& options, const Report& report, const DemReport& raster,
          const RunFacts& facts, Progress& progress) {
   say_what_is_left_out(options, report, progress);
@@ -34,7 +52,7 @@ void say(const DemCommandOptions& options, const Report& report, const DemReport
         fmt::format("{} of pixels on the disk", memory_size_text(raster.spilled_bytes)));
   }
   if (raster.pixels_with_data == 0) {
-    progress.insist("warning: no pixel has a value: the raster lies beside the points");
+    progress.insist("warning: no pixel has a value: " + why_empty(options, raster));
   }
   progress.say(
       fmt::format("{} vertices, {} triangles; {} x {} pixels of {}, {} with data, {:.2f} s",

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/meshes/mesh_formats.h"
+#include "formats/points/npy/npy_format.h"
 #include "formats/points/point_formats.h"
 #include "formats/rasters/raster_formats.h"
 #include "formats/vectors/vector_formats.h"
@@ -78,17 +79,35 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
                   "--simulate-cores", options.core_list,
                   "Run on one thread and print what so many cores would take, as 1,2,4,...,1024"),
               parse_core_list)
-      .value_name("LIST");
+      .value_name("LIST")
+      .group(kTuningGroup);
   take_parsed(app.add_option("--simulate-disk", options.disk_speed,
                              "Bytes a second of the simulated disk, as 500M or 2G; none: as many "
                              "as are needed"),
               parse_memory_size)
-      .value_name("SPEED");
+      .value_name("SPEED")
+      .group(kTuningGroup);
   take_parsed(app.add_option("--simulate-points", options.simulated_points,
                              "Points of the simulated run, made of copies of the one measured"),
               parse_point_count)
-      .value_name("N");
+      .value_name("N")
+      .group(kTuningGroup);
   add_report_options(app, options.report);
+}
+
+/// Says what the third column of npy is taken for, which has numbers without names.
+void say_what_heights_are(const TriangulateCommandOptions& options, const PointsHeader& points,
+                          Progress& progress) {
+  if (options.app->is_given("--dim") || points.coordinates == 2 || !is_first_rank()) return;
+  const auto is_npy = [](const std::string& input) {
+    return point_format_of_path(input) == &kNpyPoints;
+  };
+  if (options.input.format != kNpyPoints.name && std::ranges::none_of(options.inputs, is_npy)) {
+    return;
+  }
+  progress.say(
+      "npy does not tell what its columns are: x and y are triangulated, and z is carried along; "
+      "--dim 3 makes tetrahedra");
 }
 
 void say(const TriangulateCommandOptions& options, const Report& report, const RunFacts& facts,
@@ -112,7 +131,8 @@ void say(const TriangulateCommandOptions& options, const Report& report, const R
                            report.mesh.simplices, simplices_of(report.dimension),
                            hash_to_hex(report.mesh.canonical_hash), facts.seconds));
   const MeshFormat& format = mesh_format(options.output, report.output_format);
-  if (const std::string note = rounding_note(format); !note.empty()) progress.say(note);
+  const std::string note = rounding_note(format, options.output);
+  if (!note.empty()) progress.say(note);
   if (facts.simulated.empty()) return;
   // The table is what was asked for; it gives way only to a mesh on standard output.
   const std::string table =
@@ -200,6 +220,7 @@ int run(const TriangulateCommandOptions& options) {
   const auto points =
       open_points(options.inputs, point_options(options.input, options.dimension), context);
   check_heights(options, points->header());
+  say_what_heights_are(options, points->header(), progress);
   TriangulateOptions how = triangulate_options(options, options.dimension);
   how.input_index = options.input_index;
   if (options.simulates()) {

@@ -2,7 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
+
+#include "tools/options/help_layout.h"
 
 namespace spillway::detail {
 namespace {
@@ -13,10 +17,44 @@ bool takes_many(const CLI::Option& option) {
          option.get_allow_extra_args();
 }
 
+/// The headings of a command line's options, those first that are needed first.
+std::vector<std::string> groups_in_order(const CLI::App& app) {
+  constexpr std::array<std::string_view, 4> kLast = {kFilterGroup, kResourceGroup, kReportGroup,
+                                                     kTuningGroup};
+  std::vector<std::string> groups = app.get_groups();
+  std::ranges::stable_sort(groups, {}, [&](const std::string& group) {
+    const auto place = std::ranges::find(kLast, group);
+    return place == kLast.end() ? 0 : place - kLast.begin() + 1;
+  });
+  return groups;
+}
+
 /// Help with `--option VALUE  description [default]`.
 class HelpFormatter : public CLI::Formatter {
  public:
-  HelpFormatter() { column_width(34); }
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode /*mode*/) const override {
+    return make_description(app) + make_usage(app, name) + make_positionals(app) +
+           make_sorted_groups(*app) + make_subcommands(app, CLI::AppFormatMode::Normal) + "\n" +
+           make_footer(app);
+  }
+
+  std::string make_description(const CLI::App* app) const override {
+    return wrapped(app->get_description(), width_) + "\n";
+  }
+
+  std::string make_footer(const CLI::App* app) const override {
+    return wrapped(app->get_footer(), width_) + "\n";
+  }
+
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    return help_entry(make_option_name(option, is_positional) + make_option_opts(option),
+                      make_option_desc(option), width_);
+  }
+
+  std::string make_subcommand(const CLI::App* app) const override {
+    return help_entry(app->get_name(), app->get_description(), width_);
+  }
 
   std::string make_option_opts(const CLI::Option* option) const override {
     const bool many = takes_many(*option);
@@ -31,6 +69,21 @@ class HelpFormatter : public CLI::Formatter {
     if (!option->get_default_str().empty()) text += " [" + option->get_default_str() + "]";
     return text;
   }
+
+ private:
+  /// What make_groups() makes in the order in which the headings appeared first.
+  [[nodiscard]] std::string make_sorted_groups(const CLI::App& app) const {
+    std::string text;
+    for (const std::string& group : groups_in_order(app)) {
+      const auto options = app.get_options([&](const CLI::Option* option) {
+        return option->get_group() == group && option->nonpositional();
+      });
+      if (!options.empty()) text += make_group(group, false, options);
+    }
+    return text;
+  }
+
+  std::size_t width_ = help_width();
 };
 
 std::vector<std::string> split_words(const std::string& type_name) {
@@ -161,6 +214,7 @@ CommandLine::~CommandLine() = default;
 CommandLine& CommandLine::add_subcommand(const std::string& name, const std::string& description) {
   auto impl = std::make_unique<Impl>();
   impl->app = impl_->app->add_subcommand(name, description);
+  impl->app->get_help_ptr()->group(kReportGroup);
   impl_->subcommands.emplace_back(new CommandLine(std::move(impl)));
   return *impl_->subcommands.back();
 }
@@ -229,9 +283,14 @@ std::string CommandLine::footer() const { return impl_->app->get_footer(); }
 std::vector<OptionInfo> CommandLine::options() const {
   const CLI::App& app = *impl_->app;
   std::vector<OptionInfo> options;
-  for (const bool positional : {true, false}) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_positional()) options.push_back(describe(*option));
+  }
+  for (const std::string& group : groups_in_order(app)) {
     for (const CLI::Option* option : app.get_options()) {
-      if (option->get_positional() == positional) options.push_back(describe(*option));
+      if (!option->get_positional() && option->get_group() == group) {
+        options.push_back(describe(*option));
+      }
     }
   }
   return options;

@@ -16,6 +16,13 @@ class Option;
 
 namespace spillway::detail {
 
+/// Headings in help of options that are needed less often than those of a subcommand itself. They
+/// come last, in this order.
+inline constexpr const char* kFilterGroup = "Filters (of the points that are read)";
+inline constexpr const char* kResourceGroup = "Threads, memory and disk";
+inline constexpr const char* kReportGroup = "Messages and figures";
+inline constexpr const char* kTuningGroup = "Fine tuning (what is chosen without suits nearly all)";
+
 /// A handle of an option or positional argument of a CommandLine, which it must not outlive. Each
 /// function says more of the option, and returns the same handle.
 class Option {

@@ -42,14 +42,17 @@ void add_memory_options(CommandLine& app, MemoryOptions& options) {
       app.add_option("--memory", options.limit,
                      "Memory to keep to, as 512M or 2G [a quarter of the machine's, at most 2G]"),
       parse_memory_size)
-      .value_name("SIZE");
+      .value_name("SIZE")
+      .group(kResourceGroup);
   app.add_option("--tmpdir", options.scratch_parent,
                  "Folder for what does not fit into memory [$TMPDIR, else /tmp]")
-      .value_name("DIR");
+      .value_name("DIR")
+      .group(kResourceGroup);
   take_parsed(app.add_option("--max-tmp", options.scratch_cap,
                              "Most of the disk to use for that [no limit]"),
               parse_memory_size)
-      .value_name("SIZE");
+      .value_name("SIZE")
+      .group(kResourceGroup);
 }
 
 std::uint64_t memory_limit(const MemoryOptions& options) {
@@ -110,10 +113,12 @@ Option add_dimension(CommandLine& app, int& dimension, const std::string& descri
 
 void add_report_options(CommandLine& app, ReportOptions& options) {
   add_choice(app, "--progress", options.progress, {"auto", "plain", "json", "none"},
-             "Progress on standard error");
+             "Progress on standard error")
+      .group(kReportGroup);
   const Option quiet =
-      app.add_flag("-q,--quiet", options.quiet, "Say nothing on standard error but errors");
-  app.add_flag("-v,--verbose", options.verbose, "Say more").excludes(quiet);
+      app.add_flag("-q,--quiet", options.quiet, "Say nothing on standard error but errors")
+          .group(kReportGroup);
+  app.add_flag("-v,--verbose", options.verbose, "Say more").group(kReportGroup).excludes(quiet);
 }
 
 Progress make_progress(const ReportOptions& options, bool reads_pipe) {

@@ -66,16 +66,6 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   const auto add = [&](const char* name, std::string& value, const char* type, const char* what) {
     return app.add_option(name, value, what).value_name(type).group(group);
   };
-  app.add_flag("--skip-invalid", options.skip_invalid,
-               "Leave out rows of text and npy that are no points, and count them")
-      .group(group);
-  app.add_flag("--keep-withheld", options.keep_withheld,
-               "Use points that LAS files flag as withheld, too")
-      .group(group);
-  take_whole_number(
-      app.add_option("--every", options.every, "Use records 0, N, 2N, ... of each input"), 1)
-      .value_name("N")
-      .group(group);
   take_parsed(
       add("--keep-class", options.keep_class, "LIST", "Use points of these classes, as 2,3-5"),
       parse_classes);
@@ -87,6 +77,10 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   take_parsed(add("--bounds", options.bounds, "BOX",
                   "Use points in xmin,ymin,xmax,ymax or xmin,ymin,zmin,xmax,ymax,zmax"),
               parse_bounds);
+  take_whole_number(
+      app.add_option("--every", options.every, "Use records 0, N, 2N, ... of each input"), 1)
+      .value_name("N")
+      .group(group);
   take_parsed(
       add("--thin", options.thin, "CELL[:CHOICE]",
           "Use one point a cell of a grid: the first, lowest, highest one or that at its center"),
@@ -95,6 +89,12 @@ void add_input_options(CommandLine& app, InputOptions& options) {
       app.add_option("--resolution", options.resolution,
                      "Of COPC files, read the levels needed for points so far apart; others whole"))
       .value_name("R")
+      .group(group);
+  app.add_flag("--keep-withheld", options.keep_withheld,
+               "Use points that LAS files flag as withheld, too")
+      .group(group);
+  app.add_flag("--skip-invalid", options.skip_invalid,
+               "Leave out rows of text and npy that are no points, and count them")
       .group(group);
 }
 

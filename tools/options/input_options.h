@@ -41,7 +41,6 @@ inline constexpr std::array<std::string_view, 13> kInputOptionNames = {
     "--bounds",        "--thin",    "--resolution"};
 
 /// The heading in help of the options that are filters.
-inline constexpr const char* kFilterGroup = "Filters (of the points that are read)";
 
 /// --input-format, --columns, --crs, --force-crs, and the filters.
 void add_input_options(CommandLine& app, InputOptions& options);

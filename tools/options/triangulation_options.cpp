@@ -44,33 +44,43 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
       app.add_option("--threads", options.threads, "Threads to use; 0: all there are"), 0,
       kMostThreads)
       .value_name("N")
+      .group(kResourceGroup)
       .show_default();
   add_memory_options(app, options.memory);
   app.add_flag("--distrust-headers", options.distrust_headers,
-               "Triangulate nothing before all is read: headers may lie about where points are");
-  app.add_option("--stats", options.stats_path, "Write figures of the run").value_name("FILE");
+               "Triangulate nothing before all is read: headers may lie about where points are")
+      .group(kTuningGroup);
+  app.add_option("--stats", options.stats_path, "Write figures of the run")
+      .value_name("FILE")
+      .group(kReportGroup);
   app.add_option("--tasks", options.tasks_path,
                  "Write the run's tasks, a line of JSON for each tile and merge of tiles")
-      .value_name("FILE");
+      .value_name("FILE")
+      .group(kReportGroup);
   take_whole_number(app.add_option("--base-case", options.base_case_size,
                                    "Most points of one sequential base case (a leaf); 0: chosen by "
                                    "number and memory"))
       .value_name("N")
+      .group(kTuningGroup)
       .show_default();
   take_whole_number(
       app.add_option("--tile", options.tile_capacity,
                      "Most points of a tile that is loaded at a time; 0: chosen by the memory"))
       .value_name("N")
+      .group(kTuningGroup)
       .show_default();
   add_choice(app, "--division", options.division,
              {"least-border", "longest", "cycling", "constant"},
-             "Which axis the division of points cuts");
+             "Which axis the division of points cuts")
+      .group(kTuningGroup);
   take_whole_number(
       app.add_option("--children", options.children, "Parts that are merged at a time"), 2, 1024)
       .value_name("K")
+      .group(kTuningGroup)
       .show_default();
   add_choice(app, "--kernel", options.kernel, {"spillway", "cgal"},
-             "What triangulates base cases; both give the same mesh");
+             "What triangulates base cases; both give the same mesh")
+      .group(kTuningGroup);
 }
 
 void check_duplicates(const TriangulationOptions& options, int dimension) {

@@ -56,6 +56,9 @@ class LoadedGdal : public Gdal {
   [[nodiscard]] std::unique_ptr<TriangleLayer> open_layer(const std::string& path) const override {
     return open_ogr_layer(path);
   }
+  [[nodiscard]] std::vector<std::string> table_names(const std::string& path) const override {
+    return geopackage_tables(path);
+  }
   void check_raster_driver(const RasterOptions& options) const override {
     check_geotiff_driver(options);
   }

@@ -117,6 +117,12 @@ class OgrLayer : public VectorLayer {
       has_crs = has_crs && !options.as_they_are;
       if (!options.as_they_are) how.insert(how.begin(), "RFC7946=YES");
     }
+    if (options.driver == "GPKG" && !has_crs) {
+      // By this name the driver knows what has the number -1. Without a system it would write 0,
+      // which says that coordinates are longitude and latitude (OGC 12-128r18, table 3).
+      crs.SetLocalCS("Undefined Cartesian SRS");
+      has_crs = true;
+    }
     layer_ = file_->CreateLayer(options.layer.c_str(), has_crs ? &crs : nullptr,
                                 options.lines ? wkbLineString25D : wkbPolygon25D,
                                 const_cast<char**>(how.data()));

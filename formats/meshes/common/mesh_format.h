@@ -3,6 +3,7 @@
 // lists them all. docs/formats-meshes.md ("Adding a format") tells how another one is added.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -80,6 +81,9 @@ struct MeshFormat {
   /// Whether a file of this format has simplices; without, it is a cloud of points. Null if all are
   /// meshes. Throws Error if the header is damaged.
   bool (*has_simplices)(InputBytes& source) = nullptr;
+  /// Of a file of Spillway's, the point from which its coordinates are seen, which programs of
+  /// others do not know; null if all formats' readers do, or if it is always 0, 0, 0.
+  std::optional<WorldPoint> (*unknown_origin)(InputBytes& source) = nullptr;
 
   /// Reads the whole of a mesh.
   Mesh (*read)(InputBytes& source) = nullptr;

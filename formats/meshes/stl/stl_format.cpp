@@ -22,6 +22,7 @@ constinit const MeshFormat kStlMesh = {
         [](std::string_view text) {
           return text.starts_with(kStlOrigin) || looks_like_ascii_stl(text);
         },
+    .unknown_origin = stl_origin,
     .read = read_stl,
     .open_block_writer =
         [](MeshFiles files, const MeshStreamHeader& header) {

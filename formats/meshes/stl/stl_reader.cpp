@@ -18,6 +18,23 @@ namespace {
 
 constexpr std::size_t kProbe = 1024;
 
+/// What a text that begins with kStlOrigin says after that.
+Fields fields_of(std::string_view text) {
+  text = text.substr(kStlOrigin.size());
+  return Fields(text.substr(0, text.find_last_not_of(std::string_view(" \0", 2)) + 1));
+}
+
+/// The first three of them, if they are finite numbers.
+std::optional<WorldPoint> origin_of(Fields& fields) {
+  WorldPoint origin;
+  for (double& coordinate : origin) {
+    const std::optional<double> number = fields.number();
+    if (!number || !std::isfinite(*number)) return std::nullopt;
+    coordinate = *number;
+  }
+  return origin;
+}
+
 class BinaryStlReader {
  public:
   explicit BinaryStlReader(InputBytes& source) : size_(source.size()), input_(source) {}
@@ -47,17 +64,13 @@ class BinaryStlReader {
  private:
   void read_text(std::string_view text) {
     if (!text.starts_with(kStlOrigin)) return;
-    text = text.substr(kStlOrigin.size());
-    text = text.substr(0, text.find_last_not_of(std::string_view(" \0", 2)) + 1);
-    Fields fields(text);
-    for (double& coordinate : origin_) {
-      const std::optional<double> number = fields.number();
-      if (!number || !std::isfinite(*number)) {
-        throw BadInput::at(input_.name(), at_byte(kStlOrigin.size()),
-                           "the header's origin must be three numbers");
-      }
-      coordinate = *number;
+    Fields fields = fields_of(text);
+    const std::optional<WorldPoint> origin = origin_of(fields);
+    if (!origin) {
+      throw BadInput::at(input_.name(), at_byte(kStlOrigin.size()),
+                         "the header's origin must be three numbers");
     }
+    origin_ = *origin;
     while (!fields.at_end()) {
       if (!mesh_.header.crs.empty()) mesh_.header.crs += ' ';
       mesh_.header.crs += fields.word();
@@ -177,6 +190,13 @@ bool looks_like_ascii_stl(std::string_view text) {
   if (!text.starts_with("solid")) return false;
   // Binary files may begin with this word, too.
   return text.find("facet") != text.npos || text.find("endsolid") != text.npos;
+}
+
+std::optional<WorldPoint> stl_origin(InputBytes& source) {
+  const std::string_view text = as_text(source.peek(kStlText)).substr(0, kStlText);
+  if (!text.starts_with(kStlOrigin)) return std::nullopt;
+  Fields fields = fields_of(text);
+  return origin_of(fields);
 }
 
 Mesh read_stl(InputBytes& source) {

@@ -203,29 +203,26 @@ class CrsRecords {
   GeotiffKeys keys_;
 };
 
-/// Reads the variable length records up to the points into `header`.
-void read_vlrs(InputBytes& source, const Layout& layout, LasHeader& header) {
+/// Reads the variable length records before the points into `header`: those that the file counts,
+/// up to the first that does not end before the points. Returns how many these are.
+std::uint32_t read_vlrs(InputBytes& source, const Layout& layout, LasHeader& header) {
   CrsRecords records;
   std::array<std::byte, kLasVlrHeaderSize> start_of_record;
   std::vector<std::byte> content;
-  for (std::uint32_t i = 0; i < layout.vlr_count; ++i) {
+  const auto read_part = [&](std::span<std::byte> part) {
+    return source.position() + part.size() <= layout.offset_to_points &&
+           source.read(part) == part.size();
+  };
+  std::uint32_t count = 0;
+  for (; count < layout.vlr_count; ++count) {
     const std::uint64_t start = source.position();
-    const auto read_part = [&](std::span<std::byte> part) {
-      if (source.position() + part.size() > layout.offset_to_points ||
-          source.read(part) < part.size()) {
-        fail(source, start,
-             fmt::format("variable length record {} at byte {} does not end before the "
-                         "points; the file is corrupt",
-                         i, start));
-      }
-    };
-    read_part(start_of_record);
+    if (!read_part(start_of_record)) break;
     const std::string user = clean_text(as_text(std::span(start_of_record).subspan(2, 16)));
     const auto record = load<std::uint16_t>(&start_of_record[18]);
     content.resize(load<std::uint16_t>(&start_of_record[20]));
-    read_part(content);
+    if (!read_part(content)) break;
     if (CrsRecords::tells_crs(user, record)) records.take(record, content);
-    if (i == 0 && user == kCopcUser && record == kCopcInfoId) {
+    if (count == 0 && user == kCopcUser && record == kCopcInfoId) {
       header.copc = parse_copc_info(content);
     }
     if (user == kLazUser && record == kLazRecordId) {
@@ -235,20 +232,38 @@ void read_vlrs(InputBytes& source, const Layout& layout, LasHeader& header) {
     }
   }
   records.tell(header);
+  return count;
+}
+
+/// Says that the header counts more records before the points than lie there. They are of no use
+/// for finding the points.
+void tell_of_missing_vlrs(const Layout& layout, std::uint32_t found, LasHeader& header) {
+  if (found == layout.vlr_count) return;
+  header.notices.push_back(fmt::format(
+      "the header counts {} variable length record{}, but {} lie{} before the points, which begin "
+      "at byte {}; the points are read; write the file again, or correct the count in the header "
+      "(4 bytes from byte {} on)",
+      layout.vlr_count, layout.vlr_count == 1 ? "" : "s",
+      found == 0 ? "none" : fmt::format("only {}", found), found > 1 ? "" : "s",
+      layout.offset_to_points, las_field::kVlrCount));
 }
 
 /// Puts the coordinate system that the records after the points tell into the header. What is
-/// damaged there ends the search, as the points can be read without.
-void read_crs_of_evlrs(InputBytes& source, const Layout& layout, LasHeader& las) {
+/// damaged there ends the search, as the points can be read without. Returns whether all records
+/// that were looked for lie within the file.
+bool read_crs_of_evlrs(InputBytes& source, const Layout& layout, LasHeader& las) {
   constexpr std::uint32_t kMostRecords = 1000;
   constexpr std::uint64_t kLongest = std::uint64_t{1} << 20;
   const std::optional<std::uint64_t> size = source.size();
+  if (!size) return true;
   const std::uint64_t back = source.position();
+  const std::uint32_t most = std::min(layout.evlr_count, kMostRecords);
   CrsRecords records;
   std::array<std::byte, kLasEvlrHeaderSize> header;
   std::vector<std::byte> content;
   std::uint64_t at = layout.evlr_start;
-  for (std::uint32_t i = 0; size && i < std::min(layout.evlr_count, kMostRecords); ++i) {
+  std::uint32_t found = 0;
+  for (; found < most; ++found) {
     if (at < layout.offset_to_points || at > *size || *size - at < header.size()) break;
     if (!source.seek(at) || source.read(header) < header.size()) break;
     at += header.size();
@@ -265,6 +280,30 @@ void read_crs_of_evlrs(InputBytes& source, const Layout& layout, LasHeader& las)
   }
   if (source.position() != back) source.seek(back);
   records.tell(las);
+  return found == most;
+}
+
+/// Whether there is room for the headers of the records after the points that the file counts.
+bool evlr_headers_fit(const InputBytes& source, const Layout& layout) {
+  const std::optional<std::uint64_t> size = source.size();
+  if (!size) return true;
+  return layout.evlr_start >= layout.offset_to_points && layout.evlr_start <= *size &&
+         layout.evlr_count <= (*size - layout.evlr_start) / kLasEvlrHeaderSize;
+}
+
+/// Looks at the records after the points, for the coordinate system if none was told before them,
+/// and says if they are not all there.
+void look_at_evlrs(InputBytes& source, const Layout& layout, LasHeader& header) {
+  if (layout.evlr_count == 0) return;
+  bool complete = evlr_headers_fit(source, layout);
+  if (header.crs.empty()) complete = read_crs_of_evlrs(source, layout, header) && complete;
+  if (complete) return;
+  header.notices.push_back(fmt::format(
+      "the header counts {} extended variable length record{} from byte {} on, but not all of "
+      "that lies between the points and the end of the file at byte {}; the points are read; get "
+      "a complete copy, or correct the count in the header (4 bytes from byte {} on)",
+      layout.evlr_count, layout.evlr_count == 1 ? "" : "s", layout.evlr_start,
+      source.size().value_or(0), las_field::kEvlrCount));
 }
 
 /// What begins first after the points; nothing that would begin before them.
@@ -285,13 +324,6 @@ void check_layout(const InputBytes& source, const Layout& layout) {
          fmt::format("the header says the points begin at byte {}, within the header of {} "
                      "bytes; the file is corrupt",
                      layout.offset_to_points, layout.header_size));
-  }
-  const std::uint64_t space = layout.offset_to_points - layout.header_size;
-  if (layout.vlr_count > space / kLasVlrHeaderSize) {
-    fail(source, las_field::kVlrCount,
-         fmt::format("the header says {} variable length records, but the {} bytes before "
-                     "the points cannot hold them; the file is corrupt",
-                     layout.vlr_count, space));
   }
   const std::optional<std::uint64_t> size = source.size();
   if (size && layout.offset_to_points > *size) {
@@ -319,7 +351,8 @@ void check_compression(const InputBytes& source, const Layout& layout, LasHeader
 }
 
 /// Goes to the first uncompressed point and checks that the file can hold all of them.
-void find_points(InputBytes& source, LasHeader& header) {
+/// `doubt`: what else speaks against the file.
+void find_points(InputBytes& source, LasHeader& header, const std::string& doubt) {
   constexpr std::uint16_t kStart = 0xCCDD;
   constexpr std::uint16_t kStartSwapped = 0xDDCC;
   const std::optional<std::uint64_t> size = source.size();
@@ -344,8 +377,8 @@ void find_points(InputBytes& source, LasHeader& header) {
   if (size && header.count > room()) {
     fail(source, *size,
          fmt::format("the header says {} points of {} bytes, but the file ends at byte {}, "
-                     "after {} of them; get a complete copy",
-                     header.count, header.record_length, *size, room()));
+                     "after {} of them{}; get a complete copy",
+                     header.count, header.record_length, *size, room(), doubt));
   }
 }
 
@@ -385,16 +418,22 @@ LasHeader read_las_header(InputBytes& source) {
   header.software =
       clean_text(as_text(std::span(bytes).subspan(las_field::kSoftware, kLasTextField)));
   check_layout(source, layout);
-  read_vlrs(source, layout, header);
+  const std::uint32_t vlrs = read_vlrs(source, layout, header);
+  tell_of_missing_vlrs(layout, vlrs, header);
   check_compression(source, layout, header);
-  if (header.crs.empty() && layout.evlr_count > 0) read_crs_of_evlrs(source, layout, header);
+  look_at_evlrs(source, layout, header);
   if (!source.skip(layout.offset_to_points - source.position())) {
     fail(source, source.position(),
          fmt::format("the file ends at byte {}, before the points; get a complete copy",
                      source.position()));
   }
   if (!header.laz) {
-    find_points(source, header);
+    const bool all_vlrs = vlrs == layout.vlr_count;
+    find_points(source, header,
+                all_vlrs ? ""
+                         : fmt::format(", and its {} variable length records do not fit before "
+                                       "them, either",
+                                       layout.vlr_count));
     tell_of_more(source, header);
   }
   return header;

@@ -18,6 +18,18 @@ constexpr std::size_t kBlockPoints = 65536;
 /// Integers beyond this are not all doubles.
 constexpr std::int64_t kLargestExact = std::int64_t{1} << 53;
 
+/// What makes points of an array of another shape.
+const char* shape_advice(const std::vector<std::uint64_t>& shape) {
+  if (shape.size() == 1) return "save a.reshape(-1, 3) if x, y and z follow one another";
+  if (shape.size() > 2) return "save a.reshape(-1, 3) if its last axis is x, y, z";
+  if (shape.size() == 2 && shape[1] > 3) {
+    const bool rows = shape[0] == 2 || shape[0] == 3;
+    return rows ? "save numpy.ascontiguousarray(a.T) if each row is a coordinate"
+                : "save a[:, :3] if its first columns are x, y and z";
+  }
+  return "save an array with a column for each coordinate";
+}
+
 class NpyReader : public PointReader {
  public:
   NpyReader(std::unique_ptr<InputBytes> source, const std::string& path, bool skip_invalid)
@@ -25,8 +37,8 @@ class NpyReader : public PointReader {
     const NpyHeader npy = read_npy_header(*source_);
     choose_type(npy.type);
     if (npy.shape.size() != 2 || (npy.shape[1] != 2 && npy.shape[1] != 3)) {
-      fail(fmt::format("the array has shape ({}), but points are n x 2 or n x 3; reshape it",
-                       fmt::join(npy.shape, ", ")));
+      fail(fmt::format("the array has shape ({}), but points are n x 2 or n x 3; {}",
+                       fmt::join(npy.shape, ", "), shape_advice(npy.shape)));
     }
     if (npy.fortran_order) {
       fail(

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/vectors/vector_formats.h"
 #include "src/error.h"
 #include "src/geometry/box.h"
 #include "stream/library/context/run_watch.h"
@@ -30,6 +31,9 @@ void check_max_edge(const std::optional<double>& max_edge);
 /// Throws Error (kDegenerateInput) for what is no terrain: tetrahedra, points without z.
 void refuse_tetrahedra(const MeshStart& start);
 void refuse_without_heights(const MeshStart& start);
+
+/// Warns of the layers that are lost where a file of that format replaces another one.
+void tell_lost_layers(const VectorFormat& format, const std::string& path, const Context& context);
 
 /// A sink of the library's own, to which the engine writes without a detour over public values.
 /// start() once, extent_known() once if it is wanted, then blocks, then complete().

@@ -6,6 +6,7 @@
 #include "formats/disk/file_system.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_stream_writer.h"
+#include "formats/meshes/vector/vector_format.h"
 #include "src/geometry/simplex_name.h"
 #include "stream/library/context/context_state.h"
 
@@ -40,6 +41,7 @@ MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, cons
     throw InvalidArgument("parts are a file for each rank, and there is one process",
                           {.remedy = Remedy::kRanks});
   }
+  if (target_.format == &kGpkgMesh) tell_lost_layers(kGeoPackage, target_.path, context);
 }
 
 BlockSink& MeshFile::open(const MeshStart& start) {

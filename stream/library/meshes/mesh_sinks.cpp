@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "formats/vectors/vector_file.h"
+#include "stream/library/context/context_state.h"
 #include "stream/library/meshes/engine_sink.h"
 
 namespace spillway {
@@ -54,6 +56,12 @@ void MeshInMemory::finish(const MeshTotals& totals) { totals_ = totals; }
 }  // namespace spillway
 
 namespace spillway::detail {
+
+void tell_lost_layers(const VectorFormat& format, const std::string& path, const Context& context) {
+  if (!context.options().warning) return;
+  const std::string text = lost_layers_text(format, path);
+  if (!text.empty()) context.options().warning("warning: " + text);
+}
 
 void check_max_edge(const std::optional<double>& max_edge) {
   if (!max_edge || *max_edge > 0) return;

@@ -41,6 +41,7 @@ ContourFile::ContourFile(const std::string& path, const spillway::ContourOptions
       scratch_(context.state().scratch(context)) {
   check_max_edge(options_.max_edge);
   check_can_create(disk(), path_);
+  tell_lost_layers(format_, path_, context);
 }
 
 std::uint64_t ContourFile::own_memory(std::uint64_t limit) const { return limit / kLineShare; }

@@ -101,13 +101,13 @@ TEST(MeshProof, AnApexOnTheCircleIsRightForOneOfTwoDiagonals) {
   const Point<2> d{0, 1};
   CheckOptions any;
   any.any_delaunay = true;
-  const bool one = apex_fault<2>({a, b, c}, d, {}) == nullptr;
-  const bool other = apex_fault<2>({a, b, d}, c, {}) == nullptr;
-  EXPECT_NE(one, other) << "ties are broken";
-  EXPECT_EQ(apex_fault<2>({a, b, c}, d, any), nullptr);
-  EXPECT_EQ(apex_fault<2>({a, b, d}, c, any), nullptr);
-  EXPECT_NE(apex_fault<2>({a, b, c}, {0.1, 0.9}, any), nullptr);
-  EXPECT_EQ(apex_fault<2>({a, b, c}, {-1, 2}, {}), nullptr);
+  EXPECT_THAT((std::array{apex_side<2>({a, b, c}, d, {}), apex_side<2>({a, b, d}, c, {})}),
+              testing::UnorderedElementsAre(ApexSide::kOutside, ApexSide::kInsideByTie));
+  EXPECT_EQ(apex_side<2>({a, b, c}, d, any), ApexSide::kOutside);
+  EXPECT_EQ(apex_side<2>({a, b, d}, c, any), ApexSide::kOutside);
+  EXPECT_EQ(apex_side<2>({a, b, c}, {0.1, 0.9}, any), ApexSide::kInside);
+  EXPECT_EQ(apex_side<2>({a, b, c}, {0.1, 0.9}, {}), ApexSide::kInside);
+  EXPECT_EQ(apex_side<2>({a, b, c}, {-1, 2}, {}), ApexSide::kOutside);
 }
 
 TEST(BoundaryProof, AcceptsOneConvexSurface) {

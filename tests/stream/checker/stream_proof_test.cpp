@@ -154,6 +154,7 @@ TYPED_TEST(StreamProofTest, RejectsAFlippedEdge) {
   Mesh mesh = this->good_;
   ASSERT_TRUE(testing::flip<TypeParam::value>(mesh, false));
   expect_fault(mesh, "is not Delaunay");
+  EXPECT_EQ(check(stream_of(mesh, 7)).other_ties, 0U);
   CheckOptions any;
   any.any_delaunay = true;
   expect_fault(mesh, "is not Delaunay", any);
@@ -169,6 +170,8 @@ TYPED_TEST(StreamProofTest, RejectsATieBrokenTheOtherWayUnlessAnyDelaunayWillDo)
   Mesh mesh = triangulated<D>(points);
   ASSERT_TRUE(testing::flip<D>(mesh, true));
   expect_fault(mesh, "as ties are broken");
+  const CheckReport report = check(stream_of(mesh, 7));
+  EXPECT_EQ(report.other_ties, report.fault_count);
   CheckOptions any;
   any.any_delaunay = true;
   EXPECT_EQ(check(stream_of(mesh, 7), any).fault_count, 0U);

@@ -68,9 +68,13 @@ RankMesh mesh_of(int rank) {
   return mesh;
 }
 
+std::bitset<256> classes_of(int rank) { return std::bitset<256>().set(255 - rank); }
+
 Report report_of_all() {
   const auto n = static_cast<std::uint64_t>(world().rank() + 1);
-  return shared_report(mesh_of(world().rank()), {.read = 100 * n, .bounds = n}, world());
+  return shared_report(mesh_of(world().rank()),
+                       {.read = 100 * n, .bounds = n, .other_classes = classes_of(world().rank())},
+                       world());
 }
 
 TEST(SharedReport, HasTheTotalsOfTheWholeMesh) {
@@ -96,7 +100,10 @@ TEST(SharedReport, SumsWhatIsCountedOverAllRanks) {
   EXPECT_EQ(report.tile_shapes.up_to_twice, 20 * sum);
   EXPECT_EQ(report.tile_shapes.up_to_4_times, 30 * sum);
   EXPECT_EQ(report.tile_shapes.longer, 40 * sum);
-  EXPECT_EQ(report.points, (PointCounts{.read = 100 * sum, .bounds = sum}));
+  std::bitset<256> classes;
+  for (int rank = 0; rank < world().size(); ++rank) classes |= classes_of(rank);
+  EXPECT_EQ(report.points,
+            (PointCounts{.read = 100 * sum, .bounds = sum, .other_classes = classes}));
 }
 
 TEST(SharedReport, SumsLevelsThatNotAllRanksHave) {

@@ -2,9 +2,15 @@
 
 #include "stream/source/point_filter.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bitset>
 #include <limits>
+#include <string>
+#include <vector>
+
+#include "src/error.h"
 
 namespace spillway::detail {
 namespace {
@@ -74,7 +80,11 @@ TEST(PointFilter, EachPointIsCountedWhereItIsDroppedFirst) {
   filter.bounds = Box<3>{{4, 0, 0}, {8, 0, 1000}};   // without 2, 10
   PointBlock block = twelve_points();
   const PointCounts counts = apply(filter, block);
-  EXPECT_EQ(counts, (PointCounts{.read = 12, .skipped = 6, .classes = 1, .bounds = 2}));
+  EXPECT_EQ(counts, (PointCounts{.read = 12,
+                                 .skipped = 6,
+                                 .classes = 1,
+                                 .bounds = 2,
+                                 .other_classes = std::bitset<256>("1")}));
   EXPECT_EQ(block.index, (std::vector<std::uint64_t>{104, 106, 108}));
   EXPECT_EQ(block.attributes[1].classification, 6);
   EXPECT_EQ(describe(counts),
@@ -99,9 +109,34 @@ TEST(PointFilter, BoundsAreClosedAndInOutputCoordinates) {
   EXPECT_EQ(space.index, std::vector<std::uint64_t>{103});
 }
 
+TEST(PointFilter, AFilterThatLeavesNoPointsNamesTheClassesThatThereAre) {
+  const auto message = [](const std::vector<int>& classes) {
+    PointBlock block;
+    PointFilter filter;
+    filter.classes.emplace().set(2);
+    for (const int c : classes) {
+      block.points.push_back({0, 0, 0});
+      block.index.push_back(block.index.size());
+      block.attributes.push_back({.classification = static_cast<std::uint8_t>(c)});
+    }
+    const PointCounts counts = apply(filter, block);
+    try {
+      refuse_empty_input(counts);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(message({9, 3, 0, 4, 255, 5, 3}),
+            "the filters leave no points: 7 points read, 7 of other classes (0, 3-5, 9, 255), 0 "
+            "kept");
+  EXPECT_THAT(message({1}), testing::EndsWith("1 of other classes (1), 0 kept"));
+  EXPECT_THAT(message({}), testing::EndsWith("the input has no points"));
+}
+
 TEST(PointCounts, AddUp) {
-  PointCounts sum{.read = 5, .withheld = 1};
-  sum += {.read = 7, .returns = 2, .thinned = 3};
+  PointCounts sum{.read = 5, .withheld = 1, .other_classes = std::bitset<256>("10")};
+  sum += {.read = 7, .returns = 2, .thinned = 3, .other_classes = std::bitset<256>("101")};
+  EXPECT_EQ(sum.other_classes, std::bitset<256>("111"));
   EXPECT_EQ(sum.kept(), 6U);
   EXPECT_EQ(describe(sum), "12 points read, 1 withheld, 2 of other returns, 3 thinned, 6 kept");
 }

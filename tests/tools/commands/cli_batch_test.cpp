@@ -131,13 +131,23 @@ TEST_F(Batch, RefusesAListWithMistakesBeforeAnyWork) {
       error_of_list("f.json", R"({"jobs": [{"in": "in/north.las", "options": {"dim": 5}}]})"),
       HasSubstr("--dim"));
   EXPECT_THAT(error_of_list("g.json", R"({"jobs": [{"in": "a/x.las"}, {"in": "b/x.las"}]})"),
-              HasSubstr("two jobs are called x"));
+              HasSubstr("two jobs are called x, one of a/x.las and one of b/x.las"));
   EXPECT_THAT(
       error_of_list("h.json", R"({"jobs": [{"in": "in/north.las", "options": {"threads": 2}}]})"),
       HasSubstr("--threads is for all jobs together"));
   EXPECT_THAT(
       error_of_list("i.json", R"({"jobs": [{"in": "in/north.las", "to": ["ply", "ply"]}]})"),
       HasSubstr("the output ply appears twice"));
+}
+
+TEST_F(Batch, NamesBothInputsWhoseFilesWouldHaveTheSameNames) {
+  space.succeed("cp in/north.las in/north.txt");
+  const Result result =
+      space.run("spillway batch in/north.las in/north.txt --output-dir out --to ply");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err,
+              HasSubstr("two jobs are called north, one of in/north.las and one of in/north.txt"));
+  EXPECT_FALSE(space.has("out"));
 }
 
 TEST_F(Batch, TakesNoNameForAnOption) {

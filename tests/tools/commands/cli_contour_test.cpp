@@ -142,8 +142,22 @@ TEST_F(Contour, NoLinesAreAWarningWithQuietToo) {
   const Result result =
       space.run("spillway contour -q cone.txt -o c.json --force-crs --levels 1e6");
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_THAT(result.err, HasSubstr("warning: no lines: no level lies within the heights"));
+  EXPECT_THAT(result.err, HasSubstr("warning: no lines: no level lies above the lowest height"));
   EXPECT_EQ(features(space, "c.json").size(), 0U);
+}
+
+TEST_F(Contour, ALevelAtTheLeastHeightHasNoLineAndOneAtTheGreatestHas) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  space.write("edge.xyz", "0.5 -0.5 0.5\n1.5 -0.5 1.5\n0.5 -1.5 0.5\n1.5 -1.5 1.5\n");
+  const Result lowest =
+      space.run("spillway contour -q edge.xyz -o low.json --force-crs --levels 0.5");
+  EXPECT_EQ(lowest.exit_code, 0);
+  EXPECT_THAT(lowest.err,
+              HasSubstr("warning: no lines: no level lies above the lowest height, 0.5, "
+                        "and up to the highest, 1.5\n"));
+  EXPECT_EQ(features(space, "low.json").size(), 0U);
+  space.succeed("spillway contour -q edge.xyz -o high.json --force-crs --levels 0.5000001,1.5");
+  EXPECT_EQ(features(space, "high.json").size(), 2U);
 }
 
 TEST_F(Contour, SaysWhatIsWrongWithTheCommandLine) {

@@ -304,8 +304,21 @@ TEST(Dem, NoDataIsTold) {
   const Workspace work;
   work.write("points.txt", surface(10, 1));
   const std::string dem = "spillway dem points.txt -o a.tif --resolution 1 ";
-  EXPECT_THAT(work.run(dem + "-q --bounds 90,90,95,95").err,
-              HasSubstr("warning: no pixel has a value"));
+  EXPECT_THAT(
+      work.run(dem + "-q --bounds 90,90,95,95").err,
+      HasSubstr("warning: no pixel has a value: the raster of 5 x 5 pixels of 1, from 90,90 "
+                "to 95,95, lies beside the points"));
+}
+
+TEST(Dem, PixelsLargerThanThePointsAreNotCalledBesideThem) {
+  const Workspace work;
+  work.write("points.txt", surface(10, 1));
+  const std::string said = work.run("spillway dem points.txt -o a.tif -q --resolution 500").err;
+  EXPECT_THAT(said, HasSubstr("warning: no pixel has a value: pixels of 500 are so large"));
+  EXPECT_THAT(said, HasSubstr("give a smaller --resolution"));
+  EXPECT_THAT(said, Not(HasSubstr("beside")));
+  EXPECT_THAT(work.run("spillway dem points.txt -o b.tif -q --like a.tif").err,
+              HasSubstr("choose another --like"));
 }
 
 struct Refused {

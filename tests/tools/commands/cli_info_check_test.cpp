@@ -111,6 +111,26 @@ TEST(Check, EitherDiagonalOfASquareIsDelaunayIfAskedFor) {
   EXPECT_EQ(work.run("spillway check -q --any-delaunay other.off").exit_code, 0);
 }
 
+TEST(Check, AMeshThatBreaksOnlyTiesAnotherWayIsPointedToTheOptionThatAcceptsIt) {
+  const Workspace work;
+  const std::string vertices = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n2 1 0\n";
+  const std::string hint = "--any-delaunay accepts that";
+  work.write("a.off", "OFF\n6 4 0\n" + vertices + "3 0 1 2\n3 0 2 3\n3 1 4 5\n3 1 5 2\n");
+  const Result ties = work.run("spillway check -q a.off");
+  EXPECT_EQ(ties.exit_code, 1);
+  EXPECT_THAT(ties.out,
+              HasSubstr("a.off: a Delaunay triangulation of its vertices, but NOT the one "
+                        "in which ties are broken as Spillway does: 2 edges between "
+                        "cocircular vertices differ; " +
+                        hint));
+  EXPECT_EQ(nlohmann::json::parse(work.run("spillway check -q a.off --json").out)["other_ties"], 2);
+  EXPECT_EQ(work.run("spillway check -q a.off --any-delaunay").exit_code, 0);
+  work.write("hole.off", "OFF\n6 3 0\n" + vertices + "3 0 1 2\n3 0 2 3\n3 1 4 5\n");
+  const Result hole = work.run("spillway check -q hole.off");
+  EXPECT_THAT(hole.out, HasSubstr("as ties are broken"));
+  EXPECT_THAT(hole.out, AllOf(HasSubstr("hole.off: NOT the Delaunay"), Not(HasSubstr(hint))));
+}
+
 TEST(Check, MissesAPointOfTheInput) {
   const Workspace work;
   work.write("in.txt", "0 0 0\n1 0 0\n0 1 0\n");

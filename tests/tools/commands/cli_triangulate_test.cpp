@@ -41,6 +41,26 @@ std::vector<double> heights_of(const std::string& obj) {
   return heights;
 }
 
+TEST(Triangulate, SaysWhatTheThirdColumnOfNpyIsTakenForUnlessDimIsGiven) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q uniform -n 100 --dim 3 -o in.npy\n"
+      "spillway generate -q uniform -n 100 -o flat.npy\n"
+      "spillway convert -q in.npy -o in.txt");
+  const auto said = [&](const std::string& arguments) {
+    const Result result = work.run("spillway triangulate -o mesh.ply " + arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.err;
+  };
+  const std::string notice = "npy does not tell what its columns are";
+  EXPECT_THAT(said("in.npy"), HasSubstr(notice));
+  EXPECT_THAT(said("- --input-format npy < in.npy"), HasSubstr(notice));
+  for (const std::string arguments :
+       {"in.npy --dim 2", "in.npy --dim 3", "in.npy -q", "flat.npy", "in.txt"}) {
+    EXPECT_THAT(said(arguments), testing::Not(HasSubstr(notice))) << arguments;
+  }
+}
+
 TEST(Triangulate, OutputBytesDoNotDependOnThreads) {
   const Workspace work;
   work.succeed(

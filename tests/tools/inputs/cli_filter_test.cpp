@@ -80,6 +80,16 @@ TEST_F(Filters, WhatWasDroppedIsSaidInOneLine) {
   EXPECT_THAT(work_.run("spillway triangulate in.las -o mesh.ply").err, Not(HasSubstr("kept")));
 }
 
+TEST_F(Filters, WhereNoClassIsKeptThoseThatThereAreAreNamed) {
+  const std::string message = "3000 points read, 3000 of other classes (0-4), 0 kept";
+  for (const std::string command :
+       {"triangulate in.las -o a.ply", "convert in.las -o a.spp --sorted",
+        "triangulate in.las -o a.ply --memory 32M --distrust-headers", "convert in.las -o a.las"}) {
+    const Result result = work_.run("spillway " + command + " --keep-class 6,9");
+    EXPECT_THAT(result.err, HasSubstr(message)) << command;
+  }
+}
+
 TEST_F(Filters, TheSameComesThroughAPipe) {
   const std::string options = "--keep-class 2 --bounds 500000,4000000,500800,4000800 --thin 20";
   const std::string of_file = hash(options);

@@ -230,6 +230,23 @@ TEST(Help, IsShortWithoutArguments) {
   EXPECT_EQ(result.out, "");
 }
 
+TEST(LasRecords, ThatAreNotThereAreSaidOnceByEveryCommand) {
+  const Workspace work;
+  std::string bytes = scattered_las(0, kPointsOfFile).bytes();
+  testing::put(bytes, 100, std::uint32_t{3});
+  work.write("in.las", bytes);
+  const std::string notice = ": the header counts 3 variable length records, but none lies";
+  for (const std::string command :
+       {"info in.las", "triangulate in.las -o a.ply", "convert in.las -o a.spp",
+        "render in.las -o a.png", "triangulate in.las in.las -o b.ply"}) {
+    const Result result = work.run("spillway " + command);
+    EXPECT_EQ(result.exit_code, 0) << command;
+    const std::size_t said = result.err.find(notice);
+    ASSERT_NE(said, std::string::npos) << command;
+    EXPECT_EQ(result.err.find(notice, said + 1), std::string::npos) << command;
+  }
+}
+
 TEST(Slips, GetASuggestion) {
   const Workspace work;
   EXPECT_THAT(work.run("spillway triangluate").err, HasSubstr("(did you mean triangulate?)"));

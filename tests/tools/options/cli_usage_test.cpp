@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cctype>
 #include <map>
 #include <regex>
@@ -28,6 +29,57 @@ TEST(Usage, HelpIsOnStandardOutputAtEveryLevel) {
     EXPECT_THAT(help, HasSubstr("Examples:")) << level;
   }
   EXPECT_THAT(work.succeed("spillway --version"), StartsWith("spillway "));
+}
+
+std::size_t longest_line(const std::string& text) {
+  std::istringstream lines(text);
+  std::size_t longest = 0;
+  // Examples are to be copied, so they are not broken.
+  for (std::string line; std::getline(lines, line);) {
+    const bool example = line.starts_with("  ") && (line.find(" spillway ") != std::string::npos);
+    if (!example) longest = std::max(longest, line.size());
+  }
+  return longest;
+}
+
+TEST(Usage, HelpFitsTheColumnsThereAre) {
+  const Workspace work;
+  for (const std::string command :
+       {"", "triangulate", "dem", "contour", "render", "info", "generate", "check", "convert",
+        "batch", "completion", "manual"}) {
+    const std::string help = command + " --help";
+    EXPECT_LE(longest_line(work.succeed("COLUMNS=60 spillway " + help)), 60U) << command;
+    EXPECT_LE(longest_line(work.succeed("COLUMNS=80 spillway " + help)), 80U) << command;
+    EXPECT_LE(longest_line(work.succeed("unset COLUMNS; spillway " + help)), 100U) << command;
+  }
+}
+
+TEST(Usage, HelpFitsTheTerminal) {
+  const Workspace work;
+  if (work.run("command -v script && command -v stty").exit_code != 0) GTEST_SKIP() << "no script";
+  const std::string help =
+      work.succeed("unset COLUMNS; script -qec 'stty columns 70; " + command_path() +
+                   " triangulate --help' /dev/null | tr -d '\\r'");
+  EXPECT_LE(longest_line(help), 70U);
+  EXPECT_GT(longest_line(help), 50U);
+}
+
+TEST(Usage, HelpHasWhatIsNeededFirstAndRareOptionsLast) {
+  const Workspace work;
+  const auto expect_order = [&](const std::string& command, const std::vector<std::string>& parts) {
+    const std::string help = work.succeed("spillway " + command + " --help");
+    std::size_t at = 0;
+    for (const std::string& part : parts) {
+      const std::size_t found = help.find("\n  " + part, at);
+      ASSERT_NE(found, std::string::npos) << command << ": " << part << " is not behind the others";
+      at = found;
+    }
+  };
+  expect_order("triangulate", {"IN", "-o,--output", "--dim", "--crs", "--keep-class", "--threads",
+                               "--memory", "--progress", "--tile", "--simulate-cores"});
+  expect_order("dem", {"IN", "-o,--output", "--resolution", "--product", "--keep-class", "--memory",
+                       "-q,--quiet", "--kernel"});
+  expect_order("render", {"IN", "-o,--output", "--zoom", "--keep-class", "--memory", "--kernel"});
 }
 
 TEST(Usage, HelpAndVersionAreWordsToo) {

@@ -77,23 +77,21 @@ TEST(LasCorruption, OffsetToPointsBeyondPipe) {
   EXPECT_THAT(error_on_pipe(bytes), HasSubstr("ends at byte 287, before the points"));
 }
 
-TEST(LasCorruption, VlrCountTooLarge) {
-  EXPECT_THAT(error_with(100, std::uint32_t{0xffffffff}),
-              HasSubstr("4294967295 variable length records"));
+TEST(LasCorruption, VlrCountTooLargeAndPointsTruncated) {
+  std::string bytes = LasFile().bytes();
+  put(bytes, 100, std::uint32_t{0xffffffff});
+  bytes.pop_back();
+  EXPECT_THAT(error_of_content("a.las", bytes),
+              AllOf(HasSubstr("3 points of 20 bytes, but the file ends at byte 286, after 2"),
+                    HasSubstr("4294967295 variable length records do not fit")));
+  EXPECT_THAT(error_on_pipe(bytes), HasSubstr("ends at byte 286, within point 2 of 3"));
 }
 
-TEST(LasCorruption, VlrLongerThanSpace) {
+TEST(LasCorruption, VlrsTruncatedOnPipe) {
   LasFile file;
   file.vlrs = {{"somebody", 1, "content"}};
-  EXPECT_THAT(error_with(227 + 20, std::uint16_t{8}, file),
-              HasSubstr("record 0 at byte 227 does not end before the points"));
-}
-
-TEST(LasCorruption, VlrHeaderBeyondSpace) {
-  LasFile file;
-  file.vlrs = {{"somebody", 1, std::string(60, 'c')}};
-  EXPECT_THAT(error_with(100, std::uint32_t{2}, file),
-              HasSubstr("record 1 at byte 341 does not end before the points"));
+  EXPECT_THAT(error_on_pipe(file.bytes().substr(0, 250)),
+              HasSubstr("ends at byte 250, before the points"));
 }
 
 TEST(LasCorruption, CompressedFlagWithoutLazRecord) {

@@ -12,6 +12,7 @@
 namespace spillway::detail::testing {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -100,6 +101,63 @@ TEST(LasReader, SaysWhatFollowsAHeaderThatCountsNoPoints) {
   const AllPoints all = read_content("a.las", bytes);
   EXPECT_EQ(all.points.size(), 0U);
   EXPECT_THAT(all.header.notices, ElementsAre(HasSubstr("the header counts 0 points, but")));
+}
+
+constexpr const char* kWkt = "LOCAL_CS[\"here\"]";
+
+/// Notices of a file that has whole points all the same, by name and on a pipe.
+std::vector<std::string> notices_with_points(const std::string& bytes) {
+  const AllPoints all = read_content("a.las", bytes);
+  EXPECT_THAT(all.points, ElementsAre(LatticePoint{1, 2, 3}, LatticePoint{7, -8, 9}));
+  FaultyFileSystem pipe;
+  pipe.seekable = false;
+  pipe.files["a.las"] = bytes;
+  EXPECT_EQ(read_all_points(pipe, "a.las").points, all.points);
+  return all.header.notices;
+}
+
+TEST(LasReader, ReadsWholePointsThoughTheHeaderCountsRecordsThatAreNotThere) {
+  LasFile file;
+  const auto with_count = [&](std::uint32_t count) {
+    std::string bytes = file.bytes();
+    put(bytes, 100, count);
+    return notices_with_points(bytes);
+  };
+  EXPECT_THAT(with_count(0xffffffff),
+              ElementsAre(HasSubstr("counts 4294967295 variable length records, but none lies")));
+  file.vlrs = {{"LASF_Projection", 2112, kWkt}, {"somebody", 1, std::string(60, 'c')}};
+  EXPECT_THAT(with_count(2), IsEmpty());
+  EXPECT_THAT(with_count(3), ElementsAre(HasSubstr("3 variable length records, but only 2 lie")));
+}
+
+TEST(LasReader, TakesRecordsUpToTheFirstThatDoesNotEndBeforeThePoints) {
+  LasFile file;
+  file.vlrs = {{"LASF_Projection", 2112, kWkt}, {"somebody", 1, "content"}};
+  std::string bytes = file.bytes();
+  put(bytes, 227 + 54 + file.vlrs[0].content.size() + 20, std::uint16_t{8});
+  EXPECT_THAT(notices_with_points(bytes), ElementsAre(HasSubstr("records, but only 1 lies")));
+  EXPECT_EQ(read_content("a.las", bytes).header.crs, kWkt);
+}
+
+TEST(LasReader, ReadsWholePointsThoughExtendedRecordsAreMissing) {
+  LasFile file;
+  file.minor = 4;
+  file.point_format = 6;
+  const std::string points = file.bytes();
+  const auto with_records = [&](std::uint64_t start, std::uint32_t count, std::uint64_t length) {
+    std::string bytes = points + std::string(100, '\0');
+    put(bytes, 235, start);
+    put(bytes, 243, count);
+    put(bytes, points.size() + 20, length);
+    return notices_with_points(bytes);
+  };
+  EXPECT_THAT(with_records(points.size(), 1, 40), IsEmpty());
+  const auto missing = ElementsAre(HasSubstr("extended variable length record"));
+  EXPECT_THAT(with_records(points.size(), 1, 41), missing);
+  EXPECT_THAT(with_records(points.size(), 2, 40), missing);
+  EXPECT_THAT(with_records(points.size(), 0xffffffff, 0), missing);
+  EXPECT_THAT(with_records(points.size() + 1000, 1, 0), Contains(HasSubstr("extended variable")));
+  EXPECT_THAT(with_records(~std::uint64_t{0}, 1, 0), Contains(HasSubstr("extended variable")));
 }
 
 TEST(LasReader, ExtendedRecordsBehindThePointsAreNoPoints) {

@@ -72,6 +72,17 @@ TEST(LazReader, ChunksThatTheHeaderDoesNotCountAreLeftOutAndSaid) {
   }
 }
 
+TEST(LazReader, ReadsWholePointsThoughTheHeaderCountsRecordsThatAreNotThere) {
+  for (const int compressor : {2, 3}) {
+    const std::string good = file_of(format_of(compressor), 250);
+    std::string bytes = good;
+    put(bytes, 100, std::uint32_t{0xffffffff});
+    const AllPoints all = read_content("a.laz", bytes, all_points());
+    EXPECT_EQ(all.points, read_content("a.laz", good, all_points()).points);
+    EXPECT_THAT(all.header.notices, ElementsAre(HasSubstr("4294967295 variable length records")));
+  }
+}
+
 TEST(LazReader, AllThreeNamesOfTheFormatWillDo) {
   const std::string bytes = file_of(format_of(2), 9);
   for (const char* name : {"las", "laz", "copc"}) {

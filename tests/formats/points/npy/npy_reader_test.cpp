@@ -126,6 +126,17 @@ TEST(NpyCorruption, WrongShape) {
   }
 }
 
+TEST(NpyReader, AnArrayOfAnotherShapeIsToldTheCallThatMakesPointsOfIt) {
+  const auto error = [](const char* shape) {
+    return error_of_dictionary(dictionary("<f8", shape));
+  };
+  EXPECT_THAT(error("(6, 4)"), AllOf(HasSubstr("(6, 4)"), HasSubstr("save a[:, :3] if")));
+  EXPECT_THAT(error("(3, 9)"), HasSubstr("save numpy.ascontiguousarray(a.T)"));
+  EXPECT_THAT(error("(6,)"), HasSubstr("save a.reshape(-1, 3)"));
+  EXPECT_THAT(error("(4, 5, 3)"), HasSubstr("save a.reshape(-1, 3)"));
+  EXPECT_THAT(error("(6, 1)"), HasSubstr("a column for each coordinate"));
+}
+
 TEST(NpyCorruption, UnknownType) {
   for (const char* type : {">f8", "<f2", "|u1", "<c16", "|O"}) {
     EXPECT_THAT(error_of_dictionary(dictionary(type, "(2, 3)")),
