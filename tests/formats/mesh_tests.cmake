@@ -11,6 +11,9 @@ spillway_test(mesh_writer_test unit
 spillway_test(mesh_reader_test unit
   SOURCES formats/inputs/endless_input_test.cpp formats/meshes/mesh_corruption_test.cpp formats/meshes/mesh_reader_test.cpp
   LIBS spillway_formats)
+spillway_test(polygon_test unit
+  SOURCES formats/meshes/common/polygon_cutter_test.cpp formats/meshes/polygon_reader_test.cpp
+  LIBS spillway_formats)
 spillway_test(mesh_round_trip_test unit
   SOURCES formats/meshes/mesh_round_trip_test.cpp
   LIBS spillway_formats)

@@ -39,6 +39,8 @@ struct Mesh {
   std::vector<std::uint64_t> corners;      ///< dimension+1 vertex numbers a simplex, in file order
   std::vector<std::uint64_t> input_index;  ///< one a vertex if header.has_input_index, else empty
   std::string_view format{};               ///< name of the format of the file that was read
+  /// What was made of the file, or left out, that it does not say itself.
+  std::vector<std::string> notices{};
 
   [[nodiscard]] std::size_t corners_per_simplex() const { return header.dimension + 1; }
 };

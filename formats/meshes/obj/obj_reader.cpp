@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "formats/bytes/fields.h"
 #include "formats/bytes/line_reader.h"
+#include "formats/meshes/common/face_cutter.h"
 #include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/common/mesh_notes.h"
 #include "src/error.h"
@@ -28,14 +29,14 @@ class ObjReader {
         read_statement(line.substr(0, line.find('#')));
       }
     }
-    if (mesh_.corners.empty() && !by_spillway_) fail_for_point_cloud(file_, "OBJ");
-    if (!mesh_.corners.empty() && largest_ >= mesh_.vertices.size()) {
+    if (faces_ == 0 && !by_spillway_) fail_for_point_cloud(file_, "OBJ");
+    if (faces_ > 0 && largest_ >= mesh_.vertices.size()) {
       throw BadInput::at(file_, at_line(largest_line_),
                          fmt::format("a face has vertex {}, but there are only {}", largest_ + 1,
                                      mesh_.vertices.size()));
     }
     mesh_.header.vertices = mesh_.vertices.size();
-    mesh_.header.simplices = mesh_.corners.size() / 3;
+    cutter_.finish();
     return std::move(mesh_);
   }
 
@@ -75,24 +76,17 @@ class ObjReader {
   }
 
   void read_face(Fields& fields) {
-    int corners = 0;
+    const FaceName face{++faces_, at_line(lines_.number())};
+    face_.clear();
     while (!fields.at_end()) {
       const std::uint64_t corner = corner_of(fields.word());
-      if (++corners > 3) break;
-      mesh_.corners.push_back(corner);
+      face_.push_back(corner);
       if (corner >= largest_) {
         largest_ = corner;
         largest_line_ = lines_.number();
       }
     }
-    if (corners != 3) {
-      fail(fmt::format("face {} is not a triangle; only triangles are read", face_number(corners)));
-    }
-  }
-
-  /// The face being read, counted from 1.
-  [[nodiscard]] std::size_t face_number(int corners) const {
-    return (mesh_.corners.size() - std::min(corners, 3)) / 3 + 1;
+    cutter_.add(face_, face);
   }
 
   /// The vertex of `a`, `a/b`, `a/b/c` or `a//c`, counted from 0. A negative number counts back
@@ -114,6 +108,9 @@ class ObjReader {
   std::string file_;
   LineReader lines_;
   Mesh mesh_;
+  FaceCutter cutter_{file_, mesh_};
+  std::vector<std::uint64_t> face_;  // corners of the face being read
+  std::uint64_t faces_ = 0;
   bool by_spillway_ = false;
   std::uint64_t largest_ = 0;  // largest corner, checked when all vertices are known
   std::uint64_t largest_line_ = 0;

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "formats/bytes/fields.h"
 #include "formats/bytes/line_reader.h"
+#include "formats/meshes/common/face_cutter.h"
 #include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/common/mesh_notes.h"
 #include "src/error.h"
@@ -28,9 +30,10 @@ class OffReader {
     }
     read_counts();
     for (std::uint64_t i = 0; i < mesh_.header.vertices; ++i) read_vertex(i);
-    for (std::uint64_t i = 0; i < mesh_.header.simplices; ++i) read_face(i);
+    for (std::uint64_t i = 0; i < faces_; ++i) read_face(i);
     if (next_line()) fail("the file goes on after its last face; its counts are wrong");
-    if (mesh_.corners.empty() && !by_spillway_) fail_for_point_cloud(source_.name(), "OFF");
+    if (faces_ == 0 && !by_spillway_) fail_for_point_cloud(source_.name(), "OFF");
+    cutter_.finish();
     return std::move(mesh_);
   }
 
@@ -42,7 +45,7 @@ class OffReader {
     const std::optional<std::uint64_t> faces = fields_.count();
     if (!vertices || !faces) fail("the numbers of vertices and faces are missing");
     mesh_.header.vertices = *vertices;
-    mesh_.header.simplices = *faces;
+    faces_ = *faces;
     const std::optional<std::uint64_t> size = source_.size();
     if (!size) return;
     // The end of the last line may be missing.
@@ -74,18 +77,20 @@ class OffReader {
   void read_face(std::uint64_t number) {
     if (!next_line()) fail_at_end(fmt::format("face {}", number));
     const std::optional<std::uint64_t> length = fields_.count();
-    if (length != 3) {
-      fail(fmt::format("face {} is not a triangle; only triangles are read", number));
-    }
-    for (int c = 0; c < 3; ++c) {
+    if (!length) fail(fmt::format("face {} needs the number of its corners", number));
+    const FaceName face{number, at_line(lines_.number())};
+    cutter_.check_length(*length, face);
+    face_.clear();
+    while (face_.size() < *length) {
       const std::optional<std::uint64_t> corner = fields_.count();
-      if (!corner) fail(fmt::format("face {} needs three vertex numbers", number));
+      if (!corner) fail(fmt::format("face {} needs {} vertex numbers", number, *length));
       if (*corner >= mesh_.header.vertices) {
         fail(fmt::format("face {} has vertex {}, but there are only {}", number, *corner,
                          mesh_.header.vertices));
       }
-      mesh_.corners.push_back(*corner);
+      face_.push_back(*corner);
     }
+    cutter_.add(face_, face);
   }
 
   /// Goes to the next line that has more than a comment; takes notes from comments.
@@ -121,6 +126,9 @@ class OffReader {
   LineReader lines_;
   Fields fields_{""};
   Mesh mesh_;
+  FaceCutter cutter_{source_.name(), mesh_};
+  std::vector<std::uint64_t> face_;  // corners of the face being read
+  std::uint64_t faces_ = 0;
   bool by_spillway_ = false;
 };
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
+#include "formats/meshes/common/face_cutter.h"
 #include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/ply/ply_header.h"
 #include "formats/meshes/ply/ply_values.h"
@@ -52,6 +54,7 @@ class PlyReader {
       PlyBinaryValues values(source_, header_.encoding == PlyEncoding::kBigEndian);
       read_elements(values);
     }
+    cutter_.finish();
     return std::move(mesh_);
   }
 
@@ -176,7 +179,7 @@ class PlyReader {
       values.begin_item(simplices_->name, i);
       for (const PlyProperty& property : simplices_->properties) {
         if (&property == list) {
-          read_corners(values, property);
+          read_corners(values, property, i);
         } else {
           pass_over(values, property);
         }
@@ -185,23 +188,29 @@ class PlyReader {
     }
   }
 
+  /// Faces are cut into triangles, tetrahedra have four corners each.
   template <typename Values>
-  void read_corners(Values& values, const PlyProperty& list) {
-    const std::size_t wanted = mesh_.corners_per_simplex();
+  void read_corners(Values& values, const PlyProperty& list, std::uint64_t number) {
+    const FaceName face{number, values.place()};
     const std::uint64_t length = values.index(*list.length_type, "the number of corners");
-    if (length != wanted) {
-      values.fail(
-          fmt::format("it has {} corners instead of {}; only triangles and tetrahedra are "
-                      "read",
-                      length, wanted));
+    if (mesh_.header.dimension == 2) {
+      cutter_.check_length(length, face);
+    } else if (length != mesh_.corners_per_simplex()) {
+      values.fail(fmt::format("it has {} corners instead of 4", length));
     }
-    for (std::size_t c = 0; c < wanted; ++c) {
+    corners_.clear();
+    while (corners_.size() < length) {
       const std::uint64_t corner = values.index(list.type, "a vertex number");
       if (corner >= vertices_->count) {
         values.fail(
             fmt::format("it has vertex {}, but there are only {}", corner, vertices_->count));
       }
-      mesh_.corners.push_back(corner);
+      corners_.push_back(corner);
+    }
+    if (mesh_.header.dimension == 2) {
+      cutter_.add(corners_, face);
+    } else {
+      mesh_.corners.insert(mesh_.corners.end(), corners_.begin(), corners_.end());
     }
   }
 
@@ -223,6 +232,8 @@ class PlyReader {
   const PlyElement* simplices_;
   bool size_known_;
   Mesh mesh_;
+  FaceCutter cutter_{source_.name(), mesh_};
+  std::vector<std::uint64_t> corners_;  // of the simplex being read
 };
 
 }  // namespace

@@ -36,9 +36,7 @@ void PlyBinaryValues::finish() {
   if (input_.take(1) != nullptr) item_.fail_for_excess(at_byte(end));
 }
 
-void PlyBinaryValues::fail(const std::string& what) const {
-  item_.fail(at_byte(input_.position()), what);
-}
+void PlyBinaryValues::fail(const std::string& what) const { item_.fail(place(), what); }
 
 double PlyTextValues::number(NumberType type) {
   const std::string_view word = fields_.word();

@@ -61,6 +61,9 @@ class PlyBinaryValues {
 
   void end_item() {}
 
+  /// The byte that is read next.
+  [[nodiscard]] FilePlace place() const { return at_byte(input_.position()); }
+
   /// Makes sure that the file ends here.
   void finish();
 
@@ -102,11 +105,12 @@ class PlyTextValues {
   void finish();
   [[noreturn]] void fail(const std::string& what) const { item_.fail(place(), what); }
 
+  /// The line that is being read.
+  [[nodiscard]] FilePlace place() const { return at_line(header_lines_ + lines_.number()); }
+
  private:
   /// Goes to the next line that is not blank; false at the end.
   bool next_line();
-
-  [[nodiscard]] FilePlace place() const { return at_line(header_lines_ + lines_.number()); }
 
   PlyItem item_;
   LineReader lines_;

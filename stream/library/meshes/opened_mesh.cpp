@@ -74,7 +74,15 @@ MeshStreamReader& OpenedMesh::reader(RunWatch& watch, bool all_totals) {
   return *reader_;
 }
 
-Mesh OpenedMesh::read_whole() { return read_mesh(*input_, path_, format_name_); }
+Mesh OpenedMesh::read_whole() {
+  Mesh mesh = read_mesh(*input_, path_, format_name_);
+  if (!context_.options().warning) return mesh;
+  for (const std::string& notice : mesh.notices) {
+    context_.options().warning(
+        fmt::format("{}: {}", path_ == "-" ? "standard input" : path_, notice));
+  }
+  return mesh;
+}
 
 MeshStreamReader& OpenedMesh::stream() {
   if (!stream_) stream_ = open_stream();

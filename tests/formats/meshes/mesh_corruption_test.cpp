@@ -120,12 +120,17 @@ TEST(PlyCorruption, CountSmallerThanFile) {
               HasSubstr("goes on at byte"));
 }
 
-TEST(PlyCorruption, FaceOfFourVertices) {
-  EXPECT_THAT(error_of_ply("3 2 1 3", "4 2 1 3 0"),
-              AllOf(HasSubstr("line 15: face 1: it has 4 corners")));
+TEST(PlyCorruption, FaceOfTwoVertices) {
+  EXPECT_THAT(error_of_ply("3 2 1 3", "2 2 1"), HasSubstr("line 15: face 1: it has 2 corners"));
   std::string bytes = binary_ply();
-  bytes[bytes.size() - 13] = 4;
-  EXPECT_THAT(error_of_bytes("a.ply", bytes), HasSubstr("face 1: it has 4 corners"));
+  bytes[bytes.size() - 13] = 2;
+  EXPECT_THAT(error_of_bytes("a.ply", bytes), HasSubstr("face 1: it has 2 corners"));
+}
+
+TEST(PlyCorruption, TetrahedronOfFiveVertices) {
+  EXPECT_THAT(error_of_bytes("a.ply", replaced(replaced(ascii_ply(), "face 2", "tetrahedron 1"),
+                                               "3 0 1 2\n3 2 1 3", "5 0 1 2 3 0")),
+              HasSubstr("line 14: tetrahedron 0: it has 5 corners instead of 4"));
 }
 
 TEST(PlyCorruption, VertexNumberOutOfRange) {
@@ -169,8 +174,8 @@ TEST(ObjCorruption, VertexNumberOutOfRange) {
   }
 }
 
-TEST(ObjCorruption, FaceOfOtherThanThreeVertices) {
-  for (const char* const face : {"f", "f 1", "f 1 2", "f 1 2 3 4"}) {
+TEST(ObjCorruption, FaceOfFewerThanThreeVertices) {
+  for (const char* const face : {"f", "f 1", "f 1 2"}) {
     EXPECT_THAT(error_of_change("a.obj", obj_text(), "f 3 2 4", face),
                 AllOf(HasSubstr("line 6"), HasSubstr("face 2")));
   }
@@ -211,9 +216,10 @@ TEST(OffCorruption, BadVertex) {
   EXPECT_THAT(error_of_change("a.off", off_text(), "1 0 .5", "1 0 inf"), HasSubstr("finite"));
 }
 
-TEST(OffCorruption, FaceOfFourVertices) {
-  EXPECT_THAT(error_of_change("a.off", off_text(), "3 2 1 3", "4 2 1 3 0"),
-              HasSubstr("line 8: face 1"));
+TEST(OffCorruption, FaceOfOtherLengthThanItSays) {
+  for (const char* const face : {"4 2 1 3", "2 2 1", "x"}) {
+    EXPECT_THAT(error_of_change("a.off", off_text(), "3 2 1 3", face), HasSubstr("line 8: face 1"));
+  }
 }
 
 TEST(OffCorruption, VertexNumberOutOfRange) {

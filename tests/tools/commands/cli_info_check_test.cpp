@@ -131,6 +131,30 @@ TEST(Check, AMeshThatBreaksOnlyTiesAnotherWayIsPointedToTheOptionThatAcceptsIt) 
   EXPECT_THAT(hole.out, AllOf(HasSubstr("hole.off: NOT the Delaunay"), Not(HasSubstr(hint))));
 }
 
+/// How often a text has another one in it.
+int count_of(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++count;
+  return count;
+}
+
+TEST(Check, AMeshOfSquaresIsTheDelaunayTriangulationOfTheirCorners) {
+  const Workspace work;
+  work.write("grid.obj",
+             "v 0 0 0\nv 0.1 0 1\nv 0.2 0 0\nv 0 0.1 1\nv 0.1 0.1 2\nv 0.2 0.1 1\n"
+             "f 1 2 5 4\nf 2 3 6 5\n");
+  const std::string notice =
+      "grid.obj: 2 polygons of more than three corners were cut into 4 triangles\n";
+  for (const char* const command :
+       {"check grid.obj", "check --any-delaunay grid.obj", "info grid.obj",
+        "convert grid.obj -o grid.spm", "contour grid.obj --interval 0.5 --force-crs -o lines.geojson"}) {
+    const Result result = work.run(std::string("spillway ") + command);
+    EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+    EXPECT_EQ(count_of(result.err, notice), 1) << command << '\n' << result.err;
+  }
+  EXPECT_EQ(work.info("grid.obj")["simplices"], 4);
+}
+
 TEST(Check, MissesAPointOfTheInput) {
   const Workspace work;
   work.write("in.txt", "0 0 0\n1 0 0\n0 1 0\n");
