@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "formats/meshes/common/mesh_checks.h"
+#include "formats/meshes/off/off_kind.h"
 #include "formats/meshes/off/off_reader.h"
 #include "formats/meshes/off/off_writer.h"
 
@@ -17,7 +17,7 @@ constinit const MeshFormat kOffMesh = {
     .name = "off",
     .title = "OFF",
     .extensions = kExtensions,
-    .recognises = [](std::string_view text) { return begins_with_word(text, "OFF"); },
+    .recognises = [](std::string_view text) { return off_kind_of_text(text).has_value(); },
     .read = read_off,
     .open_writer =
         [](MeshFiles files, const MeshHeader& header) {

@@ -11,6 +11,7 @@
 #include "formats/meshes/common/face_cutter.h"
 #include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/common/mesh_notes.h"
+#include "formats/meshes/off/off_kind.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -25,9 +26,7 @@ class OffReader {
   explicit OffReader(InputBytes& source) : source_(source), lines_(source) {}
 
   Mesh read() {
-    if (!next_line() || fields_.word() != "OFF") {
-      fail("this is not an OFF file: its first line is not \"OFF\"; name its format");
-    }
+    read_kind();
     read_counts();
     for (std::uint64_t i = 0; i < mesh_.header.vertices; ++i) read_vertex(i);
     for (std::uint64_t i = 0; i < faces_; ++i) read_face(i);
@@ -38,6 +37,26 @@ class OffReader {
   }
 
  private:
+  void read_kind() {
+    if (next_line()) kind_name_ = fields_.word();
+    const std::optional<OffKind> kind = off_kind(kind_name_);
+    if (!kind) {
+      fail(
+          "this is not an OFF file: its first line is not \"OFF\" (nor COFF, NOFF, ...); name its "
+          "format");
+    }
+    if (kind->is_homogeneous || kind->has_dimension) {
+      fail(
+          fmt::format("{} has vertices of more or fewer coordinates than three, which are not "
+                      "read; save the mesh as OFF",
+                      kind_name_));
+    }
+    if (Fields(fields_).word() == "BINARY") {
+      fail(fmt::format("{} BINARY is not read; save the mesh as text", kind_name_));
+    }
+    kind_ = *kind;
+  }
+
   /// The counts of vertices, faces and (not needed) edges, on the first line or the next.
   void read_counts() {
     if (fields_.at_end() && !next_line()) fail_at_end("the counts");
@@ -69,8 +88,25 @@ class OffReader {
       }
       coordinate = *value;
     }
-    if (!fields_.at_end()) fail(fmt::format("vertex {} has more than three coordinates", number));
+    pass_over_extras(number);
     mesh_.vertices.push_back(point);
+  }
+
+  /// Normals, colours and places in textures.
+  void pass_over_extras(std::uint64_t vertex) {
+    int extras = 0;
+    for (; !fields_.at_end(); ++extras) {
+      const std::string_view word = fields_.word();
+      if (!Fields(word).number())
+        fail(fmt::format("{} of vertex {} is no number", quoted(word), vertex));
+    }
+    const int fewest = kind_.fewest_extras();
+    const int most = kind_.most_extras();
+    if (extras >= fewest && extras <= most) return;
+    fail(fmt::format(
+        "vertex {} has {} numbers instead of {}{}, which it has where a file begins with {}",
+        vertex, extras + 3, fewest + 3, most > fewest ? fmt::format(" or {}", most + 3) : "",
+        kind_name_));
   }
 
   /// What follows the corners is a colour.
@@ -125,6 +161,8 @@ class OffReader {
   InputBytes& source_;
   LineReader lines_;
   Fields fields_{""};
+  std::string kind_name_;
+  OffKind kind_;
   Mesh mesh_;
   FaceCutter cutter_{source_.name(), mesh_};
   std::vector<std::uint64_t> face_;  // corners of the face being read

@@ -187,8 +187,14 @@ TEST(ObjCorruption, BadLattice) {
 }
 
 TEST(OffCorruption, BadHeader) {
-  EXPECT_THAT(error_of_change("a.off", off_text(), "OFF", "NOFF"), HasSubstr("OFF"));
-  EXPECT_THAT(error_of_change("a.off", off_text(), "OFF", "OFF BINARY"), HasSubstr("line 1"));
+  EXPECT_THAT(error_of_change("a.off", off_text(), "OFF", "XOFF"), HasSubstr("this is not an OFF"));
+  EXPECT_THAT(error_of_change("a.off", off_text(), "OFF", "OFF BINARY"),
+              HasSubstr("line 1: OFF BINARY is not read"));
+  EXPECT_THAT(error_of_change("a.off", off_text(), "OFF", "COFF BINARY"),
+              HasSubstr("line 1: COFF BINARY is not read"));
+  EXPECT_THAT(error_of_change("a.off", off_text(), "OFF", "4OFF"), HasSubstr("line 1: 4OFF has"));
+  EXPECT_THAT(error_of_change("a.off", off_text(), "OFF", "CN4nOFF\n3"),
+              HasSubstr("line 1: CN4nOFF has"));
   EXPECT_THAT(error_of_change("a.off", off_text(), "4 2 0", "4"), HasSubstr("line 2"));
 }
 
@@ -214,6 +220,15 @@ TEST(OffCorruption, CountSmallerThanFile) {
 TEST(OffCorruption, BadVertex) {
   EXPECT_THAT(error_of_change("a.off", off_text(), "1 0 .5", "1 0"), HasSubstr("line 4: vertex 1"));
   EXPECT_THAT(error_of_change("a.off", off_text(), "1 0 .5", "1 0 inf"), HasSubstr("finite"));
+}
+
+TEST(OffCorruption, VertexOfOtherLengthThanTheFirstWordSays) {
+  EXPECT_THAT(error_of_change("a.off", off_text(), "1 0 .5", "1 0 .5 7"),
+              HasSubstr("line 4: vertex 1 has 4 numbers instead of 3, "));
+  EXPECT_THAT(error_of_change("a.off", off_text(), "OFF", "COFF"),
+              HasSubstr("line 3: vertex 0 has 3 numbers instead of 6 or 7, "));
+  EXPECT_THAT(error_of_change("a.off", replaced(off_text(), "OFF", "NOFF"), "0 0 0", "0 0 0 0 x 1"),
+              HasSubstr("line 3: \"x\" of vertex 0 is no number"));
 }
 
 TEST(OffCorruption, FaceOfOtherLengthThanItSays) {

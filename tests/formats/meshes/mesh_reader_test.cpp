@@ -217,6 +217,20 @@ TEST(OffReader, CountsOnTheFirstLine) {
   expect_square(read_both("a.off", "OFF 4 2\n0 0 0\n1 0 .5\n0 1 -2\n1 1 3\n3 0 1 2\n3 2 1 3"));
 }
 
+TEST(OffReader, NormalsColoursAndTexturesOfVerticesArePassedOver) {
+  const std::pair<const char*, const char*> kinds[] = {
+      {"COFF", " 255 0 0 255"}, {"COFF", " 0.5 0 0"},        {"NOFF", " 0 0 1"},
+      {"STOFF", " 0.5 0.5"},    {"CNOFF", " 0 0 1 1 2 3 4"}, {"STCNOFF", " 0 0 1 1 2 3 4 0 0"}};
+  for (const auto& [kind, extras] : kinds) {
+    SCOPED_TRACE(kind);
+    const std::string e = extras;
+    const std::string text = std::string(kind) + "\n4 2 0\n0 0 0" + e + "\n1 0 .5" + e +
+                             "\n0 1 -2" + e + "\n1 1 3" + e + "\n3 0 1 2\n3 2 1 3\n";
+    expect_square(read_both("a.off", text));
+    expect_square(read_both("a.of", text));
+  }
+}
+
 TEST(OffReader, PointCloudIsNoMesh) {
   EXPECT_THAT(error_of_bytes("a.off", "OFF\n1 0 0\n1 2 3\n"), HasSubstr("no faces or tetrahedra"));
 }

@@ -147,7 +147,8 @@ TEST(Check, AMeshOfSquaresIsTheDelaunayTriangulationOfTheirCorners) {
       "grid.obj: 2 polygons of more than three corners were cut into 4 triangles\n";
   for (const char* const command :
        {"check grid.obj", "check --any-delaunay grid.obj", "info grid.obj",
-        "convert grid.obj -o grid.spm", "contour grid.obj --interval 0.5 --force-crs -o lines.geojson"}) {
+        "convert grid.obj -o grid.spm",
+        "contour grid.obj --interval 0.5 --force-crs -o lines.geojson"}) {
     const Result result = work.run(std::string("spillway ") + command);
     EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
     EXPECT_EQ(count_of(result.err, notice), 1) << command << '\n' << result.err;
