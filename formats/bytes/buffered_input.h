@@ -2,6 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "formats/bytes/input_bytes.h"
@@ -24,6 +27,13 @@ class BufferedInput {
     return buffer_.data() + begin_ - size;
   }
 
+  /// What is in memory of the bytes that come next: some, unless the file ends here. Valid until
+  /// the next call.
+  std::span<const std::byte> ahead() {
+    if (begin_ == end_) refill(1);
+    return {buffer_.data() + begin_, end_ - begin_};
+  }
+
   /// Drops bytes; false if the file ends before.
   bool skip(std::uint64_t count);
 
@@ -32,6 +42,9 @@ class BufferedInput {
 
   /// Number of the byte after the last one, known once take() or skip() has failed.
   [[nodiscard]] std::uint64_t end() const { return source_.position(); }
+
+  /// Bytes of the whole file; nothing for pipes.
+  [[nodiscard]] std::optional<std::uint64_t> size() const { return source_.size(); }
 
   [[nodiscard]] const std::string& name() const { return source_.name(); }
 

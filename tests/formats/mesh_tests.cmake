@@ -14,6 +14,9 @@ spillway_test(mesh_reader_test unit
 spillway_test(polygon_test unit
   SOURCES formats/meshes/common/polygon_cutter_test.cpp formats/meshes/polygon_reader_test.cpp
   LIBS spillway_formats)
+spillway_test(vtu_reader_test unit
+  SOURCES formats/meshes/vtu/vtu_reader_test.cpp
+  LIBS spillway_formats Boost::iostreams)
 spillway_test(mesh_round_trip_test unit
   SOURCES formats/meshes/mesh_round_trip_test.cpp
   LIBS spillway_formats)

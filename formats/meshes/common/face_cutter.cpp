@@ -68,7 +68,9 @@ void FaceCutter::cut(std::span<const std::uint64_t> corners, const FaceName& fac
 }
 
 void FaceCutter::fail(const FaceName& face, std::string_view what) const {
-  throw BadInput::at(file_, face.place, fmt::format("face {}: {}", face.number, what));
+  const std::string text = fmt::format("{} {}: {}", kind_, face.number, what);
+  if (face.place.unit == PlaceUnit::kNone) throw BadInput(file_, text);
+  throw BadInput::at(file_, face.place, text);
 }
 
 }  // namespace spillway::detail

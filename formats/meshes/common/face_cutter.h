@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/meshes/common/mesh.h"
@@ -15,7 +16,7 @@ namespace spillway::detail {
 /// A face of a file, for messages.
 struct FaceName {
   std::uint64_t number = 0;  ///< as the format counts
-  FilePlace place{};         ///< where it stands
+  FilePlace place{};         ///< where it stands, if that is known
 };
 
 /// Puts the faces of a file into its mesh as triangles: polygons of more corners are cut as
@@ -25,8 +26,9 @@ class FaceCutter {
   /// The most corners of a face: cutting takes the square of their number.
   static constexpr std::uint64_t kMostCorners = 10'000;
 
-  /// Both must outlive the cutter.
-  FaceCutter(const std::string& file, Mesh& mesh) : file_(file), mesh_(mesh) {}
+  /// `kind` is what the format calls its faces. All must outlive the cutter.
+  FaceCutter(const std::string& file, Mesh& mesh, std::string_view kind = "face")
+      : file_(file), mesh_(mesh), kind_(kind) {}
 
   /// Throws Error for a number of corners that no face has that is read.
   void check_length(std::uint64_t corners, const FaceName& face) const;
@@ -53,6 +55,7 @@ class FaceCutter {
 
   const std::string& file_;
   Mesh& mesh_;
+  std::string_view kind_;
   PolygonCutter cutter_;
   std::vector<Point<2>> outline_;
   std::vector<std::uint64_t> sorted_;

@@ -1,35 +1,45 @@
 #pragma once
-// The XML header of VTU files, as docs/formats-meshes.md ("VTU") describes it.
+// What the tags of VTU files say, as docs/formats-meshes.md ("VTU") describes it.
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
-#include "formats/bytes/input_bytes.h"
 #include "formats/bytes/number_type.h"
-#include "formats/meshes/common/mesh.h"
+#include "formats/compression/block_decompress.h"
+#include "formats/meshes/vtu/vtu_tags.h"
 
 namespace spillway::detail {
 
-/// An array in the appended data.
+/// How the binary arrays of a file are written: what its first tag says.
+struct VtuCoding {
+  bool swaps = false;                             ///< bytes are in the other order
+  NumberType length_type = NumberType::kUint32;   ///< of the numbers that precede an array
+  std::optional<BlockCompression> compression{};  ///< of the blocks of an array
+};
+
+/// Where the values of an array are.
+enum class VtuPlace { kInlineText, kInlineBinary, kAppended };
+
+/// An array, as its tag says.
 struct VtuArray {
+  std::string name;
   NumberType type = NumberType::kFloat64;
-  std::uint64_t components = 1;
-  std::uint64_t offset = 0;  ///< from the first byte of the appended data
+  VtuPlace place = VtuPlace::kInlineText;
+  std::uint64_t offset = 0;  ///< of appended ones: from the first byte of the appended data
 };
 
-/// What precedes the appended data.
-struct VtuHeader {
-  MeshHeader mesh;  ///< dimension: what the file says; 0 if it says nothing
-  VtuArray points;
-  VtuArray connectivity;
-  VtuArray offsets;
-  VtuArray types;
-  std::optional<VtuArray> input_index;
-};
+/// What the tag VTKFile says. Throws Error for what is not read.
+VtuCoding vtu_coding(const VtuTags& tags);
 
-/// Reads a header, up to the first byte of the appended data. Throws Error that names the byte, for
-/// what is malformed and for kinds of VTU that are not read.
-VtuHeader read_vtu_header(InputBytes& source);
+/// What the tag DataArray says. Throws Error for what is malformed.
+VtuArray vtu_array(const VtuTags& tags, std::string_view name);
+
+/// Whether the tag AppendedData promises base64, and not raw bytes. Throws Error for anything else.
+bool is_appended_base64(const VtuTags& tags);
+
+/// A number in the tag. Throws Error if it is missing.
+std::uint64_t vtu_count(const VtuTags& tags, std::string_view key);
 
 }  // namespace spillway::detail

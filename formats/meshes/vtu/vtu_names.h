@@ -11,12 +11,22 @@ inline constexpr const char* kDimension = "spillway_dimension";
 inline constexpr const char* kLattice = "spillway_lattice";
 inline constexpr const char* kCrs = "spillway_crs";
 
+// Arrays of points and cells that VTK names.
+inline constexpr const char* kPoints = "Points";
+inline constexpr const char* kConnectivity = "connectivity";
+inline constexpr const char* kOffsets = "offsets";
+inline constexpr const char* kTypes = "types";
+
 // Point arrays.
 inline constexpr const char* kInputIndex = "input_index";
 inline constexpr const char* kGlobalIds = "GlobalPointIds";  // what VTK calls it
 
 // Cell types.
+inline constexpr std::uint8_t kVertex = 1;
+inline constexpr std::uint8_t kLine = 3;
 inline constexpr std::uint8_t kTriangle = 5;
+inline constexpr std::uint8_t kPolygon = 7;
+inline constexpr std::uint8_t kQuadrilateral = 9;
 inline constexpr std::uint8_t kTetrahedron = 10;
 
 }  // namespace spillway::detail::vtu

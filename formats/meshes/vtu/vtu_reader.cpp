@@ -4,196 +4,303 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "formats/bytes/buffered_input.h"
-#include "formats/bytes/bytes.h"
 #include "formats/meshes/common/mesh_checks.h"
+#include "formats/meshes/common/mesh_notes.h"
+#include "formats/meshes/vtu/vtu_bytes.h"
+#include "formats/meshes/vtu/vtu_cells.h"
 #include "formats/meshes/vtu/vtu_header.h"
 #include "formats/meshes/vtu/vtu_names.h"
+#include "formats/meshes/vtu/vtu_tags.h"
+#include "formats/meshes/vtu/vtu_values.h"
 #include "src/error.h"
 
 namespace spillway::detail {
 namespace {
 
+/// More numbers than a field array of Spillway has.
+constexpr std::size_t kMostInField = std::size_t{1} << 24;
+
 class VtuReader {
  public:
-  explicit VtuReader(InputBytes& source)
-      : header_(read_vtu_header(source)),
-        data_begin_(source.position()),
-        size_(source.size()),
-        input_(source) {}
+  explicit VtuReader(InputBytes& source) : input_(source), tags_(input_) {
+    mesh_.header.dimension = 0;
+  }
 
   Mesh read() {
-    mesh_.header = header_.mesh;
-    std::vector<Step> steps = {{header_.points, [this] { read_points(); }},
-                               {header_.connectivity, [this] { read_connectivity(); }},
-                               {header_.offsets, [this] { read_offsets(); }},
-                               {header_.types, [this] { read_types(); }}};
-    if (header_.input_index) steps.push_back({*header_.input_index, [this] { read_index(); }});
-    std::stable_sort(steps.begin(), steps.end(),
-                     [](const Step& a, const Step& b) { return a.array.offset < b.array.offset; });
-    for (const Step& step : steps) {
-      begin_array(step.array);
-      step.read();
-    }
-    settle_dimension();
+    read_tags();
+    check_arrays();
+    cells_.put_into(mesh_, input_.name());
+    if (mesh_.header.dimension == 0) fail_for_point_cloud(input_.name(), "VTU");
     return std::move(mesh_);
   }
 
  private:
-  struct Step {
-    VtuArray array;
-    std::function<void()> read;
-  };
-
-  /// Goes to an array and takes its length in bytes.
-  void begin_array(const VtuArray& array) {
-    const std::uint64_t here = input_.position() - data_begin_;
-    if (array.offset < here) {
-      fail(fmt::format("an array begins here, within the one before; its offset {} is wrong",
-                       array.offset));
+  /// Up to the end of the appended arrays, or of the element VTKFile.
+  void read_tags() {
+    while (tags_.next()) {
+      const XmlTag& tag = tags_.tag();
+      if (!tag.closing) read_tag();
+      if (tag.name == (tag.closing ? "VTKFile" : "AppendedData")) return;
     }
-    if (!input_.skip(array.offset - here)) fail_at_end();
-    const std::byte* const length = input_.take(sizeof(std::uint64_t));
-    if (length == nullptr) fail_at_end();
-    length_ = load<std::uint64_t>(length);
-    if (size_ && length_ > *size_ - std::min(*size_, input_.position())) {
-      fail(fmt::format("an array has {} bytes, but the file ends at byte {}; get a complete copy",
-                       length_, *size_));
+    if (coding_) fail_at_end_of_vtu(input_);
+  }
+
+  void read_tag() {
+    const std::string_view name = tags_.tag().name;
+    if (name == "VTKFile") {
+      coding_ = vtu_coding(tags_);
+    } else if (name == "Piece") {
+      read_piece();
+    } else if (name == "DataArray") {
+      read_array_tag();
+    } else if (name == "AppendedData") {
+      read_appended();
+    } else if (name == "FieldData" || name == "Points" || name == "PointData" || name == "Cells" ||
+               name == "CellData") {
+      section_ = name;
     }
   }
 
-  /// Makes sure that the array has `count` items of `each` bytes.
-  void expect_items(const char* name, std::uint64_t count, std::uint64_t each) const {
-    if (length_ % each != 0 || length_ / each != count) {
-      fail(fmt::format("the array {} has {} bytes, but {} items of {} are declared", name, length_,
-                       count, each));
+  void read_piece() {
+    if (cell_count_) tags_.fail("there is a second Piece; merge the pieces into one");
+    mesh_.header.vertices = vtu_count(tags_, "NumberOfPoints");
+    cell_count_ = vtu_count(tags_, "NumberOfCells");
+  }
+
+  /// The name by which the array is read; nothing if it is passed over.
+  [[nodiscard]] std::optional<std::string> name_of_array() const {
+    const std::string_view name = tags_.tag().attribute("Name");
+    const auto is_one_of = [&](std::initializer_list<const char*> names) {
+      return std::ranges::find(names, name) != names.end();
+    };
+    if (section_ == "Points") return vtu::kPoints;
+    const bool is_read =
+        (section_ == "Cells" && is_one_of({vtu::kConnectivity, vtu::kOffsets, vtu::kTypes})) ||
+        (section_ == "PointData" && is_one_of({vtu::kInputIndex})) ||
+        (section_ == "FieldData" && is_one_of({vtu::kDimension, vtu::kLattice, vtu::kCrs}));
+    return is_read ? std::optional(std::string(name)) : std::nullopt;
+  }
+
+  void read_array_tag() {
+    const std::optional<std::string> name = name_of_array();
+    if (!coding_) tags_.fail("an array stands outside of VTKFile");
+    if (!name) {
+      tags_.expect_data();
+      return;
+    }
+    const VtuArray array = vtu_array(tags_, *name);
+    if (section_ != "FieldData") check_array(array);
+    if (!seen_.insert(array.name).second) {
+      tags_.fail(fmt::format("there is a second {}", array.name));
+    }
+    if (array.place == VtuPlace::kAppended) {
+      appended_.push_back(array);
+    } else if (array.place == VtuPlace::kInlineBinary) {
+      const std::unique_ptr<VtuBytes> bytes = base64_vtu_bytes(input_);
+      VtuValues values = VtuValues::of_binary(*bytes, *coding_, array);
+      read_array(array, values);
+    } else {
+      VtuValues values = VtuValues::of_text(input_, array);
+      read_array(array, values);
     }
   }
 
-  /// Whether space for an array whose length has been checked may be reserved.
-  [[nodiscard]] bool may_reserve() const { return size_.has_value(); }
+  void check_array(const VtuArray& array) const {
+    if (!cell_count_) tags_.fail("an array of points or cells stands outside of a Piece");
+    const bool is_cells = section_ == "Cells";
+    if (is_cells && !is_integer(array.type)) {
+      tags_.fail(fmt::format("{} must be integers", array.name));
+    }
+    const bool has_components = !tags_.tag().attribute("NumberOfComponents").empty();
+    const std::uint64_t found = has_components ? vtu_count(tags_, "NumberOfComponents") : 1;
+    const std::uint64_t wanted = array.name == vtu::kPoints ? 3 : 1;
+    if (found != wanted) {
+      tags_.fail(fmt::format("the array {} needs {} components", array.name, wanted));
+    }
+  }
 
-  void read_points() {
-    const NumberType type = header_.points.type;
-    const std::size_t each = 3 * size_of(type);
-    expect_items("Points", mesh_.header.vertices, each);
-    if (may_reserve()) mesh_.vertices.reserve(mesh_.header.vertices);
-    for (std::uint64_t i = 0; i < mesh_.header.vertices; ++i) {
-      const std::byte* const bytes = take(each);
-      WorldPoint point;
-      for (int axis = 0; axis < 3; ++axis) {
-        point[axis] = load_number(type, bytes + axis * size_of(type), false);
-        if (!std::isfinite(point[axis])) fail(fmt::format("vertex {} is not finite", i));
+  /// Arrays in the order in which they stand in the file, which is read once.
+  void read_appended() {
+    const std::unique_ptr<VtuBytes> bytes =
+        is_appended_base64(tags_) ? base64_vtu_bytes(input_) : raw_vtu_bytes(input_);
+    find_underscore();
+    const std::uint64_t begin = input_.position();
+    std::ranges::stable_sort(appended_, {}, &VtuArray::offset);
+    for (const VtuArray& array : appended_) {
+      const std::uint64_t here = input_.position() - begin;
+      if (array.offset < here) {
+        fail_in_vtu(input_,
+                    fmt::format("an array begins here, within the one before; the offset {} of {} "
+                                "is wrong",
+                                array.offset, array.name));
       }
-      mesh_.vertices.push_back(point);
+      if (!input_.skip(array.offset - here)) fail_at_end_of_vtu(input_);
+      bytes->begin_next();
+      VtuValues values = VtuValues::of_binary(*bytes, *coding_, array);
+      read_array(array, values);
+    }
+    appended_.clear();
+  }
+
+  void find_underscore() {
+    pass_over_blanks(input_);
+    const std::byte* const byte = input_.take(1);
+    if (byte == nullptr) fail_at_end_of_vtu(input_);
+    if (static_cast<char>(*byte) != '_') {
+      fail("appended data begins without an underscore; the file is corrupt");
     }
   }
 
-  void read_connectivity() {
-    const std::size_t each = size_of(header_.connectivity.type);
-    const std::uint64_t count = length_ / each;
-    expect_items("connectivity", count, each);
-    if (may_reserve()) mesh_.corners.reserve(count);
-    for (std::uint64_t i = 0; i < count; ++i) {
-      const std::uint64_t corner = take_index(header_.connectivity.type, "connectivity", i);
+  void read_array(const VtuArray& array, VtuValues& values) {
+    if (array.name == vtu::kPoints) {
+      read_points(values);
+    } else if (array.name == vtu::kConnectivity) {
+      read_connectivity(values);
+    } else if (array.name == vtu::kOffsets) {
+      read_offsets(values);
+    } else if (array.name == vtu::kTypes) {
+      read_types(values);
+    } else if (array.name == vtu::kInputIndex) {
+      read_input_index(values);
+    } else {
+      read_field(array.name, values);
+    }
+  }
+
+  /// Gives each number of an array to `take`, which must be as many as are declared.
+  template <typename Take>
+  void read_numbers(const char* name, VtuValues& values, std::uint64_t declared, Take take) {
+    std::uint64_t count = 0;
+    for (; values.next(); ++count) {
+      if (count == declared) {
+        fail(fmt::format("the array {} has more numbers than the {} that are declared", name,
+                         declared));
+      }
+      take(count);
+    }
+    if (count < declared) {
+      fail(fmt::format("the array {} has {} numbers, but {} are declared", name, count, declared));
+    }
+  }
+
+  void read_points(VtuValues& values) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max() / 3;
+    const std::uint64_t declared = std::min(mesh_.header.vertices, kMost) * 3;
+    mesh_.vertices.reserve(std::min(values.count().value_or(0), declared) / 3);
+    WorldPoint point;
+    read_numbers(vtu::kPoints, values, declared, [&](std::uint64_t i) {
+      point[i % 3] = values.number();
+      if (!std::isfinite(point[i % 3])) fail(fmt::format("vertex {} is not finite", i / 3));
+      if (i % 3 == 2) mesh_.vertices.push_back(point);
+    });
+  }
+
+  void read_connectivity(VtuValues& values) {
+    cells_.reserve_corners(values.count().value_or(0));
+    for (std::uint64_t i = 0; values.next(); ++i) {
+      const std::uint64_t corner = index_in(vtu::kConnectivity, values, i);
       if (corner >= mesh_.header.vertices) {
         fail(fmt::format("connectivity {} is vertex {}, but there are only {}", i, corner,
                          mesh_.header.vertices));
       }
-      mesh_.corners.push_back(corner);
+      cells_.add_corner(corner);
     }
   }
 
-  /// Cell i ends at offset (i + 1) times the corners of a cell.
-  void read_offsets() {
-    const NumberType type = header_.offsets.type;
-    expect_items("offsets", mesh_.header.simplices, size_of(type));
-    for (std::uint64_t i = 0; i < mesh_.header.simplices; ++i) {
-      const std::uint64_t offset = take_index(type, "offsets", i);
-      if (i == 0) first_offset_ = offset;
-      if ((first_offset_ != 3 && first_offset_ != 4) || offset != first_offset_ * (i + 1)) {
+  void read_offsets(VtuValues& values) {
+    read_numbers(vtu::kOffsets, values, *cell_count_, [&](std::uint64_t i) {
+      const std::uint64_t end = index_in(vtu::kOffsets, values, i);
+      if (!cells_.add_end(end)) {
+        fail(fmt::format("cell {} ends at offset {}, before it begins", i, end));
+      }
+    });
+  }
+
+  void read_types(VtuValues& values) {
+    read_numbers(vtu::kTypes, values, *cell_count_, [&](std::uint64_t i) {
+      const std::uint64_t type = index_in(vtu::kTypes, values, i);
+      if (!cells_.add_type(type)) {
         fail(
-            fmt::format("cell {} ends at offset {}; only meshes all of triangles or all of "
-                        "tetrahedra are read",
-                        i, offset));
+            fmt::format("cell {} is {}; only triangles, quadrilaterals, polygons and tetrahedra "
+                        "are read",
+                        i, VtuCells::name_of_type(type)));
+      }
+    });
+  }
+
+  void read_input_index(VtuValues& values) {
+    mesh_.header.has_input_index = true;
+    mesh_.input_index.reserve(std::min(values.count().value_or(0), mesh_.header.vertices));
+    read_numbers(vtu::kInputIndex, values, mesh_.header.vertices, [&](std::uint64_t i) {
+      mesh_.input_index.push_back(index_in(vtu::kInputIndex, values, i));
+    });
+  }
+
+  void read_field(const std::string& name, VtuValues& values) {
+    std::vector<double> numbers;
+    while (values.next()) {
+      if (numbers.size() == kMostInField) {
+        fail(fmt::format("{} has more than {} numbers", name, kMostInField));
+      }
+      numbers.push_back(values.number());
+    }
+    if (name == vtu::kDimension) {
+      if (numbers.size() != 1 || (numbers[0] != 2 && numbers[0] != 3)) {
+        fail(fmt::format("{} must be 2 or 3", name));
+      }
+      mesh_.header.dimension = static_cast<int>(numbers[0]);
+    } else if (name == vtu::kLattice) {
+      mesh_.header.lattice = lattice_of(numbers);
+      if (!mesh_.header.lattice) {
+        fail(fmt::format("{} must be six numbers: three positive scales, three offsets", name));
+      }
+    } else {
+      for (const double code : numbers) {
+        if (!(code >= 1 && code <= 255)) fail(fmt::format("{} must be bytes of text", name));
+        mesh_.header.crs += static_cast<char>(static_cast<unsigned char>(code));
       }
     }
   }
 
-  void read_types() {
-    const NumberType type = header_.types.type;
-    expect_items("types", mesh_.header.simplices, size_of(type));
-    for (std::uint64_t i = 0; i < mesh_.header.simplices; ++i) {
-      const std::uint64_t cell = take_index(type, "types", i);
-      if (i == 0) cell_type_ = cell;
-      if ((cell_type_ != vtu::kTriangle && cell_type_ != vtu::kTetrahedron) || cell != cell_type_) {
-        fail(
-            fmt::format("cell {} is of type {}; only meshes all of triangles (5) or all of "
-                        "tetrahedra (10) are read",
-                        i, cell));
-      }
-    }
-  }
-
-  void read_index() {
-    const NumberType type = header_.input_index->type;
-    expect_items(vtu::kInputIndex, mesh_.header.vertices, size_of(type));
-    if (may_reserve()) mesh_.input_index.reserve(mesh_.header.vertices);
-    for (std::uint64_t i = 0; i < mesh_.header.vertices; ++i) {
-      mesh_.input_index.push_back(take_index(type, vtu::kInputIndex, i));
-    }
-  }
-
-  /// Cells decide the dimension; without any, what the file says.
-  void settle_dimension() {
-    const bool empty = mesh_.header.simplices == 0;
-    if (empty && mesh_.header.dimension == 0) fail_for_point_cloud(input_.name(), "VTU");
-    if (!empty) mesh_.header.dimension = cell_type_ == vtu::kTriangle ? 2 : 3;
-    const std::size_t corners = mesh_.corners_per_simplex();
-    if (mesh_.corners.size() % corners != 0 ||
-        mesh_.corners.size() / corners != mesh_.header.simplices ||
-        (!empty && first_offset_ != corners)) {
-      fail(
-          fmt::format("{} cells with {} corners in all end at multiples of {}, which does not fit "
-                      "their type; the file is corrupt",
-                      mesh_.header.simplices, mesh_.corners.size(), first_offset_));
-    }
-  }
-
-  const std::byte* take(std::size_t size) {
-    const std::byte* const bytes = input_.take(size);
-    if (bytes == nullptr) fail_at_end();
-    return bytes;
-  }
-
-  std::uint64_t take_index(NumberType type, const char* array, std::uint64_t number) {
-    const std::optional<std::uint64_t> index = load_index(type, take(size_of(type)), false);
+  [[nodiscard]] std::uint64_t index_in(const char* array, const VtuValues& values,
+                                       std::uint64_t number) const {
+    const std::optional<std::uint64_t> index = values.index();
     if (!index) fail(fmt::format("{} {} is not an index", array, number));
     return *index;
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw BadInput(input_.name(), fmt::format("before byte {}: {}", input_.position(), what),
-                   at_byte(input_.position()));
+  /// Makes sure that all that a mesh needs has come.
+  void check_arrays() const {
+    if (!coding_ || !cell_count_) fail("VTKFile or Piece is missing");
+    if (!appended_.empty()) {
+      fail(fmt::format("there is no AppendedData, where {} should be", appended_.front().name));
+    }
+    for (const char* const name : {vtu::kPoints, vtu::kConnectivity, vtu::kOffsets, vtu::kTypes}) {
+      if (!seen_.contains(name)) fail(fmt::format("the array {} is missing", name));
+    }
   }
 
-  [[noreturn]] void fail_at_end() const {
-    throw BadInput(input_.name(),
-                   fmt::format("the file ends at byte {}, within its arrays; get a complete copy",
-                               input_.end()),
-                   at_byte(input_.end()));
-  }
+  [[noreturn]] void fail(const std::string& what) const { fail_in_vtu(input_, what); }
 
-  VtuHeader header_;
-  std::uint64_t data_begin_;  // byte where offset 0 is
-  std::optional<std::uint64_t> size_;
   BufferedInput input_;
+  VtuTags tags_;
+  std::string section_;  // the element that the arrays are in
+  std::optional<VtuCoding> coding_;
+  std::optional<std::uint64_t> cell_count_;
+  std::set<std::string> seen_;      // names of arrays
+  std::vector<VtuArray> appended_;  // those whose values are still to come
+  VtuCells cells_;
   Mesh mesh_;
-  std::uint64_t length_ = 0;        // of the current array, in bytes
-  std::uint64_t first_offset_ = 0;  // where the first cell ends
-  std::uint64_t cell_type_ = 0;     // of the first cell
 };
 
 }  // namespace

@@ -122,6 +122,13 @@ TEST(EndlessInput, MeshStreams) {
   }
 }
 
+/// The beginning of a VTU file, up to its points.
+std::string vtu_points(const std::string& format) {
+  return "<VTKFile type=\"UnstructuredGrid\"><Piece NumberOfPoints=\"9\" NumberOfCells=\"9\">"
+         "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"" +
+         format + "\">";
+}
+
 TEST(EndlessInput, MeshesThatBeginWell) {
   const std::vector<std::pair<std::string, std::string>> begun = {
       {"ply",
@@ -133,7 +140,9 @@ TEST(EndlessInput, MeshesThatBeginWell) {
       {"sma", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
       {"stl", "solid a\nfacet normal 0 0 1\nouter loop\n"},
       {"landxml", "<?xml version=\"1.0\"?>\n<LandXML>\n<Surfaces>\n"},
-      {"vtu", "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\">\n"}};
+      {"vtu", "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\">\n"},
+      {"vtu", vtu_points("ascii")},
+      {"vtu", vtu_points("binary") + "AAAA"}};
   for (const std::string& text : nonsense()) {
     for (const auto& [format, begin] : begun) {
       EndlessFiles files(begin, text);

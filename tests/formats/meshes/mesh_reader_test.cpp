@@ -173,12 +173,6 @@ std::string obj_text() {
          "f -2/1 2/1/1 4//1\nl 1 2\ncstype bezier\n";
 }
 
-TEST(VtuReader, AnIndexOfPartsIsNoMesh) {
-  EXPECT_THAT(
-      error_of_bytes("tin.pvtu", "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\">\n"),
-      HasSubstr("the index of a mesh's parts"));
-}
-
 TEST(ObjReader, AllKindsOfCorners) { expect_square(read_both("a.obj", obj_text())); }
 
 TEST(ObjReader, FacesMayStandBeforeTheirVertices) {
@@ -233,52 +227,6 @@ TEST(OffReader, NormalsColoursAndTexturesOfVerticesArePassedOver) {
 
 TEST(OffReader, PointCloudIsNoMesh) {
   EXPECT_THAT(error_of_bytes("a.off", "OFF\n1 0 0\n1 2 3\n"), HasSubstr("no faces or tetrahedra"));
-}
-
-/// A VTU file with arrays of other types and order than Spillway writes, and with some more.
-std::string foreign_vtu() {
-  std::string data;
-  const auto block = [&data](const auto& values) {
-    data += bytes_of(static_cast<std::uint64_t>(sizeof(values))) + bytes_of(values);
-  };
-  block(std::array<std::uint8_t, 2>{5, 5});                             // at 0
-  block(std::array<double, 4>{1, 2, 3, 4});                             // at 10
-  block(std::array<std::int32_t, 2>{3, 6});                             // at 50
-  block(std::array<float, 12>{0, 0, 0, 1, 0, 0.5, 0, 1, -2, 1, 1, 3});  // at 66
-  block(std::array<std::uint16_t, 6>{0, 1, 2, 2, 1, 3});                // at 122
-  return R"(<VTKFile type='UnstructuredGrid' header_type="UInt64" byte_order="LittleEndian">
-<!-- made <by> hand --><UnstructuredGrid><FieldData>
-<DataArray type="Float64" Name="TIME" NumberOfTuples="1" format="ascii">7</DataArray>
-</FieldData><Piece NumberOfPoints="4" NumberOfCells="2">
-<PointData><DataArray type="Float64" Name="height" format="appended" offset="10"/></PointData>
-<Points><DataArray type="Float32" Name="p" NumberOfComponents="3" format="appended" offset="66"/>
-</Points><Cells>
-<DataArray type="UInt16" Name="connectivity" format="appended" offset="122"/>
-<DataArray type="Int32" Name="offsets" format="appended" offset="50" RangeMin="3"/>
-<DataArray type="UInt8" Name="types" format="appended" offset="0"/></Cells>
-</Piece></UnstructuredGrid><AppendedData encoding="raw">_)" +
-         data + "</AppendedData></VTKFile>";
-}
-
-TEST(VtuReader, ArraysOfOtherTypesInOtherOrder) {
-  expect_square(read_both("a.vtu", foreign_vtu()));
-}
-
-TEST(VtuReader, UnsupportedKindsSayWhatIsRead) {
-  const std::pair<const char*, const char*> changes[] = {
-      {"header_type=\"UInt64\"", "header_type=\"UInt32\""},
-      {"header_type=\"UInt64\"", ""},
-      {"header_type=\"UInt64\"", "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\""},
-      {"LittleEndian", "BigEndian"},
-      {"encoding=\"raw\"", "encoding=\"base64\""},
-      {"format=\"appended\" offset=\"66\"", "format=\"ascii\""},
-      {"format=\"appended\" offset=\"122\"", "format=\"binary\""},
-      {"UnstructuredGrid", "PolyData"}};
-  for (const auto& [from, to] : changes) {
-    EXPECT_THAT(error_of_bytes("a.vtu", replaced(foreign_vtu(), from, to)),
-                HasSubstr("appended raw data, UInt64 headers, little-endian, uncompressed"))
-        << to;
-  }
 }
 
 template <typename T>
