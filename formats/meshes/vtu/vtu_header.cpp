@@ -16,28 +16,32 @@ struct Named {
   Value value;
 };
 
-constexpr std::array kTypes = {
-    Named{"Int8", NumberType::kInt8},       Named{"UInt8", NumberType::kUint8},
-    Named{"Int16", NumberType::kInt16},     Named{"UInt16", NumberType::kUint16},
-    Named{"Int32", NumberType::kInt32},     Named{"UInt32", NumberType::kUint32},
-    Named{"Int64", NumberType::kInt64},     Named{"UInt64", NumberType::kUint64},
-    Named{"Float32", NumberType::kFloat32}, Named{"Float64", NumberType::kFloat64}};
+constexpr auto kTypes = std::to_array<Named<NumberType>>({{"Int8", NumberType::kInt8},
+                                                          {"UInt8", NumberType::kUint8},
+                                                          {"Int16", NumberType::kInt16},
+                                                          {"UInt16", NumberType::kUint16},
+                                                          {"Int32", NumberType::kInt32},
+                                                          {"UInt32", NumberType::kUint32},
+                                                          {"Int64", NumberType::kInt64},
+                                                          {"UInt64", NumberType::kUint64},
+                                                          {"Float32", NumberType::kFloat32},
+                                                          {"Float64", NumberType::kFloat64}});
+constexpr auto kEncodings = std::to_array<Named<bool>>({{"raw", false}, {"base64", true}});
 
 // What VTK takes where nothing is said comes first, under the name "".
-constexpr std::array kByteOrders = {Named{"", false}, Named{"LittleEndian", false},
-                                    Named{"BigEndian", true}};
-constexpr std::array kLengthTypes = {Named{"", NumberType::kUint32},
-                                     Named{"UInt32", NumberType::kUint32},
-                                     Named{"UInt64", NumberType::kUint64}};
-constexpr std::array kPlaces = {
-    Named{"", VtuPlace::kInlineText}, Named{"ascii", VtuPlace::kInlineText},
-    Named{"binary", VtuPlace::kInlineBinary}, Named{"appended", VtuPlace::kAppended}};
-constexpr std::array kCompressors = {
-    Named{"", std::optional<BlockCompression>()},
-    Named{"vtkZLibDataCompressor", std::optional(BlockCompression::kZlib)},
-    Named{"vtkLZ4DataCompressor", std::optional(BlockCompression::kLz4)},
-    Named{"vtkLZMADataCompressor", std::optional(BlockCompression::kXz)}};
-constexpr std::array kEncodings = {Named{"raw", false}, Named{"base64", true}};
+constexpr auto kByteOrders =
+    std::to_array<Named<bool>>({{"", false}, {"LittleEndian", false}, {"BigEndian", true}});
+constexpr auto kLengthTypes = std::to_array<Named<NumberType>>(
+    {{"", NumberType::kUint32}, {"UInt32", NumberType::kUint32}, {"UInt64", NumberType::kUint64}});
+constexpr auto kPlaces = std::to_array<Named<VtuPlace>>({{"", VtuPlace::kInlineText},
+                                                         {"ascii", VtuPlace::kInlineText},
+                                                         {"binary", VtuPlace::kInlineBinary},
+                                                         {"appended", VtuPlace::kAppended}});
+constexpr auto kCompressors = std::to_array<Named<std::optional<BlockCompression>>>(
+    {{"", std::nullopt},
+     {"vtkZLibDataCompressor", BlockCompression::kZlib},
+     {"vtkLZ4DataCompressor", BlockCompression::kLz4},
+     {"vtkLZMADataCompressor", BlockCompression::kXz}});
 
 /// The value that an attribute names.
 template <typename Value, std::size_t kCount>
