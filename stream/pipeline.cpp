@@ -148,6 +148,7 @@ void begin_again(PointStream& source, const Box<2>& extent, std::uint64_t points
 template <int D>
 RunFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
                               MemoryBudget& budget, const StreamOptions& options) {
+  const MemoryLease inputs(budget, source.known_bytes(), "what is known of the inputs");
   std::optional<Box<2>> extent;  // on which early blocks rely
   const std::optional<RegionPlan> plan = early_plan(source, D, budget, options, extent);
   for (;;) {

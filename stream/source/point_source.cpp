@@ -73,6 +73,18 @@ std::optional<std::uint64_t> PointSource::expected() const {
   return thins() ? std::nullopt : facts_.expected(options_.filter);
 }
 
+/// Of regions also what the plan of a run knows of each.
+std::uint64_t PointSource::known_bytes() const {
+  constexpr std::uint64_t kInputBytes = sizeof(SourceFacts::Input) + 512;  // with texts, and places
+  constexpr std::uint64_t kPlanBytes = 64;
+  std::uint64_t bytes = 0;
+  for (const SourceFacts::Input& input : facts_.inputs) {
+    bytes += kInputBytes;
+    bytes += (input.header.cells + 2 * input.header.regions.size()) * sizeof(PointRegion);
+  }
+  return bytes + regions_.all().size() * (sizeof(InputRegion) + kPlanBytes);
+}
+
 /// A pipe may wait for another one to be read.
 bool PointSource::any_order() const {
   return std::ranges::none_of(facts_.inputs, &SourceFacts::Input::opens_once);

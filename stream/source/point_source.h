@@ -118,6 +118,7 @@ class PointSource : public PointStream {
   [[nodiscard]] bool has_attributes() const;
 
   [[nodiscard]] std::span<const InputRegion> regions() const override { return regions_.all(); }
+  [[nodiscard]] std::uint64_t known_bytes() const override;
   [[nodiscard]] bool any_order() const override;
   void keep_to(const RegionPlan& plan) override;
   /// Nothing if a filter is set; or if it may be too large, and points come from a pipe.

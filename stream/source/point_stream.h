@@ -33,6 +33,8 @@ class PointStream {
   /// Parts of the points of which is known where they lie, in the coordinates of decode(); none
   /// unless that is known of all points.
   [[nodiscard]] virtual std::span<const InputRegion> regions() const { return {}; }
+  /// What is kept in memory of all inputs for as long as they are read, in bytes.
+  [[nodiscard]] virtual std::uint64_t known_bytes() const { return 0; }
   /// Whether inputs may be read in another order than that in which regions() has them.
   [[nodiscard]] virtual bool any_order() const { return false; }
   /// From now on pieces come as planned, with their region. decode() throws Error for a point

@@ -136,9 +136,10 @@ void TileTree::append(Batch& batch) {
     points_ += batch.dealt.points.size();
     if (options_.grown_capacity) capacity_ = options_.grown_capacity(points_);
   }
+  const std::size_t tiles = tiles_.size();
   append_dealt(std::exchange(batch.dealt, {}), batch);
-  if (room_ <= most_room()) return;
-  if (!divided_) divide_first(batch);
+  if (room_ > most_room() && !divided_) divide_first(batch);
+  if (tiles_.size() > tiles && options_.tiles_made) options_.tiles_made(tiles_.size());
   if (room_ > most_room()) spill_some(batch);
 }
 

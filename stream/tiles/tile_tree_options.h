@@ -19,6 +19,8 @@ struct TileTreeOptions {
   /// If set, the capacity once there are so many points: at least as large, and ascending. What is
   /// known of tiles takes memory, so there must not be too many.
   std::function<std::size_t(std::uint64_t points)> grown_capacity{};
+  /// If set, is told how many tiles there are when there are more; may throw.
+  std::function<void(std::size_t tiles)> tiles_made{};
   std::size_t buffered_points = 0;          ///< most points waiting in memory
   std::optional<std::uint64_t> expected{};  ///< how many points will come, where that is known
   std::optional<Box<3>> extent{};           ///< where they will lie, where that is known

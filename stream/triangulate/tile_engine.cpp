@@ -61,6 +61,7 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
                           .waiting_bytes = plan_.waiting_bytes,
                           .threads = any.threads});
   }
+  refuse_too_many(expected_points_ / std::max<std::size_t>(1, plan_.tile_capacity));
   if (expected.plan == nullptr) return;
   cells_.emplace(*expected.plan);
   parts_.resize(cells_->parts());
@@ -93,6 +94,7 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
   return {.dimension = D,
           .capacity = plan_.tile_capacity,
           .grown_capacity = std::move(grown_capacity),
+          .tiles_made = [this](std::size_t tiles) { refuse_too_many(tiles); },
           .buffered_points = plan_.buffered_points,
           .expected = expected.count,
           .extent = expected.extent,
@@ -100,6 +102,24 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
           .batches = plan_.batches,
           .plan = expected.plan,
           .one_of_equal = options_.heights};
+}
+
+/// What is known of tiles stays in memory until they are triangulated.
+template <int D>
+void TileEngine<D>::refuse_too_many(std::size_t tiles) const {
+  constexpr std::uint64_t kTileBytes = 3000;
+  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+  constexpr std::uint64_t kParts = 4;  // of the limit, one of which tiles may take
+  if (tiles * kTileBytes <= budget_.whole() / kParts) return;
+  // Tiles are cut in halves, so in the end they may be half full.
+  const std::uint64_t all = std::max<std::uint64_t>(
+      2 * tiles, 2 * expected_points_ / std::max<std::size_t>(1, plan_.tile_capacity));
+  throw Error(
+      fmt::format("{} of memory are too little for what is known of {} tiles of at most {} "
+                  "points",
+                  memory_size_text(budget_.whole()), tiles, tree_.capacity()),
+      ErrorCode::kOutOfBudget,
+      {.perhaps = (kParts * all * kTileBytes / kMiB + 1) * kMiB, .remedy = Remedy::kMemory});
 }
 
 template <int D>

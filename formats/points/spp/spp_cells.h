@@ -31,6 +31,13 @@ class SppCells {
   [[nodiscard]] const std::vector<PointRegion>& all() const { return cells_; }
   [[nodiscard]] std::uint64_t points() const { return points_; }
 
+  /// The number of the cell that the next points belong to, and how many of them are still to come;
+  /// 0 if all cells are complete.
+  [[nodiscard]] std::size_t current() const { return current_; }
+  [[nodiscard]] std::uint64_t left_of_current() const {
+    return current_ < cells_.size() ? cells_[current_].count - came_ : 0;
+  }
+
   /// Takes the number of the cell off the front of a block of `size` points, and counts these.
   /// `is_last` if the block is marked as the last one of its cell. Returns the number.
   std::uint64_t begin_block(std::uint32_t size, bool is_last);

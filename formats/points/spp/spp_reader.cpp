@@ -17,6 +17,10 @@
 namespace spillway::detail {
 namespace {
 
+/// What is known of each region takes memory all along, and each is read by itself. So where there
+/// are more cells, some that follow each other are one region.
+constexpr std::size_t kMostRegions = 16384;
+
 template <typename Values>
 bool all_finite(const Values& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
@@ -43,17 +47,19 @@ class SppReader : public PointReader {
   bool fetch(RawPoints& raw) override {
     raw.decoded.clear();
     if (ended_) return false;
-    const std::uint32_t kind = stream_.next();
-    if (kind == kSppTrailer) {
-      parse_trailer();
-      ended_ = true;
-      return false;
-    }
-    const bool is_last = kind == kSppLastOfCell;
-    if (cells_ ? !is_last && kind != kSppCellPoints : kind != kSppPointBlock) {
-      stream_.fail("a block is of unknown kind");
-    }
-    parse_points(raw, is_last);
+    do {
+      const std::uint32_t kind = stream_.next();
+      if (kind == kSppTrailer) {
+        parse_trailer();
+        ended_ = true;
+        return false;
+      }
+      const bool is_last = kind == kSppLastOfCell;
+      if (cells_ ? !is_last && kind != kSppCellPoints : kind != kSppPointBlock) {
+        stream_.fail("a block is of unknown kind");
+      }
+      parse_points(raw, is_last);
+    } while (next_cell_fits(raw));
     return true;
   }
 
@@ -91,15 +97,29 @@ class SppReader : public PointReader {
 
   void parse_cells(std::uint64_t count) {
     cells_.emplace(stream_, header_.coordinates, header_.lattice.has_value()).read_table(count);
+    header_.cells = count;
+    cells_of_region_ = (count + kMostRegions - 1) / kMostRegions;
     Box<3> extent;
-    header_.regions = cells_->all();
-    header_.regions_are_exact = true;
-    for (PointRegion& region : header_.regions) {
-      if (header_.lattice) region.box = world_box(region.box);
+    for (std::size_t c = 0; c < count; ++c) {
+      const PointRegion& cell = cells_->all()[c];
+      if (c % cells_of_region_ == 0) header_.regions.emplace_back();
+      PointRegion& region = header_.regions.back();
+      region.count += cell.count;
+      region.box.expand(header_.lattice ? world_box(cell.box) : cell.box);
       extent.expand(region.box);
     }
+    header_.regions_are_exact = true;
     header_.count = cells_->points();
     if (count > 0) header_.extent = extent;
+  }
+
+  /// Whether a whole cell follows that belongs to the batch's region, and has room in the batch.
+  [[nodiscard]] bool next_cell_fits(const RawPoints& raw) const {
+    if (!cells_ || cells_of_region_ == 1) return false;
+    const std::uint64_t left = cells_->left_of_current();
+    return left > 0 && cells_->current() / cells_of_region_ == raw.region &&
+           cells_->current() % cells_of_region_ != 0 &&
+           raw.decoded.size() + left <= kSppBlockPoints;
   }
 
   /// The box of the same points in output coordinates.
@@ -117,9 +137,10 @@ class SppReader : public PointReader {
     PointBlock& block = raw.decoded;
     const auto size = stream_.take<std::uint32_t>();
     if (size == 0 || size > kSppBlockPoints) stream_.fail("a block's number of points is invalid");
-    if (cells_) raw.region = cells_->begin_block(size, is_last);
+    if (cells_) raw.region = cells_->begin_block(size, is_last) / cells_of_region_;
     ColumnReader columns(stream_.left(), stream_.where());
-    block.points.resize(size);
+    const std::size_t before = block.size();
+    block.points.resize(before + size);
     for (int axis = 0; axis < header_.coordinates; ++axis) {
       columns.read(size, column_);
       const std::size_t invalid = first_invalid_coordinate(column_, header_.lattice.has_value());
@@ -129,11 +150,11 @@ class SppReader : public PointReader {
                                  header_.lattice ? "an integer up to 2^53" : "finite"));
       }
       if (cells_) cells_->check_inside(column_, axis, points_);
-      for (std::size_t i = 0; i < size; ++i) block.points[i][axis] = column_[i];
+      for (std::size_t i = 0; i < size; ++i) block.points[before + i][axis] = column_[i];
     }
     columns.expect_end();
-    block.index.resize(size);
-    for (std::size_t i = 0; i < size; ++i) block.index[i] = points_ + i;
+    block.index.resize(before + size);
+    for (std::size_t i = 0; i < size; ++i) block.index[before + i] = points_ + i;
     points_ += size;
   }
 
@@ -149,7 +170,8 @@ class SppReader : public PointReader {
 
   BlockStream stream_;
   PointHeader header_;
-  std::optional<SppCells> cells_;  // if the stream is sorted
+  std::optional<SppCells> cells_;    // if the stream is sorted
+  std::size_t cells_of_region_ = 1;  // the last region may have fewer
   std::vector<double> column_;
   std::uint64_t points_ = 0;  // given out so far
   bool ended_ = false;

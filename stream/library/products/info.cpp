@@ -116,7 +116,9 @@ PointsInfo describe_points(const std::string& path, const PointOptions& options,
   info.crs = header.crs;
   info.crs_note = header.crs_note;
   info.software = header.software;
-  if (!header.regions.empty()) info.cells = header.regions.size();
+  if (!header.regions.empty()) {
+    info.cells = std::max<std::uint64_t>(header.cells, header.regions.size());
+  }
   return info;
 }
 

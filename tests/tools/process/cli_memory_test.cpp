@@ -128,6 +128,23 @@ TEST_F(ResidentMemory, IsTheLeastLimitWhereTilesAreTriangulatedWhilePointsAreRea
   EXPECT_EQ(pipe["canonical_hash"], survey["canonical_hash"]);
 }
 
+TEST_F(ResidentMemory, IsTheLeastLimitOfManyFilesWithLongTextsAndOfManyCells) {
+  work_.write("wkt", "LOCAL_CS[\"" + std::string(60'000, 'x') + "\"]");
+  work_.succeed("spillway generate -q lattice -n 200 -o in.spp");
+  work_.succeed("spillway convert -q --crs wkt in.spp -o 0.las --las-version 1.4");
+  std::string inputs;
+  for (int i = 0; i < 1000; ++i) inputs += "0.las\n";
+  work_.write("list", inputs);
+  const auto files = triangulate("--memory 32M @list -o mesh.spm");
+  EXPECT_EQ(files["points"], 200'000);
+  EXPECT_LE(peak(files), 32 + kBeside);
+
+  generate("300000 -o in.las");
+  work_.succeed("spillway convert -q in.las --sorted --cell-points 2 --memory 2G -o cells.spp");
+  const auto cells = triangulate("--memory 32M cells.spp -o mesh.spm");
+  EXPECT_LE(peak(cells), 32 + kBeside);
+}
+
 TEST_F(ResidentMemory, IsTheLeastLimitWherePointsAreSorted) {
   generate("3000000 -o in.spp");
   const std::string sort = "spillway convert -v --sorted --memory 32M --tmpdir . ";

@@ -10,6 +10,7 @@
 #include "formats/blocks/block.h"
 #include "formats/blocks/columns.h"
 #include "formats/bytes/bytes.h"
+#include "formats/inputs/open_points.h"
 #include "formats/points/common/point_writer.h"
 #include "formats/points/create_points.h"
 #include "formats/points/spp/spp_format.h"
@@ -202,6 +203,32 @@ TEST(SortedSpp, WriterWantsWhatWasPromised) {
   EXPECT_THAT(error_of([&] { write({two, two}, 5); }), HasSubstr("a.spp: more points come"));
   EXPECT_THAT(error_of([&] { write(std::vector<PointRegion>(kSppMostCells + 1, two), 0); }),
               HasSubstr("make larger cells"));
+}
+
+TEST(SortedSpp, ManyCellsAreFewerRegionsThatComeInFewBatches) {
+  const Cells cells = random_cells(40'000, 3);
+  const std::vector<PointRegion> regions = regions_of(cells);
+  FaultyFileSystem files;
+  files.files["a.spp"] = sorted_stream(cells);
+  const auto reader = open_point_reader(files, "a.spp", {});
+  const PointHeader& header = reader->header();
+  EXPECT_EQ(header.cells, 40'000U);
+  ASSERT_EQ(header.regions.size(), 13'334U) << "of three cells each, and one of the last";
+  EXPECT_EQ(header.regions[1].count, regions[3].count + regions[4].count + regions[5].count);
+  EXPECT_EQ(header.regions[1].box.lo[0], std::min(regions[3].box.lo[0], regions[4].box.lo[0]));
+  std::vector<LatticePoint> points;
+  std::vector<std::uint64_t> come(header.regions.size());
+  std::size_t batches = 0;
+  for (RawPoints raw; reader->fetch(raw); ++batches) {
+    come[raw.region] += raw.decoded.size();
+    PointBlock block;
+    reader->decode(raw, block);
+    EXPECT_EQ(block.index.front(), points.size());
+    points.insert(points.end(), block.points.begin(), block.points.end());
+  }
+  EXPECT_EQ(points, points_of(cells));
+  EXPECT_EQ(batches, header.regions.size());
+  for (std::size_t r = 0; r < come.size(); ++r) EXPECT_EQ(come[r], header.regions[r].count);
 }
 
 TEST(SortedSpp, OtherFormatsHaveNoRegions) {
