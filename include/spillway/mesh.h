@@ -5,6 +5,7 @@
 #include <spillway/export.h>
 #include <spillway/extent.h>
 #include <spillway/figures.h>
+#include <spillway/lattice.h>
 #include <spillway/point_view.h>
 
 #include <cstdint>
@@ -23,6 +24,9 @@ struct MeshHeader {
   std::optional<std::uint64_t> points{};  ///< of the input
   std::optional<Extent> extent{};         ///< a box around the points
   std::string crs{};                      ///< coordinate system as WKT or "EPSG:n"; empty: unknown
+  /// On which x and y of all vertices lie and, in space, z. In the plane z may lie between its
+  /// steps, as means of heights do.
+  std::optional<Lattice> lattice{};
 };
 
 /// Some vertices and simplices. A mesh numbers its vertices 0, 1, 2, ... in the order in which they
@@ -34,6 +38,9 @@ struct MeshBlock {
   std::vector<std::uint64_t> input_index{};  ///< of `vertices`, if the header says so
   std::vector<std::uint64_t> corners{};      ///< dimension + 1 vertices a simplex, oriented
   std::vector<std::uint64_t> finalized{};    ///< vertices that are used no more
+  /// Of `vertices`, the multiples of the header's lattice that they are, if it has one; or none:
+  /// then they are found from the coordinates. Who changes coordinates clears these.
+  std::vector<Point<3>> on_lattice{};
 };
 
 /// A stream of a mesh, read once, from one thread at a time.

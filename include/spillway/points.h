@@ -6,6 +6,7 @@
 #include <spillway/export.h>
 #include <spillway/extent.h>
 #include <spillway/figures.h>
+#include <spillway/lattice.h>
 #include <spillway/point_view.h>
 
 #include <cstdint>
@@ -24,6 +25,9 @@ struct PointsHeader {
   std::optional<std::uint64_t> count{};  ///< about how many will come
   std::optional<Extent> extent{};        ///< a box around all of them
   std::string crs{};                     ///< coordinate system as WKT or "EPSG:n"; empty: unknown
+  /// On which all coordinates lie, to the last bit. Pass it on where points are passed on: without
+  /// it other ties may come out, and files have other decimals.
+  std::optional<Lattice> lattice{};
 };
 
 /// A stream of points, read once, from one thread at a time.

@@ -118,7 +118,7 @@ Report convert(MeshSource& source, MeshSink& sink, const Context& context) {
     if (!reader.header().extent) {
       throw InvalidArgument("the header of the mesh must tell its extent");
     }
-    extent = {plane_of(*reader.header().extent), reader.header().points.value_or(0)};
+    extent = {plane_of(*extent_of_blocks(reader.header())), reader.header().points.value_or(0)};
   }
   return detail::convert(reader, "the mesh", extent, reader.header().crs, *target, context, watch);
 }

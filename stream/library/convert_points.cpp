@@ -53,8 +53,9 @@ PointConversion to_program(const RunPoints& points, spillway::PointSink& sink, u
   header.count = points.stream->expected();
   if (points.extent) header.extent = Extent{points.extent->lo, points.extent->hi};
   header.crs = points.crs;
-  sink.begin(header);
   const std::optional<Lattice>& lattice = points.stream->lattice();
+  header.lattice = public_lattice(lattice, points.heights_on_lattice);
+  sink.begin(header);
   PointConversion done;
   pass_on(*points.stream, threads, watch, [&](PointBlock& block) {
     if (block.size() == 0) return;
@@ -76,7 +77,7 @@ PointConversion convert(PointSource& source, PointSink& sink, const Context& con
   watch.check();
   std::optional<ProgramPoints> program_points;
   auto* points = dynamic_cast<EnginePoints*>(&source);
-  if (points == nullptr) points = &program_points.emplace(source);
+  if (points == nullptr) points = &program_points.emplace(source, 0);
   auto* const file = dynamic_cast<PointFile*>(&sink);
   if (file != nullptr) points->settle_crs(file->crs_need());
   const RunPoints run = points->begin(watch, true);

@@ -123,7 +123,7 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   watch.check();
   std::optional<ProgramPoints> program_points;
   auto* points = dynamic_cast<EnginePoints*>(&source);
-  if (points == nullptr) points = &program_points.emplace(source);
+  if (points == nullptr) points = &program_points.emplace(source, options.dimension);
   std::optional<ProgramSink> program_sink;
   auto* target = dynamic_cast<EngineSink*>(&sink);
   if (target == nullptr) target = &program_sink.emplace(sink);

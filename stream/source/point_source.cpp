@@ -50,8 +50,9 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
       regions_(facts_, coordinates_, options.filter),
       pieces_(files, paths, facts_, std::move(survey.readers),
               {reader_options(options), std::move(viewer), options.detail}),
-      world_extent_(facts_.extent(options.filter.bounds)) {
-  if (world_extent_) extent_ = coordinates_.of_world(*world_extent_);
+      world_extent_(find_world_extent()) {
+  if (const auto told = facts_.extent(options.filter.bounds))
+    extent_ = coordinates_.of_world(*told);
   if (const auto& thinning = options.thinning) {
     thinning_.emplace(ThinningOptions{.cell = thinning->cell,
                                       .choice = thinning->choice,
@@ -61,6 +62,20 @@ PointSource::PointSource(FileSystem& files, const std::vector<std::string>& path
                                       .progress = thinning->progress},
                       *thinning->scratch);
   }
+}
+
+/// As points at its edges have it, to the last bit: headers may round otherwise.
+std::optional<Box<3>> PointSource::find_world_extent() const {
+  const std::optional<Box<3>>& bounds = options_.filter.bounds;
+  if (!facts_.extent(bounds)) return std::nullopt;
+  Box<3> extent;
+  for (std::size_t i = 0; i < facts_.inputs.size(); ++i) {
+    const Box<3> told = coordinates_.told_extent(i);
+    for (const Point<3>& corner : {told.lo, told.hi}) {
+      extent.expand(in_world(lattice(), LatticePoint(corner)));
+    }
+  }
+  return bounds ? common_part(extent, *bounds) : extent;
 }
 
 std::optional<std::uint64_t> PointSource::count() const {

@@ -135,6 +135,7 @@ class PointSource : public PointStream {
   PointSource(FileSystem& files, const std::vector<std::string>& paths,
               const PointSourceOptions& options, HeaderSurvey survey, std::string viewer);
 
+  [[nodiscard]] std::optional<Box<3>> find_world_extent() const;
   void decode_input(SourcePiece& piece, PointBlock& block);
   void thin_inputs();
 

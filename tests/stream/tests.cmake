@@ -71,6 +71,7 @@ spillway_mpi_test(rank_output_test
 spillway_test(stream_library_test unit
   SOURCES stream/library/convert_points_test.cpp stream/library/generate_grid_test.cpp
           stream/library/generate_test.cpp stream/library/misuse_test.cpp
+          stream/library/passed_on_test.cpp
           stream/library/sort_points_test.cpp stream/library/triangulate_test.cpp
           stream/library/products/check_test.cpp stream/library/products/info_test.cpp
           stream/library/products/point_comparison_test.cpp

@@ -100,7 +100,7 @@ class OwnSink : public PublicSink, public EngineSink {
       throw InvalidArgument("the header of the mesh must tell its extent");
     }
     blocks_ = &start({.header = stream, .name = "the mesh"});
-    if (wants_extent) extent_known(plane_of(*stream.extent), header.points.value_or(0));
+    if (wants_extent) extent_known(plane_of(*extent_of_blocks(stream)), header.points.value_or(0));
     program_ = std::move(program);
   }
 

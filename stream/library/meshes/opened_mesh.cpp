@@ -14,6 +14,7 @@
 #include "stream/library/given_crs.h"
 #include "stream/library/meshes/public_values.h"
 #include "stream/library/meshes/whole_mesh.h"
+#include "stream/library/points/public_points.h"
 
 namespace spillway::detail {
 
@@ -161,9 +162,11 @@ spillway::MeshHeader OpenedMesh::header() {
   if (reader_) return public_header(reader_->header());
   if (is_stream_) return public_header(stream().header());
   RunWatch watch(context_);
-  const MeshHeader& header = whole(watch).header;
-  return {
-      .dimension = header.dimension, .has_input_index = header.has_input_index, .crs = header.crs};
+  const Mesh& mesh = whole(watch);
+  return {.dimension = mesh.header.dimension,
+          .has_input_index = mesh.header.has_input_index,
+          .crs = mesh.header.crs,
+          .lattice = public_lattice(stream_lattice(mesh))};
 }
 
 bool OpenedMesh::read(spillway::MeshBlock& block) {

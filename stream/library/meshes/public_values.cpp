@@ -54,6 +54,7 @@ spillway::MeshHeader public_header(const MeshStreamHeader& header) {
     told.extent = Extent{header.extent->lo, header.extent->hi};
   }
   told.crs = header.crs;
+  told.lattice = public_lattice(header.lattice);
   return told;
 }
 
@@ -64,7 +65,13 @@ MeshStreamHeader stream_header(const spillway::MeshHeader& header) {
   stream.points = header.points;
   stream.extent = told_box(header.extent, "a mesh");
   stream.crs = header.crs;
+  stream.lattice = checked_lattice(header.lattice);
   return stream;
+}
+
+std::optional<Box<3>> extent_of_blocks(const MeshStreamHeader& header) {
+  if (!header.extent || !header.lattice) return header.extent;
+  return box_on(*header.lattice, *header.extent);
 }
 
 spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& block,
@@ -78,6 +85,10 @@ spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& blo
     told.finalized.push_back(vertex < own ? first_vertex + vertex : block.imported[vertex - own]);
   }
   told.vertices = public_points(header.lattice, block.vertices);
+  if (header.lattice) {
+    told.on_lattice.reserve(own);
+    for (const LatticePoint& vertex : block.vertices) told.on_lattice.push_back(vertex.numbers());
+  }
   told.input_index = std::move(block.input_index);
   return told;
 }
@@ -104,17 +115,19 @@ void ProgramBlocks::check(const spillway::MeshBlock& block) const {
     throw InvalidArgument(fmt::format("a block has {} vertices, but {} input indices",
                                       block.vertices.size(), block.input_index.size()));
   }
+  if (!block.on_lattice.empty() &&
+      (!header_.lattice || block.on_lattice.size() != block.vertices.size())) {
+    throw InvalidArgument(fmt::format(
+        "a block has {} vertices, but {} of them on {}", block.vertices.size(),
+        block.on_lattice.size(), header_.lattice ? "the lattice" : "a lattice, which is not told"));
+  }
   for (std::size_t v = 0; v < block.vertices.size(); ++v) {
     const spillway::Point<3>& vertex = block.vertices[v];
     if (!std::ranges::all_of(vertex, [](double x) { return std::isfinite(x); })) {
       throw InvalidArgument(
           fmt::format("vertex {} has a coordinate that is not finite", vertices_ + v));
     }
-    if (header_.extent && !header_.extent->contains(vertex)) {
-      throw InvalidArgument(
-          fmt::format("vertex {} ({}) is outside of the extent that the header tells",
-                      vertices_ + v, fmt::join(vertex, ", ")));
-    }
+    if (header_.extent) check_inside(vertex, vertices_ + v);
   }
   const std::set<std::uint64_t> finalized(block.finalized.begin(), block.finalized.end());
   if (finalized.size() < block.finalized.size()) {
@@ -122,11 +135,78 @@ void ProgramBlocks::check(const spillway::MeshBlock& block) const {
   }
 }
 
+/// What headers of files tell is within a step of the lattice.
+void ProgramBlocks::check_inside(const spillway::Point<3>& vertex, std::uint64_t number) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double step = header_.lattice ? std::abs(header_.lattice->scale[axis]) : 0;
+    if (vertex[axis] >= header_.extent->lo[axis] - step &&
+        vertex[axis] <= header_.extent->hi[axis] + step) {
+      continue;
+    }
+    throw InvalidArgument(
+        fmt::format("vertex {} ({}) is outside of the extent that the header tells", number,
+                    fmt::join(vertex, ", ")));
+  }
+}
+
+std::vector<LatticePoint> ProgramBlocks::vertices_of(const spillway::MeshBlock& block) const {
+  if (!header_.lattice) return points_without_lattice(block.vertices);
+  std::vector<LatticePoint> vertices;
+  vertices.reserve(block.vertices.size());
+  for (std::size_t v = 0; v < block.vertices.size(); ++v) {
+    if (block.on_lattice.empty()) {
+      vertices.push_back(found(block.vertices[v], vertices_ + v));
+    } else {
+      check_told(block.on_lattice[v], block.vertices[v], vertices_ + v);
+      vertices.emplace_back(block.on_lattice[v]);
+    }
+  }
+  return vertices;
+}
+
+/// In the plane z may lie between the steps.
+LatticePoint ProgramBlocks::found(const spillway::Point<3>& vertex, std::uint64_t number) const {
+  const Lattice& lattice = *header_.lattice;
+  LatticePoint place(vertex);
+  const std::string name = fmt::format("vertex {}", number);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis == 2 && header_.dimension == 2) {
+      const double between = (vertex[axis] - lattice.offset[axis]) / lattice.scale[axis];
+      if (const auto integer = lattice.to_integer(axis, vertex[axis])) {
+        place[axis] = *integer;
+        continue;
+      }
+      if (lattice.to_world(axis, between) == vertex[axis]) {
+        place[axis] = between;
+        continue;
+      }
+    }
+    place[axis] = integer_on(lattice, axis, vertex[axis], name);
+  }
+  return place;
+}
+
+/// What a program gives twice is to be the same.
+void ProgramBlocks::check_told(const Point<3>& told, const spillway::Point<3>& vertex,
+                               std::uint64_t number) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool whole = axis < header_.dimension;
+    if (header_.lattice->to_world(axis, told[axis]) == vertex[axis] &&
+        (!whole || std::trunc(told[axis]) == told[axis])) {
+      continue;
+    }
+    throw InvalidArgument(fmt::format(
+        "{} of vertex {} is {}, but {} steps of the lattice: clear on_lattice where coordinates "
+        "are changed",
+        "xyz"[axis], number, vertex[axis], told[axis]));
+  }
+}
+
 MeshBlock ProgramBlocks::next(const spillway::MeshBlock& block) {
   check(block);
   ShortNumbers numbers(block);
   MeshBlock stream;
-  stream.vertices = points_without_lattice(block.vertices);
+  stream.vertices = vertices_of(block);
   stream.input_index = block.input_index;
   stream.corners.reserve(block.corners.size());
   for (const std::uint64_t vertex : block.corners) stream.corners.push_back(numbers.of(vertex));

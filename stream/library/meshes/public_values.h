@@ -4,6 +4,8 @@
 #include <spillway/mesh.h>
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "formats/meshes/common/import_check.h"
 #include "formats/meshes/common/mesh_stream.h"
@@ -14,11 +16,14 @@ spillway::MeshHeader public_header(const MeshStreamHeader& header);
 /// Throws Error(kInvalidArgument) for an extent that cannot be.
 MeshStreamHeader stream_header(const spillway::MeshHeader& header);
 
+/// The extent that a header tells, in the coordinates of its blocks.
+std::optional<Box<3>> extent_of_blocks(const MeshStreamHeader& header);
+
 /// A block in output coordinates and stream numbers, where `first_vertex` vertices come before it.
 spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& block,
                                  std::uint64_t first_vertex);
 
-/// The blocks of a program's mesh as those of a stream, in output coordinates.
+/// The blocks of a program's mesh as those of a stream.
 class ProgramBlocks {
  public:
   /// Throws Error(kInvalidArgument) for a header that cannot be.
@@ -34,6 +39,11 @@ class ProgramBlocks {
 
  private:
   void check(const spillway::MeshBlock& block) const;
+  void check_inside(const spillway::Point<3>& vertex, std::uint64_t number) const;
+  [[nodiscard]] std::vector<LatticePoint> vertices_of(const spillway::MeshBlock& block) const;
+  [[nodiscard]] LatticePoint found(const spillway::Point<3>& vertex, std::uint64_t number) const;
+  void check_told(const Point<3>& told, const spillway::Point<3>& vertex,
+                  std::uint64_t number) const;
 
   MeshStreamHeader header_;
   ImportCheck imports_;

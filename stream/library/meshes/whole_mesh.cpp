@@ -79,6 +79,12 @@ MeshTotals totals_of(const Mesh& mesh) {
 
 }  // namespace
 
+std::optional<Lattice> stream_lattice(const Mesh& mesh) {
+  std::optional<Lattice> lattice = mesh.header.lattice;
+  stream_vertices(mesh, lattice);
+  return lattice;
+}
+
 std::uint64_t count_boundary_facets(const Mesh& mesh) { return facets_of(mesh).single; }
 
 WholeMesh::WholeMesh(Mesh mesh, const std::string& name, bool all_totals)

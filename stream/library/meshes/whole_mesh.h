@@ -14,6 +14,9 @@ namespace spillway::detail {
 /// The facets of one simplex only.
 std::uint64_t count_boundary_facets(const Mesh& mesh);
 
+/// The lattice on which a stream of the mesh is: that of its file, if all vertices lie on it.
+std::optional<Lattice> stream_lattice(const Mesh& mesh);
+
 /// A mesh in memory, read as a stream of one block.
 class WholeMesh final : public MeshStreamReader {
  public:

@@ -217,6 +217,7 @@ PointsHeader FilePoints::header() const {
   header.count = input_->expected();
   if (const auto& extent = input_->world_extent()) header.extent = Extent{extent->lo, extent->hi};
   header.crs = input_->crs();
+  header.lattice = public_lattice(input_->lattice(), input_->heights_on_lattice());
   return header;
 }
 

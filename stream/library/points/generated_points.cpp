@@ -28,7 +28,8 @@ GeneratedPoints::GeneratedPoints(const GenerateOptions& options)
 }
 
 PointsHeader GeneratedPoints::header() const {
-  return {.coordinates = has_heights_ ? 3 : 2, .count = count_};
+  return {
+      .coordinates = has_heights_ ? 3 : 2, .count = count_, .lattice = public_lattice(lattice_)};
 }
 
 /// Returns the number of the first of them.

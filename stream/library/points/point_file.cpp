@@ -198,6 +198,8 @@ void PointFile::begin(const PointsHeader& header) {
   points.has_heights = header.coordinates != 2;
   points.extent = checked_box(header);
   points.crs = header.crs;
+  source_ = checked_lattice(header.lattice);
+  points.heights_on_lattice = source_ && header.lattice->has_z;
   start(points);
 }
 
@@ -210,6 +212,13 @@ void PointFile::write(std::span<const spillway::Point<3>> points) {
   }
   PointBlock block;
   block.points = points_without_lattice(points);
+  const int axes = how_.coordinates == 3 && how_.lattice ? 3 : 2;
+  for (std::size_t i = 0; source_ && i < block.size(); ++i) {
+    const std::string name = fmt::format("point {}", written_ + i);
+    for (int axis = 0; axis < axes; ++axis) {
+      block.points[i][axis] = integer_on(*source_, axis, points[i][axis], name);
+    }
+  }
   block.index.resize(points.size());
   std::iota(block.index.begin(), block.index.end(), written_);
   append(block);

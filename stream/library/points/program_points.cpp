@@ -12,8 +12,20 @@
 
 namespace spillway::detail {
 
-ProgramPoints::ProgramPoints(spillway::PointSource& source)
-    : source_(source), header_(source.header()), extent_(checked_box(header_)) {}
+ProgramPoints::ProgramPoints(spillway::PointSource& source, int dimension)
+    : source_(source),
+      header_(source.header()),
+      lattice_(checked_lattice(header_.lattice)),
+      world_extent_(checked_box(header_)),
+      extent_(world_extent_) {
+  if (!lattice_) return;
+  heights_on_lattice_ = header_.lattice->has_z;
+  if (!lattice_->isotropic(std::max(1, dimension)) || (dimension == 3 && !heights_on_lattice_)) {
+    lattice_.reset();
+  } else if (extent_) {
+    extent_ = box_on(*lattice_, *world_extent_);
+  }
+}
 
 void refuse_taken_points(bool is_taken) {
   if (is_taken) throw InvalidArgument("the points have been read: open them again");
@@ -26,7 +38,8 @@ void ProgramPoints::settle_crs(CrsNeed need) {
 RunPoints ProgramPoints::begin(RunWatch& /*watch*/, bool /*index*/) {
   return {.stream = this,
           .has_heights = header_.coordinates == 3,
-          .extent = extent_,
+          .heights_on_lattice = heights_on_lattice_,
+          .extent = world_extent_,
           .crs = header_.crs,
           .name = "the points"};
 }
@@ -36,19 +49,29 @@ bool ProgramPoints::fetch(SourcePiece& piece) {
   block.clear();
   points_.clear();
   if (!source_.read(points_)) return false;
-  block.points = points_without_lattice(points_);
-  block.index.resize(block.size());
+  block.points.reserve(points_.size());
+  block.index.resize(points_.size());
   const std::uint64_t first = read_;
-  for (std::size_t i = 0; i < block.size(); ++i) {
-    const LatticePoint& point = block.points[i];
-    if (!std::ranges::all_of(point, [](double x) { return std::isfinite(x); })) {
-      throw InvalidArgument(fmt::format("point {} has a coordinate that is not finite: ({})",
-                                        first + i, fmt::join(point, ", ")));
-    }
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    block.points.push_back(placed(points_[i], first + i));
     block.index[i] = first + i;
   }
   read_ += block.size();
   return true;
+}
+
+LatticePoint ProgramPoints::placed(const spillway::Point<3>& point, std::uint64_t number) const {
+  if (!std::ranges::all_of(point, [](double x) { return std::isfinite(x); })) {
+    throw InvalidArgument(fmt::format("point {} has a coordinate that is not finite: ({})", number,
+                                      fmt::join(point, ", ")));
+  }
+  LatticePoint placed(point);
+  if (!lattice_) return placed;
+  const int axes = heights_on_lattice_ && header_.coordinates == 3 ? 3 : 2;
+  for (int axis = 0; axis < axes; ++axis) {
+    placed[axis] = integer_on(*lattice_, axis, point[axis], fmt::format("point {}", number));
+  }
+  return placed;
 }
 
 void ProgramPoints::decode(SourcePiece& piece, PointBlock& block) {

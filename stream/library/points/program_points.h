@@ -15,8 +15,9 @@ namespace spillway::detail {
 /// The points of a program's own source, as the pipeline takes them.
 class ProgramPoints final : public PointStream, public EnginePoints {
  public:
-  /// `source` must outlive it. Throws Error(kInvalidArgument) for a header that cannot be.
-  explicit ProgramPoints(spillway::PointSource& source);
+  /// `source` must outlive it. Of its lattice only one is used on which that many axes are alike,
+  /// or any if `dimension` is 0. Throws Error(kInvalidArgument) for a header that cannot be.
+  explicit ProgramPoints(spillway::PointSource& source, int dimension = 0);
 
   bool fetch(SourcePiece& piece) override;
   void decode(SourcePiece& piece, PointBlock& block) override;
@@ -32,10 +33,14 @@ class ProgramPoints final : public PointStream, public EnginePoints {
   RunPoints begin(RunWatch& watch, bool index) override;
 
  private:
+  [[nodiscard]] LatticePoint placed(const spillway::Point<3>& point, std::uint64_t number) const;
+
   spillway::PointSource& source_;
   PointsHeader header_;
   std::vector<spillway::Point<3>> points_;  ///< that were read last
-  std::optional<Lattice> lattice_;          ///< none
+  std::optional<Lattice> lattice_;
+  bool heights_on_lattice_ = false;
+  std::optional<Box<3>> world_extent_;
   std::optional<Box<3>> extent_;
   std::atomic<std::uint64_t> read_ = 0;
 };

@@ -23,6 +23,48 @@ std::vector<LatticePoint> points_without_lattice(std::span<const Point<3>> point
   return taken;
 }
 
+std::optional<spillway::Lattice> public_lattice(const std::optional<Lattice>& lattice, bool has_z) {
+  if (!lattice) return std::nullopt;
+  return spillway::Lattice{lattice->scale, lattice->offset, has_z};
+}
+
+std::optional<Lattice> checked_lattice(const std::optional<spillway::Lattice>& lattice) {
+  if (!lattice) return std::nullopt;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double scale = lattice->scale[axis];
+    const double offset = lattice->offset[axis];
+    if (std::isfinite(scale) && scale != 0 && std::isfinite(offset)) continue;
+    throw InvalidArgument(
+        fmt::format("no lattice has the scale {} and the offset {}, as that of {}", scale, offset,
+                    "xyz"[axis]));
+  }
+  if (!lattice->has_z && (lattice->scale[2] != 1 || lattice->offset[2] != 0)) {
+    throw InvalidArgument("a lattice without z has 1 as the scale of z and 0 as its offset");
+  }
+  return Lattice{lattice->scale, lattice->offset};
+}
+
+double integer_on(const Lattice& lattice, int axis, double coordinate, std::string_view what) {
+  const std::optional<double> integer = lattice.to_integer(axis, coordinate);
+  if (integer) return *integer;
+  throw InvalidArgument(
+      fmt::format("{} of {} is {}, which is not on the lattice of scale {} and offset {} that the "
+                  "header tells: leave that out, or round",
+                  "xyz"[axis], what, coordinate, lattice.scale[axis], lattice.offset[axis]));
+}
+
+Box<3> box_on(const Lattice& lattice, const Box<3>& world) {
+  Box<3> box;
+  for (const Point<3>& corner : {world.lo, world.hi}) {
+    Point<3> integers;
+    for (int axis = 0; axis < 3; ++axis) {
+      integers[axis] = std::round((corner[axis] - lattice.offset[axis]) / lattice.scale[axis]);
+    }
+    box.expand(integers);
+  }
+  return box;
+}
+
 std::optional<Box<3>> told_box(const std::optional<Extent>& extent, const char* what) {
   if (!extent) return std::nullopt;
   for (int axis = 0; axis < 3; ++axis) {

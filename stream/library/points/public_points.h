@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "src/geometry/box.h"
@@ -19,6 +20,19 @@ std::vector<Point<3>> public_points(const std::optional<Lattice>& lattice,
 
 /// A program's points as those of a source or stream without a lattice.
 std::vector<LatticePoint> points_without_lattice(std::span<const Point<3>> points);
+
+/// A lattice as programs see it, and theirs. Throws Error(kInvalidArgument) for scales and offsets
+/// that cannot be.
+std::optional<spillway::Lattice> public_lattice(const std::optional<Lattice>& lattice,
+                                                bool has_z = true);
+std::optional<Lattice> checked_lattice(const std::optional<spillway::Lattice>& lattice);
+
+/// The integer of a coordinate on an axis of a lattice. Throws Error(kInvalidArgument) if there is
+/// none, where `what` is what has the coordinate ("point 7").
+double integer_on(const Lattice& lattice, int axis, double coordinate, std::string_view what);
+
+/// A box of output coordinates as the points at its edges have them on a lattice.
+Box<3> box_on(const Lattice& lattice, const Box<3>& world);
 
 /// The box that a program tells of `what` ("points", "a mesh"), if it does. Throws
 /// Error(kInvalidArgument) unless all numbers are finite and low is nowhere above high.

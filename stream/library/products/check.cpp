@@ -29,7 +29,7 @@ class Comparison {
       : watch_(watch) {
     if (source == nullptr) return;
     auto* points = dynamic_cast<EnginePoints*>(source);
-    if (points == nullptr) points = &program_points_.emplace(*source);
+    if (points == nullptr) points = &program_points_.emplace(*source, dimension);
     const RunPoints run = points->begin(watch, true);
     if (run.dimension != 0 && run.dimension != dimension) {
       throw InvalidArgument(

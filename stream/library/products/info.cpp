@@ -96,7 +96,7 @@ PointsInfo describe_points(const std::string& path, const PointOptions& options,
   points.begin(watch, false);
   detail::PointSource& source = points.input();
   const PointHeader header = source.headers().front();
-  const std::optional<Lattice>& lattice = source.lattice();
+  const std::optional<detail::Lattice>& lattice = source.lattice();
   Box<3> box;
   PointBlock block;
   watch.begin("read", "points");
