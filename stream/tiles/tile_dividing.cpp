@@ -90,6 +90,7 @@ void TileTree::divide_first(Batch& batch) {
 /// Divides a tile into many by a sample of its points; where that tells too little, by its box.
 void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
                       std::size_t tile_count, Batch& batch) {
+  if (options_.tiles_made) options_.tiles_made(tiles_.size() + tile_count - 1);
   Tile whole = std::exchange(tiles_[number], {});
   const CutTree::NodeRef first_cut = cuts_.cuts();
   const auto first_new = static_cast<std::ptrdiff_t>(tiles_.size());

@@ -61,7 +61,6 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
                           .waiting_bytes = plan_.waiting_bytes,
                           .threads = any.threads});
   }
-  refuse_too_many(expected_points_ / std::max<std::size_t>(1, plan_.tile_capacity));
   if (expected.plan == nullptr) return;
   cells_.emplace(*expected.plan);
   parts_.resize(cells_->parts());
@@ -111,9 +110,9 @@ void TileEngine<D>::refuse_too_many(std::size_t tiles) const {
   constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
   constexpr std::uint64_t kParts = 4;  // of the limit, one of which tiles may take
   if (tiles * kTileBytes <= budget_.whole() / kParts) return;
-  // Tiles are cut in halves, so in the end they may be half full.
-  const std::uint64_t all = std::max<std::uint64_t>(
-      2 * tiles, 2 * expected_points_ / std::max<std::size_t>(1, plan_.tile_capacity));
+  // Tiles are cut in halves, so in the end they may be half full. What is expected may be a lie.
+  const std::uint64_t expected = expected_points_ / std::max<std::size_t>(1, tree_.capacity());
+  const std::uint64_t all = 2 * std::clamp<std::uint64_t>(expected, tiles, 1000 * tiles);
   throw Error(
       fmt::format("{} of memory are too little for what is known of {} tiles of at most {} "
                   "points",

@@ -11,7 +11,9 @@
 #   symbols          the shared library exports the public names alone
 #   docs             the code in docs/library.md is that of the program
 #   everything       what is installed without a choice: command, manual, completions, library, licence, docs
-#   refusal          Spillway itself is not built with -ffast-math
+#   refusal          Spillway itself is not built with -ffast-math, nor without anything to build
+#   subdirectory     as a subdirectory it gives the library alone, and changes nothing of its parent project; no build
+#   library-only     the library needs neither CLI11 nor MPI nor GTest; no build
 set -euo pipefail
 build=$(realpath "$1")
 what=$2
@@ -44,6 +46,13 @@ build_and_run() {
   cmake --build "$work/consumer" >"$work/log" || { cat "$work/log"; fail "does not build"; }
   grep -q "$prefix" "$work/consumer/CMakeCache.txt" || fail "another Spillway was found"
   "$work/consumer/consumer"
+}
+
+# configure_without_packages_of_the_command SOURCES BUILD OPTION...
+configure_without_packages_of_the_command() {
+  cmake -S "$1" -B "$2" -DCMAKE_CXX_COMPILER="$CXX" -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON \
+    -DCMAKE_DISABLE_FIND_PACKAGE_MPI=ON -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON "${@:3}" >"$work/log" 2>&1 ||
+    { cat "$work/log"; fail "does not configure"; }
 }
 
 uses_shared() {
@@ -133,11 +142,30 @@ case $what in
       fail "is configured"
     fi
     grep -q "exact only without -ffast-math" "$work/log" || { cat "$work/log"; fail "is not refused"; }
+    if cmake -S "$here/../.." -B "$work/refused" -DCMAKE_CXX_FLAGS= -DSPILLWAY_LIBRARY=OFF -DSPILLWAY_COMMAND=OFF \
+      2>"$work/log" >&2; then
+      fail "is configured"
+    fi
+    grep -q "there is nothing to build" "$work/log" || { cat "$work/log"; fail "is not refused"; }
     echo '#include "src/geometry/predicates.h"' >"$work/fast.cpp"
     if "$CXX" -std=c++20 -ffast-math -I"$here/../.." -fsyntax-only "$work/fast.cpp" 2>"$work/log"; then
       fail "is compiled"
     fi
     grep -q "exact only without -ffast-math" "$work/log" || { cat "$work/log"; fail "is not refused"; }
+    ;;
+  subdirectory)
+    for library in shared static; do
+      configure_without_packages_of_the_command "$here/subdirectory" "$work/$library" \
+        -DSPILLWAY_SOURCES="$here/../.." -DEXPECTED_LIBRARY="spillway_$library" \
+        -DSpillway_USE_STATIC_LIBS="$([[ $library == static ]] && echo ON || echo OFF)"
+      cmake --install "$work/$library" --prefix "$work/prefix" >"$work/log" 2>&1 || fail "there are rules of install"
+      [[ ! -e $work/prefix ]] || fail "something is installed"
+      [[ $(ctest --test-dir "$work/$library" -N) == *"Total Tests: 0"* ]] || fail "there are tests"
+    done
+    ;;
+  library-only)
+    configure_without_packages_of_the_command "$here/../.." "$work/library" -DSPILLWAY_COMMAND=OFF
+    [[ $(ctest --test-dir "$work/library" -N) == *"Total Tests: 0"* ]] || fail "there are tests"
     ;;
   *)
     fail "there is no case $what"
