@@ -23,7 +23,7 @@ bool is_filled_in(const Box<3>& extent) {
 
 bool tells_where(const PointHeader& header) {
   if (!header.regions.empty() || header.count == 0) return true;
-  return header.count && header.extent && (header.count == 1 || is_filled_in(*header.extent));
+  return header.count && extent_told_by(header);
 }
 
 /// Whether the corners of a box in output coordinates are points of a lattice to the last bit.
@@ -38,6 +38,11 @@ bool is_on(const Lattice& lattice, const Box<3>& world, int dimension) {
 }
 
 }  // namespace
+
+std::optional<Box<3>> extent_told_by(const PointHeader& header) {
+  if (!header.extent || (header.count != 1 && !is_filled_in(*header.extent))) return std::nullopt;
+  return header.extent;
+}
 
 Box<3> with_a_step_more(const Box<3>& told, const std::optional<Lattice>& lattice) {
   Box<3> wide = told;
@@ -131,7 +136,7 @@ void InputRegions::refuse(const PointBlock& block, std::size_t point, std::size_
   const std::uint64_t number = block.index[point];
   const BadInput error(
       header.name,
-      fmt::format("point {} at ({}) lies outside of the box that the {} tells", number,
+      fmt::format("point {} at ({:.15g}) lies outside of the box that the {} tells", number,
                   fmt::join(place.begin(), place.begin() + coordinates_.dimension(), ", "),
                   is_whole ? "header" : "file's division into parts"),
       {PlaceUnit::kRecord, number}, Remedy::kDistrustHeaders);

@@ -15,6 +15,10 @@
 
 namespace spillway::detail {
 
+/// The box around all points that a header tells; none if it has only zeros in its place, as of a
+/// program that has not filled it in.
+std::optional<Box<3>> extent_told_by(const PointHeader& header);
+
 /// A box in output coordinates that a header tells, and a step of the header's lattice more: many
 /// programs round what they write there.
 Box<3> with_a_step_more(const Box<3>& told, const std::optional<Lattice>& lattice);
