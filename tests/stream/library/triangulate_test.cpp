@@ -302,7 +302,7 @@ class FalseBoxes : public Streams {
     const Context context(options());
     generate_grid({.family = "terrain", .count = 40'000}, folder_ + "/t_#.las",
                   {.columns = 7, .rows = 7}, context);
-    const std::string path = folder_ + "/t_4_4.las";
+    const std::string path = folder_ + "/t_04_04.las";
     const Extent box = *open_points({path}, {}, context)->header().extent;
     const double most = (box.low[0] + box.high[0]) / 2;
     constexpr std::streamoff kMostX = 179;  // in a LAS header
@@ -323,7 +323,7 @@ TEST_F(FalseBoxes, AreAnErrorForAProgramThatHasGotBlocks) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kBadInput);
     EXPECT_EQ(error.facts().remedy, Remedy::kDistrustHeaders);
-    EXPECT_THAT(error.what(), HasSubstr("t_4_4.las: point "));
+    EXPECT_THAT(error.what(), HasSubstr("t_04_04.las: point "));
   }
   const auto again = open_points({files()}, {}, context);
   EXPECT_EQ(

@@ -141,6 +141,22 @@ TEST_F(DemOfASurvey, ABoxThatIsOffByARoundingMakesNoDifference) {
   }
 }
 
+/// The raster's place depends on it, but it is not called false.
+TEST_F(DemOfASurvey, ABoxAtTheRimThatIsAStepOffChangesNothing) {
+  make("true.tif", "t_*.las");
+  const double most = work_.info("all.las")["extent"]["max"][0];
+  int at_the_rim = 0;
+  for (const auto& name : work_.names()) {
+    if (!name.starts_with("t_") || work_.info(name)["extent"]["max"][0] != most) continue;
+    lie(name, kMostX, most - 0.01);
+    ++at_the_rim;
+  }
+  EXPECT_GT(at_the_rim, 0);
+  EXPECT_EQ(make("dem.tif", "t_*.las")["points"], 40'000);
+  EXPECT_THAT(messages_.err, Not(HasSubstr("outside of the box")));
+  EXPECT_TRUE(same("dem.tif", "true.tif"));
+}
+
 /// Points that are not used do not count for the extent.
 TEST_F(DemOfASurvey, FiltersWaitForAllPoints) {
   const nlohmann::json early = make("early.tif", "t_*.las --keep-class 0");
