@@ -10,6 +10,7 @@
 #include "src/geometry/lattice_check.h"
 #include "src/parallel/parallel.h"
 #include "stream/plan/memory_plan.h"
+#include "stream/source/false_header.h"
 #include "stream/tiles/regions/region_plan.h"
 #include "stream/triangulate/tile_engine.h"
 
@@ -83,11 +84,17 @@ class SeenExtent {
   Box<2> box_;
 };
 
-/// Triangulates while it reads. Returns whether what was taken for the extent of the points has
-/// held; if not, it is set to what it is, and the blocks written so far are void.
+/// What headers tell, as far as a run goes by it.
+struct Trust {
+  std::optional<RegionPlan> plan{};  ///< by which tiles are complete early
+  std::optional<Box<2>> extent{};    ///< on which early blocks rely
+};
+
+/// Triangulates while it reads. Throws FalseHeader if a point lies elsewhere, or if all together do
+/// not have the extent on which blocks rely.
 template <int D>
-bool run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
-               const StreamOptions& options, std::optional<Box<2>>& extent) {
+void run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
+               const StreamOptions& options, const std::optional<Box<2>>& extent) {
   if constexpr (D == 2) budget.set_enough(enough_memory<D>(source.expected().value_or(0)));
   options.begin_phase("read");
   SeenExtent seen;
@@ -96,51 +103,85 @@ bool run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
   options.end_phase(source.points_read());
   if (engine.points() == 0) refuse_empty_input(source.counts());
   if (extent && *extent != seen.box() && !options.extent_holds(seen.box())) {
-    extent = seen.box();
-    return false;
+    throw FalseHeader(
+        Error("the points cannot be read again, and headers tell another extent than theirs",
+              ErrorCode::kBadInput, {.remedy = Remedy::kDistrustHeaders}),
+        "headers tell another extent than that of the points",
+        FalseHeader::Extent{seen.box(), engine.points()});
   }
   divide(engine, options);
   options.begin_phase("triangulate");
   refuse_flat_points(engine.span(), engine.points());
   options.end_phase(engine.triangulate_rest());
-  return true;
 }
 
-/// The plan by which tiles are complete while other points are still to be read; none if the source
-/// does not tell where its points lie, or if too few tiles would be complete early; or if it does
-/// not tell an `extent` where one is needed.
-std::optional<RegionPlan> early_plan(PointStream& source, int dimension, const MemoryBudget& budget,
-                                     const StreamOptions& options, std::optional<Box<2>>& extent) {
-  if (!options.early || source.regions().empty()) return std::nullopt;
+/// With a plan by which tiles are complete while other points are still to be read; without, if the
+/// source does not tell where its points lie, or if too few tiles would be complete early; or if it
+/// does not tell an extent where one is needed.
+Trust trust_in(PointStream& source, int dimension, const MemoryBudget& budget,
+               const StreamOptions& options) {
+  if (!options.early || source.regions().empty()) return {};
   std::size_t capacity = options.tile_capacity;
   if (capacity == 0) {
     const MemoryPlan memory =
         plan_memory(budget.limit(), dimension, options.threads, budget.whole(), true);
     capacity = tile_capacity_for(source.expected().value_or(0), memory);
   }
-  std::optional<RegionPlan> plan =
+  Trust trust;
+  trust.plan =
       plan_regions(source.regions(), {.dimension = dimension,
                                       .most_points = kMostFill * static_cast<double>(capacity),
                                       .any_order = source.any_order()});
-  if (!pays(*plan)) return std::nullopt;
+  if (!pays(*trust.plan)) return {};
   if (options.needs_extent) {
-    extent = source.told_extent();
-    if (!extent || !options.extent_told(*extent, source.expected().value_or(0))) {
-      return std::nullopt;
+    trust.extent = source.told_extent();
+    if (!trust.extent || !options.extent_told(*trust.extent, source.expected().value_or(0))) {
+      return {};
     }
   }
-  source.keep_to(*plan);
-  return plan;
+  source.keep_to(*trust.plan);
+  return trust;
 }
 
-/// Now that the extent is known.
-void begin_again(PointStream& source, const Box<2>& extent, std::uint64_t points,
-                 const StreamOptions& options) {
-  if (!source.read_again()) {
-    throw Error("the points cannot be read again, and headers tell a larger extent than theirs",
-                ErrorCode::kBadInput, {.remedy = Remedy::kDistrustHeaders});
+template <int D>
+RunFigures run_once(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
+                    MemoryBudget& budget, const StreamOptions& options, const Trust& trust) {
+  TileEngine<D> engine({.lattice = source.lattice(),
+                        .count = source.expected(),
+                        .extent = source.extent(),
+                        .plan = trust.plan ? &*trust.plan : nullptr},
+                       sink, scratch, budget, options);
+  with_threads(engine.threads(), [&] {
+    if (trust.plan) {
+      run_early(engine, source, budget, options, trust.extent);
+    } else {
+      run(engine, source, budget, options);
+    }
+  });
+  release_base_case_memory();
+  return engine.figures();
+}
+
+/// Leaves of the trust what has held, and returns where blocks go now; nullptr if points or blocks
+/// are gone for good.
+BlockSink* begin_again(const FalseHeader& found, PointStream& source, const StreamOptions& options,
+                       Trust& trust) {
+  const std::uint64_t read = source.points_read();
+  const bool boxes_hold = found.extent().has_value();
+  if (!source.read_again(boxes_hold)) return nullptr;
+  BlockSink* const sink = options.begin_again();
+  if (sink == nullptr) return nullptr;
+  release_base_case_memory();
+  if (!boxes_hold) options.end_phase(read);
+  options.warn(fmt::format("{}: all points are read again{}", found.finding(),
+                           boxes_hold ? "" : " before any is triangulated"));
+  if (boxes_hold) {
+    trust.extent = found.extent()->box;
+    options.extent_known(found.extent()->box, found.extent()->points);
+  } else {
+    trust = {};
   }
-  options.extent_known(extent, points);
+  return sink;
 }
 
 }  // namespace
@@ -149,25 +190,14 @@ template <int D>
 RunFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
                               MemoryBudget& budget, const StreamOptions& options) {
   const MemoryLease inputs(budget, source.known_bytes(), "what is known of the inputs");
-  std::optional<Box<2>> extent;  // on which early blocks rely
-  const std::optional<RegionPlan> plan = early_plan(source, D, budget, options, extent);
-  for (;;) {
-    TileEngine<D> engine({.lattice = source.lattice(),
-                          .count = source.expected(),
-                          .extent = source.extent(),
-                          .plan = plan ? &*plan : nullptr},
-                         sink, scratch, budget, options);
-    bool done = true;
-    with_threads(engine.threads(), [&] {
-      if (plan) {
-        done = run_early(engine, source, budget, options, extent);
-      } else {
-        run(engine, source, budget, options);
-      }
-    });
-    release_base_case_memory();
-    if (done) return engine.figures();
-    begin_again(source, *extent, engine.points(), options);
+  Trust trust = trust_in(source, D, budget, options);
+  for (BlockSink* blocks = &sink;;) {
+    try {
+      return run_once<D>(source, *blocks, scratch, budget, options, trust);
+    } catch (const FalseHeader& found) {
+      blocks = begin_again(found, source, options, trust);
+      if (blocks == nullptr) throw;
+    }
   }
 }
 

@@ -11,8 +11,9 @@
 namespace spillway::detail {
 
 /// The pipeline: reads all points of `source`, deals them into tiles, triangulates tile by tile and
-/// gives what is final to `sink`, which is not finished yet. Throws Error if the points do not
-/// span D dimensions, or if the memory or the disk do not suffice.
+/// gives what is final to `sink`, which is not finished yet. If headers are found to be false, it
+/// begins again, if it can. Throws Error if the points do not span D dimensions, or if the memory
+/// or the disk do not suffice; FalseHeader if it cannot begin again.
 template <int D>
 RunFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
                               MemoryBudget& budget, const StreamOptions& options);

@@ -35,6 +35,11 @@ struct PointsInfo {
   std::string software{};  ///< that has written it
   /// Into how many cells the points are sorted, of a file that tells where they lie.
   std::optional<std::uint64_t> cells{};
+  /// The box around all points as the header tells it; none if it does not.
+  std::optional<Extent> header_box{};
+  /// How many of the points that are kept lie more than a step of the lattice outside of that box:
+  /// it is false if there are any.
+  std::uint64_t points_outside = 0;
 };
 
 /// Reads all points of a file that the options ask for, so that counts and extent are exact

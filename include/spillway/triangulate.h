@@ -29,7 +29,10 @@ struct TriangulateOptions {
   Division division = Division::kLeastBorder;
   unsigned children = 2;  ///< parts that are merged at a time, 2 to 1024
   /// Whether tiles are triangulated while others are still being read, where headers tell where all
-  /// points lie. A point that lies elsewhere is an error then.
+  /// points lie. If a point lies elsewhere then, the run begins again and trusts no header, and the
+  /// context is told by a warning; that is an error where inputs cannot be read again (pipes),
+  /// and where blocks cannot be taken back (a sink of the program, a mesh
+  /// that goes to a pipe).
   bool trust_headers = true;
   Kernel kernel = Kernel::kSpillway;
   /// If set, is told each node of the tree over tiles when it is done, children before parents and
@@ -41,6 +44,8 @@ struct TriangulateOptions {
   std::function<void(const StageStep& step)> step_done{};
   /// If set, is told what the run keeps to, before the first step.
   std::function<void(const RunLimits& limits)> limits_known{};
+  /// If set, is told that the run begins again: all that the three above were told so far is void.
+  std::function<void()> begun_again{};
 };
 
 /// Triangulates all points of the source and gives the mesh to the sink as it comes: simplices that

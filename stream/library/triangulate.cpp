@@ -49,6 +49,12 @@ StreamOptions stream_options(const TriangulateOptions& options, const Context& c
     return sink.extent_told(extent, points);
   };
   stream.extent_holds = [&sink](const Box<2>& extent) { return sink.extent_holds(extent); };
+  stream.begin_again = [&sink, &options] {
+    BlockSink* const blocks = sink.begin_again();
+    if (blocks != nullptr && options.begun_again) options.begun_again();
+    return blocks;
+  };
+  if (context.options().warning) stream.warn = context.options().warning;
   stream.step_done = options.step_done;
   stream.limits_known = options.limits_known;
   stream.extent_known = [&sink](const Box<2>& extent, std::uint64_t points) {

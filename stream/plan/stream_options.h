@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string_view>
 
+#include "formats/meshes/common/mesh_stream.h"
 #include "src/delaunay/base_case/base_case.h"
 #include "src/delaunay/division/divide.h"
 #include "src/geometry/box.h"
@@ -34,8 +36,8 @@ struct StreamOptions {
   /// Triangulate while points are being read, where regions of the source tell where they lie.
   bool early = false;
   /// Told the box around all points in x and y, in the coordinates in which the source gives them,
-  /// and how many they are, before the first block is written. Told again after blocks have come,
-  /// all of them are void, and others follow. Not told in early runs, but see needs_extent.
+  /// and how many they are, before the first block is written. Not told in early runs, but see
+  /// needs_extent.
   std::function<void(const Box<2>&, std::uint64_t points)> extent_known = [](const Box<2>&,
                                                                              std::uint64_t) {};
   /// Whether blocks may only be written when the extent is known. Early runs take what headers tell
@@ -46,6 +48,12 @@ struct StreamOptions {
   std::function<bool(const Box<2>&, std::uint64_t points)> extent_told =
       [](const Box<2>&, std::uint64_t) { return false; };
   std::function<bool(const Box<2>&)> extent_holds = [](const Box<2>&) { return false; };
+  /// Asked when headers have been found to be false. All blocks so far are void, and so is what
+  /// task_done and step_done were told. Returns where those go that follow; nullptr if blocks
+  /// cannot be taken back.
+  std::function<BlockSink*()> begin_again = [] { return nullptr; };
+  /// Told why the run begins again.
+  std::function<void(std::string_view)> warn = [](std::string_view) {};
   /// Called when a phase begins: "read", "divide" if there are tiles to be divided again,
   /// "triangulate"; and when it has ended, with all points that have been through it.
   std::function<void(const char* phase)> begin_phase = [](const char*) {};

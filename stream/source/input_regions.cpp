@@ -7,12 +7,12 @@
 #include <cmath>
 
 #include "src/error.h"
+#include "stream/source/false_header.h"
 
 namespace spillway::detail {
 namespace {
 
-/// Headers may be off by so much in their coordinates, by rounding, where there are no steps of a
-/// lattice to tell.
+/// Headers may be off by so much in their coordinates, by rounding, besides a step of a lattice.
 constexpr double kRelativeMargin = 1e-12;
 
 /// Where a program has not filled in the extent, there are zeros in its place.
@@ -23,7 +23,7 @@ bool is_filled_in(const Box<3>& extent) {
 
 bool tells_where(const PointHeader& header) {
   if (!header.regions.empty() || header.count == 0) return true;
-  return header.count && header.extent && (header.count == 1 || is_filled_in(*header.extent));
+  return header.count && extent_told_by(header);
 }
 
 /// Whether the corners of a box in output coordinates are points of a lattice to the last bit.
@@ -38,6 +38,22 @@ bool is_on(const Lattice& lattice, const Box<3>& world, int dimension) {
 }
 
 }  // namespace
+
+std::optional<Box<3>> extent_told_by(const PointHeader& header) {
+  if (!header.extent || (header.count != 1 && !is_filled_in(*header.extent))) return std::nullopt;
+  return header.extent;
+}
+
+Box<3> with_a_step_more(const Box<3>& told, const std::optional<Lattice>& lattice) {
+  Box<3> wide = told;
+  for (int k = 0; k < 3; ++k) {
+    const double most = std::max(std::abs(told.lo[k]), std::abs(told.hi[k]));
+    const double margin = (lattice ? std::abs(lattice->scale[k]) : 0) + most * kRelativeMargin;
+    wide.lo[k] -= margin;
+    wide.hi[k] += margin;
+  }
+  return wide;
+}
 
 InputRegions::InputRegions(const SourceFacts& facts, const SourceCoordinates& coordinates,
                            const PointFilter& filter)
@@ -81,18 +97,10 @@ Box<3> InputRegions::box_of(std::size_t input, const Box<3>& told) const {
   return is_exact ? coordinates_.told_box(input, told) : wide_box_of(input, told);
 }
 
-/// A box in the coordinates of the source, and a step of the input's lattice more: many programs
-/// round what they write there.
+/// with_a_step_more(), in the coordinates of the source.
 Box<3> InputRegions::wide_box_of(std::size_t input, const Box<3>& told) const {
-  const auto& own = facts_.inputs[input].header.lattice;
-  Box<3> wide = told;
-  for (int k = 0; k < 3; ++k) {
-    const double most = std::max(std::abs(told.lo[k]), std::abs(told.hi[k]));
-    const double margin = std::max(own ? std::abs(own->scale[k]) : 0.0, most * kRelativeMargin);
-    wide.lo[k] -= margin;
-    wide.hi[k] += margin;
-  }
-  const Box<3> box = coordinates_.of_world(wide);
+  const Box<3> box =
+      coordinates_.of_world(with_a_step_more(told, facts_.inputs[input].header.lattice));
   Box<3> ordered;  // scales may be negative
   ordered.expand(box.lo);
   ordered.expand(box.hi);
@@ -119,15 +127,25 @@ void InputRegions::check(const PointBlock& block, std::size_t region) const {
 }
 
 void InputRegions::refuse(const PointBlock& block, std::size_t point, std::size_t region) const {
-  const PointHeader& header = facts_.inputs[turns_[regions_[region].unit].input].header;
+  const std::size_t input = turns_[regions_[region].unit].input;
+  const PointHeader& header = facts_.inputs[input].header;
+  const bool is_whole = header.regions.empty();
+  const Box<3> told =
+      is_whole ? header.extent.value_or(Box<3>{}) : header.regions[region - first_[input]].box;
   const auto place = in_world(coordinates_.lattice(), block.points[point]).numbers();
   const std::uint64_t number = block.index[point];
-  throw BadInput(
+  const BadInput error(
       header.name,
-      fmt::format("point {} at ({}) lies outside of the box that the {} tells", number,
+      fmt::format("point {} at ({:.15g}) lies outside of the box that the {} tells", number,
                   fmt::join(place.begin(), place.begin() + coordinates_.dimension(), ", "),
-                  header.regions.empty() ? "header" : "file's division into parts"),
+                  is_whole ? "header" : "file's division into parts"),
       {PlaceUnit::kRecord, number}, Remedy::kDistrustHeaders);
+  const auto corner = [this](const Point<3>& of_box) {
+    return fmt::format("({:.15g})",
+                       fmt::join(of_box.begin(), of_box.begin() + coordinates_.dimension(), ", "));
+  };
+  throw FalseHeader(
+      error, fmt::format("{}, from {} to {}", error.what(), corner(told.lo), corner(told.hi)));
 }
 
 }  // namespace spillway::detail

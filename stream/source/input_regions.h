@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
+#include "src/geometry/lattice.h"
 #include "stream/source/piece_sequence.h"
 #include "stream/source/point_filter.h"
 #include "stream/source/source_coordinates.h"
@@ -12,6 +14,14 @@
 #include "stream/tiles/regions/region_plan.h"
 
 namespace spillway::detail {
+
+/// The box around all points that a header tells; none if it has only zeros in its place, as of a
+/// program that has not filled it in.
+std::optional<Box<3>> extent_told_by(const PointHeader& header);
+
+/// A box in output coordinates that a header tells, and a step of the header's lattice more: many
+/// programs round what they write there.
+Box<3> with_a_step_more(const Box<3>& told, const std::optional<Lattice>& lattice);
 
 /// The parts of all inputs of which headers tell where their points lie: those that a header tells
 /// of, or a whole file with its extent.
@@ -29,8 +39,8 @@ class InputRegions {
     return first_[input] + region;
   }
 
-  /// Throws Error for the first point outside of its region, given by its number in all(). The
-  /// points are in the coordinates of the source, their index is still that of their own input.
+  /// Throws FalseHeader for the first point outside of its region, given by its number in all().
+  /// The points are in the coordinates of the source, their index is still that of their own input.
   void check(const PointBlock& block, std::size_t region) const;
 
  private:

@@ -31,21 +31,32 @@ PieceSequence::PieceSequence(FileSystem& files, const std::vector<std::string>& 
 }
 
 void PieceSequence::read_in_order(std::vector<ReadingTurn> turns) {
-  turns_ = std::move(turns);
-  count_turns();
+  take_turns(std::move(turns));
   first_indices_.clear();
   for (std::size_t i = 0; i < inputs_.size(); ++i) first_indices_.push_back(first_index_of(i));
 }
 
-void PieceSequence::count_turns() {
+void PieceSequence::take_turns(std::vector<ReadingTurn> turns) {
+  turns_ = std::move(turns);
   for (Input& input : inputs_) input.turns_left = 0;
   for (const ReadingTurn& turn : turns_) ++inputs_[turn.input].turns_left;
 }
 
-void PieceSequence::read_again() {
-  for (Input& input : inputs_) input.records = 0;
-  count_turns();
+void PieceSequence::read_again(bool in_that_order) {
+  for (Input& input : inputs_) {
+    input.reader.reset();
+    input.records = 0;
+  }
+  open_.clear();
+  std::vector<ReadingTurn> turns = std::move(turns_);
+  if (!in_that_order) {
+    first_indices_.clear();
+    turns.clear();
+    for (std::size_t i = 0; i < inputs_.size(); ++i) turns.push_back({i, std::nullopt});
+  }
+  take_turns(std::move(turns));
   turn_ = 0;
+  turn_begun_ = false;
   records_read_ = 0;
   records_before_ = 0;
 }

@@ -48,8 +48,9 @@ class PieceSequence {
   /// called before anything is read, where all headers tell their counts.
   void read_in_order(std::vector<ReadingTurn> turns);
 
-  /// After the end: all comes once more, in the same order. No input may open but once.
-  void read_again();
+  /// All comes once more: in the order that was set, or else one input after the other. No input
+  /// may open but once.
+  void read_again(bool in_that_order);
 
   /// From now on fetch() gives a piece of one input, or one whole input, and then false. Indices
   /// count through all inputs where all headers tell their counts, else from the piece's beginning.
@@ -75,7 +76,7 @@ class PieceSequence {
   [[nodiscard]] const PointHeader& header_of(std::size_t input) const {
     return facts_.inputs[input].header;
   }
-  void count_turns();
+  void take_turns(std::vector<ReadingTurn> turns);
   void open_current();
   void begin_turn();
   void check_same_file();

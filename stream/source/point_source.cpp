@@ -100,6 +100,11 @@ std::uint64_t PointSource::known_bytes() const {
   return bytes + regions_.all().size() * (sizeof(InputRegion) + kPlanBytes);
 }
 
+std::span<const InputRegion> PointSource::regions() const {
+  if (thins()) return {};
+  return regions_.all();
+}
+
 /// A pipe may wait for another one to be read.
 bool PointSource::any_order() const {
   return std::ranges::none_of(facts_.inputs, &SourceFacts::Input::opens_once);
@@ -131,9 +136,10 @@ std::optional<Box<2>> PointSource::told_extent() const {
   return extent.empty() ? std::nullopt : std::optional(plane_of(extent));
 }
 
-bool PointSource::read_again() {
+bool PointSource::read_again(bool as_planned) {
   if (thins() || !any_order()) return false;
-  pieces_.read_again();
+  if (!as_planned) positions_.clear();
+  pieces_.read_again(as_planned);
   const std::lock_guard lock(counts_mutex_);
   counts_ = {};
   return true;

@@ -117,13 +117,14 @@ class PointSource : public PointStream {
   /// input that has none comes without; a thinned one with zeros.
   [[nodiscard]] bool has_attributes() const;
 
-  [[nodiscard]] std::span<const InputRegion> regions() const override { return regions_.all(); }
+  /// None if the inputs are thinned: then all are read before a point comes.
+  [[nodiscard]] std::span<const InputRegion> regions() const override;
   [[nodiscard]] std::uint64_t known_bytes() const override;
   [[nodiscard]] bool any_order() const override;
   void keep_to(const RegionPlan& plan) override;
   /// Nothing if a filter is set; or if it may be too large, and points come from a pipe.
   [[nodiscard]] std::optional<Box<2>> told_extent() const override;
-  bool read_again() override;
+  bool read_again(bool as_planned) override;
 
   [[nodiscard]] PointCounts counts() const override;
   [[nodiscard]] std::uint64_t points_read() const override;

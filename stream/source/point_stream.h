@@ -37,14 +37,15 @@ class PointStream {
   [[nodiscard]] virtual std::uint64_t known_bytes() const { return 0; }
   /// Whether inputs may be read in another order than that in which regions() has them.
   [[nodiscard]] virtual bool any_order() const { return false; }
-  /// From now on pieces come as planned, with their region. decode() throws Error for a point
-  /// outside of it.
+  /// From now on pieces come as planned, with their region. decode() throws
+  /// FalseHeader for a point outside of it.
   virtual void keep_to(const RegionPlan& /*plan*/) {}
   /// The box that all points just fill in x and y, in the coordinates of decode(), if they fill the
   /// boxes that headers tell of; nothing where something is known to keep them from that.
   [[nodiscard]] virtual std::optional<Box<2>> told_extent() const { return std::nullopt; }
-  /// After the end: all pieces are to come once more, in the same order. False if they cannot.
-  virtual bool read_again() { return false; }
+  /// All pieces are to come once more: as planned, or as if there were no plan. False if they
+  /// cannot. No piece may be on its way.
+  virtual bool read_again(bool /*as_planned*/) { return false; }
 
   /// What became of the records so far.
   [[nodiscard]] virtual PointCounts counts() const = 0;

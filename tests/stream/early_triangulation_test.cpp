@@ -6,9 +6,13 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "src/error.h"
 #include "src/parallel/parallel.h"
+#include "stream/source/false_header.h"
 #include "tests/error_facts.h"
 #include "tests/stream/region_stream.h"
 #include "tests/stream/stream_runner.h"
@@ -17,6 +21,7 @@
 namespace spillway::detail {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::Gt;
 using testing::IndexedSimplices;
 using ::testing::Lt;
@@ -239,7 +244,7 @@ TEST(EarlyTriangulation, ReadsAllFirstWhereThatIsNoGain) {
   EXPECT_EQ(simplices_of<2>(late.mesh), expected_of<2>(regions));
 }
 
-/// A sink that must know the extent, and what it was told of it; its blocks are void from there on.
+/// A sink that must know the extent, and what it was told of it.
 struct ExtentRun {
   std::vector<Box<2>> told;
   std::vector<Box<2>> known;
@@ -262,8 +267,8 @@ ExtentRun run_by_extent(RegionStream source, bool trusts = true, double toleranc
   options.extent_known = [&](const Box<2>& extent, std::uint64_t points) {
     EXPECT_EQ(points, 20'000U);
     run.known.push_back(extent);
-    run.mesh.emplace(2);
   };
+  options.begin_again = [&] { return &run.mesh.emplace(2); };
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   MemoryBudget budget(std::uint64_t{1} << 30);
   const RunFigures figures = triangulate_stream<2>(source, *run.mesh, *scratch, budget, options);
@@ -324,6 +329,92 @@ TEST(EarlyTriangulation, SaysThatPointsCannotBeReadAgain) {
   source.most_times_read = 1;
   const ErrorFacts facts = facts_of([&source] { run_by_extent(source); });
   EXPECT_EQ(facts.remedy, Remedy::kDistrustHeaders);
+}
+
+/// A run of which a box is false, and what was told of it.
+template <int D>
+struct SecondRun {
+  int times_read = 0;
+  std::vector<std::string> warnings{};
+  std::vector<std::string> phases{};
+  RunFigures figures{};
+  std::optional<KeepingWriter> mesh{D};
+};
+
+template <int D>
+SecondRun<D> run_again(RegionStream source) {
+  SecondRun<D> run;
+  StreamOptions options = small_tiles();
+  options.begin_again = [&] { return &run.mesh.emplace(D); };
+  options.warn = [&](std::string_view text) { run.warnings.emplace_back(text); };
+  options.begin_phase = [&](const char* phase) { run.phases.emplace_back(phase); };
+  options.end_phase = [&](std::uint64_t /*points*/) { run.phases.emplace_back("end"); };
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  MemoryBudget budget(std::uint64_t{1} << 30);
+  run.figures = triangulate_stream<D>(source, *run.mesh, *scratch, budget, options);
+  EXPECT_TRUE(source.kept_to_plan);
+  EXPECT_EQ(run.mesh->live(), 0U);
+  EXPECT_EQ(budget.used(), 0U);
+  run.times_read = source.times_read;
+  return run;
+}
+
+/// The last region of those that are read has half of its box.
+RegionStream with_a_false_box(const Regions& regions, int axis) {
+  RegionStream source(regions);
+  Box<3>& box = source.told().back().box;
+  box.hi[axis] = (box.lo[axis] + box.hi[axis]) / 2;
+  return source;
+}
+
+TEST(EarlyTriangulation, BeginsAgainWhereAPointLiesOutsideOfItsBox) {
+  const Regions regions = survey(8, 20'000, 23);
+  for (const int axis : {0, 1}) {
+    const SecondRun<2> again = run_again<2>(with_a_false_box(regions, axis));
+    EXPECT_EQ(again.times_read, 2);
+    EXPECT_THAT(
+        again.warnings,
+        ElementsAre("a box is false: all points are read again before any is triangulated"));
+    EXPECT_THAT(again.phases, ElementsAre("read", "end", "read", "end", "triangulate", "end"));
+    EXPECT_EQ(again.figures.mesh.points, 20'000U);
+    EXPECT_EQ(again.figures.first_block_read_points, 20'000U);
+    EXPECT_EQ(simplices_of<2>(*again.mesh), expected_of<2>(regions));
+  }
+}
+
+TEST(EarlyTriangulation, BeginsAgainInSpaceWhereAHeightLiesOutsideOfItsBox) {
+  const Regions regions = survey(5, 8'000, 24);
+  const SecondRun<3> again = run_again<3>(with_a_false_box(regions, 2));
+  EXPECT_EQ(again.times_read, 2);
+  EXPECT_EQ(simplices_of<3>(*again.mesh), expected_of<3>(regions));
+}
+
+TEST(EarlyTriangulation, TakesEmptyAndInvertedBoxesForFalseOnes) {
+  const Regions regions = survey(8, 20'000, 25);
+  const Box<3> box = RegionStream(regions).told().back().box;
+  for (const Box<3>& told : {Box<3>{}, Box<3>{box.hi, box.lo}, Box<3>{box.lo, box.lo}}) {
+    RegionStream source(regions);
+    source.told().back().box = told;
+    const SecondRun<2> again = run_again<2>(source);
+    EXPECT_EQ(again.times_read, 2);
+    EXPECT_EQ(simplices_of<2>(*again.mesh), expected_of<2>(regions));
+  }
+}
+
+TEST(EarlyTriangulation, EndsWithTheFalseBoxWherePointsOrBlocksAreGone) {
+  RegionStream source = with_a_false_box(survey(8, 20'000, 26), 0);
+  EXPECT_THROW(run<2>(source), FalseHeader) << "nobody takes blocks back";
+  source.most_times_read = 1;
+  EXPECT_THROW(run_again<2>(source), FalseHeader);
+}
+
+TEST(EarlyTriangulation, BeginsAgainWithTheRightExtentAfterAFalseBox) {
+  const Regions regions = survey(8, 20'000, 27);
+  const ExtentRun run = run_by_extent(with_a_false_box(regions, 0));
+  EXPECT_EQ(run.times_read, 2);
+  ASSERT_EQ(run.known.size(), 1U);
+  EXPECT_EQ(run.known[0], *RegionStream(regions).told_extent());
+  EXPECT_EQ(simplices_of<2>(*run.mesh), expected_of<2>(regions));
 }
 
 TEST(EarlyTriangulation, RefusesPointsOfALine) {

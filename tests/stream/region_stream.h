@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <span>
 #include <vector>
 
+#include "src/error.h"
+#include "stream/source/false_header.h"
 #include "stream/source/point_stream.h"
 
 namespace spillway::detail {
@@ -53,6 +56,11 @@ class RegionStream : public PointStream {
   }
   void decode(SourcePiece& piece, PointBlock& block) override {
     std::swap(piece.raw.decoded, block);
+    if (!is_planned_) return;
+    const Box<3>& told = regions_[order_[piece.region]].box;
+    const bool is_inside = std::ranges::all_of(
+        block.points, [&](const LatticePoint& point) { return told.contains(Point<3>(point)); });
+    if (!is_inside) throw FalseHeader(Error("a point lies outside"), "a box is false");
   }
 
   [[nodiscard]] const std::optional<Lattice>& lattice() const override { return lattice_; }
@@ -61,7 +69,7 @@ class RegionStream : public PointStream {
   [[nodiscard]] std::span<const InputRegion> regions() const override { return regions_; }
   [[nodiscard]] bool any_order() const override { return true; }
   void keep_to(const RegionPlan& plan) override {
-    kept_to_plan = true;
+    kept_to_plan = is_planned_ = true;
     order_ = plan.regions;
   }
   /// As the told regions have it, one without points among them.
@@ -70,7 +78,9 @@ class RegionStream : public PointStream {
     for (const InputRegion& region : regions_) extent.expand(region.box);
     return plane_of(extent);
   }
-  bool read_again() override {
+  bool read_again(bool as_planned) override {
+    is_planned_ = as_planned;
+    if (!as_planned) std::iota(order_.begin(), order_.end(), std::size_t{0});
     turn_ = next_ = read_ = 0;
     ++times_read;
     return times_read <= most_times_read;
@@ -92,6 +102,7 @@ class RegionStream : public PointStream {
   std::uint64_t all_ = 0;
   std::optional<Lattice> lattice_;
   std::optional<Box<3>> extent_;
+  bool is_planned_ = false;
   std::size_t turn_ = 0;
   std::size_t next_ = 0;
   std::uint64_t read_ = 0;

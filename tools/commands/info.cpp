@@ -32,7 +32,8 @@ constexpr const char* kExamples =
     "  spillway info survey.las\n"
     "  spillway info *.las tin.ply --json | jq .canonical_hash\n"
     "  spillway generate terrain -n 1e8 | spillway triangulate - -o - | spillway info -\n"
-    "All points are read, so extents and counts are exact, whatever headers say.";
+    "All points are read, so extents and counts are exact, whatever headers say;\n"
+    "points_outside tells how many lie outside of the box that the header tells.";
 
 struct InfoOptions {
   const CommandLine* app = nullptr;
@@ -78,6 +79,8 @@ Json points_json(const std::string& path, const PointsInfo& info, bool filtered)
   json["withheld"] = info.counts.withheld;
   json["filters"] = filtered ? to_json(info.counts) : Json(nullptr);
   json["extent"] = extent_json(info.extent, info.coordinates);
+  json["header_box"] = extent_json(info.header_box, info.coordinates);
+  json["points_outside"] = info.header_box ? Json(info.points_outside) : Json(nullptr);
   add_lattice(info.lattice, json);
   json["density"] = density(info.extent, info.counts.kept());
   json["crs"] = text_or_null(info.crs);

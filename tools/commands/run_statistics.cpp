@@ -45,6 +45,10 @@ Report triangulate_with_tasks(const TriangulationOptions& options, PointSource& 
     file.write(node);
     if (also) also(std::move(node));
   };
+  how.begun_again = [&file, also = std::move(how.begun_again)] {
+    file.begin_again();
+    if (also) also();
+  };
   Report report = triangulate(points, sink, how, context);
   file.commit();
   return report;

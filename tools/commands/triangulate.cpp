@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -208,7 +209,7 @@ void check_options(const TriangulateCommandOptions& options) {
 int run(const TriangulateCommandOptions& options) {
   check_options(options);
   const auto start = std::chrono::steady_clock::now();
-  RunRecorder recorder;
+  std::optional<RunRecorder> recorder(std::in_place);
   Progress progress = make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   ContextOptions limits =
       context_options(options.memory, options.simulates() ? 1 : thread_count(options), progress);
@@ -224,15 +225,16 @@ int run(const TriangulateCommandOptions& options) {
   TriangulateOptions how = triangulate_options(options, options.dimension);
   how.input_index = options.input_index;
   if (options.simulates()) {
-    how.task_done = [&](const TaskNode& node) { recorder.node(node); };
-    how.step_done = [&](const StageStep& step) { recorder.step(step); };
-    how.limits_known = [&](const RunLimits& known) { recorder.limits(known); };
+    how.task_done = [&](const TaskNode& node) { recorder->node(node); };
+    how.step_done = [&](const StageStep& step) { recorder->step(step); };
+    how.limits_known = [&](const RunLimits& known) { recorder->limits(known); };
+    how.begun_again = [&] { recorder.emplace(); };
   }
   const Report report = triangulate_with_tasks(options, *points, *mesh, how, context);
   if (!is_first_rank()) return kExitDone;
   RunFacts facts = facts_of_run(options, options.output, context, start);
   if (options.simulates()) {
-    simulate(options, recorder.take(report, report.output_bytes), facts);
+    simulate(options, recorder->take(report, report.output_bytes), facts);
   }
   write_statistics(options, report, facts);
   say(options, report, facts, progress);

@@ -10,4 +10,6 @@ TaskFile::TaskFile(const std::string& path) : output_(disk().create(path)) {}
 
 void TaskFile::write(const TaskNode& node) { output_.append(json_text(to_json(node)) + "\n"); }
 
+void TaskFile::begin_again() { output_.append("{\"begun_again\":true}\n"); }
+
 }  // namespace spillway::detail

@@ -18,6 +18,9 @@ class TaskFile {
 
   void write(const TaskNode& node);
 
+  /// Says that the nodes so far are void.
+  void begin_again();
+
   /// To be called once, after the last node.
   void commit() { output_.commit(); }
 

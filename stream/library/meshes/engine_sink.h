@@ -36,7 +36,7 @@ void refuse_without_heights(const MeshStart& start);
 void tell_lost_layers(const VectorFormat& format, const std::string& path, const Context& context);
 
 /// A sink of the library's own, to which the engine writes without a detour over public values.
-/// start() once, extent_known() once if it is wanted, then blocks, then complete().
+/// start() once, extent_known() if it is wanted, then blocks, then complete().
 class EngineSink {
  public:
   virtual ~EngineSink() = default;
@@ -65,7 +65,6 @@ class EngineSink {
 
   /// The box around all vertices in x and y, in the coordinates in which they come, and how many
   /// these are (of points: how many points; 0: not known), before the first block.
-  /// If blocks have come already, all of them are void and are forgotten.
   virtual void extent_known(const Box<2>& /*extent*/, std::uint64_t /*vertices*/) {}
 
   /// In place of extent_known(), before the first block: what headers tell of the extent. False if
@@ -73,6 +72,11 @@ class EngineSink {
   virtual bool extent_told(const Box<2>& /*extent*/, std::uint64_t /*vertices*/) { return false; }
   /// After extent_told() and some blocks: whether it makes no difference that this is the extent.
   virtual bool extent_holds(const Box<2>& /*extent*/) { return false; }
+
+  /// After some blocks, or none: all of them are void, and the mesh comes once more, after
+  /// extent_known() if that is wanted. Returns where blocks go now, as start() does; nullptr if
+  /// they cannot be taken back.
+  virtual BlockSink* begin_again() { return nullptr; }
 
   /// Ends the blocks and completes the output. The report is that of the run so far, to which the
   /// sink adds what it knows.

@@ -4,6 +4,7 @@
 
 #include "formats/disk/extension.h"
 #include "formats/disk/file_system.h"
+#include "formats/disk/output_check.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_stream_writer.h"
 #include "formats/meshes/vector/vector_format.h"
@@ -46,8 +47,17 @@ MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, cons
 
 BlockSink& MeshFile::open(const MeshStart& start) {
   simplices_ = simplices_of(start.header.dimension);
-  writer_ = open_mesh_stream_writer(disk(), target_.path, *target_.format, start.header, *scratch_);
+  header_ = start.header;
+  writer_ = open_mesh_stream_writer(disk(), target_.path, *target_.format, header_, *scratch_);
   return *writer_;
+}
+
+BlockSink* MeshFile::begin_again() {
+  if (!can_be_tried(target_.path)) return nullptr;
+  header_.extent.reset();  // headers of points have told it
+  writer_.reset();
+  writer_ = open_mesh_stream_writer(disk(), target_.path, *target_.format, header_, *scratch_);
+  return writer_.get();
 }
 
 void MeshFile::complete(RunWatch& watch, Report& report) {

@@ -35,6 +35,8 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   [[nodiscard]] bool tells_hash() const override { return target_.format->has_totals; }
   /// Blocks are written one after the other, and nothing is done before.
   [[nodiscard]] unsigned feeding_threads(unsigned /*threads*/) const override { return 1; }
+  /// What has left through a pipe is gone.
+  BlockSink* begin_again() override;
   void complete(RunWatch& watch, Report& report) override;
 
   [[nodiscard]] const MeshTarget& target() const { return target_; }
@@ -44,6 +46,7 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
 
   MeshTarget target_;
   std::shared_ptr<ScratchFolder> scratch_;
+  MeshStreamHeader header_;
   std::unique_ptr<MeshStreamWriter> writer_;
   const char* simplices_ = "";  ///< what they are called
 };

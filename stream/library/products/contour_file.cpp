@@ -49,19 +49,24 @@ std::uint64_t ContourFile::own_memory(std::uint64_t limit) const { return limit 
 BlockSink& ContourFile::open(const MeshStart& start) {
   refuse_tetrahedra(start);
   refuse_without_heights(start);
+  layer_.path = path_;
+  layer_.lines = true;
+  layer_.crs = start.header.crs;
+  layer_.as_they_are = keeps_coordinates(start);
+  contours_ = {.levels = levels_,
+               .lattice = start.header.lattice,
+               .max_edge = start.is_triangulated ? std::nullopt : options_.max_edge,
+               .memory = own_memory(context().memory())};
+  return *begin_again();
+}
+
+BlockSink* ContourFile::begin_again() {
   report_ = {};
-  VectorLayerOptions layer;
-  layer.path = path_;
-  layer.lines = true;
-  layer.crs = start.header.crs;
-  layer.as_they_are = keeps_coordinates(start);
-  file_.emplace(format_, std::move(layer));
-  return writer_.emplace(
-      ContourOptions{.levels = levels_,
-                     .lattice = start.header.lattice,
-                     .max_edge = start.is_triangulated ? std::nullopt : options_.max_edge,
-                     .memory = own_memory(context().memory())},
-      [this](std::span<const Point<2>> points, double height) { add(points, height); }, *scratch_);
+  writer_.reset();
+  file_.emplace(format_, layer_);
+  return &writer_.emplace(
+      contours_, [this](std::span<const Point<2>> points, double height) { add(points, height); },
+      *scratch_);
 }
 
 /// Whether coordinates are written as they are, though they are to be longitude and latitude.

@@ -26,6 +26,7 @@ class ContourFile final : public OwnSink<ContourSink> {
 
   [[nodiscard]] CrsNeed crs_need() const override { return CrsNeed::kAll; }
   [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override;
+  BlockSink* begin_again() override;
   void complete(RunWatch& watch, Report& report) override;
 
  private:
@@ -39,6 +40,8 @@ class ContourFile final : public OwnSink<ContourSink> {
   spillway::ContourOptions options_;
   Levels levels_;
   std::shared_ptr<ScratchFolder> scratch_;
+  VectorLayerOptions layer_;
+  ContourOptions contours_;
   std::optional<VectorFile> file_;
   std::optional<ContourWriter> writer_;
   std::vector<WorldPoint> line_;

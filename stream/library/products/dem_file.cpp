@@ -175,7 +175,6 @@ void DemFile::extent_known(const Box<2>& extent, std::uint64_t vertices) {
   if (!wants_extent()) return;
   check_latitudes(dem_->in_output(extent));
   check_size(extent, vertices);
-  writer_.emplace(*dem_);  // in its place, without vertices that came before
   dem_->begin(extent);
 }
 
@@ -191,14 +190,11 @@ bool DemFile::extent_told(const Box<2>& extent, std::uint64_t vertices) {
   return true;
 }
 
-bool DemFile::extent_holds(const Box<2>& extent) {
-  if (grid_of(extent) == dem_->grid()) return true;
-  if (context().options().warning) {
-    context().options().warning(
-        "headers tell a larger extent than that of the points: these are read again, now that the "
-        "raster's place is known");
-  }
-  return false;
+bool DemFile::extent_holds(const Box<2>& extent) { return grid_of(extent) == dem_->grid(); }
+
+BlockSink* DemFile::begin_again() {
+  if (!wants_extent()) dem_->begin(Box<2>{});
+  return &writer_.emplace(*dem_);
 }
 
 /// Heights without a unit are in that of x and y, and in metres above degrees.

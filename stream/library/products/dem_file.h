@@ -30,6 +30,7 @@ class DemFile final : public OwnSink<DemSink> {
   void extent_known(const Box<2>& extent, std::uint64_t vertices) override;
   [[nodiscard]] bool extent_told(const Box<2>& extent, std::uint64_t vertices) override;
   [[nodiscard]] bool extent_holds(const Box<2>& extent) override;
+  BlockSink* begin_again() override;
   void complete(RunWatch& watch, Report& report) override;
 
   /// How the pixels get into a file: `written` is told how many are there.

@@ -13,6 +13,7 @@
 #include "stream/library/meshes/opened_mesh.h"
 #include "stream/library/meshes/whole_mesh.h"
 #include "stream/library/points/file_points.h"
+#include "stream/source/input_regions.h"
 
 namespace spillway::detail {
 namespace {
@@ -31,6 +32,30 @@ std::optional<LatticeInfo> lattice_info(const std::optional<Lattice>& lattice) {
   if (!lattice) return std::nullopt;
   return LatticeInfo{lattice->scale, lattice->offset};
 }
+
+/// Counts points that lie outside of the box that a header tells.
+class OutsidePoints {
+ public:
+  explicit OutsidePoints(const PointHeader& header) : box_(extent_told_by(header)) {
+    if (!box_) return;
+    box_ = with_a_step_more(*box_, header.lattice);
+    axes_ = header.coordinates;
+  }
+
+  void add(const Point<3>& point) {
+    for (int k = 0; k < axes_; ++k) {
+      if (point[k] >= box_->lo[k] && point[k] <= box_->hi[k]) continue;
+      ++count_;
+      return;
+    }
+  }
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+
+ private:
+  std::optional<Box<3>> box_;
+  int axes_ = 0;  ///< to look at
+  std::uint64_t count_ = 0;
+};
 
 MeshInfo describe_whole(OpenedMesh& file, RunWatch& watch) {
   watch.begin("read", "vertices");
@@ -98,10 +123,15 @@ PointsInfo describe_points(const std::string& path, const PointOptions& options,
   const PointHeader header = source.headers().front();
   const std::optional<detail::Lattice>& lattice = source.lattice();
   Box<3> box;
+  OutsidePoints outside(header);
   PointBlock block;
   watch.begin("read", "points");
   while (source.read(block)) {
-    for (const LatticePoint& point : block.points) box.expand(in_world(lattice, point));
+    for (const LatticePoint& point : block.points) {
+      const WorldPoint place = in_world(lattice, point);
+      box.expand(place);
+      outside.add(place.numbers());
+    }
     watch.tell(source.points_read(), source.fraction_read());
   }
   watch.end(source.points_read());
@@ -119,6 +149,8 @@ PointsInfo describe_points(const std::string& path, const PointOptions& options,
   if (!header.regions.empty()) {
     info.cells = std::max<std::uint64_t>(header.cells, header.regions.size());
   }
+  if (const auto told = extent_told_by(header)) info.header_box = extent_of(*told);
+  info.points_outside = outside.count();
   return info;
 }
 

@@ -83,14 +83,19 @@ unsigned PictureFile::feeding_threads(unsigned threads) const {
 }
 
 BlockSink& PictureFile::open(const MeshStart& start) {
-  const SceneMesh mesh{.lattice = start.header.lattice,
-                       .max_edge = start.is_triangulated ? std::nullopt : options_.max_edge};
-  scene_ = start.header.dimension == 2
-               ? make_relief_scene(options_, mesh, own_memory(context().memory()),
-                                   feeding_threads(context().threads()), *scratch_)
-               : make_space_scene(options_, mesh);
+  dimension_ = start.header.dimension;
+  mesh_ = {.lattice = start.header.lattice,
+           .max_edge = start.is_triangulated ? std::nullopt : options_.max_edge};
+  return *begin_again();
+}
+
+BlockSink* PictureFile::begin_again() {
+  scene_.reset();
+  scene_ = dimension_ == 2 ? make_relief_scene(options_, mesh_, own_memory(context().memory()),
+                                               feeding_threads(context().threads()), *scratch_)
+                           : make_space_scene(options_, mesh_);
   if (options_.zoom) scene_->extent_known({});
-  return scene_->writer();
+  return &scene_->writer();
 }
 
 void PictureFile::extent_known(const Box<2>& extent, std::uint64_t /*vertices*/) {

@@ -23,6 +23,7 @@ class PictureFile final : public OwnSink<PictureSink> {
   [[nodiscard]] unsigned feeding_threads(unsigned threads) const override;
   [[nodiscard]] bool wants_extent() const override { return !options_.zoom; }
   void extent_known(const Box<2>& extent, std::uint64_t vertices) override;
+  BlockSink* begin_again() override;
   void complete(RunWatch& watch, Report& report) override;
 
  private:
@@ -31,6 +32,8 @@ class PictureFile final : public OwnSink<PictureSink> {
   std::string path_;
   PictureOptions options_;
   std::shared_ptr<ScratchFolder> scratch_;
+  int dimension_ = 2;
+  SceneMesh mesh_;
   std::unique_ptr<Scene> scene_;
   PictureReport report_;
 };

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spillway/delaunay.h>
+#include <spillway/generate.h>
 #include <spillway/triangulate.h>
 
 #include <atomic>
@@ -14,6 +15,7 @@
 #include <random>
 #include <set>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -291,6 +293,68 @@ TEST_F(Streams, WriteBlocksOfAProgramToFiles) {
   EXPECT_EQ(code_of([&] { sink->finish({}); }), ErrorCode::kInvalidArgument) << "finished";
   other->begin({});
   EXPECT_EQ(code_of([&] { other->write({.corners = {0, 1, 2}}); }), ErrorCode::kInvalidArgument);
+}
+
+/// Files of a survey, of which the header of one tells half of its box.
+class FalseBoxes : public Streams {
+ protected:
+  FalseBoxes() {
+    const Context context(options());
+    generate_grid({.family = "terrain", .count = 40'000}, folder_ + "/t_#.las",
+                  {.columns = 7, .rows = 7}, context);
+    const std::string path = folder_ + "/t_04_04.las";
+    const Extent box = *open_points({path}, {}, context)->header().extent;
+    const double most = (box.low[0] + box.high[0]) / 2;
+    constexpr std::streamoff kMostX = 179;  // in a LAS header
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(kMostX).write(reinterpret_cast<const char*>(&most), sizeof most);
+  }
+
+  [[nodiscard]] std::string files() const { return folder_ + "/t_*.las"; }
+};
+
+TEST_F(FalseBoxes, AreAnErrorForAProgramThatHasGotBlocks) {
+  const Context context(options());
+  const auto source = open_points({files()}, {}, context);
+  MeshInMemory mesh;
+  try {
+    triangulate(*source, mesh, {.tile_points = 2000}, context);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadInput);
+    EXPECT_EQ(error.facts().remedy, Remedy::kDistrustHeaders);
+    EXPECT_THAT(error.what(), HasSubstr("t_04_04.las: point "));
+  }
+  const auto again = open_points({files()}, {}, context);
+  EXPECT_EQ(
+      triangulate(*again, mesh, {.tile_points = 2000, .trust_headers = false}, context).mesh.points,
+      40'000U);
+}
+
+TEST_F(FalseBoxes, LetARunToAFileBeginAgainAndTellTheProgram) {
+  std::atomic<int> warnings = 0;
+  int nodes = 0;
+  int times = 0;
+  ContextOptions telling = options();
+  telling.warning = [&](std::string_view) { ++warnings; };
+  const Context context(telling);
+  TriangulateOptions how{.tile_points = 2000};
+  how.task_done = [&](const TaskNode& node) { nodes += node.level == 0 ? 1 : 0; };
+  how.begun_again = [&] {
+    ++times;
+    nodes = 0;
+  };
+  const auto source = open_points({files()}, {}, context);
+  const Report report =
+      triangulate(*source, *create_mesh(folder_ + "/again.spm", {}, context), how, context);
+  EXPECT_EQ(warnings, 1);
+  EXPECT_EQ(times, 1);
+  EXPECT_EQ(static_cast<std::uint64_t>(nodes), report.tiles);
+  EXPECT_EQ(report.points.read, 40'000U);
+  const auto late = open_points({files()}, {}, context);
+  how = {.tile_points = 2000, .trust_headers = false};
+  EXPECT_EQ(triangulate(*late, *create_mesh(folder_ + "/late.spm", {}, context), how, context).mesh,
+            report.mesh);
 }
 
 TEST_F(Streams, ReadFilesWithFilters) {

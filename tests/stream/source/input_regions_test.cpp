@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "src/error.h"
+#include "stream/source/false_header.h"
 
 namespace spillway::detail {
 namespace {
@@ -165,13 +166,29 @@ TEST(InputRegions, APointOutsideIsAnErrorThatNamesFileAndPoint) {
   try {
     two.regions->check(block, 1);
     FAIL() << "no error";
-  } catch (const Error& error) {
+  } catch (const FalseHeader& error) {
     EXPECT_THAT(error.what(),
                 AllOf(HasSubstr("b.las: point 12 at (8.02, 7)"), HasSubstr("outside")));
     EXPECT_EQ(error.facts().remedy, Remedy::kDistrustHeaders);
     EXPECT_EQ(error.facts().place.number, 12U);
+    EXPECT_THAT(error.finding(),
+                AllOf(HasSubstr(error.what()), HasSubstr("from (5, 5) to (8, 8)")));
+    EXPECT_EQ(error.extent(), std::nullopt);
   }
   EXPECT_NO_THROW(two.regions->check({}, 0));
+}
+
+/// Coordinates as they are in the field, of which sums with a step are not exact.
+TEST(InputRegions, ABoxThatIsAStepOffIsNotFalse) {
+  PointHeader north = header("a.las", 10, 1, 2);
+  north.extent = Box<3>{{500'313.19, 4'100'225.17, 0}, {500'360.22, 4'100'289.47, 0}};
+  const Regions one({north});
+  PointBlock block;
+  block.points = {{50'036'023, 410'028'948, 0}, {50'031'318, 410'022'516, 0}};
+  block.index = {0, 1};
+  EXPECT_NO_THROW(one.regions->check(block, 0));
+  block.points = {{50'036'024, 410'028'948, 0}};
+  EXPECT_THROW(one.regions->check(block, 0), FalseHeader);
 }
 
 }  // namespace

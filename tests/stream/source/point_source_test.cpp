@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "formats/points/common/point_writer.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
+#include "stream/source/false_header.h"
 #include "tests/faulty_file_system.h"
 #include "tests/formats/points/las/las_file.h"
 
@@ -156,7 +158,7 @@ TEST_F(PointSourceTest, TellsNoExtentOfPointsFromAPipe) {
   files_.files["pipe.las"] = diagonal(100).bytes();
   PointSource source(files_, {"pipe.las"}, {});
   EXPECT_EQ(source.told_extent(), std::nullopt);
-  EXPECT_FALSE(source.read_again());
+  EXPECT_FALSE(source.read_again(true));
 }
 
 TEST_F(PointSourceTest, GivesAllPointsOnceMore) {
@@ -170,11 +172,38 @@ TEST_F(PointSourceTest, GivesAllPointsOnceMore) {
     EXPECT_EQ(source.counts().read, 170U);
     EXPECT_EQ(source.counts().withheld, 17U);
     EXPECT_EQ(source.fraction_read(), 1);
-    EXPECT_TRUE(source.read_again());
+    EXPECT_TRUE(source.read_again(true));
     EXPECT_EQ(source.points_read(), 0U);
   }
   EXPECT_EQ(indices[0].size(), 153U);
   EXPECT_EQ(indices[1], indices[0]);
+}
+
+/// From the first input on, though another one was to come first; and boxes count no more.
+TEST_F(PointSourceTest, GivesAllPointsInTheInputsOrderAfterAFalseBox) {
+  PointSource source(disk(), {on_disk("a.las", diagonal(70)), on_disk("b.las", diagonal(100))},
+                     {.index = true});
+  ASSERT_EQ(source.regions().size(), 2U);
+  RegionPlan plan{.cuts = CutTree(2)};
+  plan.regions = {1, 0};
+  plan.units = {1, 0};
+  source.keep_to(plan);
+  PointBlock block;
+  EXPECT_THROW(source.read(block), FalseHeader) << "boxes of these files are far away";
+  ASSERT_TRUE(source.read_again(false));
+  std::vector<std::uint64_t> index;
+  while (source.read(block)) index.insert(index.end(), block.index.begin(), block.index.end());
+  EXPECT_EQ(index.size(), 153U);
+  EXPECT_TRUE(std::ranges::is_sorted(index));
+  EXPECT_EQ(source.counts().read, 170U);
+  EXPECT_EQ(source.fraction_read(), 1);
+}
+
+TEST_F(PointSourceTest, TellsNoRegionsOfPointsThatAreThinned) {
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  PointSourceOptions options;
+  options.thinning = ThinningRequest{.cell = 0.5, .memory = 0, .scratch = scratch.get()};
+  EXPECT_TRUE(PointSource(disk(), {on_disk("a.las", diagonal(70))}, options).regions().empty());
 }
 
 TEST_F(PointSourceTest, WhatIsKeptDoesNotDependOnThreads) {

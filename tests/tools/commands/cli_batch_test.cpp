@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstring>
+#include <string>
+
 #include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
@@ -56,6 +59,26 @@ TEST_F(Batch, MakesSeveralOutputsOfOneTriangulation) {
   for (const char* name : {"out/north.ply", "out/north.vtu", "out/north.spm"}) {
     EXPECT_EQ(space.info(name)["canonical_hash"], hash) << name;
   }
+}
+
+/// The header of one file tells half of its box.
+TEST_F(Batch, DoesAJobWhoseHeadersAreFalse) {
+  space.succeed("spillway generate terrain -n 40000 -q --grid 7x7 -o 'in/t_#.las'");
+  const nlohmann::json extent = space.info("in/t_04_04.las")["extent"];
+  const double least = extent["min"][0];
+  const double most = (least + extent["max"][0].get<double>()) / 2;
+  constexpr std::size_t kMostX = 179;
+  std::string bytes = space.read("in/t_04_04.las");
+  std::memcpy(bytes.data() + kMostX, &most, sizeof most);
+  space.write("in/t_04_04.las", bytes);
+  space.write("jobs.toml",
+              "to = ['spm', 'ply']\noptions = { tile = 2000 }\n[[jobs]]\nname = 'all'\n"
+              "in = 'in/t_*.las'\n");
+  space.succeed("spillway batch jobs.toml --output-dir out");
+  EXPECT_THAT(space.read("out/all.log"), HasSubstr("all points are read again"));
+  const std::string hash = mesh_hash("--distrust-headers 'in/t_*.las'");
+  EXPECT_EQ(space.info("out/all.spm")["canonical_hash"], hash);
+  EXPECT_EQ(space.info("out/all.ply")["canonical_hash"], hash);
 }
 
 TEST_F(Batch, LeavesNoTemporaryMeshBehind) {

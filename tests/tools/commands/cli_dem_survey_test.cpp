@@ -95,12 +95,30 @@ TEST_F(DemOfASurvey, BoxesThatAreTooLargeAreFoundOut) {
     if (name.starts_with("t_")) lie(name, kLeastY, least_y - 20);
   }
   const nlohmann::json stats = make("dem.tif", "t_*.las");
-  EXPECT_THAT(messages_.err, HasSubstr("headers tell a larger extent"));
+  EXPECT_THAT(messages_.err, HasSubstr("headers tell another extent"));
   EXPECT_EQ(stats["points"], 40'000);
   EXPECT_TRUE(same("dem.tif", "true.tif"));
   make("late.tif", "t_*.las --distrust-headers");
   EXPECT_THAT(messages_.err, Not(HasSubstr("headers tell")));
   EXPECT_TRUE(same("late.tif", "true.tif"));
+}
+
+/// Also where the raster's place is given, so that it does not depend on headers.
+TEST_F(DemOfASurvey, BoxesThatAreTooSmallAreFoundOut) {
+  const nlohmann::json extent = work_.info("t_04_04.las")["extent"];
+  const double least = extent["min"][0];
+  const double most = extent["max"][0];
+  for (const std::string options :
+       {"", " --align", " --bounds 500000,4100000,500250,4100300", " --product height,density"}) {
+    lie("t_04_04.las", kMostX, most);
+    const nlohmann::json truth = make("true.tif", "t_*.las" + options);
+    lie("t_04_04.las", kMostX, (least + most) / 2);
+    const nlohmann::json again = make("dem.tif", "t_*.las" + options);
+    EXPECT_THAT(messages_.err, HasSubstr("outside of the box that the header tells"));
+    EXPECT_EQ(again["points"], 40'000);
+    EXPECT_EQ(again["raster"]["pixels_with_data"], truth["raster"]["pixels_with_data"]);
+    EXPECT_TRUE(same("dem.tif", "true.tif")) << options;
+  }
 }
 
 /// Far beyond what a raster may be: all is read first.
@@ -121,6 +139,22 @@ TEST_F(DemOfASurvey, ABoxThatIsOffByARoundingMakesNoDifference) {
     EXPECT_TRUE(is_early(make("dem.tif", "t_*.las")));
     EXPECT_TRUE(same("dem.tif", "true.tif")) << off;
   }
+}
+
+/// The raster's place depends on it, but it is not called false.
+TEST_F(DemOfASurvey, ABoxAtTheRimThatIsAStepOffChangesNothing) {
+  make("true.tif", "t_*.las");
+  const double most = work_.info("all.las")["extent"]["max"][0];
+  int at_the_rim = 0;
+  for (const auto& name : work_.names()) {
+    if (!name.starts_with("t_") || work_.info(name)["extent"]["max"][0] != most) continue;
+    lie(name, kMostX, most - 0.01);
+    ++at_the_rim;
+  }
+  EXPECT_GT(at_the_rim, 0);
+  EXPECT_EQ(make("dem.tif", "t_*.las")["points"], 40'000);
+  EXPECT_THAT(messages_.err, Not(HasSubstr("outside of the box")));
+  EXPECT_TRUE(same("dem.tif", "true.tif"));
 }
 
 /// Points that are not used do not count for the extent.

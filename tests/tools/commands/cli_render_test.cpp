@@ -132,6 +132,28 @@ TEST(Render, ZoomShowsTheBoxAndNothingElse) {
   EXPECT_GT(view.brightness(40, 115), view.brightness(60, 135) + 150);
 }
 
+/// The header of one file tells half of its box.
+TEST(Render, OfHeadersThatAreFalseIsThatOfThePoints) {
+  const Workspace work;
+  work.succeed("spillway generate terrain -n 40000 -q --grid 7x7 -o 't_#.las'");
+  const nlohmann::json extent = work.info("t_04_04.las")["extent"];
+  const double least = extent["min"][0];
+  const double most = (least + extent["max"][0].get<double>()) / 2;
+  constexpr std::size_t kMostX = 179;
+  std::string bytes = work.read("t_04_04.las");
+  std::memcpy(bytes.data() + kMostX, &most, sizeof most);
+  work.write("t_04_04.las", bytes);
+  for (const std::string options :
+       {"--zoom 500020,4100065,500350,4100280 --wireframe", "--dim 3"}) {
+    const std::string run = "spillway render t_*.las --tile 2000 --size 200 " + options;
+    const Result again = work.run(run + " -o again.png");
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_THAT(again.err, HasSubstr("all points are read again")) << options;
+    work.succeed(run + " -q --distrust-headers -o late.png");
+    EXPECT_EQ(work.read("again.png"), work.read("late.png")) << options;
+  }
+}
+
 TEST(Render, WireframeDrawsEdgesAtVertices) {
   const Workspace work;
   work.write("points.txt", "0 0 5\n10 0 5\n0 10 5\n10 10 5\n4 5 5\n");

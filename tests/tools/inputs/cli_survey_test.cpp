@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -19,9 +21,10 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
-/// Where a LAS header has the largest x.
-constexpr std::size_t kMostX = 179;
+/// Where a LAS header has the largest x, y and z; the least ones follow.
+constexpr std::array<std::size_t, 3> kMost = {179, 195, 211};
 
 class Survey : public ::testing::Test {
  protected:
@@ -41,14 +44,50 @@ class Survey : public ::testing::Test {
     return stats["first_block_read_points"] < stats["points"].get<std::uint64_t>() / 2;
   }
 
-  /// Makes the header of a file tell another largest x.
-  void lie(const std::string& name, double most_x) {
+  /// Makes the header of a file tell other bounds along an axis.
+  void lie(const std::string& name, std::size_t axis, double least, double most) {
     std::string bytes = work_.read(name);
-    std::memcpy(bytes.data() + kMostX, &most_x, sizeof most_x);
+    std::memcpy(bytes.data() + kMost[axis], &most, sizeof most);
+    std::memcpy(bytes.data() + kMost[axis] + sizeof most, &least, sizeof least);
     work_.write(name, bytes);
   }
+  struct Bounds {
+    double least;
+    double most;
+    [[nodiscard]] double middle() const { return (least + most) / 2; }
+  };
+  [[nodiscard]] Bounds bounds_of(const std::string& name, std::size_t axis) const {
+    const nlohmann::json extent = work_.info(name)["extent"];
+    return {extent["min"][axis], extent["max"][axis]};
+  }
+  /// The header of one file tells half of what it should.
+  void halve_box(std::size_t axis = 0) {
+    const Bounds bounds = bounds_of("t_04_04.las", axis);
+    lie("t_04_04.las", axis, bounds.least, bounds.middle());
+  }
+  /// The figures of a run whose headers turn out to be false.
+  nlohmann::json triangulate_again(const std::string& arguments) {
+    const Result result =
+        work_.run("spillway triangulate --tile 2000 -o mesh.spm --stats stats.json " + arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    messages_ = result.err;
+    work_.succeed("spillway check -q mesh.spm");
+    EXPECT_EQ(times(kFalse, messages_), 1) << messages_;
+    EXPECT_THAT(messages_, HasSubstr("t_04_04.las: point "));
+    return nlohmann::json::parse(work_.read("stats.json"));
+  }
+  static int times(const std::string& what, const std::string& text) {
+    int count = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+      ++count;
+    }
+    return count;
+  }
+
+  static constexpr const char* kFalse = "outside of the box that the header tells";
 
   Workspace work_;
+  std::string messages_;
 };
 
 TEST_F(Survey, IsTriangulatedEarlyAndAsOneFileWhateverTheNames) {
@@ -98,29 +137,140 @@ TEST_F(Survey, FiltersAndNumbersPointsAsOneFileDoes) {
   EXPECT_EQ(work_.info("early.npy")["canonical_hash"], work_.info("late.npy")["canonical_hash"]);
 }
 
-TEST_F(Survey, APointOutsideOfItsHeadersBoxIsAnErrorThatNamesFileAndPoint) {
+TEST_F(Survey, BeginsAgainWhereAPointLiesOutsideOfItsHeadersBox) {
   const nlohmann::json truth = triangulate("t_*.las");
-  work_.succeed("rm -f mesh.spm stats.json");
-  const nlohmann::json info = work_.info("t_04_04.las");
-  const double least = info["extent"]["min"][0];
-  const double most = info["extent"]["max"][0];
-  lie("t_04_04.las", (least + most) / 2);
-  const Result lying = work_.run("spillway triangulate t_*.las --tile 2000 -o mesh.spm");
+  for (const std::size_t axis : {0U, 1U}) {
+    const Bounds bounds = bounds_of("t_04_04.las", axis);
+    halve_box(axis);
+    const nlohmann::json again = triangulate_again("t_*.las");
+    EXPECT_THAT(messages_, HasSubstr("all points are read again"));
+    EXPECT_EQ(again["canonical_hash"], truth["canonical_hash"]) << axis;
+    EXPECT_EQ(again["points"], 40'000);
+    EXPECT_EQ(again["first_block_read_points"], 40'000);
+    EXPECT_FALSE(work_.has_unfinished("mesh.spm"));
+    EXPECT_EQ(triangulate("t_*.las --distrust-headers")["canonical_hash"], truth["canonical_hash"]);
+    lie("t_04_04.las", axis, bounds.least, bounds.most);
+  }
+}
+
+TEST_F(Survey, BeginsAgainInSpaceWhereAHeightLiesOutsideOfItsHeadersBox) {
+  const nlohmann::json truth = triangulate("--dim 3 t_*.las");
+  EXPECT_TRUE(is_early(truth));
+  halve_box(2);
+  EXPECT_TRUE(is_early(triangulate("t_*.las"))) << "in the plane heights do not matter";
+  EXPECT_EQ(triangulate_again("--dim 3 t_*.las")["canonical_hash"], truth["canonical_hash"]);
+}
+
+TEST_F(Survey, TakesBoxesOfOnePlaceForFalseOnesAndInvertedOnesForNone) {
+  const nlohmann::json truth = triangulate("t_*.las");
+  const Bounds bounds = bounds_of("t_04_04.las", 0);
+  lie("t_04_04.las", 0, bounds.least, bounds.least);
+  EXPECT_EQ(triangulate_again("t_*.las")["canonical_hash"], truth["canonical_hash"]);
+  lie("t_04_04.las", 0, bounds.most, bounds.least);
+  const nlohmann::json late = triangulate("t_*.las");
+  EXPECT_FALSE(is_early(late));
+  EXPECT_EQ(late["canonical_hash"], truth["canonical_hash"]);
+}
+
+TEST_F(Survey, CountsNothingTwiceWhenItBeginsAgain) {
+  halve_box();
+  for (const std::string filter :
+       {"--every 3", "--keep-class 0", "--id", "--bounds 500020,4100065,500350,4100280"}) {
+    const nlohmann::json again = triangulate_again("t_*.las " + filter);
+    const nlohmann::json late = triangulate("t_*.las --distrust-headers " + filter);
+    for (const char* key : {"canonical_hash", "points", "duplicates", "vertices", "simplices",
+                            "filters", "tiles", "leaves", "spilled_points"}) {
+      EXPECT_EQ(again[key], late[key]) << filter << " " << key;
+    }
+  }
+  EXPECT_EQ(triangulate("t_*.las --thin 3")["filters"]["read"], 40'000);
+}
+
+TEST_F(Survey, SaysInItsTasksWhereItBeginsAgain) {
+  halve_box();
+  const nlohmann::json again = triangulate_again("t_*.las --tasks tasks.jsonl");
+  const std::string tasks = work_.read("tasks.jsonl");
+  const std::string line = "{\"begun_again\":true}\n";
+  ASSERT_EQ(times(line, tasks), 1);
+  const std::string valid = tasks.substr(tasks.find(line) + line.size());
+  EXPECT_EQ(times("\"level\":0", valid), again["tiles"]);
+}
+
+TEST_F(Survey, EndsEachPhaseBeforeItBeginsAgain) {
+  halve_box();
+  const std::string lines =
+      work_.run("spillway triangulate --tile 2000 t_*.las -o mesh.spm --progress json").err;
+  std::vector<std::string> phases;
+  std::istringstream stream(lines);
+  for (std::string line; std::getline(stream, line);) {
+    const auto json = nlohmann::json::parse(line);
+    if (json.value("finished", false)) phases.push_back(json["phase"]);
+    if (json.contains("message")) phases.emplace_back("message");
+  }
+  EXPECT_THAT(phases, ElementsAre("read", "message", "read", "triangulate", "write", "message"));
+}
+
+TEST_F(Survey, LeavesOneFileOfEachFormatWhenItBeginsAgain) {
+  halve_box();
+  const std::size_t before = work_.names().size();
+  for (const std::string format : {"ply", "obj", "vtu", "sma", "glb"}) {
+    const std::string run =
+        "spillway triangulate -q --tile 2000 --tmpdir . t_*.las -o mesh." + format;
+    work_.succeed(run);
+    EXPECT_EQ(work_.names().size(), before + 1) << format;
+    work_.succeed("spillway check -q mesh." + format + " && rm mesh." + format);
+  }
+}
+
+TEST_F(Survey, AFalseBoxIsAnErrorWhereTheMeshHasLeftThroughAPipe) {
+  halve_box();
+  for (const std::string format : {"spm", "ply"}) {
+    const Result lying = work_.run(
+        "spillway triangulate t_*.las --tile 2000 -o - --output-format " + format + " >piped");
+    EXPECT_EQ(lying.exit_code, 1);
+    EXPECT_THAT(lying.err, AllOf(HasSubstr("t_04_04.las: point "), HasSubstr(kFalse),
+                                 HasSubstr("--distrust-headers"), Not(HasSubstr("again"))));
+  }
+}
+
+TEST_F(Survey, AFalseBoxIsAnErrorWhereAnInputIsAPipe) {
+  halve_box();
+  const Result lying =
+      work_.run("spillway triangulate t_0[0-5]*.las - --tile 2000 -o mesh.spm < t_06_06.las");
   EXPECT_EQ(lying.exit_code, 1);
-  EXPECT_THAT(lying.err, AllOf(HasSubstr("t_04_04.las"), HasSubstr("point "),
-                               HasSubstr("outside of the box that the header tells"),
-                               HasSubstr("--distrust-headers")));
+  EXPECT_THAT(lying.err, AllOf(HasSubstr(kFalse), HasSubstr("--distrust-headers")));
   EXPECT_FALSE(work_.has("mesh.spm"));
   EXPECT_FALSE(work_.has_unfinished("mesh.spm"));
-  EXPECT_EQ(triangulate("t_*.las --distrust-headers")["canonical_hash"], truth["canonical_hash"]);
 }
 
 /// Programs round the numbers of a header.
-TEST_F(Survey, ABoxThatIsOffByARoundingIsNoLie) {
+TEST_F(Survey, ABoxThatIsAStepOffIsNotFalse) {
   const nlohmann::json truth = triangulate("t_*.las");
-  const double most = work_.info("t_04_04.las")["extent"]["max"][0];
-  lie("t_04_04.las", most - 0.009);
-  EXPECT_EQ(triangulate("t_*.las")["canonical_hash"], truth["canonical_hash"]);
+  const Bounds bounds = bounds_of("t_04_04.las", 0);
+  for (const double off : {0.009, 0.01}) {
+    lie("t_04_04.las", 0, bounds.least + off, bounds.most - off);
+    const nlohmann::json survey = triangulate("t_*.las");
+    EXPECT_TRUE(is_early(survey)) << off;
+    EXPECT_EQ(survey["canonical_hash"], truth["canonical_hash"]);
+    EXPECT_EQ(work_.info("t_04_04.las")["points_outside"], 0) << off;
+  }
+}
+
+TEST_F(Survey, InfoTellsOfAFalseBox) {
+  EXPECT_EQ(work_.info("t_04_04.las")["header_box"], work_.info("t_04_04.las")["extent"]);
+  EXPECT_EQ(work_.info("t_04_04.las")["points_outside"], 0);
+  const Bounds bounds = bounds_of("t_04_04.las", 2);
+  halve_box(2);
+  const nlohmann::json info = work_.info("t_04_04.las");
+  EXPECT_EQ(info["header_box"]["max"][2], bounds.middle());
+  EXPECT_EQ(info["extent"]["max"][2], bounds.most);
+  EXPECT_GT(info["points_outside"], 0);
+  EXPECT_LT(info["points_outside"], info["points"]);
+  const std::string text = work_.succeed("spillway info -q t_04_04.las");
+  EXPECT_THAT(text, HasSubstr("  points_outside   " + info["points_outside"].dump() + "\n"));
+  work_.succeed("spillway convert -q t_04_04.las -o t.txt");
+  EXPECT_TRUE(work_.info("t.txt")["header_box"].is_null());
+  EXPECT_TRUE(work_.info("t.txt")["points_outside"].is_null());
 }
 
 TEST_F(Survey, TakesManyFilesThatAllCoverOnePlace) {
@@ -167,6 +317,13 @@ TEST_F(Survey, ContoursAreThoseOfAllPoints) {
   };
   EXPECT_FALSE(lines("late.geojson").empty());
   EXPECT_EQ(lines("early.geojson"), lines("late.geojson"));
+  halve_box();
+  const Result again =
+      work_.run("spillway contour t_*.las --tile 2000 --interval 5 -o again.geojson --force-crs");
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(times(kFalse, again.err), 1);
+  EXPECT_EQ(times("written as they are", again.err), 1);
+  EXPECT_EQ(lines("again.geojson"), lines("late.geojson"));
 }
 
 }  // namespace

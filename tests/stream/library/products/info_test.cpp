@@ -8,6 +8,7 @@
 #include <spillway/triangulate.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "tests/stream/library/call_test.h"
 
@@ -53,6 +54,30 @@ TEST_F(Info, OfPointsCountsWhatIsThere) {
   part = {};
   part.bounds = Extent{{0, 0, 0}, {0, 0, 0}};
   EXPECT_FALSE(describe_points(file("hills.las"), part, context).extent.has_value());
+}
+
+TEST_F(Info, OfPointsComparesThemWithTheBoxOfTheirHeader) {
+  make_points("hills.las");
+  const Context context(options());
+  const auto write_most_x = [&](double most) {
+    constexpr std::streamoff kMostX = 179;  // in a LAS header
+    std::fstream bytes(file("hills.las"), std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(kMostX).write(reinterpret_cast<const char*>(&most), sizeof most);
+  };
+  const PointsInfo honest = describe_points(file("hills.las"), {}, context);
+  EXPECT_EQ(honest.header_box, honest.extent);
+  EXPECT_EQ(honest.points_outside, 0U);
+  const auto [low, high] = *honest.extent;
+  write_most_x(high[0] - 0.01);
+  EXPECT_EQ(describe_points(file("hills.las"), {}, context).points_outside, 0U) << "a step";
+  write_most_x((low[0] + high[0]) / 2);
+  const PointsInfo lying = describe_points(file("hills.las"), {}, context);
+  EXPECT_EQ(lying.extent, honest.extent);
+  EXPECT_EQ(lying.header_box->high[0], (low[0] + high[0]) / 2);
+  PointOptions right_half;
+  right_half.bounds = Extent{{lying.header_box->high[0] + 0.015, low[1], low[2]}, high};
+  EXPECT_EQ(lying.points_outside,
+            describe_points(file("hills.las"), right_half, context).counts.kept());
 }
 
 TEST_F(Info, OfMeshesIsTheSameWhetherStreamsOrNot) {
