@@ -29,22 +29,18 @@ class Tee : public MeshSink {
  public:
   explicit Tee(std::unique_ptr<MeshSink> next) : next_(std::move(next)) {}
 
-  void begin(const MeshHeader& header) override {
-    this->header = header;
-    next_->begin(header);
-  }
+  void begin(const MeshHeader& told) override { next_->begin(told); }
   void write(const MeshBlock& block) override {
     MeshBlock passed = block;
     if (drops_steps) passed.on_lattice.clear();
     next_->write(passed);
   }
-  void finish(const MeshTotals& totals) override {
-    this->totals = totals;
-    next_->finish(totals);
+  void finish(const MeshTotals& told) override {
+    totals = told;
+    next_->finish(told);
   }
 
   bool drops_steps = false;
-  MeshHeader header;
   MeshTotals totals;
 
  private:

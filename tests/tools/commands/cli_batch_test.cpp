@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstring>
 #include <string>
 
 #include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
+#include "tests/tools/inputs/halved_box.h"
 
 namespace spillway::detail::test {
 namespace {
@@ -61,16 +61,9 @@ TEST_F(Batch, MakesSeveralOutputsOfOneTriangulation) {
   }
 }
 
-/// The header of one file tells half of its box.
 TEST_F(Batch, DoesAJobWhoseHeadersAreFalse) {
   space.succeed("spillway generate terrain -n 40000 -q --grid 7x7 -o 'in/t_#.las'");
-  const nlohmann::json extent = space.info("in/t_04_04.las")["extent"];
-  const double least = extent["min"][0];
-  const double most = (least + extent["max"][0].get<double>()) / 2;
-  constexpr std::size_t kMostX = 179;
-  std::string bytes = space.read("in/t_04_04.las");
-  std::memcpy(bytes.data() + kMostX, &most, sizeof most);
-  space.write("in/t_04_04.las", bytes);
+  halve_box(space, "in/t_04_04.las");
   space.write("jobs.toml",
               "to = ['spm', 'ply']\noptions = { tile = 2000 }\n[[jobs]]\nname = 'all'\n"
               "in = 'in/t_*.las'\n");

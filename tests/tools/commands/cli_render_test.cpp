@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/tools/command_runner.h"
+#include "tests/tools/inputs/halved_box.h"
 
 namespace spillway::detail::test {
 namespace {
@@ -132,17 +133,10 @@ TEST(Render, ZoomShowsTheBoxAndNothingElse) {
   EXPECT_GT(view.brightness(40, 115), view.brightness(60, 135) + 150);
 }
 
-/// The header of one file tells half of its box.
 TEST(Render, OfHeadersThatAreFalseIsThatOfThePoints) {
   const Workspace work;
   work.succeed("spillway generate terrain -n 40000 -q --grid 7x7 -o 't_#.las'");
-  const nlohmann::json extent = work.info("t_04_04.las")["extent"];
-  const double least = extent["min"][0];
-  const double most = (least + extent["max"][0].get<double>()) / 2;
-  constexpr std::size_t kMostX = 179;
-  std::string bytes = work.read("t_04_04.las");
-  std::memcpy(bytes.data() + kMostX, &most, sizeof most);
-  work.write("t_04_04.las", bytes);
+  halve_box(work, "t_04_04.las");
   for (const std::string options :
        {"--zoom 500020,4100065,500350,4100280 --wireframe", "--dim 3"}) {
     const std::string run = "spillway render t_*.las --tile 2000 --size 200 " + options;
