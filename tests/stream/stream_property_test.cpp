@@ -153,9 +153,10 @@ void expect_named_memory_is_enough(std::uint64_t points, std::uint64_t memory) {
   const std::string path = write_round_points<D>(points);
   const ErrorFacts facts = facts_of([&] { run_stream<D>(path, {.threads = 2}, memory); });
   ASSERT_EQ(facts.remedy, Remedy::kMemory);
-  const std::uint64_t enough = facts.enough;
+  // In space nobody knows for sure, but it has to be right.
+  const std::uint64_t enough = D == 2 ? facts.enough : facts.perhaps;
   ASSERT_GT(enough, memory);
-  EXPECT_LE(enough, 2'000 * points) << "bytes";
+  EXPECT_LE(enough, (D == 2 ? 2'000 : 2'500) * points) << "bytes";
   EXPECT_NO_THROW(run_stream<D>(path, {.threads = 2}, enough));
   EXPECT_NO_THROW(run_stream<D>(path, {.threads = 2, .tile_capacity = points / 5}, enough));
   std::filesystem::remove(path);
