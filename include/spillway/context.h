@@ -3,6 +3,7 @@
 
 #include <spillway/export.h>
 
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace spillway {
 
@@ -35,16 +37,37 @@ struct Progress {
 /// Processes that share runs, as those of mpirun; the command makes one.
 class Executor;
 
+/// An amount of memory: a number of bytes, or a text such as "512M" or "2G", where K, M, G, T are
+/// powers of 1024. What is none is refused by whoever takes it.
+class MemorySize {
+ public:
+  /// Not said.
+  MemorySize() = default;
+  template <std::integral Number>
+  MemorySize(Number bytes)  // NOLINT(google-explicit-constructor): written as a number
+      : text_(std::to_string(bytes)) {}
+  MemorySize(std::string text)  // NOLINT(google-explicit-constructor): written as a text
+      : text_(std::move(text)) {}
+  MemorySize(const char* text)  // NOLINT(google-explicit-constructor): likewise
+      : text_(text) {}
+
+  [[nodiscard]] bool empty() const { return text_.empty(); }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
 struct ContextOptions {
-  /// Memory to keep to: "512M", "2G"; K, M, G, T are powers of 1024; 32M at least, for tetrahedra
-  /// 96M. Empty: a quarter of what this process may use, 2G at most.
-  std::string memory{};
+  /// Memory to keep to: 32M at least, for tetrahedra 96M. Empty: a quarter of what this process may
+  /// use, 2G at most.
+  MemorySize memory{};
   /// The most threads, the caller's among them; 0: as many as this process may use.
   unsigned threads = 0;
   /// Where scratch files go that do not fit into memory. Empty: $TMPDIR, else /tmp.
   std::string scratch_folder{};
-  /// Most that may lie there at a time, written as `memory`. Empty: no limit.
-  std::string scratch_limit{};
+  /// Most that may lie there at a time. Empty: no limit.
+  MemorySize scratch_limit{};
   /// Told from time to time how far the run is, by any thread, one call at a time.
   std::function<void(const Progress&)> progress{};
   /// Told what is worth a warning, and what explains how the run goes; by any thread.

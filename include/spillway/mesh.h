@@ -48,7 +48,7 @@ class SPILLWAY_API MeshSource {
  public:
   virtual ~MeshSource();
 
-  [[nodiscard]] virtual MeshHeader header() = 0;
+  [[nodiscard]] virtual MeshHeader header() const = 0;
   /// Replaces `block` by the next one; false at the end.
   virtual bool read(MeshBlock& block) = 0;
   /// Once read() has returned false. What is not known is 0.

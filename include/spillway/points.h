@@ -96,6 +96,9 @@ SPILLWAY_API std::unique_ptr<PointSource> open_points(const std::vector<std::str
 SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<3> points);
 /// The same without z.
 SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<2> points);
+/// Points that the source keeps: for those that nobody else does.
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(std::vector<Point<3>>&& points);
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(std::vector<Point<2>>&& points);
 
 /// What takes points. All calls come one at a time: begin() once, write() for each block, and
 /// finish() once, if nothing fails; a sink that is destroyed without it leaves nothing behind.

@@ -14,6 +14,7 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "tests/delaunay/cgal_oracle.h"
+#include "tests/delaunay/verify.h"
 #include "tests/generators/family_cases.h"
 
 namespace spillway::detail {

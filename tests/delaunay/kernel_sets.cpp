@@ -14,6 +14,7 @@
 #include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/generators/random.h"
 #include "tests/delaunay/cgal_oracle.h"
+#include "tests/delaunay/verify.h"
 
 namespace spillway::detail {
 namespace {

@@ -10,11 +10,11 @@ spillway_test(delaunay_unit_test unit
   LIBS spillway_delaunay)
 
 spillway_test(delaunay_property_test property
-  SOURCES delaunay/delaunay_property_test.cpp
+  SOURCES delaunay/delaunay_property_test.cpp delaunay/verify.cpp
   LIBS spillway_delaunay spillway_generators cgal_oracle
   TIMEOUT 900)
 
-add_library(kernel_sets STATIC delaunay/kernel_sets.cpp)
+add_library(kernel_sets STATIC delaunay/kernel_sets.cpp delaunay/verify.cpp)
 target_link_libraries(kernel_sets PUBLIC spillway_delaunay spillway_generators
                       PRIVATE cgal_oracle fmt::fmt)
 

@@ -22,9 +22,9 @@ Context::Context(ContextOptions options)
   }
   threads_ = options_.threads > 0 ? options_.threads : detail::available_threads();
   memory_ = options_.memory.empty() ? detail::default_memory_limit()
-                                    : detail::parse_memory_size(options_.memory);
+                                    : detail::parse_memory_size(options_.memory.text());
   if (!options_.scratch_limit.empty()) {
-    scratch_limit_ = detail::parse_memory_size(options_.scratch_limit);
+    scratch_limit_ = detail::parse_memory_size(options_.scratch_limit.text());
   }
 }
 

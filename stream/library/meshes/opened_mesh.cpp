@@ -51,7 +51,7 @@ void OpenedMesh::take() {
   }
 }
 
-std::unique_ptr<MeshStreamReader> OpenedMesh::open_stream() {
+std::unique_ptr<MeshStreamReader> OpenedMesh::open_stream() const {
   return copy_ ? open_mesh_stream_reader(disk(), copy_->name(), format_name_)
                : open_mesh_stream_reader(*input_, path_, format_name_);
 }
@@ -75,7 +75,7 @@ MeshStreamReader& OpenedMesh::reader(RunWatch& watch, bool all_totals) {
   return *reader_;
 }
 
-Mesh OpenedMesh::read_whole() {
+Mesh OpenedMesh::read_whole() const {
   Mesh mesh = read_mesh(*input_, path_, format_name_);
   if (!context_.options().warning) return mesh;
   for (const std::string& notice : mesh.notices) {
@@ -85,12 +85,12 @@ Mesh OpenedMesh::read_whole() {
   return mesh;
 }
 
-MeshStreamReader& OpenedMesh::stream() {
+MeshStreamReader& OpenedMesh::stream() const {
   if (!stream_) stream_ = open_stream();
   return *stream_;
 }
 
-const Mesh& OpenedMesh::whole(RunWatch& watch) {
+const Mesh& OpenedMesh::whole(RunWatch& watch) const {
   if (mesh_) return *mesh_;
   watch.begin("read mesh", "simplices");
   mesh_ = read_whole();
@@ -158,7 +158,7 @@ MeshStreamReader& OpenedMesh::public_reader() {
   return reader(watch, true);
 }
 
-spillway::MeshHeader OpenedMesh::header() {
+spillway::MeshHeader OpenedMesh::header() const {
   if (reader_) return public_header(reader_->header());
   if (is_stream_) return public_header(stream().header());
   RunWatch watch(context_);

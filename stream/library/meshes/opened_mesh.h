@@ -28,7 +28,7 @@ class OpenedMesh final : public spillway::MeshSource {
   OpenedMesh(std::string path, const MeshOptions& options, const Context& context);
   ~OpenedMesh() override;
 
-  [[nodiscard]] spillway::MeshHeader header() override;
+  [[nodiscard]] spillway::MeshHeader header() const override;
   bool read(spillway::MeshBlock& block) override;
   [[nodiscard]] spillway::MeshTotals totals() override;
 
@@ -47,11 +47,11 @@ class OpenedMesh final : public spillway::MeshSource {
   /// wanted, is read as a whole first, as phase "read mesh". Throws Error.
   MeshStreamReader& reader(RunWatch& watch, bool all_totals);
   /// A stream block by block, whatever totals it tells. Throws Error.
-  MeshStreamReader& stream();
+  [[nodiscard]] MeshStreamReader& stream() const;
   /// The whole mesh of another format, which is read first, as phase "read mesh".
-  const Mesh& whole(RunWatch& watch);
+  const Mesh& whole(RunWatch& watch) const;
   /// Reads the whole mesh, whatever its format, and tells no phase.
-  Mesh read_whole();
+  [[nodiscard]] Mesh read_whole() const;
 
   /// The box around all vertices in x and y, as their blocks give them, and the number of these. To
   /// be called before reader(); a stream is read once more for that, from a pipe into a scratch
@@ -67,7 +67,7 @@ class OpenedMesh final : public spillway::MeshSource {
   void check_totals(RunWatch& watch);
 
  private:
-  std::unique_ptr<MeshStreamReader> open_stream();
+  [[nodiscard]] std::unique_ptr<MeshStreamReader> open_stream() const;
   /// Of a pipe.
   void keep_copy(RunWatch& watch);
   MeshStreamReader& public_reader();
@@ -80,9 +80,10 @@ class OpenedMesh final : public spillway::MeshSource {
   const MeshFormat* format_ = nullptr;
   bool is_stream_ = false;
   std::shared_ptr<ScratchFolder> scratch_;
-  std::unique_ptr<ScratchFile> copy_;         ///< of a pipe that is read twice
-  std::unique_ptr<MeshStreamReader> stream_;  ///< opened, and not yet read
-  std::optional<Mesh> mesh_;                  ///< read, and not yet passed on
+  std::unique_ptr<ScratchFile> copy_;  ///< of a pipe that is read twice
+  // Of what is opened or read to know the header, too.
+  mutable std::unique_ptr<MeshStreamReader> stream_;  ///< opened, and not yet read
+  mutable std::optional<Mesh> mesh_;                  ///< read, and not yet passed on
   std::unique_ptr<MeshStreamReader> reader_;
   bool is_taken_ = false;
   bool is_reading_ = false;  ///< by read()

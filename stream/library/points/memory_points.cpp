@@ -1,6 +1,8 @@
 #include <spillway/points.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace spillway {
 namespace {
@@ -11,6 +13,7 @@ template <int D>
 class MemoryPoints final : public PointSource {
  public:
   explicit MemoryPoints(PointView<D> points) : points_(points) {}
+  explicit MemoryPoints(std::vector<Point<D>> points) : kept_(std::move(points)), points_(kept_) {}
 
   [[nodiscard]] PointsHeader header() const override {
     return {.coordinates = D, .count = points_.size()};
@@ -27,6 +30,7 @@ class MemoryPoints final : public PointSource {
   }
 
  private:
+  std::vector<Point<D>> kept_;  ///< or none
   PointView<D> points_;
   std::size_t next_ = 0;
 };
@@ -44,6 +48,14 @@ std::unique_ptr<PointSource> points_in_memory(PointView<3> points) {
 
 std::unique_ptr<PointSource> points_in_memory(PointView<2> points) {
   return std::make_unique<MemoryPoints<2>>(points);
+}
+
+std::unique_ptr<PointSource> points_in_memory(std::vector<Point<3>>&& points) {
+  return std::make_unique<MemoryPoints<3>>(std::move(points));
+}
+
+std::unique_ptr<PointSource> points_in_memory(std::vector<Point<2>>&& points) {
+  return std::make_unique<MemoryPoints<2>>(std::move(points));
 }
 
 }  // namespace spillway

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 /// Two triangles of a square in two blocks, of which a test spoils one.
 class Square : public MeshSource {
  public:
-  [[nodiscard]] MeshHeader header() override { return header_; }
+  [[nodiscard]] MeshHeader header() const override { return header_; }
   bool read(MeshBlock& block) override {
     if (next_ == blocks_.size()) return false;
     block = blocks_[next_++];

@@ -130,6 +130,18 @@ TEST_F(Streams, GiveTheMeshThatIsMadeInMemory) {
   }
 }
 
+TEST_F(Streams, KeepPointsThatNobodyElseKeeps) {
+  const Context context(options("32M"));
+  MeshInMemory mesh;
+  const auto source = points_in_memory(random_points(1000));
+  triangulate(*source, mesh, {}, context);
+  EXPECT_EQ(mesh.totals().vertices, 1000U);
+  const auto plane = points_in_memory(std::vector<Point<2>>{{0, 0}, {1, 0}, {0, 1}});
+  EXPECT_EQ(plane->header().coordinates, 2);
+  triangulate(*plane, mesh, {}, context);
+  EXPECT_EQ(mesh.corners().size(), 3U);
+}
+
 TEST_F(Streams, DoNoWorkForPointsThatAHeaderOnlyClaims) {
   const auto points = random_points(20'000);
   const auto hash_of = [&](PointSource& source, std::uint64_t tile_points, int dimension) {

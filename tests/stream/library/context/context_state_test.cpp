@@ -63,6 +63,15 @@ Context context_in(const std::string& folder, const std::string& limit = "") {
   return Context(options);
 }
 
+TEST(ContextState, MemoryIsANumberOrAText) {
+  EXPECT_EQ(Context({.memory = 64 << 20}).memory(), 64U << 20);
+  EXPECT_EQ(Context({.memory = std::uint64_t{1} << 33}).memory(), std::uint64_t{1} << 33);
+  EXPECT_EQ(Context({.memory = "64M", .scratch_limit = 1000}).scratch_limit(), 1000U);
+  EXPECT_EQ(Context({.memory = std::string("64M")}).memory(), 64U << 20);
+  EXPECT_THROW(Context({.memory = -1}), Error);
+  EXPECT_THROW(Context({.memory = 0}), Error);
+}
+
 TEST(ContextState, TheScratchFolderIsSharedAndGoesWithItsLastUser) {
   const TemporaryFiles files;
   fs::create_directory(files.path("scratch"));

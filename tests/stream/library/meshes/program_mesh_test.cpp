@@ -15,7 +15,7 @@ namespace {
 /// Two triangles of a square in two blocks.
 class Square final : public spillway::MeshSource {
  public:
-  [[nodiscard]] spillway::MeshHeader header() override { return {}; }
+  [[nodiscard]] spillway::MeshHeader header() const override { return {}; }
   bool read(spillway::MeshBlock& block) override {
     if (next_ == blocks.size()) return false;
     block = blocks[next_++];

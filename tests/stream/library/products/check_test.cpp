@@ -23,7 +23,7 @@ using testing::OwnPoints;
 /// A program's own mesh: a square of two triangles.
 class Square : public MeshSource {
  public:
-  [[nodiscard]] MeshHeader header() override { return {}; }
+  [[nodiscard]] MeshHeader header() const override { return {}; }
   bool read(MeshBlock& block) override {
     if (std::exchange(is_read_, true)) return false;
     block.vertices = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 2, 0}};

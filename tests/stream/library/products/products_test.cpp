@@ -42,7 +42,7 @@ std::string bytes_of(const std::string& path) {
 /// Blocks of a mesh that were kept, once more.
 class KeptMesh : public MeshSource {
  public:
-  [[nodiscard]] MeshHeader header() override { return header_; }
+  [[nodiscard]] MeshHeader header() const override { return header_; }
   bool read(MeshBlock& block) override {
     if (next_ == blocks_.size()) return false;
     block = blocks_[next_++];

@@ -1,8 +1,8 @@
+#include "tests/delaunay/verify.h"
+
 #include <algorithm>
 #include <set>
-#include <string>
 
-#include "src/delaunay/common/triangulation.h"
 #include "src/geometry/predicates.h"
 
 namespace spillway::detail {
