@@ -1,0 +1,27 @@
+#include <pybind11/pybind11.h>
+#include <spillway/error.h>
+
+#include <exception>
+
+#include "python/bindings.h"
+
+namespace spillway::python {
+namespace {
+
+namespace py = pybind11;
+
+void translate(std::exception_ptr fault) {
+  try {
+    std::rethrow_exception(fault);
+  } catch (const Error& error) {
+    const py::object make = py::module_::import("spillway.errors").attr("make_error");
+    const py::object made = make(to_string(error.code()), error.what());
+    PyErr_SetObject(py::type::handle_of(made).ptr(), made.ptr());
+  }
+}
+
+}  // namespace
+
+void bind_errors(py::module_& /*module*/) { py::register_local_exception_translator(translate); }
+
+}  // namespace spillway::python

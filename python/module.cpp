@@ -1,0 +1,21 @@
+// The extension `spillway._spillway`. What users see of it stands in the Python files beside it.
+
+#include <pybind11/pybind11.h>
+#include <spillway/context.h>
+#include <spillway/version.h>
+
+#include <string>
+
+#include "python/bindings.h"
+
+PYBIND11_MODULE(_spillway, module) {
+  namespace python = spillway::python;
+  module.attr("version") = std::string(spillway::version());
+  // A child of fork() has none of its parent's threads. If the library still counted on them, it
+  // would wait for them.
+  module.def(
+      "end_threads", [] { const spillway::Context last; },
+      "End the threads that the library keeps for later calls, unless some are at work.");
+  python::bind_errors(module);
+  python::bind_delaunay(module);
+}

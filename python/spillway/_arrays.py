@@ -1,0 +1,87 @@
+"""What users give, as arrays that the extension module takes: checked, and copied only if need be."""
+
+from __future__ import annotations
+
+import operator
+from typing import Any
+
+import numpy as np
+
+from .errors import InvalidArgumentError
+
+_MOST_EXACT_INTEGER = 2**53
+
+
+def as_floats(numbers: Any, name: str) -> np.ndarray:
+    """Real numbers as an array of float64 in native byte order.
+
+    Such an array is returned as it is, whatever its strides; others are converted. Raises
+    InvalidArgumentError for what has no exact value as float64.
+    """
+    if isinstance(numbers, np.ma.MaskedArray) and np.ma.is_masked(numbers):
+        raise InvalidArgumentError(f"{name} has masked elements; leave them out")
+    try:
+        array = np.asarray(numbers)
+    except ValueError as fault:
+        raise InvalidArgumentError(f"{name} is no array of numbers: {fault}") from fault
+    if array.dtype == np.float64 and array.dtype.isnative:
+        return array
+    if array.dtype.kind not in "iuf" or array.dtype.itemsize > 8:
+        raise InvalidArgumentError(
+            f"{name} has elements of type {array.dtype}; give real numbers of at most 64 bits, "
+            "as float64"
+        )
+    if array.dtype.kind in "iu" and array.dtype.itemsize == 8 and array.size > 0:
+        if max(int(array.max()), -int(array.min())) > _MOST_EXACT_INTEGER:
+            raise InvalidArgumentError(
+                f"{name} has integers beyond 2**53, which float64 does not hold exactly; "
+                "subtract an offset from them"
+            )
+    return array.astype(np.float64)
+
+
+def as_points(points: Any, dim: int | None) -> tuple[np.ndarray, np.ndarray | None]:
+    """Coordinates as rows of two or three, and the heights that points in the plane carry."""
+    array = as_floats(points, "points")
+    if array.ndim != 2 or array.shape[1] not in (2, 3):
+        raise InvalidArgumentError(
+            f"points has the shape {array.shape}; give rows of 2 or 3 coordinates, as (n, 2)"
+        )
+    if dim not in (None, 2, 3):
+        raise InvalidArgumentError(f"dim is {dim!r}; give 2, 3 or None")
+    columns = array.shape[1]
+    if dim == 3 and columns == 2:
+        raise InvalidArgumentError("dim is 3, but points has 2 columns; give 3 coordinates a point")
+    if dim is None or dim == columns:
+        return array, None
+    z = np.array(array[:, 2])
+    bad = np.flatnonzero(~np.isfinite(z))
+    if bad.size > 0:
+        raise InvalidArgumentError(f"point {bad[0]} has a z that is not finite: {z[bad[0]]}")
+    return array[:, :2], frozen(z)
+
+
+def as_places(places: Any, ndim: int) -> np.ndarray:
+    """Coordinates of places, in the shape (..., ndim)."""
+    array = as_floats(places, "xi")
+    if array.ndim == 0 or array.shape[-1] != ndim:
+        raise InvalidArgumentError(
+            f"xi has the shape {array.shape}; its last axis must have {ndim} coordinates"
+        )
+    return array
+
+
+def as_thread_count(threads: Any) -> int:
+    """A number of threads; 0 stands for as many as the process may use."""
+    if threads is None:
+        return 0
+    count = operator.index(threads)
+    if count < 1 or count > 4096:
+        raise InvalidArgumentError(f"threads is {count}; give 1 to 4096, or None for all")
+    return count
+
+
+def frozen(array: np.ndarray) -> np.ndarray:
+    """The array, made read-only."""
+    array.flags.writeable = False
+    return array
