@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ._arrays import Floats
+
 _LEAST_CONDITION = 1000 * np.finfo(float).eps
 
 
-def barycentric_transform(corners: np.ndarray) -> np.ndarray:
+def barycentric_transform(corners: Floats) -> Floats:
     """For each simplex the inverse of its edges from the last vertex, and that vertex.
 
     Where the inverse would be all rounding error, it is not a number, as in SciPy.
@@ -27,7 +29,7 @@ def barycentric_transform(corners: np.ndarray) -> np.ndarray:
     return transform
 
 
-def lifted_planes(corners: np.ndarray, centres: np.ndarray) -> np.ndarray:
+def lifted_planes(corners: Floats, centres: Floats) -> Floats:
     """The hyperplanes of the simplices on the paraboloid z = |x|^2, as downward unit normals and
     offsets.
 
@@ -41,7 +43,7 @@ def lifted_planes(corners: np.ndarray, centres: np.ndarray) -> np.ndarray:
         return planes / np.linalg.norm(planes[:, :-1], axis=1)[:, None]
 
 
-def _inverse(matrices: np.ndarray) -> np.ndarray:
+def _inverse(matrices: Floats) -> Floats:
     if matrices.shape[1] == 2:
         (a, b), (c, d) = np.moveaxis(matrices, 0, -1)
         rows = np.array([[d, -b], [-c, a]]) / (a * d - b * c)
@@ -51,5 +53,5 @@ def _inverse(matrices: np.ndarray) -> np.ndarray:
     return rows / (a * rows[:, 0]).sum(axis=1)[:, None, None]
 
 
-def _one_norm(matrices: np.ndarray) -> np.ndarray:
+def _one_norm(matrices: Floats) -> Floats:
     return np.abs(matrices).sum(axis=1).max(axis=1)

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import operator
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import InvalidArgumentError
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.integer[Any]]
+_Array = TypeVar("_Array", bound=NDArray[Any])
 
 _MOST_EXACT_INTEGER = 2**53
 
 
-def as_floats(numbers: Any, name: str) -> np.ndarray:
+def as_floats(numbers: Any, name: str) -> Floats:
     """Real numbers as an array of float64 in native byte order.
 
     Such an array is returned as it is, whatever its strides; others are converted. Raises
@@ -40,7 +45,7 @@ def as_floats(numbers: Any, name: str) -> np.ndarray:
     return array.astype(np.float64)
 
 
-def as_points(points: Any, dim: int | None) -> tuple[np.ndarray, np.ndarray | None]:
+def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:
     """Coordinates as rows of two or three, and the heights that points in the plane carry."""
     array = as_floats(points, "points")
     if array.ndim != 2 or array.shape[1] not in (2, 3):
@@ -61,7 +66,7 @@ def as_points(points: Any, dim: int | None) -> tuple[np.ndarray, np.ndarray | No
     return array[:, :2], frozen(z)
 
 
-def as_places(places: Any, ndim: int) -> np.ndarray:
+def as_places(places: Any, ndim: int) -> Floats:
     """Coordinates of places, in the shape (..., ndim)."""
     array = as_floats(places, "xi")
     if array.ndim == 0 or array.shape[-1] != ndim:
@@ -81,7 +86,7 @@ def as_thread_count(threads: Any) -> int:
     return count
 
 
-def frozen(array: np.ndarray) -> np.ndarray:
+def frozen(array: _Array) -> _Array:
     """The array, made read-only."""
     array.flags.writeable = False
     return array

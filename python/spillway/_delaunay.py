@@ -7,10 +7,11 @@ import sys
 from typing import Any, Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _spillway
 from ._affine import barycentric_transform, lifted_planes
-from ._arrays import as_floats, as_places, as_points, as_thread_count, frozen
+from ._arrays import Floats, Integers, as_floats, as_places, as_points, as_thread_count, frozen
 from .errors import InvalidArgumentError, TooLargeError
 
 _MOST_NARROW = 2**31 - 1
@@ -98,11 +99,11 @@ class Delaunay:
         coordinates, self.z = as_points(points, dim)
         self._threads = threads
         self._mesh = _make_mesh(coordinates, as_thread_count(threads), progress)
-        self.points: np.ndarray = self._mesh.points
-        self.simplices: np.ndarray = self._mesh.cell_vertices
-        self.neighbors: np.ndarray = self._mesh.cell_neighbours
-        self.convex_hull: np.ndarray = self._mesh.hull_facets
-        self.vertex_to_simplex: np.ndarray = self._mesh.vertex_cells
+        self.points: Floats = self._mesh.points
+        self.simplices: Integers = self._mesh.cell_vertices
+        self.neighbors: Integers = self._mesh.cell_neighbours
+        self.convex_hull: Integers = self._mesh.hull_facets
+        self.vertex_to_simplex: Integers = self._mesh.vertex_cells
         self.npoints, self.ndim = self.points.shape
         self.nsimplex = len(self.simplices)
 
@@ -111,29 +112,31 @@ class Delaunay:
         return f"<spillway.Delaunay: {self.nsimplex} {cells} of {self.npoints} points>"
 
     @functools.cached_property
-    def coplanar(self) -> np.ndarray:
+    def coplanar(self) -> Integers:
+        """The points that equal an earlier one, each with a simplex that has that one as a vertex,
+        and that vertex, shape (nduplicates, 3)."""
         point, vertex = self._mesh.duplicates.T
         return frozen(np.column_stack([point, self.vertex_to_simplex[vertex], vertex]))
 
     @functools.cached_property
-    def min_bound(self) -> np.ndarray:
+    def min_bound(self) -> Floats:
         """The least coordinates of the points, shape (ndim,)."""
         return frozen(self.points.min(axis=0))
 
     @functools.cached_property
-    def max_bound(self) -> np.ndarray:
+    def max_bound(self) -> Floats:
         """The greatest coordinates of the points, shape (ndim,)."""
         return frozen(self.points.max(axis=0))
 
     @functools.cached_property
-    def vertex_neighbor_vertices(self) -> tuple[np.ndarray, np.ndarray]:
+    def vertex_neighbor_vertices(self) -> tuple[Integers, Integers]:
         """The vertices that have an edge in common with each: ``(indptr, indices)``, where those of
         point k, ascending, are ``indices[indptr[k]:indptr[k + 1]]``."""
         indptr, indices = self._mesh.vertex_neighbours()
         return frozen(indptr), frozen(indices)
 
     @functools.cached_property
-    def transform(self) -> np.ndarray:
+    def transform(self) -> Floats:
         """The affine maps to barycentric coordinates, shape (nsimplex, ndim + 1, ndim).
 
         With ``T = transform[i]``, ``c = T[:ndim] @ (x - T[ndim])`` are the coordinates of a place x
@@ -143,7 +146,7 @@ class Delaunay:
         return frozen(barycentric_transform(self.points[self.simplices]))
 
     @functools.cached_property
-    def circumcenters(self) -> np.ndarray:
+    def circumcenters(self) -> Floats:
         """The centres of the simplices' circumspheres, shape (nsimplex, ndim); infinite where they
         lie beyond the largest float64."""
         return frozen(self._mesh.circumcentres())
@@ -155,7 +158,7 @@ class Delaunay:
         return f"{self._mesh.canonical_hash():016x}"
 
     @functools.cached_property
-    def faces(self) -> np.ndarray:
+    def faces(self) -> Integers:
         """The simplices in one row as PyVista has them, each led by the number of its vertices:
         ``[3, a, b, c, 3, ...]`` for ``PolyData(points, faces)``, ``[4, a, b, c, d, 4, ...]`` for
         ``UnstructuredGrid``."""
@@ -264,7 +267,7 @@ class Delaunay:
         points = self.points if self.z is None else np.column_stack([self.points, self.z])
         return meshio.Mesh(points, [("triangle" if self.ndim == 2 else "tetra", self.simplices)])
 
-    def _ask(self, question: Callable[[np.ndarray], np.ndarray], xi: Any, kind: Any) -> Any:
+    def _ask(self, question: Callable[[Floats], NDArray[Any]], xi: Any, kind: Any) -> Any:
         places = as_places(xi, self.ndim)
         rows = places.reshape(-1, self.ndim)
         answers = np.empty(len(rows), kind)
@@ -276,10 +279,10 @@ class Delaunay:
     def __copy__(self) -> Delaunay:
         return self
 
-    def __deepcopy__(self, memo: dict) -> Delaunay:
+    def __deepcopy__(self, memo: dict[int, Any]) -> Delaunay:
         return self
 
-    def __reduce__(self) -> tuple:
+    def __reduce__(self) -> tuple[Any, ...]:
         points = self.points if self.z is None else np.column_stack([self.points, self.z])
         make = functools.partial(type(self), dim=self.ndim, threads=self._threads)
         return make, (points,)
@@ -298,17 +301,17 @@ class Delaunay:
         return type(self) if scipy_module is None else scipy_module.Delaunay
 
     @property
-    def _points(self) -> np.ndarray:
+    def _points(self) -> Floats:
         return self.points
 
     @functools.cached_property
-    def equations(self) -> np.ndarray:
+    def equations(self) -> Floats:
         """The hyperplanes of the simplices on the paraboloid z = |x|^2, as downward unit normals and
         offsets, shape (nsimplex, ndim + 2)."""
         return frozen(lifted_planes(self.points[self.simplices], self.circumcenters))
 
 
-def _make_mesh(points: np.ndarray, threads: int, progress: Any) -> Any:
+def _make_mesh(points: Floats, threads: int, progress: Any) -> Any:
     count, ndim = points.shape
     narrow, wide = getattr(_spillway, f"Mesh{ndim}"), getattr(_spillway, f"WideMesh{ndim}")
     if count * _SIMPLICES_A_POINT[ndim] > _MOST_NARROW:

@@ -125,7 +125,7 @@ class Progress(unittest.TestCase):
             told.append(fraction)
             threads.add(threading.get_ident())
 
-        spillway.Delaunay(random_points(1_500_000, 2), progress=progress)
+        spillway.Delaunay(random_points(1_500_000, 2), threads=1, progress=progress)
         self.assertGreater(len(told), 1)
         self.assertEqual(told, sorted(set(told)))
         self.assertEqual(told[-1], 1)
@@ -136,7 +136,7 @@ class Progress(unittest.TestCase):
             raise ZeroDivisionError(f"at {fraction}")
 
         with self.assertRaises(ZeroDivisionError):
-            spillway.Delaunay(random_points(1_500_000, 2), progress=progress)
+            spillway.Delaunay(random_points(1_500_000, 2), threads=1, progress=progress)
 
 
 if __name__ == "__main__":
