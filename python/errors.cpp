@@ -2,6 +2,7 @@
 #include <spillway/error.h>
 
 #include <exception>
+#include <utility>
 
 #include "python/bindings.h"
 
@@ -12,7 +13,7 @@ namespace py = pybind11;
 
 void translate(std::exception_ptr fault) {
   try {
-    std::rethrow_exception(fault);
+    std::rethrow_exception(std::move(fault));
   } catch (const Error& error) {
     const py::object make = py::module_::import("spillway.errors").attr("make_error");
     const py::object made = make(to_string(error.code()), error.what());
