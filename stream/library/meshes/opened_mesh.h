@@ -47,7 +47,7 @@ class OpenedMesh final : public spillway::MeshSource {
   /// wanted, is read as a whole first, as phase "read mesh". Throws Error.
   MeshStreamReader& reader(RunWatch& watch, bool all_totals);
   /// A stream block by block, whatever totals it tells. Throws Error.
-  [[nodiscard]] MeshStreamReader& stream() const;
+  MeshStreamReader& stream() const;
   /// The whole mesh of another format, which is read first, as phase "read mesh".
   const Mesh& whole(RunWatch& watch) const;
   /// Reads the whole mesh, whatever its format, and tells no phase.
