@@ -8,8 +8,8 @@
 namespace spillway::detail {
 namespace {
 
-/// Enough to tell the exponent; at worst they make as many simplices as pairs, in 3 MiB.
-constexpr std::size_t kSample = 256;
+/// Enough to tell the exponent; at worst they make as many simplices as pairs, in 1 MiB.
+constexpr std::size_t kSample = 128;
 constexpr std::size_t kPart = 4;  ///< of the sample, which is compared with all of it
 
 /// What one of very many takes in a base case.

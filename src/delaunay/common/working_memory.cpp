@@ -97,7 +97,7 @@ void* Slab::grow(std::size_t bytes, std::size_t used) {
   if (bytes > capacity()) {
     // In stretches, whose old place is given back at once: so the old slab and the new one never
     // take memory for the same.
-    constexpr std::size_t kStretch = 4 * kHugePage;
+    constexpr std::size_t kStretch = kHugePage;
     Slab larger = of(bytes);
     for (std::size_t done = 0; done < used; done += kStretch) {
       const std::size_t size = std::min(kStretch, used - done);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_3d/cells.h"
@@ -36,7 +37,8 @@ class CellMemory {
   CellArray grow(std::size_t cells, std::size_t used, const WorkForecast& forecast) {
     const std::size_t wanted = std::min(cells + cells / 4, CellArray::kMaxCells);
     if (lease_ != nullptr && wanted > leased_) {
-      lease_->grow((wanted - leased_) * sizeof(Cell), forecast);
+      release_kept_slabs();  // no lease covers what nobody uses
+      lease_->grow((wanted - leased_) * sizeof(Cell) + std::exchange(ends_, 0), forecast);
       leased_ = wanted;
     }
     return CellArray(slab_->grow(wanted * sizeof(Cell), used * sizeof(Cell)));
@@ -46,6 +48,9 @@ class CellMemory {
   Slab* slab_;
   WorkLease* lease_;
   std::size_t leased_;  ///< cells
+  /// Once, for all but the cells: what huge pages take at the ends of an array that grows and
+  /// moves, and what the allocator keeps of freed memory meanwhile; measured.
+  std::size_t ends_ = std::size_t{14} << 20;
 };
 
 }  // namespace spillway::detail::kernel_3d
