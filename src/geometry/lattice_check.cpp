@@ -83,6 +83,18 @@ bool any_beyond(std::span<const LatticePoint> points, double most) {
   return sums > kLargestBits;
 }
 
+Box<3> nearest_integers(const Lattice& lattice, const Box<3>& world) {
+  Box<3> box;
+  for (const Point<3>& corner : {world.lo, world.hi}) {
+    Point<3> integers;
+    for (int axis = 0; axis < 3; ++axis) {
+      integers[axis] = std::round((corner[axis] - lattice.offset[axis]) / lattice.scale[axis]);
+    }
+    box.expand(integers);
+  }
+  return box;
+}
+
 Box<3> integers_of(const Lattice& lattice, const Box<3>& world) {
   Box<3> integers;
   if (world.empty()) return integers;

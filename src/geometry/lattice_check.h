@@ -38,6 +38,10 @@ Box<3> box_around(const Points& points) {
   return box;
 }
 
+/// A box of output coordinates as points at its edges have them on the lattice: what rounding has
+/// done to it is undone.
+Box<3> nearest_integers(const Lattice& lattice, const Box<3>& world);
+
 /// Integers that are mapped into a box of output coordinates, and perhaps a few more.
 Box<3> integers_of(const Lattice& lattice, const Box<3>& world);
 

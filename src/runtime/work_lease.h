@@ -26,10 +26,9 @@ class WorkLease {
   /// wait for this work.
   void extend(std::uint64_t bytes, const char* purpose);
 
-  /// Takes more than was thought. Of all work only one at a time does so, until
-  /// its end: two that grow beside each other might each hold what the other one needs. Throws
-  /// Error (kOutOfBudget), which names a limit by what is forecast. For any thread of the work; not
-  /// while it is moved.
+  /// Takes more than was thought. Of all work only one at a time does so, until its end: two that
+  /// grow beside each other might each hold what the other one needs. Throws Error (kOutOfBudget),
+  /// which names a limit by what is forecast. For any thread of the work; not while it is moved.
   void grow(std::uint64_t bytes, const WorkForecast& forecast);
 
   /// Whether it has grown.

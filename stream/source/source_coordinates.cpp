@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "formats/points/point_formats.h"
 #include "src/geometry/lattice_check.h"
@@ -154,13 +153,11 @@ Box<3> SourceCoordinates::told_extent(std::size_t input) const {
 
 Box<3> SourceCoordinates::told_box(std::size_t input, const Box<3>& world) const {
   const PointHeader& header = header_of(input);
+  const Box<3> told = header.lattice ? nearest_integers(*header.lattice, world) : world;
   Box<3> box;
-  for (const Point<3>& told : {world.lo, world.hi}) {
-    LatticePoint corner(told);
-    for (int k = 0; header.lattice && k < 3; ++k) {
-      corner[k] = std::round((corner[k] - header.lattice->offset[k]) / header.lattice->scale[k]);
-    }
-    box.expand(inputs_[input].as_it_is ? corner : placed(input, corner));
+  for (const Point<3>& corner : {told.lo, told.hi}) {
+    const LatticePoint point(corner);
+    box.expand(inputs_[input].as_it_is ? point : placed(input, point));
   }
   return box;
 }

@@ -107,8 +107,8 @@ struct PointHeader {
   /// order. Empty where it does not tell.
   std::vector<PointRegion> regions;
   bool regions_are_exact = false;  ///< not rounded: the reader proves that no point lies outside
-  std::uint64_t cells =
-      0;  ///< of which the reader keeps a PointRegion each; a region has one or more
+  /// Of which the reader keeps a PointRegion each; a region has one or more.
+  std::uint64_t cells = 0;
 };
 
 struct PointReaderOptions {

@@ -65,10 +65,10 @@ class LasReader : public PointReader {
     if (std::exchange(raw.unread, false)) {
       check_complete(raw, source_->read_at(raw.offset, raw.bytes).value());
     }
-    // Every point is stored, and the place moves on only past those that are kept: no branch.
     block.points.resize(raw.count);
     block.index.resize(raw.count);
     block.attributes.resize(attributes_ ? raw.count : 0);
+    // Every point is stored, and the place moves on only past those that are kept: no branch.
     std::size_t kept = 0;
     const std::byte* record = raw.bytes.data();
     for (std::size_t i = 0; i < raw.count; ++i, record += las_.record_length) {

@@ -11,6 +11,7 @@
 
 #include "formats/meshes/common/mesh_block.h"
 #include "src/error.h"
+#include "src/geometry/lattice_check.h"
 #include "stream/library/points/public_points.h"
 
 namespace spillway::detail {
@@ -71,7 +72,7 @@ MeshStreamHeader stream_header(const spillway::MeshHeader& header) {
 
 std::optional<Box<3>> extent_of_blocks(const MeshStreamHeader& header) {
   if (!header.extent || !header.lattice) return header.extent;
-  return box_on(*header.lattice, *header.extent);
+  return nearest_integers(*header.lattice, *header.extent);
 }
 
 spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& block,
@@ -168,7 +169,6 @@ std::vector<LatticePoint> ProgramBlocks::vertices_of(const spillway::MeshBlock& 
 LatticePoint ProgramBlocks::found(const spillway::Point<3>& vertex, std::uint64_t number) const {
   const Lattice& lattice = *header_.lattice;
   LatticePoint place(vertex);
-  const std::string name = fmt::format("vertex {}", number);
   for (int axis = 0; axis < 3; ++axis) {
     if (axis == 2 && header_.dimension == 2) {
       const double between = (vertex[axis] - lattice.offset[axis]) / lattice.scale[axis];
@@ -181,7 +181,7 @@ LatticePoint ProgramBlocks::found(const spillway::Point<3>& vertex, std::uint64_
         continue;
       }
     }
-    place[axis] = integer_on(lattice, axis, vertex[axis], name);
+    place[axis] = integer_on(lattice, axis, vertex[axis], "vertex", number);
   }
   return place;
 }

@@ -214,9 +214,8 @@ void PointFile::write(std::span<const spillway::Point<3>> points) {
   block.points = points_without_lattice(points);
   const int axes = how_.coordinates == 3 && how_.lattice ? 3 : 2;
   for (std::size_t i = 0; source_ && i < block.size(); ++i) {
-    const std::string name = fmt::format("point {}", written_ + i);
     for (int axis = 0; axis < axes; ++axis) {
-      block.points[i][axis] = integer_on(*source_, axis, points[i][axis], name);
+      block.points[i][axis] = integer_on(*source_, axis, points[i][axis], "point", written_ + i);
     }
   }
   block.index.resize(points.size());

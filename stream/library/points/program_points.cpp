@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "src/error.h"
+#include "src/geometry/lattice_check.h"
 #include "stream/library/given_crs.h"
 #include "stream/library/points/public_points.h"
 
@@ -23,7 +24,7 @@ ProgramPoints::ProgramPoints(spillway::PointSource& source, int dimension)
   if (!lattice_->isotropic(std::max(1, dimension)) || (dimension == 3 && !heights_on_lattice_)) {
     lattice_.reset();
   } else if (extent_) {
-    extent_ = box_on(*lattice_, *world_extent_);
+    extent_ = nearest_integers(*lattice_, *world_extent_);
   }
 }
 
@@ -69,7 +70,7 @@ LatticePoint ProgramPoints::placed(const spillway::Point<3>& point, std::uint64_
   if (!lattice_) return placed;
   const int axes = heights_on_lattice_ && header_.coordinates == 3 ? 3 : 2;
   for (int axis = 0; axis < axes; ++axis) {
-    placed[axis] = integer_on(*lattice_, axis, point[axis], fmt::format("point {}", number));
+    placed[axis] = integer_on(*lattice_, axis, point[axis], "point", number);
   }
   return placed;
 }

@@ -44,25 +44,14 @@ std::optional<Lattice> checked_lattice(const std::optional<spillway::Lattice>& l
   return Lattice{lattice->scale, lattice->offset};
 }
 
-double integer_on(const Lattice& lattice, int axis, double coordinate, std::string_view what) {
+double integer_on(const Lattice& lattice, int axis, double coordinate, const char* what,
+                  std::uint64_t number) {
   const std::optional<double> integer = lattice.to_integer(axis, coordinate);
   if (integer) return *integer;
-  throw InvalidArgument(
-      fmt::format("{} of {} is {}, which is not on the lattice of scale {} and offset {} that the "
-                  "header tells: leave that out, or round",
-                  "xyz"[axis], what, coordinate, lattice.scale[axis], lattice.offset[axis]));
-}
-
-Box<3> box_on(const Lattice& lattice, const Box<3>& world) {
-  Box<3> box;
-  for (const Point<3>& corner : {world.lo, world.hi}) {
-    Point<3> integers;
-    for (int axis = 0; axis < 3; ++axis) {
-      integers[axis] = std::round((corner[axis] - lattice.offset[axis]) / lattice.scale[axis]);
-    }
-    box.expand(integers);
-  }
-  return box;
+  throw InvalidArgument(fmt::format(
+      "{} of {} {} is {}, which is not on the lattice of scale {} and offset {} that the "
+      "header tells: leave that out, or round",
+      "xyz"[axis], what, number, coordinate, lattice.scale[axis], lattice.offset[axis]));
 }
 
 std::optional<Box<3>> told_box(const std::optional<Extent>& extent, const char* what) {

@@ -4,9 +4,9 @@
 
 #include <spillway/points.h>
 
+#include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "src/geometry/box.h"
@@ -28,11 +28,9 @@ std::optional<spillway::Lattice> public_lattice(const std::optional<Lattice>& la
 std::optional<Lattice> checked_lattice(const std::optional<spillway::Lattice>& lattice);
 
 /// The integer of a coordinate on an axis of a lattice. Throws Error(kInvalidArgument) if there is
-/// none, where `what` is what has the coordinate ("point 7").
-double integer_on(const Lattice& lattice, int axis, double coordinate, std::string_view what);
-
-/// A box of output coordinates as the points at its edges have them on a lattice.
-Box<3> box_on(const Lattice& lattice, const Box<3>& world);
+/// none, where `what` of that number ("point" 7) has the coordinate.
+double integer_on(const Lattice& lattice, int axis, double coordinate, const char* what,
+                  std::uint64_t number);
 
 /// The box that a program tells of `what` ("points", "a mesh"), if it does. Throws
 /// Error(kInvalidArgument) unless all numbers are finite and low is nowhere above high.
