@@ -9,6 +9,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -24,6 +25,7 @@ namespace spillway::detail::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 /// Starts a command, waits until `ready`, sends the signal and returns the exit code.
@@ -31,7 +33,7 @@ int interrupt(const Workspace& work, const std::vector<std::string>& arguments, 
               const std::function<bool()>& ready) {
   const pid_t process = work.start(arguments);
   bool was_ready = ready();  // it need not stay so
-  for (int i = 0; i < 2000 && !was_ready; ++i) {
+  for (int i = 0; i < 12000 && !was_ready; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     was_ready = ready();
   }
@@ -145,10 +147,15 @@ TEST(Signals, ThatWaitWhereTheyAreBlockedAreTakenInMain) {
   EXPECT_THAT(work.names(), testing::ElementsAre("messages"));
 }
 
+/// A signal that comes after the output has its name finds it complete.
 TEST(Signals, WhileScratchFilesComeAndGoLeaveNothing) {
   const Workspace work;
   work.succeed("spillway generate -q terrain -n 1e6 -o in.las; mkdir tmp");
   const auto before = work.names();
+  const std::filesystem::path mesh = work.folder() / "mesh.ply";
+  work.succeed("spillway triangulate -q in.las -o mesh.ply --tile 4000 --memory 32M");
+  const std::uintmax_t complete_size = file_size(mesh);
+  remove(mesh);
   std::mt19937 random(20);
   constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
   int interrupted = 0;
@@ -159,15 +166,17 @@ TEST(Signals, WhileScratchFilesComeAndGoLeaveNothing) {
     const int number = kSignals[run % kSignals.size()];
     kill(process, number);
     const int exit_code = wait_for_exit(process);
-    if (exit_code == 0) {
-      std::filesystem::remove(work.folder() / "mesh.ply");
-    } else if (exit_code == 128 + number) {
-      ++interrupted;
-      // Before main a signal ends the process at once.
-      EXPECT_THAT(work.messages(), testing::AnyOf("", StartsWith("spillway: interrupted by SIG")));
+    if (exists(mesh)) {
+      EXPECT_EQ(file_size(mesh), complete_size);
+      EXPECT_THAT(work.messages(), Not(HasSubstr("nothing was written")));
+      remove(mesh);
     } else {
-      ADD_FAILURE() << exit_code << ": " << work.messages();
+      EXPECT_NE(exit_code, 0);
     }
+    EXPECT_THAT(exit_code, testing::AnyOf(0, 128 + number)) << work.messages();
+    if (exit_code != 0) ++interrupted;
+    // Before main a signal ends the process at once.
+    EXPECT_THAT(work.messages(), testing::AnyOf("", StartsWith("spillway: interrupted by SIG")));
     ASSERT_EQ(work.names(), before) << "run " << run;
     ASSERT_TRUE(std::filesystem::is_empty(work.folder() / "tmp")) << "run " << run;
   }
@@ -177,7 +186,7 @@ TEST(Signals, WhileScratchFilesComeAndGoLeaveNothing) {
 TEST(Signals, WhileGdalWritesLeaveNothing) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   const Workspace work;
-  work.succeed("spillway generate -q terrain -n 1e5 -o in.las; mkdir tmp");
+  work.succeed("spillway generate -q terrain -n 3e5 -o in.las; mkdir tmp");
   const auto before = work.names();
   std::mt19937 random(21);
   for (int run = 0; run < 8; ++run) {
