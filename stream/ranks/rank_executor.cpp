@@ -6,16 +6,14 @@
 
 #include "src/error.h"
 #include "src/geometry/simplex_name.h"
-#include "src/parallel/parallel.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/meshes/mesh_file.h"
-#include "stream/library/products/dem_file.h"
 #include "stream/library/run.h"
 #include "stream/pipeline.h"
 #include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/mesh_output.h"
 #include "stream/ranks/rank_pipeline.h"
-#include "stream/ranks/raster_merge.h"
+#include "stream/ranks/share_messages.h"
 #include "stream/ranks/shared_report.h"
 
 namespace spillway::detail {
@@ -45,10 +43,11 @@ class RankExecutor final : public Executor {
     if (source == nullptr) {
       throw InvalidArgument("ranks share points of files, and these are of a program");
     }
-    if (auto* const mesh = dynamic_cast<MeshFile*>(&run.sink))
-      return write_mesh(run, *source, *mesh);
-    if (auto* const dem = dynamic_cast<DemFile*>(&run.sink)) return write_dem(run, *source, *dem);
-    throw InvalidArgument("ranks share the making of mesh files and DEMs, and this is neither");
+    if (const MeshTarget* const target = run.sink.as_mesh_file()) {
+      return write_mesh(run, *source, *target);
+    }
+    if (run.sink.has_shares()) return combine_shares(run, *source);
+    throw InvalidArgument("this sink takes the mesh of one process: triangulate without ranks");
   }
 
  private:
@@ -67,30 +66,36 @@ class RankExecutor final : public Executor {
     return report;
   }
 
-  Report write_mesh(Run& run, detail::PointSource& source, const MeshFile& file) const {
-    const auto output =
-        open_mesh_output(disk(), file.target(), run.start().header, *run.scratch, ranks_);
+  Report write_mesh(Run& run, detail::PointSource& source, const MeshTarget& target) const {
+    const auto output = open_mesh_output(disk(), target, run.start().header, *run.scratch, ranks_);
     RankMesh mesh = triangulate(run, source, output->writer());
     Report report = this->report(run, source, mesh);
     run.watch.begin("write", simplices_of(run.options.dimension));
-    report.output_format = file.target().format->name;
+    report.output_format = target.format->name;
     report.output_bytes = output->finish(mesh);
     report.write_seconds = run.watch.end(report.mesh.simplices);
     return report;
   }
 
-  Report write_dem(Run& run, detail::PointSource& source, DemFile& file) const {
-    BlockSink& blocks = file.start(run.start());
+  Report combine_shares(Run& run, detail::PointSource& source) const {
+    EngineSink& sink = run.sink;
+    BlockSink& blocks = sink.start(run.start());
     const RankMesh mesh = triangulate(run, source, blocks);
-    for (const MergedSection& section : mesh.merged) paint_merged(file.dem(), section);
+    sink.number_share(mesh.own_section ? mesh.sections[*mesh.own_section].first_vertex : 0);
+    for (const MergedSection& merged : mesh.merged) {
+      sink.take_merged({.first_vertex = mesh.sections[merged.section].first_vertex,
+                        .mesh = merged.mesh,
+                        .imported_vertices = merged.imported_vertices});
+    }
     Report report = this->report(run, source, mesh);
     if (is_first()) {
-      file.complete(run.watch, report, [&](Raster& raster, const auto& written) {
-        write_raster_of_ranks(file.dem(), raster, written, ranks_);
-      });
+      SharesOfOtherRanks others(ranks_);
+      sink.finalize(run.watch, report, others);
+      others.end();
     } else {
-      with_threads(file.feeding_threads(run.context.threads()),
-                   [&] { send_raster(file.dem(), ranks_); });
+      ShareToFirstRank sender(ranks_);
+      sink.give_share(sender);
+      sender.end();
     }
     return report;
   }

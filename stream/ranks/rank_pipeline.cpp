@@ -155,7 +155,7 @@ class RankRun {
 
   /// What the points of all ranks span is what the points of each span, together.
   void refuse_flat(std::uint64_t points) const {
-    distributed::Packer own;
+    Packer own;
     own.put_list(engine_.span().facts().points);
     own.put(engine_.span().facts().others);
     const auto facts_of_ranks = ranks_.gather(own.bytes(), 0);
@@ -163,7 +163,7 @@ class RankRun {
       if (ranks_.rank() != 0) return;
       PointSpan<D> all;
       for (const std::vector<std::byte>& bytes : facts_of_ranks) {
-        distributed::Unpacker unpacker(bytes);
+        Unpacker unpacker(bytes);
         typename PointSpan<D>::Facts facts;
         facts.points = unpacker.take_list<std::vector<Point<D>>>();
         facts.others = unpacker.take<bool>();
@@ -196,7 +196,7 @@ class RankRun {
   }
 
   void send(const Border<D>& border, int receiver) {
-    distributed::Packer message;
+    Packer message;
     pack(message, border, options_.input_index);
     ranks_.send(receiver, message.bytes());
     result_.border_bytes_sent += message.bytes().size();
@@ -214,7 +214,7 @@ class RankRun {
       const Stopwatch watch(figures.wait_seconds);
       const std::vector<std::byte> bytes = ranks_.receive(sender);
       figures.received_bytes = bytes.size();
-      distributed::Unpacker message(bytes);
+      Unpacker message(bytes);
       borders.push_back(unpack_border<D>(message, options_.input_index));
     }
     engine_.take_in(borders[1]);
@@ -350,7 +350,7 @@ std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<s
   options.digests = true;
   options.viewer = fmt::format("rank {}", ranks.rank());
   std::unique_ptr<PointSource> source;
-  distributed::Packer packer;
+  Packer packer;
   if (ranks.rank() == 0) {
     source = std::make_unique<PointSource>(files, paths, options);
     packer.put(std::uint64_t{paths.size()});
@@ -360,7 +360,7 @@ std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<s
   std::vector<std::byte> bytes = packer.take();
   ranks.broadcast(bytes, 0);
   if (source) return source;
-  distributed::Unpacker unpacker(bytes);
+  Unpacker unpacker(bytes);
   paths.resize(unpacker.take<std::uint64_t>());
   for (std::string& path : paths) path = unpacker.take_list<std::string>();
   return std::make_unique<PointSource>(files, paths, options, unpack_source_facts(unpacker));

@@ -10,11 +10,11 @@ namespace spillway::detail {
 template <int D>
 RankTree<D>::RankTree(const RankDivision& division, const std::optional<TileNode<D>>& own,
                       const distributed::Ranks& ranks) {
-  distributed::Packer packer;
+  Packer packer;
   if (own) pack(packer, *own);
   std::vector<std::optional<TileNode<D>>> trees;
   for (const auto& bytes : ranks.gather(packer.bytes())) {
-    distributed::Unpacker unpacker(bytes);
+    Unpacker unpacker(bytes);
     trees.push_back(bytes.empty() ? std::nullopt : std::optional(unpack_tile_node<D>(unpacker)));
   }
   trees[static_cast<std::size_t>(ranks.rank())] = own;

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "src/distributed/packing.h"
+#include "src/runtime/packing.h"
 #include "src/runtime/process_memory.h"
 #include "src/runtime/stage_times.h"
 #include "stream/triangulate/task_sums.h"
@@ -12,10 +12,8 @@
 namespace spillway::detail {
 namespace {
 
-using distributed::Packer;
 using distributed::Ranks;
 using distributed::Reduction;
-using distributed::Unpacker;
 
 /// Calls `each` with every member of the figures that is one number, sums first, wall times last.
 template <typename Figures, typename Each>

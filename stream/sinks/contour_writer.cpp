@@ -4,7 +4,6 @@
 #include <array>
 #include <utility>
 
-#include "formats/meshes/common/stream_numbers.h"
 #include "src/geometry/longest_edge.h"
 
 namespace spillway::detail {
@@ -17,14 +16,10 @@ ContourWriter::ContourWriter(ContourOptions options, Sink sink, ScratchFolder& s
           },
           options_.memory, scratch) {}
 
-/// The block's vertices by their short numbers.
-std::vector<WorldPoint> ContourWriter::points_of(const MeshBlock& block) const {
+std::vector<WorldPoint> ContourWriter::in_output(std::span<const LatticePoint> vertices) const {
   std::vector<WorldPoint> points;
-  points.reserve(block.vertices.size() + block.imported.size());
-  for (const LatticePoint& vertex : block.vertices) {
-    points.push_back(in_world(options_.lattice, vertex));
-  }
-  live_.append_imported(block, points);
+  points.reserve(vertices.size());
+  for (const LatticePoint& vertex : vertices) points.push_back(in_world(options_.lattice, vertex));
   return points;
 }
 
@@ -34,13 +29,19 @@ bool ContourWriter::too_long(const std::array<Corner, 3>& corners) const {
   return has_longer_edge<2>(points, *options_.max_edge);
 }
 
-void ContourWriter::write(MeshBlock&& block) {
-  const std::vector<WorldPoint> points = points_of(block);
-  const StreamNumbers numbers(live_.announced(), block);
-  const auto corner = [&](std::uint32_t v) { return Corner{numbers[v], points[v]}; };
-  for (std::size_t c = 0; c < block.corners.size(); c += 3) {
-    const std::array<Corner, 3> triangle = {corner(block.corners[c]), corner(block.corners[c + 1]),
-                                            corner(block.corners[c + 2])};
+void ContourWriter::take_heights(std::span<const WorldPoint> vertices) {
+  for (const WorldPoint& vertex : vertices) {
+    lowest_ = std::min(lowest_, vertex[2]);
+    highest_ = std::max(highest_, vertex[2]);
+  }
+}
+
+void ContourWriter::draw(const StreamNumbers& numbers, std::span<const WorldPoint> vertices,
+                         std::span<const std::uint32_t> corners) {
+  const auto corner = [&](std::uint32_t v) { return Corner{numbers[v], vertices[v]}; };
+  for (std::size_t c = 0; c < corners.size(); c += 3) {
+    const std::array<Corner, 3> triangle = {corner(corners[c]), corner(corners[c + 1]),
+                                            corner(corners[c + 2])};
     if (too_long(triangle)) {
       ++left_out_;
       continue;
@@ -49,15 +50,26 @@ void ContourWriter::write(MeshBlock&& block) {
     append_segments(triangle, options_.levels, segments_);
     for (const IsoSegment& segment : segments_) joiner_.add(segment);
   }
-  for (std::size_t v = 0; v < block.vertices.size(); ++v) {
-    lowest_ = std::min(lowest_, points[v][2]);
-    highest_ = std::max(highest_, points[v][2]);
-  }
-  live_.settle(block, points);
+}
+
+void ContourWriter::write(MeshBlock&& block) {
+  std::vector<WorldPoint> vertices = in_output(block.vertices);
+  take_heights(vertices);
+  live_.append_imported(block, vertices);
+  draw({live_.announced(), block}, vertices, block.corners);
+  live_.settle(block, vertices);
   // An edge gets no further triangle once one of its ends gets none.
   joiner_.release([this](const Crossing& crossing) {
     return !live_.contains(crossing.edge[0]) || !live_.contains(crossing.edge[1]);
   });
+}
+
+void ContourWriter::take_merged(const MergedBlock& block) {
+  std::vector<WorldPoint> vertices = in_output(block.mesh.vertices);
+  take_heights(vertices);
+  const std::vector<WorldPoint> imported = in_output(block.imported_vertices);
+  vertices.insert(vertices.end(), imported.begin(), imported.end());
+  draw({block.first_vertex, block.mesh}, vertices, block.mesh.corners);
 }
 
 void ContourWriter::finish(const MeshTotals& /*totals*/) { joiner_.finish(); }

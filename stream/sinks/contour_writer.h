@@ -8,10 +8,12 @@
 
 #include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/meshes/common/stream_numbers.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 #include "src/terrain/isolines.h"
 #include "stream/sinks/line_joiner.h"
+#include "stream/sinks/mesh_shares.h"
 
 namespace spillway::detail {
 
@@ -34,6 +36,13 @@ class ContourWriter : public BlockSink {
   void write(MeshBlock&& block) override;
   void finish(const MeshTotals& totals) override;
 
+  /// Where several processes draw the lines of one mesh: the number in it of the first vertex that
+  /// came; what comes after it is numbered so, too.
+  void number_from(std::uint64_t first_vertex) { joiner_.number_from(first_vertex); }
+  void take_merged(const MergedBlock& block);
+  /// The lines that are open, to be joined elsewhere, and such ones of others.
+  [[nodiscard]] LineJoiner& joiner() { return joiner_; }
+
   [[nodiscard]] std::uint64_t lines() const { return joiner_.lines(); }
   /// The least and the greatest height that came; in reverse order if none did.
   [[nodiscard]] double lowest() const { return lowest_; }
@@ -43,8 +52,11 @@ class ContourWriter : public BlockSink {
   [[nodiscard]] std::uint64_t spilled_bytes() const { return joiner_.spilled_bytes(); }
 
  private:
-  [[nodiscard]] std::vector<WorldPoint> points_of(const MeshBlock& block) const;
+  [[nodiscard]] std::vector<WorldPoint> in_output(std::span<const LatticePoint> vertices) const;
   [[nodiscard]] bool too_long(const std::array<Corner, 3>& corners) const;
+  void take_heights(std::span<const WorldPoint> vertices);
+  void draw(const StreamNumbers& numbers, std::span<const WorldPoint> vertices,
+            std::span<const std::uint32_t> corners);
 
   const ContourOptions options_;
   LineJoiner joiner_;

@@ -189,7 +189,6 @@ void Dem::paint(std::span<const PlacedPoint> vertices, std::span<const std::uint
     Work work(*store_, options_.products.size());
     for (std::size_t t = begin; t < end; ++t) {
       const std::uint32_t* const v = &corners[3 * t];
-      if (v[0] >= vertices.size() || v[1] >= vertices.size() || v[2] >= vertices.size()) continue;
       const PixelWindow window = window_of(windows[v[0]], windows[v[1]], windows[v[2]]);
       if (window.empty() && !options_.max_edge) continue;
       const Triangle canonical =

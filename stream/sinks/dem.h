@@ -61,8 +61,8 @@ class Dem {
   /// Vertices as they come, in the coordinates in which triangles are painted.
   [[nodiscard]] std::vector<PlacedPoint> placed(std::span<const LatticePoint> vertices) const;
 
-  /// Paints triangles, three numbers of vertices each; those with numbers beyond these are left
-  /// out. By any number of threads at once, and shared out among more.
+  /// Paints triangles, three numbers of vertices each. By any number of threads at once, and shared
+  /// out among more.
   void paint(std::span<const PlacedPoint> vertices, std::span<const std::uint32_t> corners);
 
   /// Counts vertices for the density. By any number of threads at once.

@@ -1,27 +1,31 @@
 #pragma once
 
-#include "formats/meshes/common/live_vertices.h"
-#include "formats/meshes/common/mesh_stream.h"
+#include <span>
+#include <vector>
+
 #include "stream/sinks/dem.h"
+#include "stream/sinks/simplex_sink.h"
 
 namespace spillway::detail {
 
-/// Paints a mesh of triangles as its blocks come: those whose vertices come in the same block when
-/// the block is absorbed, by many threads at once, the others when it is written. Of the mesh only
-/// vertices that are still to come again stay in memory.
-class DemWriter : public BlockSink {
+/// Paints a mesh of triangles as its blocks come, into a Dem that all threads share.
+class DemWriter final : public SimplexSink<PlacedPoint> {
  public:
   /// `dem` must outlive it, and must have begun before the first block comes.
-  explicit DemWriter(Dem& dem) : dem_(dem) {}
-
-  /// Paints into the Dem, which all threads share, and leaves in the block what write() needs.
-  void absorb(MeshBlock& block) override;
-  void write(MeshBlock&& block) override;
-  void finish(const MeshTotals& totals) override;
+  explicit DemWriter(Dem& dem) : SimplexSink(2), dem_(dem) {}
 
  private:
-  Dem& dem_;                        ///< takes triangles from many threads at once
-  LiveVertices<PlacedPoint> live_;  ///< of write() alone
+  [[nodiscard]] std::vector<PlacedPoint> values_of(
+      std::span<const LatticePoint> vertices) const override {
+    return dem_.placed(vertices);
+  }
+  void take_vertices(std::span<const PlacedPoint> vertices) override { dem_.count(vertices); }
+  void take_simplices(std::span<const PlacedPoint> vertices,
+                      std::span<const std::uint32_t> corners) override {
+    dem_.paint(vertices, corners);
+  }
+
+  Dem& dem_;
 };
 
 }  // namespace spillway::detail

@@ -110,6 +110,67 @@ void LineJoiner::begin_line(const IsoSegment& segment) {
   enter(ends_, line.end, number);
 }
 
+void LineJoiner::add(OpenLine&& part) {
+  ++segments_since_release_;
+  const auto before = ends_.find(part.begin);
+  const auto behind = begins_.find(part.end);
+  Number number = new_line();
+  Line& line = open_[number];
+  line.begin = part.begin;
+  line.end = part.end;
+  line.back = std::move(part.points);
+  points_in_memory_ += line.back.size();
+  if (before == ends_.end()) {
+    enter(begins_, line.begin, number);
+  } else {
+    const Number first = before->second;
+    ends_.erase(before);
+    join(open_[first], std::move(line));
+    forget(std::exchange(number, first));
+  }
+  if (behind == begins_.end()) {
+    enter(ends_, part.end, number);
+  } else {
+    const Number second = behind->second;
+    begins_.erase(behind);
+    if (second == number) {
+      give_out(std::move(open_[number]));
+    } else {
+      join(open_[number], std::move(open_[second]));
+      ends_[open_[number].end] = number;
+    }
+    forget(second);
+  }
+  if (points_in_memory_ > most_points_) spill();
+}
+
+void LineJoiner::hand_over(const std::function<void(const OpenLine&)>& take) {
+  for (const auto& [end, number] : ends_) {
+    Line& line = open_[number];
+    count_out(line);
+    const Crossing begin = line.begin;
+    take({.begin = begin, .end = end, .points = points_of(std::move(line))});
+  }
+  begins_.clear();
+  ends_.clear();
+  open_.clear();
+  free_.clear();
+}
+
+void LineJoiner::number_from(std::uint64_t first) {
+  const auto rename = [first](Crossing& crossing) {
+    for (std::uint64_t& vertex : crossing.edge) vertex += first;
+  };
+  begins_.clear();
+  for (const auto& [end, number] : std::exchange(ends_, {})) {
+    Line& line = open_[number];
+    rename(line.begin);
+    rename(line.end);
+    begins_.emplace(line.begin, number);
+    ends_.emplace(line.end, number);
+  }
+}
+
 void LineJoiner::append(std::vector<Point<2>>& points, const Point<2>& point) {
   points.push_back(point);
   ++points_in_memory_;
@@ -197,7 +258,6 @@ void LineJoiner::spill() {
 }
 
 std::vector<Point<2>> LineJoiner::points_of(Line&& line) {
-  points_in_memory_ -= line.front.size() + line.back.size();
   gather_front(line);
   line.middle.push_back({std::move(line.back), 0, 0});
   std::vector<Point<2>> points;
@@ -213,8 +273,14 @@ std::vector<Point<2>> LineJoiner::points_of(Line&& line) {
   return points;
 }
 
-void LineJoiner::give_out(Line&& line) {
+/// Before points_of().
+void LineJoiner::count_out(const Line& line) {
   for (const Stretch& stretch : line.middle) points_in_memory_ -= stretch.points.size();
+  points_in_memory_ -= line.front.size() + line.back.size();
+}
+
+void LineJoiner::give_out(Line&& line) {
+  count_out(line);
   const std::int64_t level = line.begin.level;
   std::vector<Point<2>> points = points_of(std::move(line));
   points.erase(std::unique(points.begin(), points.end()), points.end());

@@ -34,6 +34,20 @@ class LineJoiner {
   /// Throws Error if the segment's triangle does not fit to those before it.
   void add(const IsoSegment& segment);
 
+  /// A part of a line that may still grow at both ends.
+  struct OpenLine {
+    Crossing begin;
+    Crossing end;
+    std::vector<Point<2>> points;
+  };
+  /// What another joiner has joined. Throws Error likewise.
+  void add(OpenLine&& part);
+  /// Hands over all that is open, for another joiner.
+  void hand_over(const std::function<void(const OpenLine&)>& take);
+  /// Renames vertices: all that came so far were numbered from 0 on, and `first` is the number of
+  /// the first.
+  void number_from(std::uint64_t first);
+
   /// Gives out lines that cannot grow any more: those whose both ends lie on edges of which
   /// `is_final` says that no triangle will come to them. Worth a call now and then: it costs as
   /// much as there are open lines, and does nothing before as many segments have come again.
@@ -69,6 +83,7 @@ class LineJoiner {
   static void enter(OpenEnds& ends, const Crossing& crossing, Number number);
   void join(Line& first, Line&& second);
   static void gather_front(Line& line);
+  void count_out(const Line& line);
   void give_out(Line&& line);
   void forget(Number number);
   void spill();

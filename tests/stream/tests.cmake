@@ -2,7 +2,7 @@ spillway_test(stream_unit_test unit
   SOURCES runtime/page_pool_test.cpp runtime/work_lease_test.cpp
           stream/output/heights_test.cpp stream/output/open_facets_test.cpp
           stream/output/sequencer_test.cpp stream/plan/memory_plan_test.cpp
-          stream/sinks/contour_test.cpp stream/sinks/raster_store_test.cpp
+          stream/sinks/contour_shares_test.cpp stream/sinks/contour_test.cpp stream/sinks/raster_store_test.cpp
           stream/sinks/tetrahedron_writers_test.cpp
           stream/tiles/equal_points_test.cpp stream/tiles/storage/point_buffer_test.cpp stream/tiles/point_sample_test.cpp
           stream/tiles/point_span_test.cpp stream/tiles/storage/segment_reader_test.cpp
@@ -56,7 +56,7 @@ spillway_mpi_test(rank_unit_test
   SOURCES stream/ranks/part_files_test.cpp stream/ranks/exchange/piece_table_test.cpp
           stream/ranks/exchange/point_exchange_test.cpp stream/ranks/rank_tree_test.cpp
           stream/ranks/exchange/rank_division_test.cpp stream/ranks/shared_report_test.cpp
-          stream/ranks/raster_merge_test.cpp stream/ranks/stream_sections_test.cpp
+          stream/ranks/share_messages_test.cpp stream/ranks/stream_sections_test.cpp
           stream/ranks/exchange/collective_step_test.cpp
   LIBS spillway_stream_ranks
   RANKS 1 2 3 5

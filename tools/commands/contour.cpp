@@ -13,6 +13,7 @@
 #include "tools/commands/run_statistics.h"
 #include "tools/commands/terrain_input.h"
 #include "tools/options/command_options.h"
+#include "tools/process/rank_job.h"
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
@@ -72,6 +73,7 @@ int run(const ContourCommandOptions& options) {
   const Context context = terrain_context(options, progress);
   const auto contours = create_contours(options.output, how, context);
   const Report report = send_terrain(options, *contours, context);
+  if (!is_first_rank()) return kExitDone;
   const RunFacts facts = facts_of_run(options, options.output, context, start);
   say(options, report, contours->report(), facts, progress);
   const Json lines = {{"lines", contours->report().lines},
@@ -106,7 +108,7 @@ Subcommand add_contour(CommandLine& root) {
   add_terrain_options(app, *options);
   options->uses_crs = true;
   add_report_options(app, options->report);
-  return {&app, [options] { return run(*options); }};
+  return {&app, [options] { return run(*options); }, true};
 }
 
 }  // namespace spillway::detail

@@ -12,6 +12,7 @@
 #include "formats/bytes/not_copied.h"
 #include "formats/disk/file_system.h"
 #include "formats/meshes/common/mesh.h"
+#include "formats/meshes/common/mesh_records.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/meshes/common/mesh_writer.h"
 
@@ -100,6 +101,7 @@ struct MeshFormat {
                                                          const MeshStreamHeader& header) = nullptr;
 
   const MeshFileSet* file_set = nullptr;      ///< of a mesh in several files
+  const MeshRecords* records = nullptr;       ///< of a file that several processes can write
   const MeshPartIndex* part_index = nullptr;  ///< of a mesh in parts
   [[no_unique_address]] NotCopied not_copied{};
 

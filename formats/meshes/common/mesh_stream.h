@@ -4,8 +4,8 @@
 
 #include <spillway/figures.h>
 
-#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +26,18 @@ struct MeshStreamHeader {
   std::string crs;                      ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
 };
 
+/// What a sink makes of a block by itself, before its turn has come: each sink has its own kind.
+class AbsorbedBlock {
+ public:
+  AbsorbedBlock() = default;
+  virtual ~AbsorbedBlock() = default;
+  AbsorbedBlock(const AbsorbedBlock&) = delete;
+  AbsorbedBlock& operator=(const AbsorbedBlock&) = delete;
+
+  /// That it takes of memory.
+  [[nodiscard]] virtual std::uint64_t bytes() const = 0;
+};
+
 /// Some vertices and simplices. The stream numbers its vertices 0, 1, 2, ... in the order in which
 /// they come; inside a block, vertices have short numbers: first those of `vertices`, then those of
 /// `imported`.
@@ -37,14 +49,14 @@ struct MeshBlock {
   std::vector<std::uint64_t> imported;     ///< stream numbers of earlier vertices used here
   std::vector<std::uint32_t> corners;      ///< dimension+1 short numbers a simplex, oriented
   std::vector<std::uint32_t> finalized;    ///< short numbers of vertices that come no more
-  /// What a sink's absorb() made of the members above (`imported` apart).
-  std::vector<std::byte> prepared;
+  /// What a sink's absorb() made of the members above (`imported` apart); null before.
+  std::shared_ptr<const AbsorbedBlock> absorbed;
 
   /// Bytes that its members take, counted by their sizes.
   [[nodiscard]] std::uint64_t bytes() const {
     return vertices.size() * sizeof(vertices[0]) + input_index.size() * sizeof(input_index[0]) +
            imported.size() * sizeof(imported[0]) + corners.size() * sizeof(corners[0]) +
-           finalized.size() * sizeof(finalized[0]) + prepared.size();
+           finalized.size() * sizeof(finalized[0]) + (absorbed ? absorbed->bytes() : 0);
   }
 
   void clear() {
@@ -53,7 +65,7 @@ struct MeshBlock {
     imported.clear();
     corners.clear();
     finalized.clear();
-    prepared.clear();
+    absorbed.reset();
   }
 };
 

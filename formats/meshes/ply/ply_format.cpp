@@ -5,6 +5,7 @@
 #include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/ply/ply_header.h"
 #include "formats/meshes/ply/ply_reader.h"
+#include "formats/meshes/ply/ply_records.h"
 #include "formats/meshes/ply/ply_writer.h"
 
 namespace spillway::detail {
@@ -12,6 +13,20 @@ namespace {
 
 constexpr std::string_view kExtensions[] = {"ply"};
 constexpr std::string_view kAsciiExtensions[] = {"ply-ascii"};
+
+constexpr MeshRecords kRecords = {
+    .header = [](const MeshHeader& header,
+                 const std::string& name) { return ply_header_text(header, false, name); },
+    .vertex_size = [](bool has_input_index) { return ply_vertex_size(has_input_index ? 1 : 0); },
+    .simplex_size = ply_simplex_size,
+    .put_vertex =
+        [](std::byte* at, const WorldPoint& vertex, const std::optional<std::uint64_t>& input_index,
+           const std::string& name) {
+          const double index = input_index ? ply_index(*input_index, name) : 0;
+          return put_ply_vertex(at, vertex, std::span(&index, input_index ? 1 : 0));
+        },
+    .put_simplex = put_ply_simplex,
+};
 
 }  // namespace
 
@@ -30,6 +45,7 @@ constinit const MeshFormat kPlyMesh = {
         [](MeshFiles files, const MeshHeader& header) {
           return open_ply_writer(std::move(files.main), header, false);
         },
+    .records = &kRecords,
 };
 
 constinit const MeshFormat kPlyAsciiMesh = {

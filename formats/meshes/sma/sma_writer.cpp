@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "formats/bytes/bytes.h"
@@ -37,7 +39,17 @@ std::string header_text(const MeshStreamHeader& header) {
   return text;
 }
 
-/// An absorbed block is the lines of its vertices.
+/// The lines of a block's vertices.
+class VertexLines final : public AbsorbedBlock {
+ public:
+  explicit VertexLines(fmt::memory_buffer text) : text_(std::move(text)) {}
+  [[nodiscard]] std::uint64_t bytes() const override { return text_.size(); }
+  [[nodiscard]] std::string_view text() const { return {text_.data(), text_.size()}; }
+
+ private:
+  fmt::memory_buffer text_;
+};
+
 class SmaWriter : public MeshStreamWriter {
  public:
   SmaWriter(std::unique_ptr<OutputFile> file, MeshStreamHeader header)
@@ -48,8 +60,8 @@ class SmaWriter : public MeshStreamWriter {
   void absorb(MeshBlock& block) override { encode(block); }
 
   void write(MeshBlock&& block) override {
-    if (block.prepared.empty()) encode(block);
-    put(as_text(block.prepared));
+    if (!block.absorbed) encode(block);
+    put(static_cast<const VertexLines&>(*block.absorbed).text());
     append_stream_numbers_checked(block);
     vertices_ += block.vertices.size();
     put_triangles(block);
@@ -84,8 +96,7 @@ class SmaWriter : public MeshStreamWriter {
       fmt::format_to(std::back_inserter(text), FMT_COMPILE("v {} {} {}\n"), vertex[0], vertex[1],
                      vertex[2]);
     }
-    const std::span<const std::byte> bytes = std::as_bytes(std::span(text.data(), text.size()));
-    block.prepared.assign(bytes.begin(), bytes.end());
+    block.absorbed = std::make_shared<VertexLines>(std::move(text));
   }
 
   /// Sets corners_.

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "formats/blocks/block.h"
-#include "formats/bytes/bytes.h"
 #include "formats/meshes/spm/spm_block.h"
 #include "formats/meshes/spm/spm_encoding.h"
 #include "formats/meshes/spm/spm_format.h"
@@ -20,7 +20,14 @@ void release(std::vector<T>& values) {
   std::vector<T>().swap(values);
 }
 
-/// An absorbed block is its counts, as they are in memory, and the bytes for the file.
+/// A block as the file has it, and what is in it.
+struct EncodedBlock final : AbsorbedBlock {
+  SpmCounts counts;
+  std::vector<std::byte> encoded;
+
+  [[nodiscard]] std::uint64_t bytes() const override { return encoded.size(); }
+};
+
 class SpmWriter : public MeshStreamWriter {
  public:
   SpmWriter(std::unique_ptr<OutputFile> file, MeshStreamHeader header)
@@ -31,14 +38,14 @@ class SpmWriter : public MeshStreamWriter {
   void absorb(MeshBlock& block) override { encode(block); }
 
   void write(MeshBlock&& block) override {
-    if (block.prepared.empty()) encode(block);
-    const auto counts = load<SpmCounts>(block.prepared.data());
+    if (!block.absorbed) encode(block);
+    const auto& [counts, encoded] = static_cast<const EncodedBlock&>(*block.absorbed);
     if (counts.numbers > counts.vertices + block.imported.size()) {
       fail(fmt::format("a block has a short number {}, but {} vertices and {} imported ones",
                        counts.numbers - 1, counts.vertices, block.imported.size()));
     }
     if (!block.imported.empty()) put_imported(block.imported);
-    put(std::span(block.prepared).subspan(sizeof counts));
+    put(encoded);
     vertices_ += counts.vertices;
     simplices_ += counts.simplices;
     block.clear();
@@ -65,15 +72,14 @@ class SpmWriter : public MeshStreamWriter {
   void encode(MeshBlock& block) const {
     std::vector<std::byte> content;
     content.reserve(24 * block.vertices.size() + 4 * block.corners.size());
-    SpmCounts counts;
+    auto absorbed = std::make_shared<EncodedBlock>();
     try {
-      counts = append_spm_content(content, header_, block);
+      absorbed->counts = append_spm_content(content, header_, block);
     } catch (const Error& error) {
       fail(error.what(), error.code());
     }
-    block.prepared.resize(sizeof counts);
-    store(block.prepared.data(), counts);
-    append_block(block.prepared, kSpmMeshBlock, content);
+    append_block(absorbed->encoded, kSpmMeshBlock, content);
+    block.absorbed = std::move(absorbed);
     release(block.vertices);
     release(block.input_index);
     release(block.corners);

@@ -33,3 +33,13 @@ class Executor {
 };
 
 }  // namespace spillway
+
+namespace spillway::detail {
+
+/// Whether this process does what is to be done once for all that share the context's runs.
+inline bool is_first_process(const Context& context) {
+  const Executor* const executor = context.options().executor.get();
+  return executor == nullptr || executor->is_first();
+}
+
+}  // namespace spillway::detail

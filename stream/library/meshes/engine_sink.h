@@ -13,9 +13,12 @@
 #include "src/geometry/box.h"
 #include "stream/library/context/run_watch.h"
 #include "stream/library/meshes/public_values.h"
+#include "stream/sinks/mesh_shares.h"
 #include "stream/source/source_crs.h"
 
 namespace spillway::detail {
+
+struct MeshTarget;
 
 /// What comes to a sink of the library's own.
 struct MeshStart {
@@ -80,7 +83,26 @@ class EngineSink {
 
   /// Ends the blocks and completes the output. The report is that of the run so far, to which the
   /// sink adds what it knows.
-  virtual void complete(RunWatch& watch, Report& report) = 0;
+  void complete(RunWatch& watch, Report& report) {
+    NoOtherShares none;
+    finalize(watch, report, none);
+  }
+
+  /// Whether several processes can make it together. Each has a sink of its own then, which takes
+  /// the blocks of its part of the mesh, numbered from 0 on; then come number_share(),
+  /// take_merged() for each block of a merge that it made, and in the end give_share(), or
+  /// finalize() at the first process, which has the output.
+  [[nodiscard]] virtual bool has_shares() const { return false; }
+  /// The number in the whole mesh of the first vertex that came.
+  virtual void number_share(std::uint64_t /*first_vertex*/) {}
+  virtual void take_merged(const MergedBlock& /*block*/) {}
+  /// Gives away all that came.
+  virtual void give_share(ShareSender& /*sender*/) {}
+  /// As complete(), with what other processes give.
+  virtual void finalize(RunWatch& watch, Report& report, OtherShares& others) = 0;
+
+  /// The mesh file that it is: processes put these together by their bytes. Null for others.
+  [[nodiscard]] virtual const MeshTarget* as_mesh_file() const { return nullptr; }
 
  protected:
   /// As start().

@@ -60,7 +60,7 @@ BlockSink* MeshFile::begin_again() {
   return writer_.get();
 }
 
-void MeshFile::complete(RunWatch& watch, Report& report) {
+void MeshFile::finalize(RunWatch& watch, Report& report, OtherShares& /*others*/) {
   watch.begin("write", simplices_);
   writer_->finish(report.mesh);
   report.output_format = target_.format->name;

@@ -37,9 +37,8 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   [[nodiscard]] unsigned feeding_threads(unsigned /*threads*/) const override { return 1; }
   /// What has left through a pipe is gone.
   BlockSink* begin_again() override;
-  void complete(RunWatch& watch, Report& report) override;
-
-  [[nodiscard]] const MeshTarget& target() const { return target_; }
+  void finalize(RunWatch& watch, Report& report, OtherShares& others) override;
+  [[nodiscard]] const MeshTarget* as_mesh_file() const override { return &target_; }
 
  private:
   BlockSink& open(const MeshStart& start) override;

@@ -19,7 +19,7 @@ class ProgramSink final : public EngineSink, private BlockSink {
     return *this;
   }
   [[nodiscard]] bool is_product() const override { return false; }
-  void complete(RunWatch& watch, Report& report) override {
+  void finalize(RunWatch& watch, Report& report, OtherShares& /*others*/) override {
     watch.begin("write", simplices_of(header_.dimension));
     sink_.finish(report.mesh);
     report.write_seconds = watch.end(report.mesh.simplices);

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "formats/disk/output_check.h"
 #include "formats/gdal/gdal.h"
 #include "formats/vectors/vector_formats.h"
 #include "stream/library/context/context_state.h"
+#include "stream/library/context/executor.h"
+#include "stream/sinks/contour_shares.h"
 
 namespace spillway::detail {
 namespace {
@@ -38,8 +41,10 @@ ContourFile::ContourFile(const std::string& path, const spillway::ContourOptions
       format_(format_of(path)),
       options_(options),
       levels_(levels_of(options)),
-      scratch_(context.state().scratch(context)) {
+      scratch_(context.state().scratch(context)),
+      writes_file_(is_first_process(context)) {
   check_max_edge(options_.max_edge);
+  if (!writes_file_) return;
   check_can_create(disk(), path_);
   tell_lost_layers(format_, path_, context);
 }
@@ -63,7 +68,11 @@ BlockSink& ContourFile::open(const MeshStart& start) {
 BlockSink* ContourFile::begin_again() {
   report_ = {};
   writer_.reset();
-  file_.emplace(format_, layer_);
+  if (writes_file_) {
+    file_.emplace(format_, layer_);
+  } else {
+    lines_.emplace(*scratch_);
+  }
   return &writer_.emplace(
       contours_, [this](std::span<const Point<2>> points, double height) { add(points, height); },
       *scratch_);
@@ -94,24 +103,44 @@ bool ContourFile::keeps_coordinates(const MeshStart& start) const {
 }
 
 void ContourFile::add(std::span<const Point<2>> points, double height) {
+  if (lines_) return lines_->add(points, height);
   line_.clear();
   for (const Point<2>& point : points) line_.push_back({point[0], point[1], height});
   file_->layer().add_line(line_, height);
   report_.points += points.size();
 }
 
-void ContourFile::complete(RunWatch& watch, Report& report) {
+void ContourFile::number_share(std::uint64_t first_vertex) { writer_->number_from(first_vertex); }
+
+void ContourFile::take_merged(const MergedBlock& block) { writer_->take_merged(block); }
+
+void ContourFile::give_share(ShareSender& sender) { give_contours(*writer_, *lines_, sender); }
+
+void ContourFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
+  ContourFigures all;
+  all.lowest = writer_->lowest();
+  all.highest = writer_->highest();
+  take_contours(
+      *writer_, others,
+      [this](std::span<const Point<2>> points, double height) { add(points, height); },
+      [&all](const ContourFigures& figures) {
+        all.lowest = std::min(all.lowest, figures.lowest);
+        all.highest = std::max(all.highest, figures.highest);
+        all.lines += figures.lines;
+        all.spilled_bytes += figures.spilled_bytes;
+      });
   writer_->finish(report.mesh);
+  all.lines += writer_->lines();
   watch.begin("write", "lines");
   file_->finish();
   report.output_format = format_.name;
   report.output_bytes = file_->bytes();
-  report.write_seconds = watch.end(writer_->lines());
+  report.write_seconds = watch.end(all.lines);
   report.left_out += writer_->left_out();
-  report_.lines = writer_->lines();
-  report_.lowest = writer_->lowest();
-  report_.highest = writer_->highest();
-  report_.spilled_bytes = writer_->spilled_bytes();
+  report_.lines = all.lines;
+  report_.lowest = all.lowest;
+  report_.highest = all.highest;
+  report_.spilled_bytes = all.spilled_bytes + writer_->spilled_bytes();
 }
 
 }  // namespace spillway::detail

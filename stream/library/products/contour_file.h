@@ -13,6 +13,7 @@
 #include "formats/vectors/vector_file.h"
 #include "stream/library/meshes/engine_sink.h"
 #include "stream/sinks/contour_writer.h"
+#include "stream/sinks/line_store.h"
 
 namespace spillway::detail {
 
@@ -27,7 +28,11 @@ class ContourFile final : public OwnSink<ContourSink> {
   [[nodiscard]] CrsNeed crs_need() const override { return CrsNeed::kAll; }
   [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override;
   BlockSink* begin_again() override;
-  void complete(RunWatch& watch, Report& report) override;
+  [[nodiscard]] bool has_shares() const override { return true; }
+  void number_share(std::uint64_t first_vertex) override;
+  void take_merged(const MergedBlock& block) override;
+  void give_share(ShareSender& sender) override;
+  void finalize(RunWatch& watch, Report& report, OtherShares& others) override;
 
  private:
   BlockSink& open(const MeshStart& start) override;
@@ -42,7 +47,9 @@ class ContourFile final : public OwnSink<ContourSink> {
   std::shared_ptr<ScratchFolder> scratch_;
   VectorLayerOptions layer_;
   ContourOptions contours_;
-  std::optional<VectorFile> file_;
+  bool writes_file_;                ///< or another process does
+  std::optional<VectorFile> file_;  ///< of who writes it
+  std::optional<LineStore> lines_;  ///< of the others
   std::optional<ContourWriter> writer_;
   std::vector<WorldPoint> line_;
   ContourReport report_;

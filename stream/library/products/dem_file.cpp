@@ -19,6 +19,7 @@
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
 #include "stream/plan/memory_plan.h"
+#include "stream/sinks/dem_shares.h"
 
 namespace spillway::detail {
 namespace {
@@ -127,8 +128,7 @@ DemFile::DemFile(const std::string& path, const spillway::DemOptions& options,
                         {.enough = kLeastMemory, .remedy = Remedy::kMemory});
   }
   if (options_.like.empty()) dem_options_.grid = grid_request(options_);
-  const Executor* const executor = context.options().executor.get();
-  if (executor == nullptr || executor->is_first()) check_can_create(disk(), path_);
+  if (is_first_process(context)) check_can_create(disk(), path_);
   dem_options_.products = options_.products;
   dem_options_.light = {options_.azimuth, options_.altitude};
   dem_options_.nodata = options_.nodata;
@@ -278,16 +278,14 @@ void DemFile::check_size(const Box<2>& extent, std::uint64_t vertices) const {
       ErrorCode::kTooLarge, {.remedy = Remedy::kRasterExtent});
 }
 
-void DemFile::complete(RunWatch& watch, Report& report) {
-  complete(watch, report,
-           [this](Raster& raster, const std::function<void(std::uint64_t)>& written) {
-             dem_->write(raster, written);
-           });
+void DemFile::take_merged(const MergedBlock& block) { writer_->take_merged(block); }
+
+void DemFile::give_share(ShareSender& sender) {
+  with_threads(dem_options_.threads, [&] { give_tiles(*dem_, sender); });
 }
 
-void DemFile::complete(RunWatch& watch, Report& report, const WritePixels& write_pixels) {
+void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
   Dem& dem = *dem_;
-  writer_->finish(report.mesh);
   const PixelGrid& grid = dem.grid();
   RasterOptions raster = file_options(path_, options_, dem.raster_options());
   raster.grid.crs = crs_;
@@ -297,7 +295,8 @@ void DemFile::complete(RunWatch& watch, Report& report, const WritePixels& write
   const auto written = [&](std::uint64_t done) {
     watch.tell(done, static_cast<double>(done) / static_cast<double>(pixels));
   };
-  with_threads(dem_options_.threads, [&] { write_pixels(file.raster(), written); });
+  with_threads(dem_options_.threads,
+               [&] { write_with_others(dem, others, file.raster(), written); });
   report.output_format = kGeoTiff.name;
   report.output_bytes = file.finish();
   report.write_seconds = watch.end(pixels);

@@ -3,7 +3,6 @@
 #include <spillway/dem.h>
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,15 +30,10 @@ class DemFile final : public OwnSink<DemSink> {
   [[nodiscard]] bool extent_told(const Box<2>& extent, std::uint64_t vertices) override;
   [[nodiscard]] bool extent_holds(const Box<2>& extent) override;
   BlockSink* begin_again() override;
-  void complete(RunWatch& watch, Report& report) override;
-
-  /// How the pixels get into a file: `written` is told how many are there.
-  using WritePixels =
-      std::function<void(Raster& raster, const std::function<void(std::uint64_t)>& written)>;
-  /// complete() with pixels that others have, too.
-  void complete(RunWatch& watch, Report& report, const WritePixels& write_pixels);
-  /// While blocks come, and until it is complete.
-  [[nodiscard]] Dem& dem() { return *dem_; }
+  [[nodiscard]] bool has_shares() const override { return true; }
+  void take_merged(const MergedBlock& block) override;
+  void give_share(ShareSender& sender) override;
+  void finalize(RunWatch& watch, Report& report, OtherShares& others) override;
 
  private:
   BlockSink& open(const MeshStart& start) override;

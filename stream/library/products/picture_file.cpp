@@ -102,7 +102,7 @@ void PictureFile::extent_known(const Box<2>& extent, std::uint64_t /*vertices*/)
   if (wants_extent()) scene_->extent_known(extent);
 }
 
-void PictureFile::complete(RunWatch& watch, Report& report) {
+void PictureFile::finalize(RunWatch& watch, Report& report, OtherShares& /*others*/) {
   scene_->writer().finish(report.mesh);
   watch.begin("draw", "pixels");
   std::optional<Picture> picture;

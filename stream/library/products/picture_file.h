@@ -24,7 +24,7 @@ class PictureFile final : public OwnSink<PictureSink> {
   [[nodiscard]] bool wants_extent() const override { return !options_.zoom; }
   void extent_known(const Box<2>& extent, std::uint64_t vertices) override;
   BlockSink* begin_again() override;
-  void complete(RunWatch& watch, Report& report) override;
+  void finalize(RunWatch& watch, Report& report, OtherShares& others) override;
 
  private:
   BlockSink& open(const MeshStart& start) override;

@@ -6,9 +6,6 @@
 namespace spillway::detail {
 namespace {
 
-using distributed::Packer;
-using distributed::Unpacker;
-
 template <typename T>
 void pack_optional(Packer& message, const std::optional<T>& value) {
   message.put(value.has_value());

@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "src/distributed/packing.h"
 #include "src/parallel/parallel.h"
+#include "src/runtime/packing.h"
 #include "stream/tiles/cuts/dealt_points.h"
 #include "stream/tiles/storage/tile_block.h"
 
@@ -115,7 +115,7 @@ void count_through(std::span<std::uint64_t> index, std::span<const std::uint64_t
 
 /// Reads a piece's points and sorts them by rank; those for others are encoded.
 void PointExchange::deal(OwnPiece& piece) const {
-  std::vector<distributed::Packer> for_rank(static_cast<std::size_t>(ranks_.size()));
+  std::vector<Packer> for_rank(static_cast<std::size_t>(ranks_.size()));
   PointBlock block;
   DealtPoints dealt;
   for (SourcePiece& batch : piece.batches) {
@@ -145,7 +145,7 @@ void PointExchange::deal(OwnPiece& piece) const {
       }
     }
   }
-  for (distributed::Packer& packer : for_rank) piece.for_rank.push_back(packer.take());
+  for (Packer& packer : for_rank) piece.for_rank.push_back(packer.take());
 }
 
 /// Collective.
@@ -167,7 +167,7 @@ void PointExchange::send(std::vector<OwnPiece>& own) {
   }
   for (distributed::Message& message : ranks_.exchange(std::move(messages))) {
     const std::vector<std::byte> bytes = std::move(message.bytes);
-    for (distributed::Unpacker batches(bytes); !batches.empty();) {
+    for (Unpacker batches(bytes); !batches.empty();) {
       arrived_.push_back({{}, batches.take_list<std::vector<std::byte>>()});
     }
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "src/distributed/packing.h"
+#include "src/runtime/packing.h"
 
 namespace spillway::detail {
 namespace {

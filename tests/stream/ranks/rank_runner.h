@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "src/distributed/packing.h"
+#include "src/runtime/packing.h"
 #include "stream/ranks/rank_pipeline.h"
 #include "tests/distributed/world.h"
 #include "tests/stream/stream_runner.h"
@@ -101,7 +101,7 @@ WholeMesh<D> gather_mesh(const RankRunResult& run) {
       imported.push_back({section.mesh.imported.at(v), section.imported_index[v]});
     }
   }
-  distributed::Packer packer;
+  Packer packer;
   packer.put_list(simplices);
   packer.put_list(named);
   packer.put_list(imported);
@@ -109,7 +109,7 @@ WholeMesh<D> gather_mesh(const RankRunResult& run) {
   std::vector<std::array<std::uint64_t, 2>> uses;
   mesh.input_index.assign(run.mesh.totals.vertices, ~std::uint64_t{0});
   for (const auto& bytes : ranks.gather(packer.bytes(), 0)) {
-    distributed::Unpacker unpacker(bytes);
+    Unpacker unpacker(bytes);
     const auto some = unpacker.take_list<std::vector<std::array<VertexId, D + 1>>>();
     mesh.simplices.insert(mesh.simplices.end(), some.begin(), some.end());
     for (const auto& [number, index] :

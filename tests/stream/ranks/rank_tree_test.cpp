@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "src/distributed/packing.h"
+#include "src/runtime/packing.h"
 #include "tests/distributed/world.h"
 
 namespace spillway::detail {
@@ -89,7 +89,7 @@ TEST(RankTree, CoversAllTilesOfAllRanks) {
 
 TEST(RankTree, IsTheSameAtAllRanks) {
   const RankTree<2> tree(division_of(world().size()), tiles_of(world().rank()), world());
-  distributed::Packer packer;
+  Packer packer;
   for (const auto& node : tree.nodes()) {
     packer.put(node.leader);
     packer.put(node.level);

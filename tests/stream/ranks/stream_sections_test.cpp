@@ -9,7 +9,7 @@
 
 #include "formats/inputs/open_mesh_stream.h"
 #include "formats/meshes/spm/spm_encoding.h"
-#include "src/distributed/packing.h"
+#include "src/runtime/packing.h"
 #include "tests/stream/ranks/shared_folder.h"
 #include "tests/stream/ranks/small_rank_mesh.h"
 
@@ -62,7 +62,7 @@ TEST(StreamSections, OneAfterTheOtherAreTheStream) {
   StreamSections parts(made.spool, made.mesh);
   const std::vector<std::uint64_t> sizes = parts.sizes(world());
   ASSERT_EQ(sizes.size(), static_cast<std::size_t>(world().size()) + 1);
-  distributed::Packer packer;
+  Packer packer;
   std::vector<std::byte> piece;
   for (const std::uint32_t part : parts.own()) {
     std::vector<std::byte> bytes;
@@ -73,7 +73,7 @@ TEST(StreamSections, OneAfterTheOtherAreTheStream) {
   }
   std::vector<std::vector<std::byte>> stream(sizes.size());
   for (const auto& of_rank : world().gather(packer.bytes(), 0)) {
-    for (distributed::Unpacker unpacker(of_rank); !unpacker.empty();) {
+    for (Unpacker unpacker(of_rank); !unpacker.empty();) {
       std::vector<std::byte>& part = stream.at(unpacker.take<std::uint32_t>());
       EXPECT_THAT(part, IsEmpty()) << "a part of two ranks";
       part = unpacker.take_list<std::vector<std::byte>>();

@@ -170,6 +170,35 @@ TEST_F(RanksOfTheCommand, MakeTheSameRasterToTheByte) {
   }
 }
 
+/// Lines come in another order.
+TEST_F(RanksOfTheCommand, DrawTheSameContours) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  work_.succeed("spillway generate -q terrain -n 200000 -o in.las");
+  const auto lines = [this](const std::string& name) {
+    std::vector<std::string> sorted;
+    std::istringstream text(work_.read(name));
+    for (std::string line; std::getline(text, line);) {
+      if (line.find("LineString") == std::string::npos) continue;
+      if (line.back() == ',') line.pop_back();
+      sorted.push_back(line);
+    }
+    std::ranges::sort(sorted);
+    return sorted;
+  };
+  const std::string options = "contour -q in.las --interval 3 --force-crs --stats ";
+  work_.succeed("spillway " + options + "a.json -o a.geojson");
+  ASSERT_GT(lines("a.geojson").size(), 1000U);
+  for (const int count : {1, 2, 5}) {
+    work_.succeed(ranks(count, options + "b.json -o b.geojson"));
+    EXPECT_EQ(lines("a.geojson"), lines("b.geojson")) << count << " ranks";
+    const auto figures = [this](const char* name) {
+      return nlohmann::json::parse(work_.read(name)).at("contours");
+    };
+    EXPECT_EQ(figures("a.json").at("lines"), figures("b.json").at("lines"));
+    EXPECT_EQ(figures("a.json").at("points"), figures("b.json").at("points"));
+  }
+}
+
 TEST_F(RanksOfTheCommand, WorkWithFewerPointsThanThereAreOfThem) {
   work_.write("four.txt", "0 0 1\n1 0 2\n0 1 3\n1 1 4\n");
   expect_same_mesh(8, "four.txt");

@@ -32,7 +32,7 @@ class Recorder final : public OwnSink<spillway::MeshSink> {
     extent_box = extent;
     extent_points = points;
   }
-  void complete(RunWatch& /*watch*/, Report& report) override {
+  void finalize(RunWatch& /*watch*/, Report& report, OtherShares& /*others*/) override {
     calls.emplace_back("complete");
     totals = report.mesh;
   }

@@ -10,8 +10,6 @@
 namespace spillway::detail {
 namespace {
 
-using distributed::Packer;
-using distributed::Unpacker;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "src/distributed/packing.h"
+#include "src/runtime/packing.h"
 #include "tests/stream/ranks/shared_inputs.h"
 
 namespace spillway::detail::testing {
@@ -42,7 +42,7 @@ PointBlock read(PieceTable& pieces, std::uint64_t piece) {
 
 /// Expects that all pieces in their order, read by ranks that can, are these points.
 void expect_points(PieceTable& pieces, const std::vector<LatticePoint>& expected) {
-  distributed::Packer packer;
+  Packer packer;
   for (std::uint64_t p = 0; p < pieces.size(); ++p) {
     const int reader = pieces.owner(p).value_or(static_cast<int>(p) % world().size());
     if (reader != world().rank()) continue;
@@ -53,7 +53,7 @@ void expect_points(PieceTable& pieces, const std::vector<LatticePoint>& expected
   }
   std::vector<PointBlock> of_piece(pieces.size());
   for (const auto& bytes : world().gather(packer.bytes())) {
-    for (distributed::Unpacker unpacker(bytes); !unpacker.empty();) {
+    for (Unpacker unpacker(bytes); !unpacker.empty();) {
       PointBlock& block = of_piece.at(unpacker.take<std::uint64_t>());
       block.points = unpacker.take_list<std::vector<LatticePoint>>();
       block.index = unpacker.take_list<std::vector<std::uint64_t>>();

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "src/distributed/packing.h"
+#include "src/runtime/packing.h"
 #include "tests/stream/ranks/shared_inputs.h"
 
 namespace spillway::detail::testing {

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/distributed/packing.h"
+#include "src/runtime/packing.h"
 #include "tests/stream/ranks/shared_inputs.h"
 
 namespace spillway::detail::testing {
@@ -90,7 +90,7 @@ TEST(RankDivision, IsTheSameAtAllRanks) {
   const RankDivision division = divide(write_inputs(folder, points, 2, "npy"), 3);
   std::vector<std::uint32_t> tiles(points.size());
   division.cuts.find_tiles(points, tiles);
-  distributed::Packer packer;
+  Packer packer;
   packer.put_list(division.rank_of_tile);
   packer.put_list(tiles);
   for (const auto& bytes : world().gather(packer.bytes())) {

@@ -1,5 +1,6 @@
 #pragma once
-// Values as the bytes of a message between ranks, and back. All ranks are of one kind of machine.
+// Values as the bytes of a message between processes, and back. All processes are on one kind of
+// machine.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,15 +11,16 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail::distributed {
+namespace spillway::detail {
 
 class Packer {
  public:
   template <typename T>
   requires std::is_trivially_copyable_v<T>
   void put(const T& value) {
-    const auto* const bytes = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + sizeof(T));
+    std::memcpy(bytes_.data() + at, &value, sizeof(T));
   }
 
   /// A list of values (a std::string, too) with its length.
@@ -75,4 +77,4 @@ class Unpacker {
   std::span<const std::byte> left_;
 };
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::detail

@@ -1,10 +1,11 @@
-// The raster of what all ranks have painted is that of one process that paints all of it.
+// What ranks have made of parts of a mesh, put together, is what one process makes of all of it.
 
-#include "stream/ranks/raster_merge.h"
+#include "stream/ranks/share_messages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "stream/sinks/dem_shares.h"
 #include "tests/distributed/world.h"
 #include "tests/stream/sinks/dem_runner.h"
 
@@ -22,13 +23,25 @@ std::vector<Triangle> terrain() {
 
 /// Every triangle as a part of its own, with its first corner imported, so that each vertex of the
 /// terrain is counted for as many triangles as name it second or third.
-MergedSection section_of(const Triangle& triangle) {
-  MergedSection section;
-  section.mesh.vertices = {LatticePoint(triangle[1]), LatticePoint(triangle[2])};
-  section.mesh.imported = {0};
-  section.imported_vertices = {LatticePoint(triangle[0])};
-  section.mesh.corners = {2, 0, 1};
-  return section;
+void paint(Dem& dem, const Triangle& triangle) {
+  MeshBlock mesh;
+  mesh.vertices = {LatticePoint(triangle[1]), LatticePoint(triangle[2])};
+  mesh.imported = {0};
+  mesh.corners = {2, 0, 1};
+  const std::vector<LatticePoint> imported = {LatticePoint(triangle[0])};
+  DemWriter(dem).take_merged({.mesh = mesh, .imported_vertices = imported});
+}
+
+void give(Dem& dem) {
+  ShareToFirstRank sender(world());
+  give_tiles(dem, sender);
+  sender.end();
+}
+
+void write(Dem& dem, Raster& raster, const std::function<void(std::uint64_t)>& progress) {
+  SharesOfOtherRanks others(world());
+  write_with_others(dem, others, raster, progress);
+  others.end();
 }
 
 /// A raster being made, and what it needs.
@@ -45,10 +58,10 @@ struct Painted {
   std::optional<Dem> dem;
 };
 
-TEST(RasterMerge, IsTheRasterOfAllThatRanksHavePainted) {
+TEST(SharesOfRanks, IsTheRasterOfAllThatRanksHavePainted) {
   const std::vector<Triangle> triangles = terrain();
   Painted alone(kMemory);
-  for (const Triangle& triangle : triangles) paint_merged(*alone.dem, section_of(triangle));
+  for (const Triangle& triangle : triangles) paint(*alone.dem, triangle);
   const Rastered expected = finished(*alone.dem, alone.options);
   EXPECT_GT(expected.with_data, 100'000U);
 
@@ -58,41 +71,38 @@ TEST(RasterMerge, IsTheRasterOfAllThatRanksHavePainted) {
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       if (t % static_cast<std::size_t>(world().size()) ==
           static_cast<std::size_t>(world().rank())) {
-        paint_merged(*own.dem, section_of(triangles[t]));
+        paint(*own.dem, triangles[t]);
       }
     }
     if (world().rank() != 0) {
-      send_raster(*own.dem, world());
+      give(*own.dem);
       EXPECT_TRUE(own.dem->tiles().empty());
       continue;
     }
     KeepingRaster raster(kGrid, own.options.products.size());
     std::uint64_t told = 0;
-    write_raster_of_ranks(
-        *own.dem, raster, [&told](std::uint64_t pixels) { told = pixels; }, world());
+    write(*own.dem, raster, [&told](std::uint64_t pixels) { told = pixels; });
     EXPECT_TRUE(raster.bands == expected.bands);
     EXPECT_EQ(own.dem->pixels_with_data(), expected.with_data);
     EXPECT_EQ(told, std::uint64_t{kGrid.columns} * kGrid.rows);
   }
 }
 
-TEST(RasterMerge, NeedsNothingOfRanksThatHavePaintedNothing) {
+TEST(SharesOfRanks, NeedsNothingOfRanksThatHavePaintedNothing) {
   Painted own(kMemory);
   if (world().rank() != 0) {
-    send_raster(*own.dem, world());
+    give(*own.dem);
     return;
   }
-  paint_merged(*own.dem, section_of({Point<3>{0, 0, 1}, {300, 0, 1}, {0, 300, 1}}));
+  paint(*own.dem, {Point<3>{0, 0, 1}, {300, 0, 1}, {0, 300, 1}});
   KeepingRaster raster(kGrid, own.options.products.size());
-  write_raster_of_ranks(
-      *own.dem, raster, [](std::uint64_t) {}, world());
+  write(*own.dem, raster, [](std::uint64_t) {});
   EXPECT_GT(own.dem->pixels_with_data(), 0U);
 }
 
-TEST(RasterMerge, CountsVerticesWhereTheyAreNew) {
+TEST(SharesOfRanks, CountsVerticesWhereTheyAreNew) {
   Painted own(kMemory);
-  MergedSection section = section_of({Point<3>{10.5, 10.5, 1}, {20.5, 10.5, 1}, {10.5, 20.5, 1}});
-  paint_merged(*own.dem, section);
+  paint(*own.dem, {Point<3>{10.5, 10.5, 1}, {20.5, 10.5, 1}, {10.5, 20.5, 1}});
   const Rastered raster = finished(*own.dem, own.options);
   const std::vector<float>& density = raster.bands.at(4);
   double sum = 0;

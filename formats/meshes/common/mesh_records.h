@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "formats/meshes/common/mesh.h"
+
+namespace spillway::detail {
+
+/// How a format is laid out whose file is a header, then all vertices and then all simplices, each
+/// kind of one size: several processes can write to one such file, each record at its place.
+/// `name` is that of the file, for messages.
+struct MeshRecords {
+  /// All before the first vertex. Throws Error for a mesh that the format cannot hold.
+  std::string (*header)(const MeshHeader& header, const std::string& name);
+  std::size_t (*vertex_size)(bool has_input_index);
+  std::size_t (*simplex_size)(int dimension);
+  /// Puts down a vertex, or a simplex, and returns where it ends. Throws Error for an index that is
+  /// too large.
+  std::byte* (*put_vertex)(std::byte* at, const WorldPoint& vertex,
+                           const std::optional<std::uint64_t>& input_index,
+                           const std::string& name);
+  std::byte* (*put_simplex)(std::byte* at, std::span<const std::uint64_t> corners);
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,68 @@
+#include "stream/sinks/dem_shares.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "src/runtime/packing.h"
+
+namespace spillway::detail {
+namespace {
+
+/// The tiles that come from one process, in ascending order.
+class TilesOfOther {
+ public:
+  TilesOfOther(OtherShares& shares, std::size_t other) : shares_(shares), other_(other) {}
+
+  /// Appends what the other has of this tile, if anything.
+  void take(std::uint64_t tile, std::vector<std::vector<std::byte>>& others) {
+    while (!ended_ && next_ == tiles_.size()) receive();
+    if (ended_ || tiles_[next_].first != tile) return;
+    others.push_back(std::move(tiles_[next_++].second));
+  }
+
+ private:
+  void receive() {
+    const std::optional<std::vector<std::byte>> message = shares_.next(other_);
+    tiles_.clear();
+    next_ = 0;
+    ended_ = !message;
+    if (ended_) return;
+    for (Unpacker unpacker(*message); !unpacker.empty();) {
+      const auto tile = unpacker.take<std::uint64_t>();
+      tiles_.emplace_back(tile, unpacker.take_list<std::vector<std::byte>>());
+    }
+  }
+
+  OtherShares& shares_;
+  std::size_t other_;
+  bool ended_ = false;
+  std::vector<std::pair<std::uint64_t, std::vector<std::byte>>> tiles_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+void give_tiles(Dem& dem, ShareSender& sender) {
+  Packer message;
+  for (const std::uint64_t tile : dem.tiles()) {
+    message.put(tile);
+    message.put_list(dem.take_tile(tile));
+    if (message.bytes().size() >= sender.message_bytes()) sender.send(message.take());
+  }
+  if (!message.bytes().empty()) sender.send(message.take());
+}
+
+void write_with_others(Dem& dem, OtherShares& others, Raster& raster,
+                       const std::function<void(std::uint64_t pixels)>& progress) {
+  if (others.count() == 0) return dem.write(raster, progress);
+  std::vector<TilesOfOther> inboxes;
+  for (std::size_t other = 0; other < others.count(); ++other) inboxes.emplace_back(others, other);
+  dem.write(raster, progress, [&](std::uint64_t tile) {
+    std::vector<std::vector<std::byte>> of_others;
+    for (TilesOfOther& inbox : inboxes) inbox.take(tile, of_others);
+    return of_others;
+  });
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,29 @@
+#include "stream/sinks/line_store.h"
+
+namespace spillway::detail {
+namespace {
+
+/// Bytes that go to the disk at a time.
+constexpr std::size_t kBatch = std::size_t{1} << 20;
+
+}  // namespace
+
+void LineStore::add(std::span<const Point<2>> points, double height) {
+  last_.put(height);
+  last_.put_list(points);
+  if (last_.bytes().size() < kBatch) return;
+  if (!file_) file_ = scratch_.create("contours");
+  batches_.push_back({file_->size(), last_.bytes().size()});
+  file_->append(last_.bytes());
+  last_ = {};
+}
+
+std::vector<std::byte> LineStore::take() {
+  if (next_ == batches_.size()) return last_.take();
+  const Batch& batch = batches_[next_++];
+  std::vector<std::byte> bytes(batch.bytes);
+  file_->read(batch.offset, bytes);
+  return bytes;
+}
+
+}  // namespace spillway::detail
