@@ -3,7 +3,8 @@ include(CMakePackageConfigHelpers)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/Spillway)
 set(pkgconfig ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
-install(FILES ${SPILLWAY_PUBLIC_HEADERS} ${CMAKE_CURRENT_BINARY_DIR}/spillway/version.h
+install(DIRECTORY spillway DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library FILES_MATCHING PATTERN "*.h")
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/spillway/version.h
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/spillway COMPONENT library)
 
 # Apart, as only a link with the static one needs other packages.

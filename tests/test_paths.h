@@ -9,6 +9,9 @@ namespace spillway::detail::test {
 /// The built command.
 std::string command_path();
 
+/// The same with the subcommand of a product that tests add.
+std::string mean_slope_command_path();
+
 /// mpirun; empty in a build without MPI.
 std::string mpirun_path();
 

@@ -1,17 +1,16 @@
 // A sink of meshes of one's own: looks for the longest edge, and holds only vertices in use.
+#include <spillway/live_vertices.h>
 #include <spillway/triangulate.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <unordered_map>
 #include <vector>
 
 class LongestEdge : public spillway::MeshSink {
  public:
   void write(const spillway::MeshBlock& block) override {
-    std::uint64_t number = block.first_vertex;
-    for (const auto& vertex : block.vertices) in_use_.emplace(number++, vertex);
+    in_use_.begin(block, block.vertices);
     for (std::size_t c = 0; c < block.corners.size(); c += 3) {
       for (int i = 0; i < 3; ++i) {
         const auto& a = in_use_.at(block.corners[c + i]);
@@ -19,11 +18,11 @@ class LongestEdge : public spillway::MeshSink {
         length_ = std::max(length_, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
       }
     }
-    for (const std::uint64_t vertex : block.finalized) in_use_.erase(vertex);
+    in_use_.end(block);
   }
 
   double length_ = 0;
-  std::unordered_map<std::uint64_t, spillway::Point<3>> in_use_;
+  spillway::LiveVertices<spillway::Point<3>> in_use_;
 };
 
 int main() {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/meshes/common/stream_vertices.h"
 #include "src/geometry/point.h"
 
 namespace spillway::detail {
@@ -61,7 +61,7 @@ class OpenVertices {
 
   std::vector<Vertex> vertices_;  // by slot
   std::vector<std::uint32_t> free_;
-  LiveVertices<std::uint32_t> importable_;  // slots
+  StreamVertices<std::uint32_t> importable_;  // slots
 };
 
 }  // namespace spillway::detail

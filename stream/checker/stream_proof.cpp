@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "formats/meshes/common/probing_table.h"
+#include <spillway/detail/probing_table.h>
 #include "src/geometry/canonical_hash.h"
 #include "src/parallel/parallel.h"
 #include "stream/checker/mesh_proof.h"

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/meshes/common/stream_numbers.h"
+#include "formats/meshes/common/stream_vertices.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 #include "src/terrain/isolines.h"
@@ -61,7 +61,7 @@ class ContourWriter : public BlockSink {
   const ContourOptions options_;
   LineJoiner joiner_;
   std::vector<IsoSegment> segments_;
-  LiveVertices<WorldPoint> live_;
+  StreamVertices<WorldPoint> live_;
   double lowest_ = std::numeric_limits<double>::infinity();
   double highest_ = -std::numeric_limits<double>::infinity();
   std::uint64_t left_out_ = 0;

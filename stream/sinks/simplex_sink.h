@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/meshes/common/stream_vertices.h"
 #include "stream/sinks/mesh_shares.h"
 
 namespace spillway::detail {
@@ -84,7 +84,7 @@ class SimplexSink : public BlockSink {
                               std::span<const std::uint32_t> corners) = 0;
 
   const std::size_t corners_;
-  LiveVertices<Value> live_;  ///< of write() alone
+  StreamVertices<Value> live_;  ///< of write() alone
 };
 
 }  // namespace spillway::detail

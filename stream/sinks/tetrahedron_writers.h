@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/meshes/common/stream_vertices.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 #include "src/picture/tetrahedron_cut.h"
@@ -41,7 +41,7 @@ class TetrahedronWriter : public BlockSink {
 
   const std::optional<Lattice> lattice_;
   const std::optional<double> max_edge_;
-  LiveVertices<WorldPoint> live_;
+  StreamVertices<WorldPoint> live_;
   Box<3> extent_;
   std::uint64_t left_out_ = 0;
 };

@@ -2,7 +2,7 @@
 # They are compiled without sanitizers, so they cannot be linked with a library that has them.
 if(SPILLWAY_LIBRARY AND NOT SPILLWAY_SANITIZE)
   add_subdirectory(${PROJECT_SOURCE_DIR}/docs/examples examples)
-  foreach(example mesh_in_memory locate_and_interpolate two_sinks own_source own_sink dem)
+  foreach(example mesh_in_memory locate_and_interpolate two_sinks own_source own_sink own_product dem)
     target_compile_options(example_${example} PRIVATE -Wall -Wextra -Wpedantic -Werror)
     add_test(NAME Example.${example} COMMAND ${PROJECT_SOURCE_DIR}/tests/examples/run.sh
       $<TARGET_FILE:example_${example}> ${PROJECT_SOURCE_DIR}/tests/examples/${example}.txt)

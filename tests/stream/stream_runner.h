@@ -11,9 +11,9 @@
 #include <variant>
 #include <vector>
 
-#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/meshes/common/stream_numbers.h"
+#include "formats/meshes/common/stream_vertices.h"
 #include "formats/points/common/point_writer.h"
 #include "formats/points/create_points.h"
 #include "stream/pipeline.h"
@@ -65,7 +65,7 @@ class KeepingWriter : public BlockSink {
 
  private:
   std::size_t corners_;
-  LiveVertices<std::monostate> live_;
+  StreamVertices<std::monostate> live_;
 };
 
 /// A file of points in the test's temporary folder, of this process alone.

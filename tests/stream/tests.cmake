@@ -56,7 +56,8 @@ spillway_mpi_test(rank_unit_test
   SOURCES stream/ranks/part_files_test.cpp stream/ranks/exchange/piece_table_test.cpp
           stream/ranks/exchange/point_exchange_test.cpp stream/ranks/rank_tree_test.cpp
           stream/ranks/exchange/rank_division_test.cpp stream/ranks/shared_report_test.cpp
-          stream/ranks/share_messages_test.cpp stream/ranks/stream_sections_test.cpp
+          stream/ranks/rank_executor_test.cpp stream/ranks/share_messages_test.cpp
+          stream/ranks/stream_sections_test.cpp
           stream/ranks/exchange/collective_step_test.cpp
   LIBS spillway_stream_ranks
   RANKS 1 2 3 5
@@ -74,7 +75,7 @@ spillway_test(stream_library_test unit
           stream/library/passed_on_test.cpp
           stream/library/sort_points_test.cpp stream/library/triangulate_test.cpp
           stream/library/products/check_test.cpp stream/library/products/info_test.cpp
-          stream/library/products/point_comparison_test.cpp
+          stream/library/products/point_comparison_test.cpp stream/library/products/product_test.cpp
           stream/library/products/products_test.cpp
   LIBS spillway_stream spillway_library)
 

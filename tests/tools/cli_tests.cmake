@@ -70,6 +70,13 @@ if(SPILLWAY_MPI)
     tools/process/cli_ranks_test.cpp tools/report/progress_lines.cpp)
 endif()
 
+# A product that tests add to the command.
+spillway_test_program(mean_slope_command
+  tools/commands/mean_slope/main.cpp tools/commands/mean_slope/mean_slope.cpp)
+target_link_libraries(mean_slope_command PRIVATE spillway_command nlohmann_json::nlohmann_json)
+spillway_command_test(added_product_test cli tools/commands/mean_slope/product_test.cpp)
+add_dependencies(added_product_test mean_slope_command)
+
 # Two runs of the same commands make the same files and messages, and leave nothing in temporary folders.
 add_test(NAME Digests.TwoRunsAreTheSame
   COMMAND ${PROJECT_SOURCE_DIR}/tests/digests.sh --twice $<TARGET_FILE:spillway>

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -91,13 +92,9 @@ void refuse_empty_values(const CommandLine& root) {
 /// All options and subcommands.
 class CommandTree {
  public:
-  CommandTree() {
+  explicit CommandTree(std::span<const AddSubcommand> table) {
     root_.set_footer(kExamples);
-    for (const auto add :
-         {add_triangulate, add_dem, add_contour, add_render, add_info, add_generate, add_check,
-          add_convert, add_batch, add_completion, add_manual}) {
-      subcommands_.push_back(add(root_));
-    }
+    for (const AddSubcommand add : table) subcommands_.push_back(add(root_));
   }
 
   [[nodiscard]] CommandLine& root() { return root_; }
@@ -126,7 +123,7 @@ class CommandTree {
 }  // namespace
 
 void check_command_line(const std::vector<std::string>& arguments) {
-  CommandTree tree;
+  CommandTree tree(subcommands());
   try {
     tree.root().parse(arguments);
   } catch (const ArgumentError& error) {
@@ -135,8 +132,8 @@ void check_command_line(const std::vector<std::string>& arguments) {
   refuse_empty_values(tree.root());
 }
 
-int run_command(int argc, const char* const* argv) {
-  CommandTree tree;
+int run_command(int argc, const char* const* argv, std::span<const AddSubcommand> table) {
+  CommandTree tree(table);
   CommandLine& root = tree.root();
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (words.empty()) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,19 +17,11 @@ struct Subcommand {
   bool over_ranks = false;   ///< works together with the other processes of mpirun
 };
 
-/// One for each subcommand: adds it to the tree. Each is defined in the file of its name.
-Subcommand add_triangulate(CommandLine& root);
-Subcommand add_dem(CommandLine& root);
-Subcommand add_contour(CommandLine& root);
-Subcommand add_render(CommandLine& root);
-Subcommand add_info(CommandLine& root);
-Subcommand add_convert(CommandLine& root);
-Subcommand add_generate(CommandLine& root);
-Subcommand add_check(CommandLine& root);
-/// After those that make outputs: it takes over their options.
-Subcommand add_batch(CommandLine& root);
-Subcommand add_completion(CommandLine& root);
-Subcommand add_manual(CommandLine& root);
+/// Adds a subcommand to the tree.
+using AddSubcommand = Subcommand (*)(CommandLine& root);
+
+/// The table of all subcommands, in the order in which help lists them.
+std::span<const AddSubcommand> subcommands();
 
 /// Throws UsageError if run_command() would do so before it does anything: a subcommand's arguments
 /// that come from a list of jobs are checked before the work on any of them begins.
@@ -36,6 +29,7 @@ void check_command_line(const std::vector<std::string>& arguments);
 
 /// Parses the command line and does what it says. Returns the exit code; throws UsageError for a
 /// wrong command line and Error for what goes wrong later.
-int run_command(int argc, const char* const* argv);
+int run_command(int argc, const char* const* argv,
+                std::span<const AddSubcommand> table = subcommands());
 
 }  // namespace spillway::detail

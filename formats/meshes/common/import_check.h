@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "formats/meshes/common/live_vertices.h"
+#include "formats/meshes/common/stream_vertices.h"
 
 namespace spillway::detail {
 
@@ -29,7 +29,7 @@ class ImportCheck {
   [[nodiscard]] std::size_t live() const { return live_.size(); }
 
  private:
-  LiveVertices<std::uint64_t> live_;  ///< the block that has it last
+  StreamVertices<std::uint64_t> live_;  ///< the block that has it last
   std::uint64_t block_ = 0;
 };
 

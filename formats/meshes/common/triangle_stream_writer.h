@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/meshes/common/live_vertices.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/meshes/common/stream_vertices.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -40,7 +40,7 @@ class TriangleStreamWriter : public MeshStreamWriter {
 
   MeshStreamHeader header_;
   std::string name_;
-  LiveVertices<WorldPoint> live_;
+  StreamVertices<WorldPoint> live_;
   std::vector<WorldPoint> positions_;  // of the block in work, by short number
   std::uint64_t triangles_ = 0;        // written so far
 };

@@ -1,4 +1,4 @@
-#include "formats/meshes/common/probing_table.h"
+#include <spillway/detail/probing_table.h>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "formats/meshes/common/live_vertices.h"
+#include "formats/meshes/common/stream_vertices.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ MeshBlock block_of(std::size_t fresh, std::vector<std::uint64_t> imported,
   return block;
 }
 
-TEST(LiveVertices, AreThoseThatABlockAnnouncesAndNoneFinalizes) {
-  LiveVertices<char> live;
+TEST(StreamVertices, AreThoseThatABlockAnnouncesAndNoneFinalizes) {
+  StreamVertices<char> live;
   live.settle(block_of(4, {}, {1}), std::vector<char>{'a', 'b', 'c', 'd'});
   EXPECT_EQ(live.announced(), 4U);
   EXPECT_EQ(live.size(), 3U);
@@ -40,8 +40,8 @@ TEST(LiveVertices, AreThoseThatABlockAnnouncesAndNoneFinalizes) {
   EXPECT_EQ(left, (std::map<std::uint64_t, char>{{2, 'c'}, {3, 'd'}}));
 }
 
-TEST(LiveVertices, RefuseImportsOfOthers) {
-  LiveVertices<char> live;
+TEST(StreamVertices, RefuseImportsOfOthers) {
+  StreamVertices<char> live;
   live.settle(block_of(2, {}, {1}), std::vector<char>{'a', 'b'});
   std::vector<char> values;
   EXPECT_THROW(live.append_imported(block_of(0, {1}, {}), values), std::out_of_range);
@@ -50,8 +50,8 @@ TEST(LiveVertices, RefuseImportsOfOthers) {
                std::out_of_range);
 }
 
-TEST(LiveVertices, AreEnteredAndForgottenOneByOne) {
-  LiveVertices<int> live;
+TEST(StreamVertices, AreEnteredAndForgottenOneByOne) {
+  StreamVertices<int> live;
   live.enter(7, 70);
   live.announce(10);
   EXPECT_EQ(live.announced(), 10U);
@@ -63,8 +63,8 @@ TEST(LiveVertices, AreEnteredAndForgottenOneByOne) {
   EXPECT_EQ(live.size(), 0U);
 }
 
-TEST(LiveVertices, OfALongStreamAreThoseOfASet) {
-  LiveVertices<std::uint64_t> live;
+TEST(StreamVertices, OfALongStreamAreThoseOfASet) {
+  StreamVertices<std::uint64_t> live;
   std::set<std::uint64_t> expected;
   std::mt19937 random(5);  // NOLINT(bugprone-random-generator-seed)
   for (int step = 0; step < 300; ++step) {
