@@ -159,6 +159,7 @@ RunFigures run_once(PointStream& source, BlockSink& sink, ScratchFolder& scratch
     }
   });
   release_base_case_memory();
+  if (options.trace != nullptr) options.trace->end({.tasks = engine.task_sums()});
   return engine.figures();
 }
 

@@ -4,6 +4,7 @@
 #include <spillway/context.h>
 #include <spillway/export.h>
 #include <spillway/mesh.h>
+#include <spillway/point_counts.h>
 #include <spillway/points.h>
 
 #include <cstddef>

@@ -3,9 +3,9 @@
 
 #include <spillway/context.h>
 #include <spillway/export.h>
-#include <spillway/figures.h>
 #include <spillway/mesh.h>
 #include <spillway/points.h>
+#include <spillway/report.h>
 
 #include <array>
 #include <cstdint>

@@ -4,9 +4,10 @@
 #include <spillway/context.h>
 #include <spillway/export.h>
 #include <spillway/extent.h>
-#include <spillway/figures.h>
 #include <spillway/mesh.h>
+#include <spillway/point_counts.h>
 #include <spillway/points.h>
+#include <spillway/totals.h>
 
 #include <array>
 #include <cstdint>

@@ -4,9 +4,9 @@
 #include <spillway/context.h>
 #include <spillway/export.h>
 #include <spillway/extent.h>
-#include <spillway/figures.h>
 #include <spillway/lattice.h>
 #include <spillway/point_view.h>
+#include <spillway/totals.h>
 
 #include <cstdint>
 #include <functional>
@@ -16,6 +16,12 @@
 #include <vector>
 
 namespace spillway {
+
+namespace detail {
+class EngineSink;
+class OpenedMesh;
+struct OwnParts;
+}  // namespace detail
 
 /// What is known of a mesh before its first block. What is said must be right.
 struct MeshHeader {
@@ -53,6 +59,11 @@ class SPILLWAY_API MeshSource {
   virtual bool read(MeshBlock& block) = 0;
   /// Once read() has returned false. What is not known is 0.
   [[nodiscard]] virtual MeshTotals totals() = 0;
+
+ private:
+  friend struct detail::OwnParts;
+  /// A file that the library reads, without public values; null for a program's own source.
+  virtual detail::OpenedMesh* opened_mesh() { return nullptr; }
 };
 
 /// What takes a mesh. All calls come one at a time, though from any thread: begin() once, write()
@@ -65,6 +76,11 @@ class SPILLWAY_API MeshSink {
   virtual void begin(const MeshHeader& header);
   virtual void write(const MeshBlock& block) = 0;
   virtual void finish(const MeshTotals& totals);
+
+ private:
+  friend struct detail::OwnParts;
+  /// A sink of the library's own, as it is written without public values; null for a program's.
+  virtual detail::EngineSink* engine_sink() { return nullptr; }
 };
 
 /// How a mesh file is read.

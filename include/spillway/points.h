@@ -5,7 +5,6 @@
 #include <spillway/context.h>
 #include <spillway/export.h>
 #include <spillway/extent.h>
-#include <spillway/figures.h>
 #include <spillway/lattice.h>
 #include <spillway/point_view.h>
 
@@ -17,6 +16,12 @@
 #include <vector>
 
 namespace spillway {
+
+namespace detail {
+class EnginePoints;
+class PointFile;
+struct OwnParts;
+}  // namespace detail
 
 /// What a source says of its points before any is read. What is not known is left out; what is said
 /// must be right, but for `count`, which may be too large.
@@ -41,6 +46,11 @@ class SPILLWAY_API PointSource {
   /// Blocks of some ten thousand are best. Coordinates must be finite. What it throws ends the run
   /// and reaches whoever called triangulate().
   virtual bool read(std::vector<Point<3>>& points) = 0;
+
+ private:
+  friend struct detail::OwnParts;
+  /// A source of the library's own, as it is read without public values; null for a program's.
+  virtual detail::EnginePoints* engine_points() { return nullptr; }
 };
 
 /// One point a cell: grid cells [i * cell, (i + 1) * cell) of x, y and, in space, z.
@@ -110,6 +120,11 @@ class SPILLWAY_API PointSink {
   /// The next points, in the order of the input.
   virtual void write(std::span<const Point<3>> points) = 0;
   virtual void finish();
+
+ private:
+  friend struct detail::OwnParts;
+  /// Likewise.
+  virtual detail::PointFile* point_file() { return nullptr; }
 };
 
 /// How points are sorted: they come cell by cell, and the file tells beforehand where each cell

@@ -5,17 +5,18 @@
 #include <spillway/context.h>
 #include <spillway/error.h>
 #include <spillway/export.h>
-#include <spillway/figures.h>
 #include <spillway/mesh.h>
 #include <spillway/points.h>
-#include <spillway/run_steps.h>
+#include <spillway/report.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <optional>
 
 namespace spillway {
+
+class RunTrace;
 
 /// What is made. Only the first four members change the mesh; the others change the order in which
 /// it comes, and how fast.
@@ -35,17 +36,8 @@ struct TriangulateOptions {
   /// that goes to a pipe).
   bool trust_headers = true;
   Kernel kernel = Kernel::kSpillway;
-  /// If set, is told each node of the tree over tiles when it is done, children before parents and
-  /// else in any order: by the run's threads, one at a time. What it throws ends the run. Not for
-  /// runs over ranks.
-  std::function<void(TaskNode node)> task_done{};
-  /// If set, is told each step of the run when it is done, by the thread that has done it, one at a
-  /// time. Must not throw. Not for runs over ranks.
-  std::function<void(const StageStep& step)> step_done{};
-  /// If set, is told what the run keeps to, before the first step.
-  std::function<void(const RunLimits& limits)> limits_known{};
-  /// If set, is told that the run begins again: all that the three above were told so far is void.
-  std::function<void()> begun_again{};
+  /// For the command, which plays runs again; a program has none.
+  std::shared_ptr<RunTrace> trace{};
 };
 
 /// Triangulates all points of the source and gives the mesh to the sink as it comes: simplices that

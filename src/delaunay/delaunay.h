@@ -10,11 +10,9 @@
 #include "src/delaunay/common/triangulation.h"
 #include "src/delaunay/division/divide.h"
 
-namespace spillway {
-struct Task;
-}
-
 namespace spillway::detail {
+
+struct Task;
 
 /// How `delaunay` does its work. None of it changes the set of simplices.
 struct DelaunayOptions {

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <spillway/run_steps.h>
-
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <string_view>
 #include <utility>
 
 namespace spillway::detail {
@@ -36,6 +35,15 @@ double processor_seconds();
 
 /// Whether many threads may do steps of a kind at the same time, or one after the other.
 enum class StepOrder : std::uint8_t { kAny, kInOrder };
+
+/// A stretch of the work of one thread, as those that StageTimes adds up.
+struct StageStep {
+  std::string_view stage;     ///< of kStageNames
+  bool in_order = false;      ///< of a kind that one thread at a time does, in order
+  double seconds = 0;         ///< wall time
+  double processor_time = 0;  ///< of the thread, in seconds
+  std::uint64_t bytes = 0;    ///< that were read or written; 0: none, or not known
+};
 
 /// Seconds of all threads together, by stage; added to by many threads at once.
 class StageTimes {

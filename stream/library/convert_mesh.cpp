@@ -14,6 +14,7 @@
 #include "stream/library/meshes/opened_mesh.h"
 #include "stream/library/meshes/program_mesh.h"
 #include "stream/library/meshes/program_sink.h"
+#include "stream/library/own_parts.h"
 
 namespace spillway::detail {
 namespace {
@@ -100,11 +101,11 @@ Report convert(MeshSource& source, MeshSink& sink, const Context& context) {
   RunWatch watch(context);
   watch.check();
   std::optional<ProgramSink> program_sink;
-  auto* target = dynamic_cast<EngineSink*>(&sink);
+  auto* target = OwnParts::of(sink);
   if (target == nullptr) target = &program_sink.emplace(sink);
   if (!target->is_product()) watch.open("convert", "simplices");
   std::optional<OpenedMesh::Extent2> extent;
-  if (auto* const file = dynamic_cast<OpenedMesh*>(&source)) {
+  if (auto* const file = OwnParts::of(source)) {
     file->take();
     if (target->tells_hash()) file->check_totals(watch);
     if (target->wants_extent()) extent = file->find_extent(watch);

@@ -8,6 +8,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "stream/library/context/run_watch.h"
+#include "stream/library/own_parts.h"
 #include "stream/library/points/engine_points.h"
 #include "stream/library/points/point_file.h"
 #include "stream/library/points/program_points.h"
@@ -76,9 +77,9 @@ PointConversion convert(PointSource& source, PointSink& sink, const Context& con
   RunWatch watch(context);
   watch.check();
   std::optional<ProgramPoints> program_points;
-  auto* points = dynamic_cast<EnginePoints*>(&source);
+  auto* points = OwnParts::of(source);
   if (points == nullptr) points = &program_points.emplace(source, 0);
-  auto* const file = dynamic_cast<PointFile*>(&sink);
+  auto* const file = OwnParts::of(sink);
   if (file != nullptr) points->settle_crs(file->crs_need());
   const RunPoints run = points->begin(watch, true);
   if (file != nullptr && file->sorted()) return sort_points(run, *file, context, watch);

@@ -9,9 +9,11 @@
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
 #include "stream/library/meshes/program_sink.h"
+#include "stream/library/own_parts.h"
 #include "stream/library/points/program_points.h"
 #include "stream/library/run.h"
 #include "stream/pipeline.h"
+#include "stream/plan/run_trace.h"
 
 namespace spillway::detail {
 namespace {
@@ -42,7 +44,7 @@ StreamOptions stream_options(const TriangulateOptions& options, const Context& c
   stream.heights = options.heights;
   stream.max_edge = options.max_edge;
   stream.input_index = options.input_index;
-  stream.task_done = options.task_done;
+  stream.trace = options.trace.get();
   stream.early = options.trust_headers;
   stream.needs_extent = sink.wants_extent() && options.dimension == 2;
   stream.extent_told = [&sink](const Box<2>& extent, std::uint64_t points) {
@@ -51,12 +53,10 @@ StreamOptions stream_options(const TriangulateOptions& options, const Context& c
   stream.extent_holds = [&sink](const Box<2>& extent) { return sink.extent_holds(extent); };
   stream.begin_again = [&sink, &options] {
     BlockSink* const blocks = sink.begin_again();
-    if (blocks != nullptr && options.begun_again) options.begun_again();
+    if (blocks != nullptr && options.trace) options.trace->begin_again();
     return blocks;
   };
   if (context.options().warning) stream.warn = context.options().warning;
-  stream.step_done = options.step_done;
-  stream.limits_known = options.limits_known;
   stream.extent_known = [&sink](const Box<2>& extent, std::uint64_t points) {
     sink.extent_known(extent, points);
   };
@@ -128,10 +128,10 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   RunWatch watch(context);
   watch.check();
   std::optional<ProgramPoints> program_points;
-  auto* points = dynamic_cast<EnginePoints*>(&source);
+  auto* points = OwnParts::of(source);
   if (points == nullptr) points = &program_points.emplace(source, options.dimension);
   std::optional<ProgramSink> program_sink;
-  auto* target = dynamic_cast<EngineSink*>(&sink);
+  auto* target = OwnParts::of(sink);
   if (target == nullptr) target = &program_sink.emplace(sink);
   points->settle_crs(target->crs_need());
   const std::uint64_t own = target->own_memory(context.memory());

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <spillway/figures.h>
-#include <spillway/run_steps.h>
-
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -13,6 +10,7 @@
 #include "src/delaunay/division/divide.h"
 #include "src/geometry/box.h"
 #include "stream/output/heights.h"
+#include "stream/plan/run_trace.h"
 
 namespace spillway::detail {
 
@@ -29,10 +27,7 @@ struct StreamOptions {
   Heights heights = Heights::kFirst;
   std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, in output units
   bool input_index = false;
-  /// As in TriangulateOptions.
-  std::function<void(TaskNode)> task_done{};
-  std::function<void(const StageStep&)> step_done{};
-  std::function<void(const RunLimits&)> limits_known{};
+  RunTrace* trace = nullptr;  ///< told what the run does, if there is one
   /// Triangulate while points are being read, where regions of the source tell where they lie.
   bool early = false;
   /// Told the box around all points in x and y, in the coordinates in which the source gives them,
@@ -49,7 +44,7 @@ struct StreamOptions {
       [](const Box<2>&, std::uint64_t) { return false; };
   std::function<bool(const Box<2>&)> extent_holds = [](const Box<2>&) { return false; };
   /// Asked when headers have been found to be false. All blocks so far are void, and so is what
-  /// task_done and step_done were told. Returns where those go that follow; nullptr if blocks
+  /// the trace was told. Returns where those go that follow; nullptr if blocks
   /// cannot be taken back.
   std::function<BlockSink*()> begin_again = [] { return nullptr; };
   /// Told why the run begins again.

@@ -36,10 +36,11 @@ class RankExecutor final : public Executor {
   }
 
   Report triangulate(Run& run) override {
-    if (run.options.task_done || run.options.step_done) {
+    if (run.stream.trace != nullptr &&
+        (run.stream.trace->takes_nodes() || run.stream.trace->takes_steps())) {
       throw InvalidArgument("the tasks of a run over ranks are told as sums only");
     }
-    auto* const source = dynamic_cast<detail::PointSource*>(run.points.stream);
+    detail::PointSource* const source = run.points.files;
     if (source == nullptr) {
       throw InvalidArgument("ranks share points of files, and these are of a program");
     }
@@ -60,6 +61,8 @@ class RankExecutor final : public Executor {
 
   Report report(const Run& run, const detail::PointSource& source, const RankMesh& mesh) const {
     Report report = shared_report(mesh, source.counts(), ranks_);
+    const RunSums sums = shared_sums(mesh, ranks_);
+    if (run.stream.trace != nullptr) run.stream.trace->end(sums);
     report.dimension = run.options.dimension;
     report.on_lattice = source.lattice().has_value();
     run_collective_step(ranks_, [&] { refuse_empty_mesh(report, run.options.max_edge); });

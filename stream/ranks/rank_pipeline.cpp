@@ -246,6 +246,7 @@ class RankRun {
 
   /// Puts together what all ranks have: the sections of the stream, and the totals.
   void collect(const RankTree<D>& tree) {
+    result_.task_sums = engine_.task_sums();
     result_.figures = engine_.figures();
     number_sections(tree);
     for (std::size_t m = 0; m < result_.merged.size(); ++m) {

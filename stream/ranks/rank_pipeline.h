@@ -10,6 +10,7 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/distributed/ranks.h"
 #include "src/runtime/memory_budget.h"
+#include "stream/plan/run_trace.h"
 #include "stream/plan/stream_options.h"
 #include "stream/source/point_source.h"
 
@@ -42,6 +43,7 @@ struct RankMesh {
   std::optional<std::uint32_t> own_section;  ///< what the local sink was given, from number 0 on
   std::vector<MergedSection> merged;         ///< by this rank, in the order of the stream
   RunFigures figures;                        ///< of this rank alone
+  std::vector<TaskSum> task_sums;            ///< likewise
   std::vector<RankMerge> merges;             ///< of this rank
   std::uint64_t exchanged_points = 0;        ///< that it sent to other ranks
   std::uint64_t exchanged_bytes = 0;         ///< and as how many bytes

@@ -51,7 +51,6 @@ void pack(Packer& message, const RunFigures& figures) {
   for_each_sum(figures, put);
   for_each_time(figures, put);
   message.put_list(figures.final_by_level);
-  message.put_list(figures.task_sums);
   for (const StageSeconds& stage : figures.stages) put(stage.seconds);
 }
 
@@ -66,7 +65,6 @@ RunFigures unpack_figures(Unpacker& message) {
   for_each_sum(figures, take);
   for_each_time(figures, take);
   figures.final_by_level = message.take_list<std::vector<std::uint64_t>>();
-  figures.task_sums = message.take_list<std::vector<TaskSum>>();
   for (const char* const stage : kStageNames) {
     figures.stages.push_back({stage, message.take<double>()});
   }
@@ -77,6 +75,7 @@ std::vector<std::byte> pack_own(const RankMesh& mesh) {
   const distributed::Traffic sent = distributed::traffic();
   Packer message;
   pack(message, mesh.figures);
+  message.put_list(mesh.task_sums);
   for (const std::uint64_t figure :
        {peak_memory(), sent.messages, sent.bytes, mesh.exchanged_points, mesh.exchanged_bytes,
         mesh.border_simplices_sent, mesh.border_bytes_sent}) {
@@ -90,6 +89,7 @@ RankFigures unpack_rank(std::span<const std::byte> bytes) {
   Unpacker message(bytes);
   RankFigures rank;
   rank.run = unpack_figures(message);
+  rank.task_sums = message.take_list<std::vector<TaskSum>>();
   for (std::uint64_t* const figure :
        {&rank.peak_memory, &rank.messages_sent, &rank.bytes_sent, &rank.points_sent,
         &rank.point_bytes_sent, &rank.border_simplices_sent, &rank.border_bytes_sent}) {
@@ -131,13 +131,18 @@ Report shared_report(const RankMesh& mesh, const PointCounts& counts, const Rank
   report.mesh = mesh.totals;
   report.left_out = mesh.left_out;
   report.points = shared_counts(counts, ranks);
+  return report;
+}
+
+RunSums shared_sums(const RankMesh& mesh, const Ranks& ranks) {
+  RunSums all;
   TaskSums tasks;
   for (const auto& bytes : ranks.gather(pack_own(mesh), 0)) {
-    report.ranks.push_back(unpack_rank(bytes));
-    tasks.add(report.ranks.back().run.task_sums);
+    all.ranks.push_back(unpack_rank(bytes));
+    tasks.add(all.ranks.back().task_sums);
   }
-  report.task_sums = tasks.sums();
-  return report;
+  all.tasks = tasks.sums();
+  return all;
 }
 
 }  // namespace spillway::detail

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <spillway/figures.h>
+#include <spillway/report.h>
 
 #include "src/distributed/ranks.h"
 #include "stream/ranks/rank_pipeline.h"
@@ -8,8 +8,11 @@
 namespace spillway::detail {
 
 /// The report of a run over ranks, of whose points this rank has counted some: sums over all of
-/// them, the longest time for phases, and at rank 0 what each has done. Collective.
+/// them, and the longest time for phases. Collective.
 Report shared_report(const RankMesh& mesh, const PointCounts& counts,
                      const distributed::Ranks& ranks);
+
+/// At rank 0: what each of them has done. Collective.
+RunSums shared_sums(const RankMesh& mesh, const distributed::Ranks& ranks);
 
 }  // namespace spillway::detail

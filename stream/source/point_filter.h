@@ -1,6 +1,6 @@
 #pragma once
 
-#include <spillway/figures.h>
+#include <spillway/point_counts.h>
 
 #include <bitset>
 #include <cstdint>

@@ -12,11 +12,9 @@
 #include "src/runtime/work_lease.h"
 #include "stream/output/stream_place.h"
 
-namespace spillway {
-struct Task;
-}
-
 namespace spillway::detail {
+
+struct Task;
 
 template <int D>
 struct BorderVertex {

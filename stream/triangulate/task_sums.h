@@ -1,13 +1,14 @@
 #pragma once
 
-#include <spillway/figures.h>
-
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <span>
 #include <tuple>
 #include <vector>
+
+#include "src/runtime/task.h"
+#include "stream/plan/run_trace.h"
 
 namespace spillway::detail {
 

@@ -50,16 +50,18 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
                .sequencer = sequencer_,
                .counts = counts_,
                .progress = [this] { report_progress(); }} {
-  if (options.step_done) counts_.times.tell_steps(options.step_done);
-  if (options.limits_known) {
+  if (options.trace != nullptr && options.trace->takes_steps()) {
+    counts_.times.tell_steps([trace = options.trace](const StageStep& step) { trace->step(step); });
+  }
+  if (options.trace != nullptr) {
     const MemoryPlan any =
         plan_memory(budget.limit(), D, kMostThreads, budget.whole(), expected.plan != nullptr);
-    options.limits_known({.batches = any.batches,
-                          .tile_points = plan_.tile_room,
-                          .loaded_points = kTilesAtATime * plan_.tile_room,
-                          .ready_points = kTilesAtATime * plan_.tile_room / Lanes::kReadyShare,
-                          .waiting_bytes = plan_.waiting_bytes,
-                          .threads = any.threads});
+    options.trace->limits({.batches = any.batches,
+                           .tile_points = plan_.tile_room,
+                           .loaded_points = kTilesAtATime * plan_.tile_room,
+                           .ready_points = kTilesAtATime * plan_.tile_room / Lanes::kReadyShare,
+                           .waiting_bytes = plan_.waiting_bytes,
+                           .threads = any.threads});
   }
   if (expected.plan == nullptr) return;
   cells_.emplace(*expected.plan);
@@ -371,12 +373,12 @@ void TileEngine<D>::merge_node(Node& node) {
 
 template <int D>
 void TileEngine<D>::tell_done(const Node& node, Task task) {
-  if (!options_.task_done) return;
+  if (options_.trace == nullptr || !options_.trace->takes_nodes()) return;
   TaskNode told{.number = node.number, .level = node.level};
   for (const Node* child : node.children) told.children.push_back(child->number);
   told.task = std::move(task);
   const std::lock_guard lock(tell_mutex_);
-  options_.task_done(std::move(told));
+  options_.trace->node(told);
 }
 
 /// Nothing of this is for the sequencer: `place` is one of a stream of many processes.
@@ -432,7 +434,6 @@ RunFigures TileEngine<D>::figures() {
   figures_.retriangulated = counts_.retriangulated;
   figures_.border_simplices = counts_.borders.most_simplices();
   figures_.border_bytes = counts_.borders.most_bytes();
-  figures_.task_sums = tasks_.sums();
   for (std::size_t s = 0; s < kStageNames.size(); ++s) {
     figures_.stages.push_back({kStageNames[s], counts_.times.seconds(static_cast<Stage>(s))});
   }

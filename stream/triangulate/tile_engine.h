@@ -108,6 +108,7 @@ class TileEngine {
 
   /// Of all that has been done; to be called once, at the end.
   [[nodiscard]] RunFigures figures();
+  [[nodiscard]] std::vector<TaskSum> task_sums() const { return tasks_.sums(); }
 
  private:
   /// Keeps what `Outside` points to.
@@ -172,7 +173,7 @@ class TileEngine {
   TaskSums tasks_;
   BorderGrowth<D> growth_;
   SampleForecast<D> sample_;
-  std::mutex tell_mutex_;     ///< held while options_.task_done is called
+  std::mutex tell_mutex_;     ///< held while the trace is told a node
   std::mutex figures_mutex_;  ///< guards the next one
   RunFigures figures_;
 };

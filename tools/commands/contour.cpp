@@ -72,7 +72,7 @@ int run(const ContourCommandOptions& options) {
   Progress progress = make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   const Context context = terrain_context(options, progress);
   const auto contours = create_contours(options.output, how, context);
-  const Report report = send_terrain(options, *contours, context);
+  const TracedReport report = send_terrain(options, *contours, context);
   if (!is_first_rank()) return kExitDone;
   const RunFacts facts = facts_of_run(options, options.output, context, start);
   say(options, report, contours->report(), facts, progress);

@@ -79,7 +79,7 @@ int run(const DemCommandOptions& options) {
   Progress progress = make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   const Context context = terrain_context(options, progress);
   const auto dem = create_dem(options.output, how, context);
-  const Report report = send_terrain(options, *dem, context);
+  const TracedReport report = send_terrain(options, *dem, context);
   if (!is_first_rank()) return kExitDone;
   const RunFacts facts = facts_of_run(options, options.output, context, start);
   say(options, report, dem->report(), facts, progress);

@@ -106,7 +106,7 @@ int run(const RenderCommandOptions& options) {
   Progress progress = make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   const Context context = terrain_context(options, progress);
   const auto picture = create_picture(options.output, how, context);
-  const Report report = send_terrain(options, *picture, context);
+  const TracedReport report = send_terrain(options, *picture, context);
   const RunFacts facts = facts_of_run(options, options.output, context, start);
   say(options, report, picture->report(), facts, progress);
   const Json size = {{"columns", picture->report().columns}, {"rows", picture->report().rows}};

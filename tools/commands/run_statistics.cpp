@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <utility>
+#include <memory>
 
 #include "formats/disk/output_check.h"
 #include "src/distributed/ranks.h"
 #include "tools/process/rank_job.h"
+#include "tools/report/command_trace.h"
 #include "tools/report/json_text.h"
-#include "tools/report/task_file.h"
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
@@ -37,20 +37,13 @@ void check_statistics_file(const TriangulationOptions& options, const std::strin
   }
 }
 
-Report triangulate_with_tasks(const TriangulationOptions& options, PointSource& points,
-                              MeshSink& sink, TriangulateOptions how, const Context& context) {
-  if (options.tasks_path.empty()) return triangulate(points, sink, how, context);
-  TaskFile file(options.tasks_path);
-  how.task_done = [&file, also = std::move(how.task_done)](TaskNode node) {
-    file.write(node);
-    if (also) also(std::move(node));
-  };
-  how.begun_again = [&file, also = std::move(how.begun_again)] {
-    file.begin_again();
-    if (also) also();
-  };
-  Report report = triangulate(points, sink, how, context);
-  file.commit();
+TracedReport triangulate_and_trace(const TriangulationOptions& options, PointSource& points,
+                                   MeshSink& sink, TriangulateOptions how, const Context& context,
+                                   std::optional<RunRecorder>* recorder) {
+  const auto trace = std::make_shared<CommandTrace>(options.tasks_path, recorder);
+  how.trace = trace;
+  TracedReport report{triangulate(points, sink, how, context)};
+  report.sums = trace->commit();
   return report;
 }
 
@@ -63,7 +56,7 @@ RunFacts facts_of_run(const TriangulationOptions& options, const std::string& ou
       .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
 }
 
-void write_statistics(const TriangulationOptions& options, const Report& report,
+void write_statistics(const TriangulationOptions& options, const TracedReport& report,
                       const RunFacts& facts, const Json& product) {
   if (options.stats_path.empty()) return;
   Json json = to_json(report, facts);

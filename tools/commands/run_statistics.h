@@ -4,12 +4,14 @@
 #include <spillway/triangulate.h>
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "formats/bytes/json.h"
 #include "tools/options/triangulation_options.h"
 #include "tools/report/statistics.h"
+#include "tools/simulate/run_recorder.h"
 
 namespace spillway::detail {
 
@@ -19,16 +21,18 @@ namespace spillway::detail {
 void check_statistics_file(const TriangulationOptions& options, const std::string& output,
                            std::string_view product);
 
-/// triangulate() that also writes the file of --tasks, if it is asked for.
-Report triangulate_with_tasks(const TriangulationOptions& options, PointSource& points,
-                              MeshSink& sink, TriangulateOptions how, const Context& context);
+/// triangulate() that also writes the file of --tasks, if it is asked for, and tells the recorder,
+/// if there is one, what the run does.
+TracedReport triangulate_and_trace(const TriangulationOptions& options, PointSource& points,
+                                   MeshSink& sink, TriangulateOptions how, const Context& context,
+                                   std::optional<RunRecorder>* recorder = nullptr);
 
 /// What there is to tell of a run that began at `start` and has just ended.
 RunFacts facts_of_run(const TriangulationOptions& options, const std::string& output,
                       const Context& context, std::chrono::steady_clock::time_point start);
 
 /// Writes the file of --stats, if it is asked for: the report, and what `product` has besides.
-void write_statistics(const TriangulationOptions& options, const Report& report,
+void write_statistics(const TriangulationOptions& options, const TracedReport& report,
                       const RunFacts& facts, const Json& product = Json::object());
 
 }  // namespace spillway::detail

@@ -75,18 +75,18 @@ Context terrain_context(const TerrainOptions& options, Progress& progress) {
   return Context(limits);
 }
 
-Report send_terrain(const TerrainOptions& options, MeshSink& sink, const Context& context) {
+TracedReport send_terrain(const TerrainOptions& options, MeshSink& sink, const Context& context) {
   if (is_mesh(options, context)) {
     refuse_options_of_points(options);
     const auto mesh = open_mesh(options.inputs.front(),
                                 mesh_options(options.input, options.mesh_format), context);
-    return convert(*mesh, sink, context);
+    return {convert(*mesh, sink, context)};
   }
   const auto points =
       open_points(options.inputs, point_options(options.input, options.dimension), context);
   check_heights(options, points->header());
-  return triangulate_with_tasks(options, *points, sink,
-                                triangulate_options(options, options.dimension), context);
+  return triangulate_and_trace(options, *points, sink,
+                               triangulate_options(options, options.dimension), context);
 }
 
 void say_what_is_left_out(const TerrainOptions& options, const Report& report, Progress& progress) {

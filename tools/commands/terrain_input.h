@@ -3,7 +3,6 @@
 // are triangulated on the way, or from a mesh.
 
 #include <spillway/context.h>
-#include <spillway/figures.h>
 #include <spillway/mesh.h>
 
 #include <string>
@@ -12,6 +11,7 @@
 
 #include "tools/options/triangulation_options.h"
 #include "tools/report/progress.h"
+#include "tools/report/statistics.h"
 
 namespace spillway::detail {
 
@@ -32,7 +32,7 @@ Context terrain_context(const TerrainOptions& options, Progress& progress);
 
 /// Sends the triangles of the input to `sink`. Throws UsageError for options that the input at hand
 /// does not have.
-Report send_terrain(const TerrainOptions& options, MeshSink& sink, const Context& context);
+TracedReport send_terrain(const TerrainOptions& options, MeshSink& sink, const Context& context);
 
 /// Says what was dropped of the points, and of the simplices.
 void say_what_is_left_out(const TerrainOptions& options, const Report& report, Progress& progress);

@@ -224,13 +224,8 @@ int run(const TriangulateCommandOptions& options) {
   say_what_heights_are(options, points->header(), progress);
   TriangulateOptions how = triangulate_options(options, options.dimension);
   how.input_index = options.input_index;
-  if (options.simulates()) {
-    how.task_done = [&](const TaskNode& node) { recorder->node(node); };
-    how.step_done = [&](const StageStep& step) { recorder->step(step); };
-    how.limits_known = [&](const RunLimits& known) { recorder->limits(known); };
-    how.begun_again = [&] { recorder.emplace(); };
-  }
-  const Report report = triangulate_with_tasks(options, *points, *mesh, how, context);
+  const TracedReport report = triangulate_and_trace(options, *points, *mesh, how, context,
+                                                    options.simulates() ? &recorder : nullptr);
   if (!is_first_rank()) return kExitDone;
   RunFacts facts = facts_of_run(options, options.output, context, start);
   if (options.simulates()) {

@@ -9,10 +9,10 @@
 namespace spillway::detail {
 namespace {
 
-Json task_sums(const RunFigures& figures) {
-  Json sums = Json::array();
-  for (const TaskSum& sum : figures.task_sums) sums.push_back(to_json(sum));
-  return sums;
+Json task_sums(const RunSums& sums) {
+  Json json = Json::array();
+  for (const TaskSum& sum : sums.tasks) json.push_back(to_json(sum));
+  return json;
 }
 
 Json phases(const RunFigures& figures) {
@@ -82,18 +82,18 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
 }
 
 /// "ranks": what all of them have sent, and what each has done.
-Json ranks(const Report& report) {
+Json ranks(const TracedReport& report) {
   RankFigures sent;
   Json each = Json::array();
   std::size_t number = 0;
-  for (const RankFigures& rank : report.ranks) {
+  for (const RankFigures& rank : report.sums.ranks) {
     sent.points_sent += rank.points_sent;
     sent.point_bytes_sent += rank.point_bytes_sent;
     sent.border_simplices_sent += rank.border_simplices_sent;
     sent.border_bytes_sent += rank.border_bytes_sent;
     each.push_back(to_json(rank, number++));
   }
-  return {{"count", report.ranks.size()},
+  return {{"count", report.sums.ranks.size()},
           {"point_bytes_sent_per_point", ratio(sent.point_bytes_sent, report.mesh.points)},
           {"points_sent_share", ratio(sent.points_sent, report.mesh.points)},
           {"border_bytes_sent_per_border_simplex",
@@ -109,7 +109,7 @@ Json to_json(const PointCounts& counts) {
           {"bounds", counts.bounds}, {"thinned", counts.thinned}, {"kept", counts.kept()}};
 }
 
-Json to_json(const Report& report, const RunFacts& facts) {
+Json to_json(const TracedReport& report, const RunFacts& facts) {
   const MeshTotals& mesh = report.mesh;
   Json json;
   json["version"] = SPILLWAY_VERSION;
@@ -159,8 +159,8 @@ Json to_json(const Report& report, const RunFacts& facts) {
     }
     json["simulated_points"] = facts.simulated_points;
   }
-  json["task_sums"] = task_sums(report);
-  if (!report.ranks.empty()) json["ranks"] = ranks(report);
+  json["task_sums"] = task_sums(report.sums);
+  if (!report.sums.ranks.empty()) json["ranks"] = ranks(report);
   return json;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <spillway/figures.h>
+#include <spillway/report.h>
 
 #include <cstdint>
 #include <optional>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/bytes/json.h"
+#include "stream/plan/run_trace.h"
 #include "tools/simulate/core_simulation.h"
 
 namespace spillway::detail {
@@ -22,8 +23,13 @@ struct RunFacts {
   std::uint64_t simulated_points = 0;  ///< of each of these
 };
 
+/// What the library reports of a run, and what its trace has told.
+struct TracedReport : Report {
+  RunSums sums{};
+};
+
 /// The object that --stats writes. docs/cli.md lists the keys; they are stable.
-Json to_json(const Report& report, const RunFacts& facts);
+Json to_json(const TracedReport& report, const RunFacts& facts);
 
 /// "filters" of --stats and of `info`.
 Json to_json(const PointCounts& counts);

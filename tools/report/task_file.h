@@ -1,10 +1,9 @@
 #pragma once
 
-#include <spillway/figures.h>
-
 #include <string>
 
 #include "formats/bytes/buffered_output.h"
+#include "stream/plan/run_trace.h"
 
 namespace spillway::detail {
 

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <spillway/figures.h>
-
 #include "formats/bytes/json.h"
+#include "stream/plan/run_trace.h"
 
 namespace spillway::detail {
 

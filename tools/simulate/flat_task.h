@@ -1,10 +1,10 @@
 #pragma once
 
-#include <spillway/figures.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "src/runtime/task.h"
 
 namespace spillway::detail {
 

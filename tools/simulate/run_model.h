@@ -1,11 +1,10 @@
 #pragma once
 
-#include <spillway/run_steps.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "stream/plan/run_trace.h"
 #include "tools/simulate/flat_task.h"
 
 namespace spillway::detail {

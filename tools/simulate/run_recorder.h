@@ -1,14 +1,12 @@
 #pragma once
 
-#include <spillway/figures.h>
-#include <spillway/run_steps.h>
-
 #include <cstdint>
 #include <deque>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "stream/plan/run_trace.h"
 #include "tools/simulate/run_model.h"
 
 namespace spillway::detail {

@@ -2,7 +2,7 @@
 // A mesh as it flows: blocks of vertices, of the simplices that use them, and of the word that a
 // vertex is not used any more, so that whoever reads along never holds more than a border.
 
-#include <spillway/figures.h>
+#include <spillway/totals.h>
 
 #include <cstdint>
 #include <memory>

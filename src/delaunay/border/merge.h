@@ -9,11 +9,9 @@
 #include "src/delaunay/common/triangulation.h"
 #include "src/delaunay/division/divide.h"
 
-namespace spillway {
-struct Task;
-}
-
 namespace spillway::detail {
+
+struct Task;
 
 /// What merging needs to know of a part that is done; its simplices are in the lists of its
 /// subtree.

@@ -108,20 +108,7 @@ class Simulation {
 };
 
 }  // namespace
+
+double greedy_makespan(const Task& root, unsigned cores) { return Simulation(cores).run(root); }
+
 }  // namespace spillway::detail
-
-namespace spillway {
-
-double Task::total_seconds() const {
-  double sum = seconds;
-  for (const auto* steps : {&before, &children, &after}) {
-    for (const Task& task : *steps) sum += task.total_seconds();
-  }
-  return sum;
-}
-
-double greedy_makespan(const Task& root, unsigned cores) {
-  return detail::Simulation(cores).run(root);
-}
-
-}  // namespace spillway

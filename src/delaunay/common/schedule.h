@@ -1,8 +1,8 @@
 #pragma once
 
-#include <spillway/figures.h>
-
 #include <chrono>
+
+#include "src/runtime/task.h"
 
 namespace spillway::detail {
 
@@ -19,5 +19,10 @@ class Stopwatch {
   double& seconds_;
   Clock::time_point start_;
 };
+
+/// The time that the tasks would take on `cores` cores, under a greedy schedule: a core that falls
+/// free takes the deepest piece that is ready, as work-stealing does. Durations as measured; moving
+/// data costs nothing.
+double greedy_makespan(const Task& root, unsigned cores);
 
 }  // namespace spillway::detail

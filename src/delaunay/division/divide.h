@@ -11,11 +11,9 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway {
-struct Task;
-}
-
 namespace spillway::detail {
+
+struct Task;
 
 struct DivideOptions {
   std::size_t leaf_size = 0;  ///< parts of at most this many points are not divided further

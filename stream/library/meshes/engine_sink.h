@@ -1,6 +1,7 @@
 #pragma once
 
 #include <spillway/mesh.h>
+#include <spillway/report.h>
 
 #include <cstdint>
 #include <optional>
@@ -150,6 +151,8 @@ class OwnSink : public PublicSink, public EngineSink {
   [[nodiscard]] const Context& context() const { return context_; }
 
  private:
+  EngineSink* engine_sink() final { return this; }
+
   BlockSink& begun() const {
     if (blocks_ == nullptr) {
       throw InvalidArgument("blocks of a mesh come between begin and finish");

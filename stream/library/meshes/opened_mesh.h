@@ -67,6 +67,7 @@ class OpenedMesh final : public spillway::MeshSource {
   void check_totals(RunWatch& watch);
 
  private:
+  OpenedMesh* opened_mesh() override { return this; }
   [[nodiscard]] std::unique_ptr<MeshStreamReader> open_stream() const;
   /// Of a pipe.
   void keep_copy(RunWatch& watch);

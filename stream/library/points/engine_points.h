@@ -13,9 +13,12 @@
 
 namespace spillway::detail {
 
+class PointSource;
+
 /// The points of a run, and what is known of them before it.
 struct RunPoints {
   PointStream* stream = nullptr;
+  detail::PointSource* files = nullptr;    ///< the same, if it is of files, which ranks can share
   int dimension = 0;                       ///< that they were opened for; 0: any
   bool has_heights = true;                 ///< there is z
   bool heights_on_lattice = true;          ///< if the stream has a lattice, z is on it, too

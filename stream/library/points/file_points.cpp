@@ -236,6 +236,7 @@ RunPoints FilePoints::begin(RunWatch& watch, bool index) {
   watch_ = &watch;
   input_->set_index(index || is_shared_);
   return {.stream = input_.get(),
+          .files = input_.get(),
           .dimension = dimension_,
           .has_heights = input_->has_heights(),
           .heights_on_lattice = input_->heights_on_lattice(),

@@ -27,6 +27,7 @@ class FilePoints final : public spillway::PointSource, public EnginePoints {
   [[nodiscard]] detail::PointSource& input() { return *input_; }
 
  private:
+  EnginePoints* engine_points() override { return this; }
   PointSourceOptions source_options(const PointOptions& options, const Context& context);
   void check_input(const PointOptions& options, const Context& context) const;
 

@@ -29,7 +29,8 @@ class GeneratedPoints final : public spillway::PointSource,
   [[nodiscard]] const char* phase() const override { return "generate"; }
 
  private:
-  bool is_taken_ = false;  ///< by a run
+  EnginePoints* engine_points() override { return this; }
+
   bool fetch(SourcePiece& piece) override;
   void decode(SourcePiece& piece, PointBlock& block) override;
   [[nodiscard]] const std::optional<Lattice>& lattice() const override { return lattice_; }
@@ -41,6 +42,7 @@ class GeneratedPoints final : public spillway::PointSource,
 
   std::uint64_t make(std::vector<LatticePoint>& points);
 
+  bool is_taken_ = false;  ///< by a run
   std::uint64_t count_;
   bool has_heights_;
   std::unique_ptr<PointGenerator> generator_;

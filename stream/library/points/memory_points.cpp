@@ -1,41 +1,75 @@
-#include <spillway/points.h>
+#include "stream/library/points/memory_points.h"
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
-namespace spillway {
+#include "stream/library/points/public_points.h"
+
+namespace spillway::detail {
 namespace {
 
-constexpr std::size_t kBlockPoints = 65536;
-
-template <int D>
-class MemoryPoints final : public PointSource {
- public:
-  explicit MemoryPoints(PointView<D> points) : points_(points) {}
-  explicit MemoryPoints(std::vector<Point<D>> points) : kept_(std::move(points)), points_(kept_) {}
-
-  [[nodiscard]] PointsHeader header() const override {
-    return {.coordinates = D, .count = points_.size()};
-  }
-
-  bool read(std::vector<Point<3>>& points) override {
-    const std::size_t count = std::min(kBlockPoints, points_.size() - next_);
-    points.assign(count, {});
-    for (Point<3>& point : points) {
-      const Point<D> from = points_[next_++];
-      std::copy(from.begin(), from.end(), point.begin());
-    }
-    return count > 0;
-  }
-
- private:
-  std::vector<Point<D>> kept_;  ///< or none
-  PointView<D> points_;
-  std::size_t next_ = 0;
-};
+constexpr std::uint64_t kBlockPoints = 65536;
 
 }  // namespace
+
+template <int D>
+spillway::Point<3> MemoryPoints<D>::point(std::uint64_t number) const {
+  const spillway::Point<D> from = points_[number];
+  spillway::Point<3> point{};
+  std::copy(from.begin(), from.end(), point.begin());
+  return point;
+}
+
+template <int D>
+bool MemoryPoints<D>::read(std::vector<spillway::Point<3>>& points) {
+  refuse_taken_points(is_taken_);
+  const std::uint64_t first = next_;
+  points.resize(std::min(kBlockPoints, points_.size() - first));
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = point(first + i);
+  next_ += points.size();
+  return !points.empty();
+}
+
+template <int D>
+RunPoints MemoryPoints<D>::begin(RunWatch& /*watch*/, bool /*index*/) {
+  refuse_taken_points(std::exchange(is_taken_, true));
+  return {.stream = this, .has_heights = D == 3, .name = "the points"};
+}
+
+template <int D>
+bool MemoryPoints<D>::fetch(SourcePiece& piece) {
+  piece.raw.clear();
+  piece.raw.first = next_;
+  piece.raw.count = std::min(kBlockPoints, points_.size() - piece.raw.first);
+  next_ += piece.raw.count;
+  return piece.raw.count > 0;
+}
+
+template <int D>
+void MemoryPoints<D>::decode(SourcePiece& piece, PointBlock& block) {
+  block.clear();
+  block.points.reserve(piece.raw.count);
+  block.index.resize(piece.raw.count);
+  for (std::uint64_t i = 0; i < piece.raw.count; ++i) {
+    const std::uint64_t number = piece.raw.first + i;
+    const spillway::Point<3> taken = point(number);
+    block.points.emplace_back(finite_point(taken, number));
+    block.index[i] = number;
+  }
+}
+
+template <int D>
+std::optional<double> MemoryPoints<D>::fraction_read() const {
+  if (points_.size() == 0) return std::nullopt;
+  return static_cast<double>(next_) / static_cast<double>(points_.size());
+}
+
+template class MemoryPoints<2>;
+template class MemoryPoints<3>;
+
+}  // namespace spillway::detail
+
+namespace spillway {
 
 PointSource::~PointSource() = default;
 PointSink::~PointSink() = default;
@@ -43,19 +77,19 @@ void PointSink::begin(const PointsHeader& /*header*/) {}
 void PointSink::finish() {}
 
 std::unique_ptr<PointSource> points_in_memory(PointView<3> points) {
-  return std::make_unique<MemoryPoints<3>>(points);
+  return std::make_unique<detail::MemoryPoints<3>>(points);
 }
 
 std::unique_ptr<PointSource> points_in_memory(PointView<2> points) {
-  return std::make_unique<MemoryPoints<2>>(points);
+  return std::make_unique<detail::MemoryPoints<2>>(points);
 }
 
 std::unique_ptr<PointSource> points_in_memory(std::vector<Point<3>>&& points) {
-  return std::make_unique<MemoryPoints<3>>(std::move(points));
+  return std::make_unique<detail::MemoryPoints<3>>(std::move(points));
 }
 
 std::unique_ptr<PointSource> points_in_memory(std::vector<Point<2>>&& points) {
-  return std::make_unique<MemoryPoints<2>>(std::move(points));
+  return std::make_unique<detail::MemoryPoints<2>>(std::move(points));
 }
 
 }  // namespace spillway

@@ -62,6 +62,7 @@ class PointFile final : public spillway::PointSink {
   PointConversion complete();
 
  private:
+  PointFile* point_file() override { return this; }
   void check(const PointFileOptions& options) const;
   void open(const Box<3>& extent);
   [[nodiscard]] Box<3> world_box(const PointBlock& block) const;

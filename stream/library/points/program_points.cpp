@@ -1,9 +1,6 @@
 #include "stream/library/points/program_points.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "src/error.h"
@@ -51,22 +48,14 @@ bool ProgramPoints::fetch(SourcePiece& piece) {
   points_.clear();
   if (!source_.read(points_)) return false;
   block.points.reserve(points_.size());
-  block.index.resize(points_.size());
-  const std::uint64_t first = read_;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    block.points.push_back(placed(points_[i], first + i));
-    block.index[i] = first + i;
-  }
+  for (const spillway::Point<3>& point : points_) block.points.emplace_back(point);
+  piece.raw.first = read_;
   read_ += block.size();
   return true;
 }
 
 LatticePoint ProgramPoints::placed(const spillway::Point<3>& point, std::uint64_t number) const {
-  if (!std::ranges::all_of(point, [](double x) { return std::isfinite(x); })) {
-    throw InvalidArgument(fmt::format("point {} has a coordinate that is not finite: ({})", number,
-                                      fmt::join(point, ", ")));
-  }
-  LatticePoint placed(point);
+  LatticePoint placed(finite_point(point, number));
   if (!lattice_) return placed;
   const int axes = heights_on_lattice_ && header_.coordinates == 3 ? 3 : 2;
   for (int axis = 0; axis < axes; ++axis) {
@@ -77,6 +66,12 @@ LatticePoint ProgramPoints::placed(const spillway::Point<3>& point, std::uint64_
 
 void ProgramPoints::decode(SourcePiece& piece, PointBlock& block) {
   std::swap(piece.raw.decoded, block);
+  block.index.resize(block.size());
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    const std::uint64_t number = piece.raw.first + i;
+    block.points[i] = placed(block.points[i].numbers(), number);
+    block.index[i] = number;
+  }
 }
 
 std::optional<double> ProgramPoints::fraction_read() const {

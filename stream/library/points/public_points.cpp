@@ -23,6 +23,12 @@ std::vector<LatticePoint> points_without_lattice(std::span<const Point<3>> point
   return taken;
 }
 
+const Point<3>& finite_point(const Point<3>& point, std::uint64_t number) {
+  if (std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2])) return point;
+  throw InvalidArgument(fmt::format("point {} has a coordinate that is not finite: ({})", number,
+                                    fmt::join(point, ", ")));
+}
+
 std::optional<spillway::Lattice> public_lattice(const std::optional<Lattice>& lattice, bool has_z) {
   if (!lattice) return std::nullopt;
   return spillway::Lattice{lattice->scale, lattice->offset, has_z};

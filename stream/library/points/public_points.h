@@ -27,6 +27,10 @@ std::optional<spillway::Lattice> public_lattice(const std::optional<Lattice>& la
                                                 bool has_z = true);
 std::optional<Lattice> checked_lattice(const std::optional<spillway::Lattice>& lattice);
 
+/// A program's point of that number. Throws Error(kInvalidArgument) unless its coordinates are
+/// finite.
+const Point<3>& finite_point(const Point<3>& point, std::uint64_t number);
+
 /// The integer of a coordinate on an axis of a lattice. Throws Error(kInvalidArgument) if there is
 /// none, where `what` of that number ("point" 7) has the coordinate.
 double integer_on(const Lattice& lattice, int axis, double coordinate, const char* what,

@@ -13,6 +13,7 @@
 #include "stream/library/context/run_watch.h"
 #include "stream/library/meshes/opened_mesh.h"
 #include "stream/library/meshes/program_mesh.h"
+#include "stream/library/own_parts.h"
 #include "stream/library/points/engine_points.h"
 #include "stream/library/points/program_points.h"
 #include "stream/library/products/point_comparison.h"
@@ -28,7 +29,7 @@ class Comparison {
              CheckOptions& how)
       : watch_(watch) {
     if (source == nullptr) return;
-    auto* points = dynamic_cast<EnginePoints*>(source);
+    auto* points = OwnParts::of(*source);
     if (points == nullptr) points = &program_points_.emplace(*source, dimension);
     const RunPoints run = points->begin(watch, true);
     if (run.dimension != 0 && run.dimension != dimension) {
@@ -96,7 +97,7 @@ CheckReport check(MeshSource& mesh, const CheckOptions& options, const Context& 
   detail::CheckOptions how;
   static_cast<CheckOptions&>(how) = options;
   how.threads = context.threads();
-  auto* const file = dynamic_cast<detail::OpenedMesh*>(&mesh);
+  auto* const file = detail::OwnParts::of(mesh);
   if (file == nullptr) {
     detail::ProgramMesh reader(mesh);
     return detail::check_stream(reader, how, points, context, watch);

@@ -19,6 +19,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/stream/kept_trace.h"
 #include "tests/stream/library/error_code.h"
 
 namespace spillway {
@@ -345,23 +346,21 @@ TEST_F(FalseBoxes, AreAnErrorForAProgramThatHasGotBlocks) {
 
 TEST_F(FalseBoxes, LetARunToAFileBeginAgainAndTellTheProgram) {
   std::atomic<int> warnings = 0;
-  int nodes = 0;
-  int times = 0;
   ContextOptions telling = options();
   telling.warning = [&](std::string_view) { ++warnings; };
   const Context context(telling);
   TriangulateOptions how{.tile_points = 2000};
-  how.task_done = [&](const TaskNode& node) { nodes += node.level == 0 ? 1 : 0; };
-  how.begun_again = [&] {
-    ++times;
-    nodes = 0;
-  };
+  const auto trace = std::make_shared<detail::KeptTrace>();
+  how.trace = trace;
   const auto source = open_points({files()}, {}, context);
   const Report report =
       triangulate(*source, *create_mesh(folder_ + "/again.spm", {}, context), how, context);
   EXPECT_EQ(warnings, 1);
-  EXPECT_EQ(times, 1);
-  EXPECT_EQ(static_cast<std::uint64_t>(nodes), report.tiles);
+  EXPECT_EQ(trace->begun_again, 1);
+  EXPECT_EQ(
+      static_cast<std::uint64_t>(std::ranges::count(trace->nodes, 0U, &detail::TaskNode::level)),
+      report.tiles);
+  EXPECT_FALSE(trace->sums.tasks.empty());
   EXPECT_EQ(report.points.read, 40'000U);
   const auto late = open_points({files()}, {}, context);
   how = {.tile_points = 2000, .trust_headers = false};

@@ -10,6 +10,7 @@
 
 #include "src/error.h"
 #include "src/parallel/parallel.h"
+#include "tests/stream/kept_trace.h"
 #include "tests/stream/stream_runner.h"
 #include "tests/stream/triangulate/indexed_simplices.h"
 
@@ -116,9 +117,10 @@ TYPED_TEST(TileEngineTest, TriangulatesTilesAndMergesThem) {
 
 TYPED_TEST(TileEngineTest, TellsEachNodeOnceAfterItsChildren) {
   constexpr int kD = TypeParam::value;
-  std::vector<TaskNode> told;
+  KeptTrace trace;
+  const std::vector<TaskNode>& told = trace.nodes;
   StreamOptions options = EngineRun<kD>::small();
-  options.task_done = [&told](TaskNode node) { told.push_back(std::move(node)); };
+  options.trace = &trace;
   EngineRun<kD> run(options);
   run.spill(random_points<kD>(5000, 1));
   run.triangulate();
@@ -144,7 +146,7 @@ TYPED_TEST(TileEngineTest, TellsEachNodeOnceAfterItsChildren) {
   EXPECT_EQ(tiles, figures.tiles);
   std::uint64_t leaves = 0;
   std::uint64_t merges = 0;
-  for (const TaskSum& sum : figures.task_sums) {
+  for (const TaskSum& sum : run.engine.task_sums()) {
     if (sum.scope == TaskScope::kInTile && sum.level == 0 && sum.kind == TaskKind::kBaseCase) {
       leaves += sum.tasks;
     }
@@ -158,9 +160,14 @@ TYPED_TEST(TileEngineTest, TellsEachNodeOnceAfterItsChildren) {
 
 TYPED_TEST(TileEngineTest, AFailureOfWhoIsToldOfTasksEndsTheRun) {
   StreamOptions options = EngineRun<TypeParam::value>::small();
-  options.task_done = [](const TaskNode& node) {
-    if (node.number > 3) throw InvalidArgument("enough of it");
-  };
+  class Failing : public RunTrace {
+   public:
+    [[nodiscard]] bool takes_nodes() const override { return true; }
+    void node(const TaskNode& node) override {
+      if (node.number > 3) throw InvalidArgument("enough of it");
+    }
+  } trace;
+  options.trace = &trace;
   EngineRun<TypeParam::value> run(options);
   run.spill(random_points<TypeParam::value>(5000, 1));
   EXPECT_THROW(run.triangulate(), InvalidArgument);

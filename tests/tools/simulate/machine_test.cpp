@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "src/delaunay/common/schedule.h"
 #include "tools/simulate/task_player.h"
 
 namespace spillway::detail {

@@ -90,7 +90,9 @@ TEST(ProgramPoints, ThatAreNotFiniteAreNamedByTheirNumberInTheInput) {
       ProgramPoints points(source);
       SourcePiece piece;
       ASSERT_TRUE(points.fetch(piece));
-      const auto error = thrown_by([&] { points.fetch(piece); });
+      ASSERT_TRUE(points.fetch(piece));
+      PointBlock block;
+      const auto error = thrown_by([&] { points.decode(piece, block); });
       ASSERT_TRUE(error);
       EXPECT_EQ(error->code(), ErrorCode::kInvalidArgument);
       EXPECT_THAT(error->what(), HasSubstr("point 3 "));

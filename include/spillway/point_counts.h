@@ -1,0 +1,48 @@
+#pragma once
+
+#include <spillway/export.h>
+
+#include <bitset>
+#include <cstdint>
+#include <string>
+
+namespace spillway {
+
+/// What became of the points of a source. A point is counted where it is dropped first.
+struct PointCounts {
+  std::uint64_t read = 0;      ///< records
+  std::uint64_t invalid = 0;   ///< dropped by PointOptions::skip_invalid
+  std::uint64_t withheld = 0;  ///< dropped since flagged so
+  std::uint64_t skipped = 0;   ///< by PointOptions::every
+  std::uint64_t classes = 0;   ///< of other classes
+  std::uint64_t returns = 0;   ///< of other returns
+  std::uint64_t bounds = 0;    ///< outside of the bounds
+  std::uint64_t thinned = 0;   ///< another one stands for their cell
+  /// Bit n: points of class n are among those that `classes` counts.
+  std::bitset<256> other_classes{};
+
+  PointCounts& operator+=(const PointCounts& other) {
+    read += other.read;
+    invalid += other.invalid;
+    withheld += other.withheld;
+    skipped += other.skipped;
+    classes += other.classes;
+    returns += other.returns;
+    bounds += other.bounds;
+    thinned += other.thinned;
+    other_classes |= other.other_classes;
+    return *this;
+  }
+  bool operator==(const PointCounts&) const = default;
+
+  [[nodiscard]] std::uint64_t dropped() const {
+    return invalid + withheld + skipped + classes + returns + bounds + thinned;
+  }
+  [[nodiscard]] std::uint64_t kept() const { return read - dropped(); }
+};
+
+/// One line: "500 points read, 12 withheld, 300 outside the bounds, 188 kept". Where none are kept,
+/// it names other classes: "500 points read, 500 of other classes (1, 3-5), 0 kept".
+SPILLWAY_API std::string describe(const PointCounts& counts);
+
+}  // namespace spillway

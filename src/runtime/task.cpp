@@ -1,0 +1,13 @@
+#include "src/runtime/task.h"
+
+namespace spillway::detail {
+
+double Task::total_seconds() const {
+  double sum = seconds;
+  for (const auto* steps : {&before, &children, &after}) {
+    for (const Task& task : *steps) sum += task.total_seconds();
+  }
+  return sum;
+}
+
+}  // namespace spillway::detail

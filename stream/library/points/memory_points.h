@@ -1,0 +1,52 @@
+#pragma once
+
+#include <spillway/points.h>
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "stream/library/points/engine_points.h"
+#include "stream/source/point_stream.h"
+
+namespace spillway::detail {
+
+/// Points of an array in memory; a run's threads take them from there.
+template <int D>
+class MemoryPoints final : public spillway::PointSource, public EnginePoints, private PointStream {
+ public:
+  /// What the view refers to must outlive it.
+  explicit MemoryPoints(PointView<D> points) : points_(points) {}
+  explicit MemoryPoints(std::vector<spillway::Point<D>> points)
+      : kept_(std::move(points)), points_(kept_) {}
+
+  [[nodiscard]] PointsHeader header() const override {
+    return {.coordinates = D, .count = points_.size()};
+  }
+  bool read(std::vector<spillway::Point<3>>& points) override;
+
+  RunPoints begin(RunWatch& watch, bool index) override;
+
+ private:
+  EnginePoints* engine_points() override { return this; }
+  bool fetch(SourcePiece& piece) override;
+  void decode(SourcePiece& piece, PointBlock& block) override;
+  [[nodiscard]] const std::optional<Lattice>& lattice() const override { return lattice_; }
+  [[nodiscard]] std::optional<std::uint64_t> expected() const override { return points_.size(); }
+  [[nodiscard]] const std::optional<Box<3>>& extent() const override { return extent_; }
+  [[nodiscard]] PointCounts counts() const override { return {.read = next_}; }
+  [[nodiscard]] std::uint64_t points_read() const override { return next_; }
+  [[nodiscard]] std::optional<double> fraction_read() const override;
+
+  [[nodiscard]] spillway::Point<3> point(std::uint64_t number) const;
+
+  std::vector<spillway::Point<D>> kept_;  ///< or none
+  PointView<D> points_;
+  bool is_taken_ = false;                ///< by a run
+  std::atomic<std::uint64_t> next_ = 0;  ///< that is to be read
+  const std::optional<Lattice> lattice_;
+  const std::optional<Box<3>> extent_;  ///< not known
+};
+
+}  // namespace spillway::detail

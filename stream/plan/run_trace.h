@@ -1,0 +1,111 @@
+#pragma once
+// What a run tells of itself, for who plays it again or looks for what takes time.
+
+#include <spillway/report.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "src/runtime/stage_times.h"
+#include "src/runtime/task.h"
+
+namespace spillway::detail {
+
+/// A node of the tree over tiles that is done: a tile, or a merge of tiles.
+struct TaskNode {
+  std::uint32_t number = 0;               ///< in post-order, from 0; the last is the root
+  std::uint32_t level = 0;                ///< merges of tiles below it, at most; 0: a tile
+  std::vector<std::uint32_t> children{};  ///< their numbers, in order; none of a tile
+  Task task{};  ///< of a tile with all its parts; of a merge without its `children`
+};
+
+/// What the levels of a TaskSum count.
+enum class TaskScope : std::uint8_t {
+  kInTile,        ///< 0: leaves of a tile; above, its merges by their height over the leaves
+  kBetweenTiles,  ///< 1 and more: merges of tiles by their height over the tiles
+  kBetweenRanks,  ///< 1 and more: merges of ranks
+};
+
+/// The tasks of one kind at one level, all together. A step counts at the level of the part whose
+/// step it is, with all tasks below it: at the levels of merges a base case is one of a border's
+/// triangulation, and a tile is divided at its highest level.
+struct TaskSum {
+  TaskScope scope = TaskScope::kInTile;
+  std::uint32_t level = 0;
+  TaskKind kind = TaskKind::kNode;
+  std::uint64_t tasks = 0;   ///< how many
+  std::uint64_t points = 0;  ///< and so on: the sums of their members
+  double seconds = 0;
+  std::uint64_t grains = 0;
+};
+
+/// What bounds how much of a run can go on at the same time.
+struct RunLimits {
+  std::uint64_t batches = 0;        ///< of points, on their way to their tiles
+  std::uint64_t tile_points = 0;    ///< that a tile counts for at most among the next
+  std::uint64_t loaded_points = 0;  ///< of tiles that are worked on at a time, or one tile
+  std::uint64_t ready_points = 0;   ///< of tiles, beyond one, before who reads lends a hand
+  std::uint64_t waiting_bytes = 0;  ///< of output that waits for its turn while tiles are begun
+  unsigned threads = 0;             ///< for which there is memory
+};
+
+/// A merge between two ranks.
+struct RankMerge {
+  std::uint32_t level = 0;
+  std::uint64_t received_bytes = 0;
+  std::uint64_t received_simplices = 0;  ///< of the border that came from the other rank
+  std::uint64_t border_simplices = 0;    ///< of both borders
+  std::uint64_t retriangulated = 0;      ///< points
+  double wait_seconds = 0;               ///< for that border
+  double seconds = 0;                    ///< of the merge
+};
+
+/// What one of several processes did.
+struct RankFigures {
+  RunFigures run;
+  std::vector<TaskSum> task_sums{};  ///< by scope, level and kind
+  std::uint64_t peak_memory = 0;     ///< bytes that the process has held
+  std::uint64_t messages_sent = 0;
+  std::uint64_t bytes_sent = 0;
+  std::uint64_t points_sent = 0;
+  std::uint64_t point_bytes_sent = 0;
+  std::uint64_t border_simplices_sent = 0;
+  std::uint64_t border_bytes_sent = 0;
+  std::vector<RankMerge> merges{};
+};
+
+/// What a run knows when it has ended.
+struct RunSums {
+  std::vector<TaskSum> tasks{};      ///< by scope, level and kind, of all ranks
+  std::vector<RankFigures> ranks{};  ///< at the first of several ranks: what each has done
+};
+
+}  // namespace spillway::detail
+
+namespace spillway {
+
+/// Takes what a run tells. Calls come one at a time, from any of the run's threads.
+class RunTrace {
+ public:
+  virtual ~RunTrace() = default;
+
+  /// Whether it wants the nodes of the tree over tiles, or each step: that costs time, and is not
+  /// for runs over ranks.
+  [[nodiscard]] virtual bool takes_nodes() const { return false; }
+  [[nodiscard]] virtual bool takes_steps() const { return false; }
+
+  /// What the run keeps to, before the first step.
+  virtual void limits(const detail::RunLimits& /*limits*/) {}
+  /// A step that is done, by the thread that has done it. Must not throw.
+  virtual void step(const detail::StageStep& /*step*/) {}
+  /// A node that is done, children before parents and else in any order. What it throws ends the
+  /// run.
+  virtual void node(const detail::TaskNode& /*node*/) {}
+  /// The run begins again: all that was told so far is void.
+  virtual void begin_again() {}
+  /// The run has ended, but for completing the output.
+  virtual void end(const detail::RunSums& /*sums*/) {}
+};
+
+}  // namespace spillway
