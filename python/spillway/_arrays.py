@@ -45,13 +45,19 @@ def as_floats(numbers: Any, name: str) -> Floats:
     return array.astype(np.float64)
 
 
-def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:
-    """Coordinates as rows of two or three, and the heights that points in the plane carry."""
-    array = as_floats(points, "points")
+def as_rows(points: Any, name: str) -> Floats:
+    """Coordinates as rows of two or three."""
+    array = as_floats(points, name)
     if array.ndim != 2 or array.shape[1] not in (2, 3):
         raise InvalidArgumentError(
-            f"points has the shape {array.shape}; give rows of 2 or 3 coordinates, as (n, 2)"
+            f"{name} has the shape {array.shape}; give rows of 2 or 3 coordinates, as (n, 2)"
         )
+    return array
+
+
+def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:
+    """Coordinates as rows of two or three, and the heights that points in the plane carry."""
+    array = as_rows(points, "points")
     if dim not in (None, 2, 3):
         raise InvalidArgumentError(f"dim is {dim!r}; give 2, 3 or None")
     columns = array.shape[1]

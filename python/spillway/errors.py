@@ -1,4 +1,4 @@
-"""The exceptions of Spillway: `Error`, and one class for each of its codes."""
+"""The exceptions of Spillway: `Error`, one class for each of its codes, and `Warning`."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ __all__ = [
     "InvalidArgumentError",
     "OutOfBudgetError",
     "TooLargeError",
+    "Warning",
 ]
 
 
@@ -73,6 +74,10 @@ class ClosedPipeError(Error, BrokenPipeError):
     """The reader of the output has closed its end of the pipe."""
 
     code = "closed pipe"
+
+
+class Warning(UserWarning):
+    """What a run finds worth a warning: its result is as it should be, but perhaps not as wanted."""
 
 
 _CLASSES = {kind.code: kind for kind in Error.__subclasses__()}
