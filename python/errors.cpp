@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "python/bindings.h"
+#include "python/text.h"
 
 namespace spillway::python {
 namespace {
@@ -16,7 +17,7 @@ void translate(std::exception_ptr fault) {
     std::rethrow_exception(std::move(fault));
   } catch (const Error& error) {
     const py::object make = py::module_::import("spillway.errors").attr("make_error");
-    const py::object made = make(to_string(error.code()), error.what());
+    const py::object made = make(to_string(error.code()), text_of(error.what()));
     PyErr_SetObject(py::type::handle_of(made).ptr(), made.ptr());
   }
 }

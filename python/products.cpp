@@ -12,6 +12,7 @@
 #include "python/bindings.h"
 #include "python/figures.h"
 #include "python/mesh_origin.h"
+#include "python/text.h"
 
 namespace spillway::python {
 namespace {
@@ -59,7 +60,7 @@ py::tuple dem_in_memory(Run& run, const MeshOrigin& origin, const DemOptions& op
   auto [sink, figures] =
       send(run, origin, [&] { return create_dem(pixels, options, run.context()); });
   add_raster(sink->report(), figures);
-  return py::make_tuple(figures, array_of(std::move(pixels.values)), pixels.crs);
+  return py::make_tuple(figures, array_of(std::move(pixels.values)), text_of(pixels.crs));
 }
 
 py::dict contours(Run& run, const MeshOrigin& origin, const std::string& output,

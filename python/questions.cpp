@@ -7,11 +7,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "python/bindings.h"
 #include "python/figures.h"
 #include "python/inputs.h"
 #include "python/run.h"
+#include "python/text.h"
 
 namespace spillway::python {
 namespace {
@@ -24,7 +26,13 @@ constexpr PhaseShare kPhasesOfCheck[] = {{"read mesh", 0, 0.3},
                                          {"compare", 0.9, 1}};
 
 py::object text_or_none(const std::string& text) {
-  return text.empty() ? py::object(py::none()) : py::object(py::str(text));
+  return text.empty() ? py::object(py::none()) : py::object(text_of(text));
+}
+
+py::list texts_of(const std::vector<std::string>& lines) {
+  py::list texts;
+  for (const std::string& line : lines) texts.append(text_of(line));
+  return texts;
 }
 
 void add_lattice(const std::optional<LatticeInfo>& lattice, py::dict& figures) {
@@ -86,8 +94,8 @@ py::dict figures_of(const CheckReport& report, int dimension) {
   figures["hull_facets"] = report.hull_facets;
   figures["canonical_hash"] = hash_text(report.canonical_hash);
   figures["on_lattice"] = report.on_lattice;
-  figures["properties"] = report.proved;
-  figures["faults"] = report.faults;
+  figures["properties"] = texts_of(report.proved);
+  figures["faults"] = texts_of(report.faults);
   figures["fault_count"] = report.fault_count;
   figures["off_lattice"] = report.off_lattice;
   figures["other_ties"] = report.other_ties;

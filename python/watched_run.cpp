@@ -5,6 +5,8 @@
 #include <thread>
 #include <utility>
 
+#include "python/text.h"
+
 namespace spillway::python {
 namespace {
 
@@ -32,7 +34,7 @@ class Ending {
 };
 
 void tell_message(const Message& message) {
-  py::module_::import("spillway._messages").attr("tell")(message.is_warning, message.text);
+  py::module_::import("spillway._messages").attr("tell")(message.is_warning, text_of(message.text));
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ from ._options import (
     CheckOptions,
     ConvertOptions,
     InfoOptions,
+    PathLike,
     RunOptions,
     TriangulateOptions,
     make_run,
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 @takes(TriangulateOptions)
 def triangulate(
     inputs: Any,
-    output: Any,
+    output: PathLike,
     *,
     dim: int = 2,
     id: bool = False,
@@ -99,7 +100,7 @@ def triangulate(
 @takes(ConvertOptions)
 def convert(
     inputs: Any,
-    output: Any,
+    output: PathLike,
     *,
     output_format: str | None = None,
     mesh_format: str | None = None,
@@ -166,8 +167,7 @@ def convert(
     for name, numbers in (("scale", scale), ("offset", offset)):
         put(how, name, numbers, lambda target, value: setattr(target, name, _as_axes(value)))
     if sorted:
-        put(how, "cell_points", cells, lambda target, _: target.set_sorted(
-            as_dimension(2 if dim is None else dim, source), cell_points or 0))
+        how.set_sorted(as_dimension(2 if dim is None else dim, source), cell_points or 0)
     else:
         refuse(cells, cells, "without sorted=True")
     which = point_options(options, 2)
@@ -192,7 +192,7 @@ def generate(
 def generate(
     family: str,
     count: int,
-    output: Any,
+    output: PathLike,
     *,
     dim: int | None = None,
     seed: int | None = None,
@@ -209,7 +209,7 @@ def generate(
 def generate(
     family: str,
     count: int,
-    output: Any = None,
+    output: PathLike | None = None,
     *,
     dim: int | None = None,
     seed: int | None = None,
@@ -280,7 +280,7 @@ def generate(
 
 
 @takes(InfoOptions)
-def info(file: Any, **options: Unpack[InfoOptions]) -> PointsInfo | MeshInfo:
+def info(file: PathLike, **options: Unpack[InfoOptions]) -> PointsInfo | MeshInfo:
     """Tell what a file of points or of a mesh holds.
 
     As ``spillway info``. All of it is read, so counts and extent are exact, whatever a header says.
@@ -310,7 +310,7 @@ def info(file: Any, **options: Unpack[InfoOptions]) -> PointsInfo | MeshInfo:
 
 @takes(CheckOptions)
 def check(
-    mesh: Any,
+    mesh: PathLike,
     *,
     points: Any = None,
     any_delaunay: bool = False,

@@ -154,7 +154,7 @@ def _as_list(value: Any) -> list[int]:
 def as_crs(crs: Any) -> str:
     """A coordinate system as text; a path stands for what is in the file."""
     if not isinstance(crs, os.PathLike):
-        return "" if crs is None else crs
+        return "" if crs is None else str(crs)
     return " ".join(pathlib.Path(crs).read_text(encoding="utf-8").splitlines()).strip()
 
 

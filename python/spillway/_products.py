@@ -12,6 +12,7 @@ from ._inputs import as_path, mesh_origin
 from ._messages import tell
 from ._options import (
     DemOptions,
+    PathLike,
     TriangulateOptions,
     make_run,
     put,
@@ -45,14 +46,45 @@ class Raster(NamedTuple):
 
 @overload
 def dem(
-    inputs: Any, output: None = None, *, resolution: float | None = None, **options: Any
+    inputs: Any,
+    output: None = None,
+    *,
+    resolution: float | None = None,
+    bounds: Sequence[float] | None = None,
+    clip_bounds: Sequence[float] | None = None,
+    force_size: bool = False,
+    align: bool = False,
+    like: PathLike | None = None,
+    product: str | Sequence[str] = "height",
+    azimuth: float | None = None,
+    altitude: float | None = None,
+    z_factor: float | None = None,
+    mesh_format: str | None = None,
+    **options: Unpack[DemOptions],
 ) -> Raster:
     ...
 
 
 @overload
 def dem(
-    inputs: Any, output: Any, *, resolution: float | None = None, **options: Any
+    inputs: Any,
+    output: PathLike,
+    *,
+    resolution: float | None = None,
+    bounds: Sequence[float] | None = None,
+    clip_bounds: Sequence[float] | None = None,
+    force_size: bool = False,
+    align: bool = False,
+    like: PathLike | None = None,
+    product: str | Sequence[str] = "height",
+    azimuth: float | None = None,
+    altitude: float | None = None,
+    z_factor: float | None = None,
+    nodata: float | None = None,
+    compress: str | None = None,
+    cog: bool = False,
+    mesh_format: str | None = None,
+    **options: Unpack[DemOptions],
 ) -> RasterReport:
     ...
 
@@ -60,14 +92,14 @@ def dem(
 @takes(DemOptions)
 def dem(
     inputs: Any,
-    output: Any = None,
+    output: PathLike | None = None,
     *,
     resolution: float | None = None,
     bounds: Sequence[float] | None = None,
     clip_bounds: Sequence[float] | None = None,
     force_size: bool = False,
     align: bool = False,
-    like: Any = None,
+    like: PathLike | None = None,
     product: str | Sequence[str] = "height",
     azimuth: float | None = None,
     altitude: float | None = None,
@@ -179,7 +211,7 @@ def dem(
 @takes(TriangulateOptions)
 def contour(
     inputs: Any,
-    output: Any,
+    output: PathLike,
     *,
     interval: float | None = None,
     base: float | None = None,
@@ -241,7 +273,7 @@ def contour(
 @takes(TriangulateOptions)
 def render(
     inputs: Any,
-    output: Any,
+    output: PathLike,
     *,
     dim: int = 2,
     size: int | None = None,
@@ -299,10 +331,15 @@ def render(
     put_all(how, {"exaggeration": exaggerate, "transparent": transparent})
     put_all(how, {"max_edge": options.get("max_edge")})
     if slice is not None:
-        put(how, "slice", slice, lambda target, value: target.set_slice(*value))
+        put(how, "slice", slice, _put_slice)
     run = make_run(options)
     origin = mesh_origin(run, inputs, dim, mesh_format, options)
     return PictureReport(**_spillway.picture(run, origin, as_path(output, "output"), how))
+
+
+def _put_slice(target: _spillway.PictureOptions, value: tuple[str, float]) -> None:
+    axis, place = value
+    target.set_slice(axis, place)
 
 
 def _check_products(products: list[str], light: dict[str, Any], options: Any) -> None:

@@ -9,6 +9,10 @@ Triple = Tuple[float, float, float]
 Extent = Tuple[Triple, Triple]
 
 
+# Attributes that are not printed.
+_TOO_LONG = ("final", "stages", "task_sums", "tile_shapes")
+
+
 class _Report:
     """Figures that print one a line, and in short as one line."""
 
@@ -20,9 +24,9 @@ class _Report:
 
     def __str__(self) -> str:
         lines = [self._summary()]
-        for field in dataclasses.fields(self):  # type: ignore[arg-type]
+        for field in dataclasses.fields(self):
             value = getattr(self, field.name)
-            if value is not None and field.repr:
+            if value is not None and field.name not in _TOO_LONG:
                 lines.append(f"  {field.name:24} {_text(value)}")
         return "\n".join(lines)
 
@@ -33,11 +37,6 @@ def _text(value: Any) -> str:
     if isinstance(value, (list, tuple)):
         return ", ".join(_text(item) for item in value)
     return f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
-def _hidden() -> Any:
-    """A field that is too long to be printed."""
-    return dataclasses.field(repr=False)
 
 
 def _simplices(dimension: int) -> str:
@@ -77,14 +76,14 @@ class RunReport(_Report):
     spilled_bytes: int
     divided_points: int
     first_block_read_points: int
-    tile_shapes: dict[str, int] = _hidden()
-    final: dict[str, Any] = _hidden()
+    tile_shapes: dict[str, int]
+    final: dict[str, Any]
     retriangulated_points: int
     border_simplices: int
     border_bytes: int
     phases: dict[str, float]
-    stages: dict[str, float] = _hidden()
-    task_sums: list[dict[str, Any]] = _hidden()
+    stages: dict[str, float]
+    task_sums: list[dict[str, Any]]
     memory_limit: int
     seconds: float
 
