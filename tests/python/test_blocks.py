@@ -45,7 +45,7 @@ class TheMesh(InFolder):
             self.assertEqual(blocks.report.canonical_hash, expected.hash)
 
     def test_out_of_core_from_files_within_little_memory(self):
-        command("generate", "terrain", "-n", 400_000, "-o", "hills.las")
+        command("generate", "terrain", "-n", 1_000_000, "-o", "hills.las")
         command("triangulate", "hills.las", "-o", "mesh.spm", "--memory", "32M")
         blocks = spillway.blocks("hills.las", memory="32M", tmpdir="tmp")
         vertices, simplices, index = gathered(blocks)
@@ -82,7 +82,7 @@ class Endings(InFolder):
     """`run` makes more blocks than wait, and spills."""
 
     def run_blocks(self, **options):
-        points = random_points(400_000, 2)
+        points = random_points(1_000_000, 2)
         return spillway.blocks(points, memory="32M", tmpdir="tmp", base_case=2000, **options)
 
     def test_a_loop_that_is_left_early_ends_the_run(self):
@@ -147,7 +147,7 @@ class Endings(InFolder):
     def test_the_end_of_the_interpreter_ends_the_run(self):
         program = (
             "import numpy as np, spillway\n"
-            "points = np.random.default_rng(1).random((400_000, 2))\n"
+            "points = np.random.default_rng(1).random((1_000_000, 2))\n"
             "blocks = spillway.blocks(points, memory='32M', tmpdir='tmp', base_case=2000)\n"
             "next(blocks)\n"
             "held = [blocks]; held.append(held)\n"
@@ -166,7 +166,7 @@ class Endings(InFolder):
             thread.start()
         for thread in threads:
             thread.join()
-        self.assertEqual(sum(counts), spillway.Delaunay(random_points(400_000, 2)).nsimplex)
+        self.assertEqual(sum(counts), spillway.Delaunay(random_points(1_000_000, 2)).nsimplex)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,11 @@
 """Calls from files and arrays to files do what the command does."""
 
 import dataclasses
+import errno
 import json
 import os
 import pathlib
+import pickle
 import signal
 import threading
 import unittest
@@ -137,7 +139,7 @@ class Triangulate(InFolder):
         points = np.column_stack([random_points(50, 2), np.zeros(50)]) * 100
         spillway.triangulate(points, "mesh.spm", crs="EPSG:2056")
         self.assertEqual(spillway.info("mesh.spm").crs, "EPSG:2056")
-        pathlib.Path("system.wkt").write_text(pathlib.Path("system.wkt").name and "EPSG:2056\n")
+        pathlib.Path("system.wkt").write_text("EPSG:2056\n")
         spillway.triangulate(points, "other.spm", crs=pathlib.Path("system.wkt"))
         self.assertEqual(bytes_of("other.spm"), bytes_of("mesh.spm"))
 
@@ -293,14 +295,33 @@ class Errors(InFolder):
         with self.assertRaisesRegex(OSError, "nowhere.las") as caught:
             spillway.triangulate("nowhere.las", "mesh.spm")
         self.assertEqual(caught.exception.code, "input or output")
+        self.assertEqual(caught.exception.errno, errno.ENOENT)
+        self.assertEqual(caught.exception.filename, "nowhere.las")
         pathlib.Path("typo.txt").write_text("1 2 3\n4 5 6\n7 8 g\n")
-        with self.assertRaisesRegex(ValueError, "typo.txt: line 3"):
+        with self.assertRaisesRegex(ValueError, "typo.txt: line 3") as caught:
             spillway.triangulate("typo.txt", "mesh.spm")
+        self.assertEqual((caught.exception.file, caught.exception.place), ("typo.txt", ("line", 3)))
+        other = pickle.loads(pickle.dumps(caught.exception))
+        self.assertEqual(other.place, ("line", 3))
         command("generate", "terrain", "-n", 1000, "-o", "hills.las")
         pathlib.Path("short.las").write_bytes(bytes_of("hills.las")[:-100])
         with self.assertRaisesRegex(spillway.errors.BadInputError, "short.las"):
             spillway.triangulate("short.las", "mesh.spm", tmpdir="tmp")
         self.assert_nothing_is_left("typo.txt", "hills.las", "short.las")
+
+    def test_errors_name_the_arguments_that_help(self):
+        points = np.column_stack([random_points(100, 2), np.arange(100)])
+        for words, call in [
+            ('memory="64M" is enough', lambda: spillway.dem(points, resolution=1, memory="32M")),
+            ("cannot be used with it", lambda: spillway.triangulate("a.npy", "a.spm", keep_class=2)),
+            ("force_crs=True", lambda: spillway.contour(points, "a.geojson", interval=1)),
+            ("columns=", lambda: spillway.triangulate("a.txt", "a.spm")),
+        ]:
+            np.save("a.npy", points)
+            np.savetxt("a.txt", np.column_stack([np.arange(1, 101), points]), fmt="%d %f %f %f")
+            with self.subTest(words=words), self.assertRaisesRegex(spillway.Error, words) as caught:
+                call()
+            self.assertNotIn("--", str(caught.exception))
 
     def test_a_file_that_was_there_stays_after_an_error(self):
         pathlib.Path("mesh.spm").write_text("old")
@@ -366,7 +387,7 @@ class Errors(InFolder):
         self.assert_nothing_is_left()
 
     def test_limits_that_do_not_suffice(self):
-        points = random_points(300_000, 2)
+        points = random_points(1_000_000, 2)
         with self.assertRaises(MemoryError) as caught:
             spillway.triangulate(points, "mesh.spm", memory="1M")
         self.assertEqual(caught.exception.code, "out of budget")
@@ -385,7 +406,7 @@ class LongWork(InFolder):
 
         points = random_points(600_000, 2)
         spillway.triangulate(points, "mesh.spm", threads=1, progress=progress)
-        self.assertGreater(len(told), 3)
+        self.assertGreater(len(told), 1)
         self.assertEqual(told, sorted(set(told)))
         self.assertEqual(told[-1], 1)
         self.assertEqual(threads, {threading.get_ident()})
@@ -437,11 +458,9 @@ class LongWork(InFolder):
 
     def test_warnings_of_a_run_are_warnings_of_python(self):
         command("generate", "terrain", "-n", 1000, "-o", "a.las")
-        spillway.convert("a.las", "b.npy")
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            spillway.triangulate(["a.las", "b.npy"], "mesh.spm", resolution=1, input_format=None) \
-                if False else spillway.dem("a.las", resolution=1e5)
+            spillway.dem("a.las", resolution=1e5)
         self.assertEqual([w.category for w in caught], [spillway.Warning])
         self.assertEqual(caught[0].filename, __file__)
         with warnings.catch_warnings():
