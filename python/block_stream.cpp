@@ -1,5 +1,7 @@
 #include "python/block_stream.h"
 
+#include <unistd.h>
+
 #include <utility>
 
 namespace spillway::python {
@@ -26,7 +28,10 @@ class BlockStream::Sink final : public MeshSink {
 };
 
 BlockStream::BlockStream(std::shared_ptr<Run> run, std::shared_ptr<const MeshOrigin> origin)
-    : run_(std::move(run)), origin_(std::move(origin)), worker_([this] { work(); }) {}
+    : process_(::getpid()),
+      run_(std::move(run)),
+      origin_(std::move(origin)),
+      worker_([this] { work(); }) {}
 
 BlockStream::~BlockStream() { close(); }
 
@@ -76,12 +81,12 @@ std::optional<MeshBlock> BlockStream::next() {
       run_->listener().listen();
       if (block) return block;
     }
-    const std::exception_ptr fault = [&] {
-      const std::lock_guard lock(mutex_);
-      return closed_ ? nullptr : std::exchange(fault_, nullptr);
-    }();
+    std::unique_lock lock(mutex_);
+    const std::exception_ptr fault = std::exchange(fault_, nullptr);
+    const bool is_complete = !closed_ && !fault;
+    lock.unlock();
     if (fault) std::rethrow_exception(fault);
-    if (report_) run_->listener().complete();
+    if (is_complete) run_->listener().complete();
   } catch (...) {
     close();
     throw;
@@ -90,7 +95,10 @@ std::optional<MeshBlock> BlockStream::next() {
   return std::nullopt;
 }
 
+bool BlockStream::is_of_this_process() const { return ::getpid() == process_; }
+
 void BlockStream::close() {
+  if (!is_of_this_process()) return;
   const py::gil_scoped_release release;
   {
     const std::lock_guard lock(mutex_);

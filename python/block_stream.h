@@ -30,8 +30,11 @@ class BlockStream {
   /// throw; then the stream is closed.
   std::optional<MeshBlock> next();
 
-  /// Ends the run, and returns when it has left nothing behind.
+  /// Ends the run, and returns when it has left nothing behind. Nothing in a child of fork(): that
+  /// has no worker, and what it was doing is the parent's.
   void close();
+
+  [[nodiscard]] bool is_of_this_process() const;
 
   /// Once there has been a block.
   [[nodiscard]] const MeshHeader& header() const { return header_; }
@@ -47,6 +50,7 @@ class BlockStream {
   void put(const MeshBlock& block);
   std::optional<MeshBlock> wait_for_block();
 
+  const int process_;
   const std::shared_ptr<Run> run_;
   const std::shared_ptr<const MeshOrigin> origin_;
   MeshHeader header_;             // of the worker, until there is a block
@@ -59,6 +63,14 @@ class BlockStream {
   std::exception_ptr fault_;
   std::mutex join_mutex_;  // held while the worker is waited for
   std::thread worker_;
+};
+
+/// Deletes a stream, but leaves one of a parent process as it is: nobody can wait for its thread,
+/// nor end what that was waiting for.
+struct StreamEnd {
+  void operator()(BlockStream* stream) const {
+    if (stream->is_of_this_process()) delete stream;
+  }
 };
 
 }  // namespace spillway::python

@@ -43,7 +43,7 @@ py::object next_block(BlockStream& stream) {
 }  // namespace
 
 void bind_blocks(py::module_& module) {
-  py::class_<BlockStream>(module, "BlockStream")
+  py::class_<BlockStream, std::unique_ptr<BlockStream, StreamEnd>>(module, "BlockStream")
       .def(py::init<std::shared_ptr<Run>, std::shared_ptr<MeshOrigin>>(), py::arg("run"),
            py::arg("origin"))
       .def("next", next_block)

@@ -25,9 +25,11 @@ Delaunay<D, Index> triangulate(const Coordinates& points, unsigned threads,
   DelaunayOptions options;
   options.threads = threads;
   options.stop = watch.stop_token();
-  options.progress = [&](std::size_t done, std::size_t total) {
-    watch.tell(static_cast<double>(done) / static_cast<double>(total));
-  };
+  if (!progress.is_none()) {
+    options.progress = [&](std::size_t done, std::size_t total) {
+      watch.tell(static_cast<double>(done) / static_cast<double>(total));
+    };
+  }
   run_watched(watch, listener, [&] { mesh.emplace(view, options); });
   listener.complete();
   return std::move(*mesh);

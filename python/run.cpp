@@ -24,13 +24,13 @@ ContextOptions context_options(const std::string& memory, unsigned threads,
 }  // namespace
 
 Run::Run(const std::string& memory, unsigned threads, const std::string& scratch_folder,
-         const std::string& scratch_limit, const py::object& progress)
+         const std::string& scratch_limit, const py::object& progress, bool explains)
     : listener_(watch_, progress), context_([&] {
         ContextOptions options = context_options(memory, threads, scratch_folder, scratch_limit);
         options.stop = watch_.stop_token();
         options.progress = [this](const Progress& state) { tell(state); };
         options.warning = [this](std::string_view text) { watch_.say(true, text); };
-        options.detail = [this](std::string_view text) { watch_.say(false, text); };
+        if (explains) options.detail = [this](std::string_view text) { watch_.say(false, text); };
         return options;
       }()) {}
 
@@ -57,9 +57,9 @@ void Run::tell(const Progress& progress) {
 void bind_run(py::module_& module) {
   py::class_<Run, std::shared_ptr<Run>>(module, "Run")
       .def(py::init<const std::string&, unsigned, const std::string&, const std::string&,
-                    const py::object&>(),
+                    const py::object&, bool>(),
            py::arg("memory"), py::arg("threads"), py::arg("tmpdir"), py::arg("max_tmp"),
-           py::arg("progress"));
+           py::arg("progress"), py::arg("explains"));
 }
 
 }  // namespace spillway::python

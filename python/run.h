@@ -37,7 +37,7 @@ class Run {
   /// As in ContextOptions, an empty text for what is not said; `progress` is a callable that takes
   /// a fraction, or None.
   Run(const std::string& memory, unsigned threads, const std::string& scratch_folder,
-      const std::string& scratch_limit, const pybind11::object& progress);
+      const std::string& scratch_limit, const pybind11::object& progress, bool explains);
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
   ~Run() = default;

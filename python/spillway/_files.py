@@ -272,7 +272,7 @@ def generate(
         how.exact = True
         put_all(how, {"format": output_format, "las_version": las_version})
         return GenerateReport(**_spillway.generate(run, points, path, how))
-    columns, rows = grid
+    columns, rows = _as_grid(grid)
     survey = _spillway.GridOptions()
     put_all(survey, {"columns": columns, "rows": rows, "overlap": overlap})
     put_all(survey, {"format": output_format, "las_version": las_version})
@@ -354,6 +354,14 @@ def check(
     how = mesh_options({}, mesh_format)
     which = point_options(options, 2)
     return CheckReport(**_spillway.check(run, path, how, bool(any_delaunay), source, which))
+
+
+def _as_grid(grid: Any) -> tuple[int, int]:
+    try:
+        columns, rows = grid
+    except TypeError:
+        raise TypeError(f"grid is {grid!r}; give (columns, rows)") from None
+    return columns, rows
 
 
 def _as_axes(values: Any) -> list[float]:

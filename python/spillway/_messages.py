@@ -19,6 +19,11 @@ def tell(is_warning: bool, text: str) -> None:
         _log.info("%s", text)
 
 
+def is_explained() -> bool:
+    """Whether anybody reads what explains a run."""
+    return _log.isEnabledFor(logging.INFO)
+
+
 def _levels_to_the_caller() -> int:
     """How far up the stack the call of this package is, as `warnings.warn` counts in `tell`."""
     level = 1

@@ -18,6 +18,7 @@ from typing import Any, Callable, Iterable, Mapping, Sequence, TypedDict, TypeVa
 
 from . import _spillway
 from ._arrays import as_thread_count
+from ._messages import is_explained
 from .errors import InvalidArgumentError
 
 PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
@@ -361,7 +362,7 @@ def put(target: Any, name: str, value: Any, setter: Callable[[Any, Any], None]) 
     try:
         setter(target, value)
     except (TypeError, OverflowError) as fault:
-        kind = _OPTIONS[name].kind if name in _OPTIONS else "another type of value"
+        kind = _OPTIONS[name].kind if name in _OPTIONS else "a value of another type or range"
         raise TypeError(f"{name} is {value!r}; give {kind.replace(', optional', '')}") from fault
 
 
@@ -435,6 +436,7 @@ def make_run(options: Mapping[str, Any]) -> _spillway.Run:
         b"" if tmpdir is None else os.fsencode(tmpdir),
         _as_size(options.get("max_tmp"), "max_tmp"),
         progress,
+        is_explained(),
     )
 
 

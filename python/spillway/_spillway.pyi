@@ -50,6 +50,7 @@ class Run:
         tmpdir: bytes,
         max_tmp: str,
         progress: Callable[[float], object] | None,
+        explains: bool,
     ) -> None: ...
 
 class PointOptions:

@@ -33,6 +33,9 @@ class Error(Exception):
     file: str | None = None
     place: tuple[str, int] | None = None
 
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else ""
+
 
 class InvalidArgumentError(Error, ValueError):
     """An argument that no call could use, as a coordinate that is not finite."""

@@ -155,6 +155,21 @@ class Endings(InFolder):
         subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
         self.assert_nothing_is_left()
 
+    @unittest.skipUnless(hasattr(os, "fork"), "needs fork(), which this system has not")
+    def test_a_child_of_fork_leaves_the_run_to_its_parent(self):
+        program = (
+            "import os, sys, numpy as np, spillway\n"
+            "points = np.random.default_rng(1).random((1_000_000, 2))\n"
+            "blocks = spillway.blocks(points, memory='32M', tmpdir='tmp', base_case=2000)\n"
+            "next(blocks)\n"
+            "child = os.fork()\n"
+            "if child == 0: sys.exit(0)\n"
+            "assert os.waitpid(child, 0)[1] == 0\n"
+            "assert sum(len(block.vertices) for block in blocks) > 900_000\n"
+        )
+        subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+        self.assert_nothing_is_left()
+
     def test_blocks_may_be_taken_by_several_threads(self):
         blocks, counts = self.run_blocks(), []
 

@@ -292,7 +292,7 @@ class Reports(InFolder):
 
 class Errors(InFolder):
     def test_what_is_wrong_with_a_file_is_raised_with_its_name(self):
-        with self.assertRaisesRegex(OSError, "nowhere.las") as caught:
+        with self.assertRaisesRegex(OSError, "^cannot open nowhere.las: No such file") as caught:
             spillway.triangulate("nowhere.las", "mesh.spm")
         self.assertEqual(caught.exception.code, "input or output")
         self.assertEqual(caught.exception.errno, errno.ENOENT)
@@ -313,6 +313,7 @@ class Errors(InFolder):
         points = np.column_stack([random_points(100, 2), np.arange(100)])
         for words, call in [
             ('memory="64M" is enough', lambda: spillway.dem(points, resolution=1, memory="32M")),
+            ("EPSG:99999999", lambda: spillway.triangulate(points, "a.gpkg", crs="EPSG:99999999")),
             ("cannot be used with it", lambda: spillway.triangulate("a.npy", "a.spm", keep_class=2)),
             ("force_crs=True", lambda: spillway.contour(points, "a.geojson", interval=1)),
             ("columns=", lambda: spillway.triangulate("a.txt", "a.spm")),
@@ -467,6 +468,12 @@ class LongWork(InFolder):
             warnings.simplefilter("error")
             with self.assertRaises(spillway.Warning):
                 spillway.dem("a.las", resolution=1e5)
+
+    def test_what_explains_a_run_is_logged(self):
+        spillway.generate("terrain", 1000, "hills.las")
+        with self.assertLogs("spillway", "INFO") as logged:
+            spillway.triangulate("hills.las", "mesh.spm")
+        self.assertIn("hills.las", "".join(logged.output))
 
     def test_runs_beside_each_other(self):
         results = {}
