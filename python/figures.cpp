@@ -13,41 +13,11 @@ namespace {
 namespace py = pybind11;
 using py::literals::operator""_a;
 
-const char* word_of(TaskScope scope) {
-  switch (scope) {
-    case TaskScope::kInTile:
-      return "in_tile";
-    case TaskScope::kBetweenTiles:
-      return "between_tiles";
-    case TaskScope::kBetweenRanks:
-      return "between_ranks";
-  }
-  return "";
-}
-
-const char* word_of(TaskKind kind) {
-  switch (kind) {
-    case TaskKind::kNode:
-      return "node";
-    case TaskKind::kBaseCase:
-      return "base_case";
-    case TaskKind::kDivide:
-      return "divide";
-    case TaskKind::kBorder:
-      return "border";
-    case TaskKind::kAccept:
-      return "accept";
-    case TaskKind::kNeighbours:
-      return "neighbours";
-  }
-  return "";
-}
-
 py::list task_sums(const RunFigures& run) {
   py::list sums;
   for (const TaskSum& sum : run.task_sums) {
-    sums.append(py::dict("scope"_a = word_of(sum.scope), "level"_a = sum.level,
-                         "kind"_a = word_of(sum.kind), "tasks"_a = sum.tasks,
+    sums.append(py::dict("scope"_a = to_string(sum.scope), "level"_a = sum.level,
+                         "kind"_a = to_string(sum.kind), "tasks"_a = sum.tasks,
                          "points"_a = sum.points, "seconds"_a = sum.seconds,
                          "pieces"_a = sum.grains));
   }

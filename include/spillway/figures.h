@@ -73,6 +73,9 @@ enum class TaskKind : std::uint8_t {
   kNeighbours,  ///< links them with what was there
 };
 
+/// "node", "base_case", ...
+SPILLWAY_API const char* to_string(TaskKind kind) noexcept;
+
 /// One task of a run: a node of the k-d recursion, or a step of one. Its parts follow one another
 /// in the order of the members: steps `before`, its own work, `children`, steps `after`. Steps run
 /// one after the other, children at the same time.
@@ -103,6 +106,9 @@ enum class TaskScope : std::uint8_t {
   kBetweenTiles,  ///< 1 and more: merges of tiles by their height over the tiles
   kBetweenRanks,  ///< 1 and more: merges of ranks
 };
+
+/// "in_tile", "between_tiles", "between_ranks".
+SPILLWAY_API const char* to_string(TaskScope scope) noexcept;
 
 /// The tasks of one kind at one level, all together. A step counts at the level of the part whose
 /// step it is, with all tasks below it: at the levels of merges a base case is one of a border's

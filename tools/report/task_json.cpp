@@ -5,38 +5,8 @@
 namespace spillway::detail {
 namespace {
 
-const char* name_of(TaskKind kind) {
-  switch (kind) {
-    case TaskKind::kNode:
-      return "node";
-    case TaskKind::kBaseCase:
-      return "base_case";
-    case TaskKind::kDivide:
-      return "divide";
-    case TaskKind::kBorder:
-      return "border";
-    case TaskKind::kAccept:
-      return "accept";
-    case TaskKind::kNeighbours:
-      return "neighbours";
-  }
-  return "";
-}
-
-const char* name_of(TaskScope scope) {
-  switch (scope) {
-    case TaskScope::kInTile:
-      return "in_tile";
-    case TaskScope::kBetweenTiles:
-      return "between_tiles";
-    case TaskScope::kBetweenRanks:
-      return "between_ranks";
-  }
-  return "";
-}
-
 Json to_json(const Task& task) {
-  Json json = {{"kind", name_of(task.kind)},
+  Json json = {{"kind", to_string(task.kind)},
                {"points", task.points},
                {"seconds", task.seconds},
                {"pieces", task.grains}};
@@ -61,8 +31,9 @@ Json to_json(const TaskNode& node) {
 }
 
 Json to_json(const TaskSum& sum) {
-  return {{"scope", name_of(sum.scope)}, {"level", sum.level},   {"kind", name_of(sum.kind)},
-          {"tasks", sum.tasks},          {"points", sum.points}, {"seconds", sum.seconds},
+  return {{"scope", to_string(sum.scope)}, {"level", sum.level},
+          {"kind", to_string(sum.kind)},   {"tasks", sum.tasks},
+          {"points", sum.points},          {"seconds", sum.seconds},
           {"pieces", sum.grains}};
 }
 

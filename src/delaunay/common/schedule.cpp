@@ -112,6 +112,36 @@ class Simulation {
 
 namespace spillway {
 
+const char* to_string(TaskKind kind) noexcept {
+  switch (kind) {
+    case TaskKind::kNode:
+      return "node";
+    case TaskKind::kBaseCase:
+      return "base_case";
+    case TaskKind::kDivide:
+      return "divide";
+    case TaskKind::kBorder:
+      return "border";
+    case TaskKind::kAccept:
+      return "accept";
+    case TaskKind::kNeighbours:
+      return "neighbours";
+  }
+  return "";
+}
+
+const char* to_string(TaskScope scope) noexcept {
+  switch (scope) {
+    case TaskScope::kInTile:
+      return "in_tile";
+    case TaskScope::kBetweenTiles:
+      return "between_tiles";
+    case TaskScope::kBetweenRanks:
+      return "between_ranks";
+  }
+  return "";
+}
+
 double Task::total_seconds() const {
   double sum = seconds;
   for (const auto* steps : {&before, &children, &after}) {
