@@ -3,6 +3,7 @@
 #include <spillway/input.h>
 
 #include <filesystem>
+#include <string>
 #include <system_error>
 #include <utility>
 

@@ -14,7 +14,11 @@
 #include <spillway/triangulate.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "python/bindings.h"

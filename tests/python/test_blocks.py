@@ -11,7 +11,7 @@ import unittest
 
 import numpy as np
 import spillway
-from support import InFolder, as_set, bytes_of, command, random_points
+from support import InFolder, as_set, command, random_points
 
 
 def gathered(blocks):
@@ -63,7 +63,7 @@ class TheMesh(InFolder):
         vertices, simplices, index = gathered(blocks)
         self.assertEqual(len(simplices), report.simplices)
         np.testing.assert_array_equal(points[np.concatenate(index)], vertices[:, :2])
-        with self.assertRaisesRegex(ValueError, "id, every|every, id|have no effect on a mesh"):
+        with self.assertRaisesRegex(ValueError, "every, id have no effect on a mesh"):
             spillway.blocks("mesh.spm", id=True, every=2)
 
     def test_heights_are_carried_along(self):

@@ -1,7 +1,6 @@
 """Rasters, lines and pictures are those of the command."""
 
 import os
-import pathlib
 import unittest
 
 import numpy as np
@@ -15,17 +14,23 @@ class Dem(InFolder):
         command("generate", "terrain", "-n", 20_000, "-o", "hills.las")
 
     def test_a_file_has_the_bytes_of_the_command(self):
+        box, corners = "500100,4100100,500300,4100300", (500100, 4100100, 500300, 4100300)
         cases = {
             "--resolution 3": {"resolution": 3},
-            "--resolution 3 --align --compress none --nodata -1": {"resolution": 3, "align": True, "compress": "none", "nodata": -1},
-            "--resolution 3 --product height,slope,hillshade --azimuth 90 --altitude 30 --z-factor 2": {
-                "resolution": 3, "product": ["height", "slope", "hillshade"], "azimuth": 90, "altitude": 30, "z_factor": 2,
+            "--resolution 3 --align --compress none --nodata -1": {
+                "resolution": 3, "align": True, "compress": "none", "nodata": -1,
             },
-            "--resolution 5 --bounds 500100,4100100,500300,4100300": {"resolution": 5, "bounds": (500100, 4100100, 500300, 4100300)},
-            "--resolution 5 --clip-bounds 500100,4100100,500300,4100300": {"resolution": 5, "clip_bounds": (500100, 4100100, 500300, 4100300)},
+            "--resolution 3 --product height,slope,hillshade --azimuth 90 --altitude 30 --z-factor 2": {
+                "resolution": 3, "product": ["height", "slope", "hillshade"],
+                "azimuth": 90, "altitude": 30, "z_factor": 2,
+            },
+            f"--resolution 5 --bounds {box}": {"resolution": 5, "bounds": corners},
+            f"--resolution 5 --clip-bounds {box}": {"resolution": 5, "clip_bounds": corners},
             "--resolution 3 --cog --max-edge 20": {"resolution": 3, "cog": True, "max_edge": 20},
             "--like like.tif": {"like": "like.tif"},
-            "--resolution 3 --force-size --crs EPSG:32633": {"resolution": 3, "force_size": True, "crs": "EPSG:32633"},
+            "--resolution 3 --force-size --crs EPSG:32633": {
+                "resolution": 3, "force_size": True, "crs": "EPSG:32633",
+            },
         }
         command("dem", "hills.las", "-o", "like.tif", "--resolution", 7)
         for words, options in cases.items():
@@ -40,7 +45,8 @@ class Dem(InFolder):
         command("triangulate", "hills.las", "-o", "mesh.spm")
         for product in ("height", ["height", "slope", "density"]):
             names = product if isinstance(product, str) else ",".join(product)
-            command("dem", "hills.las", "-o", "a.tif", "--resolution", 0.7, "--product", names, "--nodata", "nan")
+            words = ["--resolution", 0.7, "--product", names, "--nodata", "nan"]
+            command("dem", "hills.las", "-o", "a.tif", *words)
             file = gdal.Open("a.tif")
             for inputs in ("hills.las", "mesh.spm"):
                 raster = spillway.dem(inputs, resolution=0.7, product=product)
@@ -76,7 +82,10 @@ class Dem(InFolder):
             ("azimuth has no effect", {"resolution": 1, "azimuth": 3}),
             ("z_factor has no effect", {"resolution": 1, "z_factor": 3}),
             ("max_edge has no effect", {"resolution": 1, "product": "density", "max_edge": 3}),
-            ("force_size has no effect with bounds", {"resolution": 1, "bounds": (0, 0, 1, 1), "force_size": True}),
+            (
+                "force_size has no effect with bounds",
+                {"resolution": 1, "bounds": (0, 0, 1, 1), "force_size": True},
+            ),
             ("resolution has no effect with like", {"resolution": 1, "like": "a.tif"}),
             ("nodata, cog have no effect without an output", {"resolution": 1, "nodata": 0, "cog": True}),
             ('product is "depth"; give one of height', {"resolution": 1, "product": "depth"}),
@@ -106,15 +115,18 @@ class Lines(InFolder):
             "--levels 380,390.5": {"levels": [380, 390.5]},
         }
         for words, options in cases.items():
-            command("contour", "hills.las", "-o", "a/lines.geojson", "--force-crs", "--memory", "64M", *words.split())
+            common = ["-o", "a/lines.geojson", "--force-crs", "--memory", "64M"]
+            command("contour", "hills.las", *common, *words.split())
             with self.assertWarns(spillway.Warning):
-                report = spillway.contour("hills.las", "lines.geojson", force_crs=True, memory="64M", **options)
+                report = spillway.contour(
+                    "hills.las", "lines.geojson", force_crs=True, memory="64M", **options
+                )
             self.assertEqual(bytes_of("lines.geojson"), bytes_of("a/lines.geojson"))
             self.assertGreater(report.lines, 0)
 
     def test_heights_are_asked_for_in_one_way(self):
         points = np.column_stack([random_points(50, 2), np.arange(50)])
-        with self.assertRaisesRegex(ValueError, "interval, the height between two contours|interval, the height"):
+        with self.assertRaisesRegex(ValueError, "interval, the height between two lines"):
             spillway.contour(points, "a.gpkg")
         with self.assertRaisesRegex(ValueError, "interval has no effect with levels"):
             spillway.contour(points, "a.gpkg", interval=1, levels=[2])
@@ -128,8 +140,16 @@ class Pictures(InFolder):
         np.save("cloud.npy", random_points(3000, 3))
         cases = [
             ("hills.las", "", {}),
-            ("hills.las", "--wireframe --transparent --exaggerate 3", {"wireframe": True, "transparent": True, "exaggerate": 3}),
-            ("hills.las", "--zoom 500100,4100100,500200,4100200", {"zoom": (500100, 4100100, 500200, 4100200)}),
+            (
+                "hills.las",
+                "--wireframe --transparent --exaggerate 3",
+                {"wireframe": True, "transparent": True, "exaggerate": 3},
+            ),
+            (
+                "hills.las",
+                "--zoom 500100,4100100,500200,4100200",
+                {"zoom": (500100, 4100100, 500200, 4100200)},
+            ),
             ("cloud.npy", "--dim 3 --view 120,30", {"dim": 3, "view": (120, 30)}),
             ("cloud.npy", "--dim 3 --slice z=0.5", {"dim": 3, "slice": ("z", 0.5)}),
         ]
@@ -142,7 +162,12 @@ class Pictures(InFolder):
 
     def test_wrong_values(self):
         points = random_points(100, 3)
-        for kind, options in [(ValueError, {"slice": ("w", 1)}), (TypeError, {"slice": 3}), (TypeError, {"size": "large"}), (TypeError, {"zoom": (1, 2)})]:
+        for kind, options in [
+            (ValueError, {"slice": ("w", 1)}),
+            (TypeError, {"slice": 3}),
+            (TypeError, {"size": "large"}),
+            (TypeError, {"zoom": (1, 2)}),
+        ]:
             with self.subTest(options=options), self.assertRaises(kind):
                 spillway.render(points, "a.png", dim=3, **options)
 
