@@ -82,11 +82,11 @@ std::optional<MeshBlock> BlockStream::next() {
       if (block) return block;
     }
     std::unique_lock lock(mutex_);
-    const std::exception_ptr fault = std::exchange(fault_, nullptr);
-    const bool is_complete = !closed_ && !fault;
+    const bool closed = closed_;  // then a fault is that the run was interrupted
+    const std::exception_ptr fault = closed ? nullptr : fault_;
     lock.unlock();
     if (fault) std::rethrow_exception(fault);
-    if (is_complete) run_->listener().complete();
+    if (!closed) run_->listener().complete();
   } catch (...) {
     close();
     throw;
