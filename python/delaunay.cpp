@@ -1,6 +1,7 @@
 #include <pybind11/pybind11.h>
 #include <spillway/delaunay.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -19,11 +20,18 @@ Delaunay<D, Index> triangulate(const Coordinates& points, unsigned threads,
                                const py::object& progress) {
   const PointView<D> view = point_view<D>(points);
   std::optional<Delaunay<D, Index>> mesh;
-  run_watched(progress, [&](const DelaunayOptions& watched) {
-    DelaunayOptions options = watched;
-    options.threads = threads;
-    mesh.emplace(view, options);
-  });
+  Watch watch;
+  Listener listener(watch, progress);
+  DelaunayOptions options;
+  options.threads = threads;
+  options.stop = watch.stop_token();
+  if (!progress.is_none()) {
+    options.progress = [&](std::size_t done, std::size_t total) {
+      watch.tell(static_cast<double>(done) / static_cast<double>(total));
+    };
+  }
+  run_watched(watch, listener, [&] { mesh.emplace(view, options); });
+  listener.complete();
   return std::move(*mesh);
 }
 

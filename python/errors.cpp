@@ -4,7 +4,9 @@
 #include <exception>
 #include <utility>
 
+#include "python/advice.h"
 #include "python/bindings.h"
+#include "python/text.h"
 
 namespace spillway::python {
 namespace {
@@ -16,7 +18,10 @@ void translate(std::exception_ptr fault) {
     std::rethrow_exception(std::move(fault));
   } catch (const Error& error) {
     const py::object make = py::module_::import("spillway.errors").attr("make_error");
-    const py::object made = make(to_string(error.code()), error.what());
+    const ErrorFacts& facts = error.facts();
+    const py::object made =
+        make(to_string(error.code()), text_of(advised_message(error)), text_of(facts.file),
+             to_string(facts.place.unit), facts.place.number, facts.system_error);
     PyErr_SetObject(py::type::handle_of(made).ptr(), made.ptr());
   }
 }

@@ -18,4 +18,11 @@ PYBIND11_MODULE(_spillway, module) {
       "End the threads that the library keeps for later calls, unless some are at work.");
   python::bind_errors(module);
   python::bind_delaunay(module);
+  python::bind_run(module);
+  python::bind_options(module);
+  python::bind_mesh_origin(module);
+  python::bind_products(module);
+  python::bind_points(module);
+  python::bind_questions(module);
+  python::bind_blocks(module);
 }

@@ -69,4 +69,17 @@ class SPILLWAY_API DemSink : public MeshSink {
 SPILLWAY_API std::unique_ptr<DemSink> create_dem(const std::string& path, const DemOptions& options,
                                                  const Context& context);
 
+/// A raster in memory.
+struct DemPixels {
+  /// Band by band, rows from the north; where there is no data what the options say. Shape: bands *
+  /// rows * columns.
+  std::vector<float> values{};
+  std::string crs{};  ///< coordinate system as WKT or "EPSG:n"; empty: unknown
+};
+
+/// The same raster without a file, beyond the context's memory: `pixels`, which must outlive the
+/// sink, holds it after finish(). Options about the file have no effect.
+SPILLWAY_API std::unique_ptr<DemSink> create_dem(DemPixels& pixels, const DemOptions& options,
+                                                 const Context& context);
+
 }  // namespace spillway

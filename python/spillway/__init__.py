@@ -9,10 +9,50 @@
 import os as _os
 
 from . import _spillway
+from ._blocks import Block, Blocks, blocks
 from ._delaunay import Delaunay
-from .errors import Error
+from ._files import check, convert, generate, info, triangulate
+from ._products import Raster, contour, dem, render
+from ._reports import (
+    CheckReport,
+    ContourReport,
+    ConvertReport,
+    GenerateReport,
+    MeshInfo,
+    PictureReport,
+    PointsInfo,
+    RasterReport,
+    RunReport,
+)
+from .errors import Error, Warning
 
-__all__ = ["Delaunay", "Error", "__version__"]
+__all__ = [
+    "Block",
+    "Blocks",
+    "CheckReport",
+    "ContourReport",
+    "ConvertReport",
+    "Delaunay",
+    "Error",
+    "GenerateReport",
+    "MeshInfo",
+    "PictureReport",
+    "PointsInfo",
+    "Raster",
+    "RasterReport",
+    "RunReport",
+    "Warning",
+    "__version__",
+    "blocks",
+    "check",
+    "contour",
+    "convert",
+    "dem",
+    "generate",
+    "info",
+    "render",
+    "triangulate",
+]
 __version__: str = _spillway.version
 
 # A child of fork() has none of its parent's threads, so the library must not count on any.

@@ -23,7 +23,7 @@ def as_floats(numbers: Any, name: str) -> Floats:
     Such an array is returned as it is, whatever its strides; others are converted. Raises
     InvalidArgumentError for what has no exact value as float64.
     """
-    if isinstance(numbers, np.ma.MaskedArray) and np.ma.is_masked(numbers):
+    if isinstance(numbers, np.ma.MaskedArray) and np.any(numbers.mask):
         raise InvalidArgumentError(f"{name} has masked elements; leave them out")
     try:
         array = np.asarray(numbers)
@@ -45,13 +45,19 @@ def as_floats(numbers: Any, name: str) -> Floats:
     return array.astype(np.float64)
 
 
-def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:
-    """Coordinates as rows of two or three, and the heights that points in the plane carry."""
-    array = as_floats(points, "points")
+def as_rows(points: Any, name: str) -> Floats:
+    """Coordinates as rows of two or three."""
+    array = as_floats(points, name)
     if array.ndim != 2 or array.shape[1] not in (2, 3):
         raise InvalidArgumentError(
-            f"points has the shape {array.shape}; give rows of 2 or 3 coordinates, as (n, 2)"
+            f"{name} has the shape {array.shape}; give rows of 2 or 3 coordinates, as (n, 2)"
         )
+    return array
+
+
+def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:
+    """Coordinates as rows of two or three, and the heights that points in the plane carry."""
+    array = as_rows(points, "points")
     if dim not in (None, 2, 3):
         raise InvalidArgumentError(f"dim is {dim!r}; give 2, 3 or None")
     columns = array.shape[1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import importlib
 import sys
 from typing import Any, Callable
 
@@ -262,8 +263,7 @@ class Delaunay:
         ImportError
             Without the package meshio.
         """
-        import meshio
-
+        meshio = importlib.import_module("meshio")
         points = self.points if self.z is None else np.column_stack([self.points, self.z])
         return meshio.Mesh(points, [("triangle" if self.ndim == 2 else "tetra", self.simplices)])
 
@@ -293,12 +293,13 @@ class Delaunay:
     paraboloid_shift = 0.0
     furthest_site = False
 
-    @property
+    @property  # type: ignore[misc]
     def __class__(self) -> type:
         # Users of triangulations in SciPy ask isinstance() for its class, and read arrays of the
         # same names. Whoever asks has imported it, so this need not.
         scipy_module = sys.modules.get("scipy.spatial._qhull")
-        return type(self) if scipy_module is None else scipy_module.Delaunay
+        kind: type = type(self) if scipy_module is None else scipy_module.Delaunay
+        return kind
 
     @property
     def _points(self) -> Floats:

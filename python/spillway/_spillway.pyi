@@ -1,4 +1,7 @@
-from typing import Callable
+from typing import Any, Callable
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ._arrays import Floats, Integers
 
@@ -38,3 +41,151 @@ class Mesh2(_Mesh): ...
 class Mesh3(_Mesh): ...
 class WideMesh2(_Mesh): ...
 class WideMesh3(_Mesh): ...
+
+class Run:
+    def __init__(
+        self,
+        memory: str,
+        threads: int,
+        tmpdir: bytes,
+        max_tmp: str,
+        progress: Callable[[float], object] | None,
+        explains: bool,
+    ) -> None: ...
+
+class PointOptions:
+    dimension: int
+    format: str
+    columns: list[int]
+    skip_invalid: bool
+    keep_withheld: bool
+    every: int
+    classes: list[int]
+    other_classes: list[int]
+    resolution: float
+    crs: str
+    foreign_crs: bool
+    attributes: bool
+    def set_returns(self, first: bool, last: bool, single: bool, numbers: list[int]) -> None: ...
+    def set_bounds(self, low: list[float], high: list[float]) -> None: ...
+    def set_thin(self, cell: float, choice: str) -> None: ...
+
+class MeshOptions:
+    format: str
+    crs: str
+    foreign_crs: bool
+
+class PointFileOptions:
+    format: str
+    las_version: str
+    scale: list[float]
+    offset: list[float]
+    exact: bool
+    def set_sorted(self, dimension: int, cell_points: int) -> None: ...
+
+class TriangulateOptions:
+    dimension: int
+    duplicates: str
+    max_edge: float | None
+    input_index: bool
+    tile_points: int
+    leaf_points: int
+    division: str
+    children: int
+    trust_headers: bool
+    kernel: str
+
+class DemOptions:
+    products: list[str]
+    resolution: float
+    bounds: tuple[float, float, float, float] | None
+    align: bool
+    many_pixels: bool
+    like: bytes | str
+    foreign_crs: bool
+    azimuth: float
+    altitude: float
+    z_factor: float | None
+    max_edge: float | None
+    nodata: float
+    compression: str
+    cloud_optimized: bool
+
+class ContourOptions:
+    interval: float
+    base: float
+    levels: list[float]
+    foreign_crs: bool
+    max_edge: float | None
+
+class PictureOptions:
+    size: int
+    zoom: tuple[float, float, float, float] | None
+    wireframe: bool
+    exaggeration: float | None
+    view: tuple[float, float] | None
+    transparent: bool
+    max_edge: float | None
+    def set_slice(self, axis: str, value: float) -> None: ...
+
+class GenerateOptions:
+    family: str
+    count: int
+    dimension: int
+    seed: int
+
+class GridOptions:
+    columns: int
+    rows: int
+    overlap: float
+    format: str
+    las_version: str
+
+_Inputs = list[bytes] | Floats
+_Figures = dict[str, Any]
+
+class MeshOrigin:
+    def __init__(
+        self,
+        inputs: _Inputs | bytes,
+        options: PointOptions | MeshOptions,
+        how: TriangulateOptions = ...,
+    ) -> None: ...
+
+def is_mesh(run: Run, inputs: _Inputs, mesh_format: str, point_format: str) -> bool: ...
+def mesh(run: Run, origin: MeshOrigin, output: bytes, format: str) -> _Figures: ...
+def dem(run: Run, origin: MeshOrigin, output: bytes, options: DemOptions) -> _Figures: ...
+def dem_in_memory(
+    run: Run, origin: MeshOrigin, options: DemOptions
+) -> tuple[_Figures, NDArray[np.float32], str]: ...
+def contours(run: Run, origin: MeshOrigin, output: bytes, options: ContourOptions) -> _Figures: ...
+def picture(run: Run, origin: MeshOrigin, output: bytes, options: PictureOptions) -> _Figures: ...
+def convert_points(
+    run: Run, inputs: _Inputs, options: PointOptions, output: bytes, how: PointFileOptions
+) -> _Figures: ...
+def generate(
+    run: Run, options: GenerateOptions, output: bytes, how: PointFileOptions
+) -> _Figures: ...
+def generate_survey(
+    run: Run, options: GenerateOptions, output: bytes, grid: GridOptions
+) -> _Figures: ...
+def generate_in_memory(run: Run, options: GenerateOptions) -> Floats: ...
+def points_info(run: Run, path: bytes, options: PointOptions) -> _Figures: ...
+def mesh_info(run: Run, path: bytes, options: MeshOptions) -> _Figures: ...
+def check(
+    run: Run,
+    path: bytes,
+    options: MeshOptions,
+    any_delaunay: bool,
+    points: _Inputs | None,
+    point_options: PointOptions,
+) -> _Figures: ...
+
+class BlockStream:
+    def __init__(self, run: Run, origin: MeshOrigin) -> None: ...
+    def next(
+        self,
+    ) -> tuple[int, Floats, NDArray[np.int64], NDArray[np.int64], NDArray[np.int64] | None] | None: ...
+    def close(self) -> None: ...
+    @property
+    def report(self) -> _Figures | None: ...

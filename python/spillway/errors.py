@@ -1,4 +1,4 @@
-"""The exceptions of Spillway: `Error`, and one class for each of its codes."""
+"""The exceptions of Spillway: `Error`, one class for each of its codes, and `Warning`."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ __all__ = [
     "InvalidArgumentError",
     "OutOfBudgetError",
     "TooLargeError",
+    "Warning",
 ]
 
 
@@ -22,9 +23,18 @@ class Error(Exception):
     ----------
     code : str
         The kind of fault, as ``"degenerate input"``.
+    file : str or None
+        The file at fault.
+    place : (str, int) or None
+        Where in it: ``("line", 3)``, ``("byte", 227)`` or ``("record", 12)``.
     """
 
     code = ""
+    file: str | None = None
+    place: tuple[str, int] | None = None
+
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else ""
 
 
 class InvalidArgumentError(Error, ValueError):
@@ -75,9 +85,25 @@ class ClosedPipeError(Error, BrokenPipeError):
     code = "closed pipe"
 
 
+class Warning(UserWarning):
+    """What a run finds worth a warning: its result is as it should be, but perhaps not as wanted."""
+
+
 _CLASSES = {kind.code: kind for kind in Error.__subclasses__()}
 
 
-def make_error(code: str, message: str) -> Error:
-    """The exception for a code of the library. The extension module calls it."""
-    return _CLASSES[code](message)
+def make_error(
+    code: str,
+    message: str,
+    file: str = "",
+    unit: str = "",
+    number: int = 0,
+    system_error: int = 0,
+) -> Error:
+    """The exception for an error of the library. The extension module calls it."""
+    error = _CLASSES[code](message)
+    error.file = file or None
+    error.place = (unit, number) if unit else None
+    if isinstance(error, OSError) and system_error:
+        error.errno, error.filename = system_error, file or None
+    return error

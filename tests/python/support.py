@@ -59,3 +59,31 @@ def hash_by_command(points):
         )
         with open(f"{folder}/run.json", encoding="utf-8") as figures:
             return json.load(figures)["canonical_hash"]
+
+
+def command(*arguments):
+    """Runs the command in the current folder, and returns what it prints."""
+    return subprocess.run(
+        [COMMAND, *map(str, arguments)], check=True, capture_output=True, text=True
+    ).stdout
+
+
+def bytes_of(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+class InFolder(unittest.TestCase):
+    """Tests in an empty folder of their own, which has a folder `tmp` for scratch files."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+        os.mkdir("tmp")
+
+    def assert_nothing_is_left(self, *names):
+        """There are these files, and no scratch file."""
+        self.assertEqual(os.listdir("tmp"), [])
+        self.assertEqual(sorted(os.listdir(".")), sorted(["tmp", *names]))

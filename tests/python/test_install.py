@@ -27,7 +27,14 @@ class Install(unittest.TestCase):
                 sorted(n for n in os.listdir(spillway.__path__[0]) if n != "__pycache__"),
             )
             moved = package.parent.rename(f"{folder}/packages")
-            program = f"import spillway; print(spillway.Delaunay({points.tolist()}).hash)"
+            program = (
+                "import os, numpy as np, spillway\n"
+                f"points = np.array({points.tolist()})\n"
+                "print(spillway.Delaunay(points).hash)\n"
+                "heights = np.column_stack([points, points.sum(axis=1)])\n"
+                "if os.path.exists(f'{spillway.__path__[0]}/spillway_gdal.so'):\n"
+                "    spillway.dem(heights, 'heights.tif', resolution=0.1)\n"
+            )
             printed = subprocess.run(
                 [sys.executable, "-c", program],
                 env={**os.environ, "PYTHONPATH": str(moved)},

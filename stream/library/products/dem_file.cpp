@@ -18,6 +18,7 @@
 #include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
+#include "stream/library/products/pixels_in_memory.h"
 #include "stream/plan/memory_plan.h"
 #include "stream/sinks/dem_shares.h"
 
@@ -115,10 +116,8 @@ RasterOptions file_options(const std::string& path, const spillway::DemOptions& 
 
 }  // namespace
 
-DemFile::DemFile(const std::string& path, const spillway::DemOptions& options,
-                 const Context& context)
-    : OwnSink(context), path_(path), options_(options), scratch_(context.state().scratch(context)) {
-  check_path(path_);
+DemFile::DemFile(const spillway::DemOptions& options, const Context& context)
+    : OwnSink(context), options_(options), scratch_(context.state().scratch(context)) {
   check_products(options_.products);
   check_light_and_file(options_);
   check_z_factor(options_.z_factor);
@@ -128,12 +127,24 @@ DemFile::DemFile(const std::string& path, const spillway::DemOptions& options,
                         {.enough = kLeastMemory, .remedy = Remedy::kMemory});
   }
   if (options_.like.empty()) dem_options_.grid = grid_request(options_);
-  if (is_first_process(context)) check_can_create(disk(), path_);
   dem_options_.products = options_.products;
   dem_options_.light = {options_.azimuth, options_.altitude};
   dem_options_.nodata = options_.nodata;
   dem_options_.memory = own_memory(context.memory());
   dem_options_.threads = feeding_threads(context.threads());
+}
+
+DemFile::DemFile(const std::string& path, const spillway::DemOptions& options,
+                 const Context& context)
+    : DemFile(options, context) {
+  path_ = path;
+  check_path(path_);
+  if (is_first_process(context)) check_can_create(disk(), path_);
+}
+
+DemFile::DemFile(DemPixels& pixels, const spillway::DemOptions& options, const Context& context)
+    : DemFile(options, context) {
+  pixels_ = &pixels;
 }
 
 std::uint64_t DemFile::own_memory(std::uint64_t limit) const { return limit / kPixelShare; }
@@ -146,7 +157,7 @@ unsigned DemFile::feeding_threads(unsigned threads) const {
 bool DemFile::wants_extent() const { return !dem_options_.grid.bounds && options_.like.empty(); }
 
 void DemFile::ask_gdal() {
-  gdal().check_raster_driver(file_options(path_, options_, {}));
+  if (pixels_ == nullptr) gdal().check_raster_driver(file_options(path_, options_, {}));
   if (options_.like.empty()) return;
   like_ = gdal().read_raster_grid(options_.like);
   dem_options_.grid.given = like_.pixels;
@@ -290,15 +301,22 @@ void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
   RasterOptions raster = file_options(path_, options_, dem.raster_options());
   raster.grid.crs = crs_;
   watch.begin("write", "pixels");
-  RasterFile file(std::move(raster));
   const std::uint64_t pixels = std::uint64_t{grid.columns} * grid.rows;
   const auto written = [&](std::uint64_t done) {
     watch.tell(done, static_cast<double>(done) / static_cast<double>(pixels));
   };
-  with_threads(dem_options_.threads,
-               [&] { write_with_others(dem, others, file.raster(), written); });
-  report.output_format = kGeoTiff.name;
-  report.output_bytes = file.finish();
+  const auto write_to = [&](Raster& to) {
+    with_threads(dem_options_.threads, [&] { write_with_others(dem, others, to, written); });
+  };
+  if (pixels_ != nullptr) {
+    PixelsInMemory to(raster, *pixels_);
+    write_to(to);
+  } else {
+    RasterFile file(std::move(raster));
+    write_to(file.raster());
+    report.output_format = kGeoTiff.name;
+    report.output_bytes = file.finish();
+  }
   report.write_seconds = watch.end(pixels);
   report.left_out += dem.left_out();
   report.threads = dem_options_.threads;
@@ -326,6 +344,11 @@ const std::vector<std::string>& dem_product_names() {
 std::unique_ptr<DemSink> create_dem(const std::string& path, const DemOptions& options,
                                     const Context& context) {
   return std::make_unique<detail::DemFile>(path, options, context);
+}
+
+std::unique_ptr<DemSink> create_dem(DemPixels& pixels, const DemOptions& options,
+                                    const Context& context) {
+  return std::make_unique<detail::DemFile>(pixels, options, context);
 }
 
 }  // namespace spillway

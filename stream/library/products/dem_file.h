@@ -15,10 +15,12 @@
 
 namespace spillway::detail {
 
-/// A GeoTIFF of a terrain in the making.
+/// A raster of a terrain in the making, which becomes a GeoTIFF, or stays in memory.
 class DemFile final : public OwnSink<DemSink> {
  public:
   DemFile(const std::string& path, const spillway::DemOptions& options, const Context& context);
+  /// `pixels` must outlive it.
+  DemFile(DemPixels& pixels, const spillway::DemOptions& options, const Context& context);
 
   [[nodiscard]] const DemReport& report() const override { return report_; }
 
@@ -36,6 +38,9 @@ class DemFile final : public OwnSink<DemSink> {
   void finalize(RunWatch& watch, Report& report, OtherShares& others) override;
 
  private:
+  /// Of options that all rasters have.
+  DemFile(const spillway::DemOptions& options, const Context& context);
+
   BlockSink& open(const MeshStart& start) override;
 
   /// Once all is found that is wrong without it: the driver there is, and the raster to be like.
@@ -46,7 +51,8 @@ class DemFile final : public OwnSink<DemSink> {
   [[nodiscard]] PixelGrid grid_of(const Box<2>& extent) const;
   void check_size(const Box<2>& extent, std::uint64_t vertices) const;
 
-  std::string path_;
+  std::string path_;             ///< empty: pixels_ takes them
+  DemPixels* pixels_ = nullptr;  ///< or none
   spillway::DemOptions options_;
   RasterGrid like_;
   DemOptions dem_options_;

@@ -115,6 +115,37 @@ class Products : public testing::Test {
   const Context context_{{.memory = "128M", .threads = 2}};
 };
 
+TEST_F(Products, PixelsInMemoryAreThoseOfAPlaneAndNeedNoFile) {
+  const auto points = ramp();
+  const auto source = points_in_memory(points);
+  DemPixels pixels;
+  const auto dem = create_dem(pixels, {.resolution = 0.04, .bounds = {{0, 0, 22, 10}}}, context_);
+  const Report report = triangulate(*source, *dem, {}, context_);
+  EXPECT_EQ(report.output_bytes, 0U);
+  EXPECT_TRUE(fs::is_empty(folder_));
+  ASSERT_EQ(dem->report().columns, 550U);
+  ASSERT_EQ(dem->report().rows, 250U);
+  ASSERT_EQ(pixels.values.size(), 550U * 250U);
+  for (std::size_t i = 0; i < pixels.values.size(); ++i) {
+    const std::size_t column = i % 550;
+    ASSERT_NEAR(pixels.values[i], column < 500 ? (column + 0.5) * 0.02 : -9999, 1e-5) << i;
+  }
+}
+
+TEST_F(Products, PixelsInMemoryComeBandByBand) {
+  const auto points = ramp();
+  const auto source = points_in_memory(points);
+  DemPixels pixels;
+  const auto dem = create_dem(
+      pixels, {.products = {DemProduct::kAspect, DemProduct::kHeight}, .resolution = 1}, context_);
+  triangulate(*source, *dem, {}, context_);
+  ASSERT_EQ(pixels.values.size(), 2U * 20 * 10);
+  EXPECT_EQ(pixels.values.front(), 270);
+  EXPECT_EQ(pixels.values[200], 0.25F);
+  EXPECT_EQ(pixels.values.back(), 9.75F);
+  EXPECT_EQ(pixels.crs, "");
+}
+
 TEST_F(Products, APictureIsTheSameOfPointsOfAMeshAndByAProgram) {
   std::unique_ptr<PictureSink> last;
   const Report report = expect_one_file<PictureSink>(

@@ -1,0 +1,57 @@
+// Meshes block by block, as arrays.
+
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "python/bindings.h"
+#include "python/block_stream.h"
+#include "python/figures.h"
+
+namespace spillway::python {
+namespace {
+
+/// Numbers of vertices as rows: signed, since NumPy makes floating-point numbers of sums of
+/// unsigned and signed ones.
+py::array rows_of_numbers(std::vector<std::uint64_t> numbers, int columns) {
+  auto kept = std::make_unique<std::vector<std::uint64_t>>(std::move(numbers));
+  const auto* const first = reinterpret_cast<const std::int64_t*>(kept->data());
+  const auto rows = static_cast<py::ssize_t>(kept->size()) / columns;
+  return py::array_t<std::int64_t>({rows, static_cast<py::ssize_t>(columns)}, first,
+                                   keep(std::move(kept)));
+}
+
+py::array row_of_numbers(std::vector<std::uint64_t> numbers) {
+  return rows_of_numbers(std::move(numbers), 1).reshape({-1});
+}
+
+/// A block as (first_vertex, vertices, simplices, finalized, input_index), or None at the end.
+py::object next_block(BlockStream& stream) {
+  std::optional<MeshBlock> block = stream.next();
+  if (!block) return py::none();
+  const MeshHeader& header = stream.header();
+  py::object index = py::none();
+  if (header.has_input_index) index = row_of_numbers(std::move(block->input_index));
+  return py::make_tuple(block->first_vertex, array_of(std::move(block->vertices)),
+                        rows_of_numbers(std::move(block->corners), header.dimension + 1),
+                        row_of_numbers(std::move(block->finalized)), index);
+}
+
+}  // namespace
+
+void bind_blocks(py::module_& module) {
+  py::class_<BlockStream, std::unique_ptr<BlockStream, StreamEnd>>(module, "BlockStream")
+      .def(py::init<std::shared_ptr<Run>, std::shared_ptr<MeshOrigin>>(), py::arg("run"),
+           py::arg("origin"))
+      .def("next", next_block)
+      .def("close", &BlockStream::close)
+      .def_property_readonly("report", [](const BlockStream& stream) -> py::object {
+        if (!stream.report()) return py::none();
+        return figures_of(*stream.report(), stream.run());
+      });
+}
+
+}  // namespace spillway::python

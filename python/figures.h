@@ -1,0 +1,25 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <spillway/extent.h>
+#include <spillway/report.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace spillway::python {
+
+class Run;
+
+/// The figures of a run under the names that `--stats` has.
+pybind11::dict figures_of(const Report& report, const Run& run);
+pybind11::dict figures_of(const PointCounts& counts);
+
+/// (lowest, highest corner), or None.
+pybind11::object extent_of(const std::optional<Extent>& extent);
+
+/// 16 hexadecimal digits.
+std::string hash_text(std::uint64_t hash);
+
+}  // namespace spillway::python

@@ -1,0 +1,58 @@
+#include "python/mesh_origin.h"
+
+#include <spillway/convert.h>
+#include <spillway/error.h>
+
+#include <memory>
+#include <utility>
+
+#include "python/bindings.h"
+
+namespace spillway::python {
+namespace {
+
+void refuse_choice_of_heights(const TriangulateOptions& how, const PointsHeader& points) {
+  if (how.heights == Heights::kFirst || points.coordinates == 3) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              "duplicates has no effect on points without z: leave it out");
+}
+
+}  // namespace
+
+MeshOrigin::MeshOrigin(Inputs inputs, PointOptions options, TriangulateOptions how)
+    : from_(Points{std::move(inputs), std::move(options), std::move(how)}) {}
+
+MeshOrigin::MeshOrigin(std::string path, MeshOptions options)
+    : from_(File{std::move(path), std::move(options)}) {}
+
+Report MeshOrigin::send(MeshSink& sink, Run& run) const {
+  const Context& context = run.context();
+  if (const auto* const file = std::get_if<File>(&from_)) {
+    run.expect(kPhasesOfMesh);
+    const auto mesh = open_mesh(file->path, file->options, context);
+    return convert(*mesh, sink, context);
+  }
+  const auto& [inputs, options, how] = std::get<Points>(from_);
+  run.expect(kPhasesOfPoints);
+  const auto points = open_inputs(inputs, options, context);
+  refuse_choice_of_heights(how, points->header());
+  return triangulate(*points, sink, how, context);
+}
+
+void bind_mesh_origin(py::module_& module) {
+  py::class_<MeshOrigin, std::shared_ptr<MeshOrigin>>(module, "MeshOrigin")
+      .def(py::init<Inputs, PointOptions, TriangulateOptions>(), py::arg("inputs"),
+           py::arg("options"), py::arg("how"))
+      .def(py::init<std::string, MeshOptions>(), py::arg("path"), py::arg("options"));
+  module.def(
+      "is_mesh",
+      [](Run& run, const Inputs& inputs, const std::string& mesh_format,
+         const std::string& point_format) {
+        bool found = false;
+        run.look([&] { found = is_mesh(inputs, mesh_format, point_format, run.context()); });
+        return found;
+      },
+      py::arg("run"), py::arg("inputs"), py::arg("mesh_format"), py::arg("point_format"));
+}
+
+}  // namespace spillway::python

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <spillway/totals.h>
+#include <spillway/mesh.h>
+#include <spillway/triangulate.h>
+
+#include <string>
+#include <variant>
+
+#include "python/inputs.h"
+#include "python/run.h"
+
+namespace spillway::python {
+
+/// What a mesh comes from: points, which are triangulated on the way, or a file of a mesh.
+class MeshOrigin {
+ public:
+  MeshOrigin(Inputs inputs, PointOptions options, TriangulateOptions how);
+  MeshOrigin(std::string path, MeshOptions options);
+
+  /// Gives the mesh to a sink. To be called without the interpreter's lock.
+  Report send(MeshSink& sink, Run& run) const;
+
+ private:
+  struct Points {
+    Inputs inputs;
+    PointOptions options;
+    TriangulateOptions how;
+  };
+  struct File {
+    std::string path;
+    MeshOptions options;
+  };
+  std::variant<Points, File> from_;
+};
+
+}  // namespace spillway::python

@@ -1,0 +1,197 @@
+// The options of the library as objects whose attributes Python sets. Choices are words there.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <spillway/check.h>
+#include <spillway/contours.h>
+#include <spillway/dem.h>
+#include <spillway/error.h>
+#include <spillway/generate.h>
+#include <spillway/picture.h>
+#include <spillway/points.h>
+#include <spillway/triangulate.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "python/bindings.h"
+
+namespace spillway::python {
+namespace {
+
+namespace py = pybind11;
+
+using Words = std::vector<std::string>;
+
+/// The choice of that name; `words` has all names in the order of the enumeration.
+template <class Choice>
+Choice choice_of(const std::string& word, const Words& words, const std::string& option) {
+  const auto found = std::ranges::find(words, word);
+  if (found == words.end()) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("{} is \"{}\"; give one of {}", option, word, fmt::join(words, ", ")));
+  }
+  return static_cast<Choice>(found - words.begin());
+}
+
+/// Binds a member that is a choice as a word, which can be set.
+template <class Options, class Choice>
+void bind_choice(py::class_<Options>& bound, const char* name, Choice Options::*member,
+                 const Words& words) {
+  const auto get = [=](const Options& options) {
+    return words.at(static_cast<std::size_t>(options.*member));
+  };
+  const auto set = [=](Options& options, const std::string& word) {
+    options.*member = choice_of<Choice>(word, words, name);
+  };
+  bound.def_property(name, get, set);
+}
+
+void bind_point_options(py::module_& module) {
+  py::class_<PointOptions>(module, "PointOptions")
+      .def(py::init())
+      .def_readwrite("dimension", &PointOptions::dimension)
+      .def_readwrite("format", &PointOptions::format)
+      .def_readwrite("columns", &PointOptions::columns)
+      .def_readwrite("skip_invalid", &PointOptions::skip_invalid)
+      .def_readwrite("keep_withheld", &PointOptions::keep_withheld)
+      .def_readwrite("every", &PointOptions::every)
+      .def_readwrite("classes", &PointOptions::classes)
+      .def_readwrite("other_classes", &PointOptions::other_classes)
+      .def_readwrite("resolution", &PointOptions::resolution)
+      .def_readwrite("crs", &PointOptions::crs)
+      .def_readwrite("foreign_crs", &PointOptions::foreign_crs)
+      .def_readwrite("attributes", &PointOptions::attributes)
+      .def("set_returns",
+           [](PointOptions& options, bool first, bool last, bool single, std::vector<int> numbers) {
+             options.returns = Returns{first, last, single, std::move(numbers)};
+           })
+      .def("set_bounds",
+           [](PointOptions& options, const std::array<double, 3>& low,
+              const std::array<double, 3>& high) {
+             options.bounds = Extent{low, high};
+           })
+      .def("set_thin", [](PointOptions& options, double cell, const std::string& choice) {
+        options.thin = Thin{
+            cell, choice_of<ThinChoice>(choice, {"first", "lowest", "highest", "center"}, "thin")};
+      });
+  py::class_<MeshOptions>(module, "MeshOptions")
+      .def(py::init())
+      .def_readwrite("format", &MeshOptions::format)
+      .def_readwrite("crs", &MeshOptions::crs)
+      .def_readwrite("foreign_crs", &MeshOptions::foreign_crs);
+  py::class_<PointFileOptions>(module, "PointFileOptions")
+      .def(py::init())
+      .def_readwrite("format", &PointFileOptions::format)
+      .def_readwrite("las_version", &PointFileOptions::las_version)
+      .def_readwrite("scale", &PointFileOptions::scale)
+      .def_readwrite("offset", &PointFileOptions::offset)
+      .def_readwrite("exact", &PointFileOptions::exact)
+      .def("set_sorted", [](PointFileOptions& options, int dimension, std::uint64_t cell_points) {
+        options.sorted = SortOptions{dimension, cell_points};
+      });
+}
+
+void bind_triangulate_options(py::module_& module) {
+  py::class_<TriangulateOptions> bound(module, "TriangulateOptions");
+  bound.def(py::init())
+      .def_readwrite("dimension", &TriangulateOptions::dimension)
+      .def_readwrite("max_edge", &TriangulateOptions::max_edge)
+      .def_readwrite("input_index", &TriangulateOptions::input_index)
+      .def_readwrite("tile_points", &TriangulateOptions::tile_points)
+      .def_readwrite("leaf_points", &TriangulateOptions::leaf_points)
+      .def_readwrite("children", &TriangulateOptions::children)
+      .def_readwrite("trust_headers", &TriangulateOptions::trust_headers);
+  bind_choice(bound, "duplicates", &TriangulateOptions::heights,
+              {"first", "lowest", "highest", "mean"});
+  bind_choice(bound, "division", &TriangulateOptions::division,
+              {"least-border", "longest", "cycling", "constant"});
+  bind_choice(bound, "kernel", &TriangulateOptions::kernel, {"spillway", "cgal"});
+}
+
+void bind_product_options(py::module_& module) {
+  py::class_<DemOptions>(module, "DemOptions")
+      .def(py::init())
+      .def_property(
+          "products",
+          [](const DemOptions& options) {
+            Words words;
+            for (const DemProduct product : options.products) {
+              words.push_back(dem_product_names().at(static_cast<std::size_t>(product)));
+            }
+            return words;
+          },
+          [](DemOptions& options, const Words& words) {
+            options.products.clear();
+            for (const std::string& word : words) {
+              options.products.push_back(
+                  choice_of<DemProduct>(word, dem_product_names(), "product"));
+            }
+          })
+      .def_readwrite("resolution", &DemOptions::resolution)
+      .def_readwrite("bounds", &DemOptions::bounds)
+      .def_readwrite("align", &DemOptions::align)
+      .def_readwrite("many_pixels", &DemOptions::many_pixels)
+      .def_readwrite("like", &DemOptions::like)
+      .def_readwrite("foreign_crs", &DemOptions::foreign_crs)
+      .def_readwrite("azimuth", &DemOptions::azimuth)
+      .def_readwrite("altitude", &DemOptions::altitude)
+      .def_readwrite("z_factor", &DemOptions::z_factor)
+      .def_readwrite("max_edge", &DemOptions::max_edge)
+      .def_readwrite("nodata", &DemOptions::nodata)
+      .def_readwrite("compression", &DemOptions::compression)
+      .def_readwrite("cloud_optimized", &DemOptions::cloud_optimized);
+  py::class_<ContourOptions>(module, "ContourOptions")
+      .def(py::init())
+      .def_readwrite("interval", &ContourOptions::interval)
+      .def_readwrite("base", &ContourOptions::base)
+      .def_readwrite("levels", &ContourOptions::levels)
+      .def_readwrite("foreign_crs", &ContourOptions::foreign_crs)
+      .def_readwrite("max_edge", &ContourOptions::max_edge);
+  py::class_<PictureOptions>(module, "PictureOptions")
+      .def(py::init())
+      .def_readwrite("size", &PictureOptions::size)
+      .def_readwrite("zoom", &PictureOptions::zoom)
+      .def_readwrite("wireframe", &PictureOptions::wireframe)
+      .def_readwrite("exaggeration", &PictureOptions::exaggeration)
+      .def_readwrite("view", &PictureOptions::view)
+      .def_readwrite("transparent", &PictureOptions::transparent)
+      .def_readwrite("max_edge", &PictureOptions::max_edge)
+      .def("set_slice", [](PictureOptions& options, const std::string& axis, double value) {
+        options.slice = Slice{choice_of<int>(axis, {"x", "y", "z"}, "slice"), value};
+      });
+}
+
+void bind_generate_options(py::module_& module) {
+  py::class_<GenerateOptions>(module, "GenerateOptions")
+      .def(py::init())
+      .def_readwrite("family", &GenerateOptions::family)
+      .def_readwrite("count", &GenerateOptions::count)
+      .def_readwrite("dimension", &GenerateOptions::dimension)
+      .def_readwrite("seed", &GenerateOptions::seed);
+  py::class_<GridOptions>(module, "GridOptions")
+      .def(py::init())
+      .def_readwrite("columns", &GridOptions::columns)
+      .def_readwrite("rows", &GridOptions::rows)
+      .def_readwrite("overlap", &GridOptions::overlap)
+      .def_readwrite("format", &GridOptions::format)
+      .def_readwrite("las_version", &GridOptions::las_version);
+}
+
+}  // namespace
+
+void bind_options(py::module_& module) {
+  bind_point_options(module);
+  bind_triangulate_options(module);
+  bind_product_options(module);
+  bind_generate_options(module);
+}
+
+}  // namespace spillway::python

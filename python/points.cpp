@@ -1,0 +1,123 @@
+// Points in and out: other formats, and points to try things with.
+
+#include <pybind11/stl.h>
+#include <spillway/convert.h>
+#include <spillway/generate.h>
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "python/bindings.h"
+#include "python/figures.h"
+#include "python/inputs.h"
+#include "python/run.h"
+
+namespace spillway::python {
+namespace {
+
+constexpr PhaseShare kPhasesOfConversion[] = {{"convert", 0, 1}};
+constexpr PhaseShare kPhasesOfSorting[] = {
+    {"read", 0, 0.5}, {"divide", 0.5, 0.55}, {"write", 0.55, 1}};
+constexpr PhaseShare kPhasesOfGrid[] = {{"measure", 0, 0.4}, {"generate", 0.4, 1}};
+constexpr PhaseShare kPhasesOfGeneration[] = {{"generate", 0, 1}};
+
+py::dict figures_of(const PointConversion& done, const Run& run) {
+  py::dict figures;
+  figures["written"] = done.written;
+  figures["filters"] = python::figures_of(done.points);
+  figures["rounded"] = done.rounded;
+  figures["scale"] = done.rounded ? py::object(py::cast(done.scale)) : py::none();
+  figures["offset"] = done.rounded ? py::object(py::cast(done.offset)) : py::none();
+  figures["farthest"] = done.farthest;
+  figures["adds_heights"] = done.adds_heights;
+  figures["lost"] = done.lost;
+  figures["cells"] = done.cells;
+  figures["spilled_points"] = done.spilled_points;
+  figures["spilled_bytes"] = done.spilled_bytes;
+  figures["seconds"] = run.seconds();
+  return figures;
+}
+
+py::dict convert_points(Run& run, const Inputs& inputs, const PointOptions& options,
+                        const std::string& output, const PointFileOptions& how) {
+  PointConversion done;
+  run.expect(how.sorted ? Phases(kPhasesOfSorting) : Phases(kPhasesOfConversion));
+  run.work([&] {
+    const auto file = create_points(output, how, run.context());
+    const auto points = open_inputs(inputs, options, run.context());
+    done = convert(*points, *file, run.context());
+  });
+  return figures_of(done, run);
+}
+
+py::dict generate(Run& run, const GenerateOptions& options, const std::string& output,
+                  const PointFileOptions& how) {
+  PointConversion done;
+  run.expect(kPhasesOfGeneration);
+  run.work([&] {
+    const auto points = generate_points(options);
+    const auto file = create_points(output, how, run.context());
+    done = convert(*points, *file, run.context());
+  });
+  return py::dict(py::arg("points") = done.written, py::arg("files") = 1,
+                  py::arg("seconds") = run.seconds());
+}
+
+py::dict generate_survey(Run& run, const GenerateOptions& options, const std::string& output,
+                         const GridOptions& grid) {
+  GridReport done;
+  run.expect(kPhasesOfGrid);
+  run.work([&] { done = generate_grid(options, output, grid, run.context()); });
+  return py::dict(py::arg("points") = done.points, py::arg("files") = done.files,
+                  py::arg("seconds") = run.seconds());
+}
+
+/// Keeps points as rows of `columns` coordinates.
+class Rows final : public PointSink {
+ public:
+  void begin(const PointsHeader& header) override { columns_ = header.coordinates; }
+
+  void write(std::span<const Point<3>> points) override {
+    for (const Point<3>& point : points) {
+      numbers_.insert(numbers_.end(), point.begin(), point.begin() + columns_);
+    }
+  }
+
+  /// With the interpreter's lock; what is kept is given away.
+  py::array_t<double> take() {
+    const auto rows = static_cast<py::ssize_t>(numbers_.size() / columns_);
+    return array_of(std::move(numbers_)).reshape({rows, static_cast<py::ssize_t>(columns_)});
+  }
+
+ private:
+  int columns_ = 3;
+  std::vector<double> numbers_;
+};
+
+py::array_t<double> generate_in_memory(Run& run, const GenerateOptions& options) {
+  Rows rows;
+  run.expect(kPhasesOfGeneration);
+  run.work([&] {
+    const auto points = generate_points(options);
+    convert(*points, rows, run.context());
+  });
+  return rows.take();
+}
+
+}  // namespace
+
+void bind_points(py::module_& module) {
+  module.def("convert_points", convert_points, py::arg("run"), py::arg("inputs"),
+             py::arg("options"), py::arg("output"), py::arg("how"));
+  module.def("generate", generate, py::arg("run"), py::arg("options"), py::arg("output"),
+             py::arg("how"));
+  module.def("generate_survey", generate_survey, py::arg("run"), py::arg("options"),
+             py::arg("output"), py::arg("grid"));
+  module.def("generate_in_memory", generate_in_memory, py::arg("run"), py::arg("options"));
+}
+
+}  // namespace spillway::python

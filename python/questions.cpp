@@ -1,0 +1,137 @@
+// What files hold, and whether a mesh is a Delaunay triangulation.
+
+#include <pybind11/stl.h>
+#include <spillway/check.h>
+#include <spillway/info.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "python/bindings.h"
+#include "python/figures.h"
+#include "python/inputs.h"
+#include "python/run.h"
+#include "python/text.h"
+
+namespace spillway::python {
+namespace {
+
+constexpr PhaseShare kPhasesOfInfo[] = {{"read", 0, 1}};
+constexpr PhaseShare kPhasesOfCheck[] = {{"read mesh", 0, 0.3},
+                                         {"check", 0.3, 0.7},
+                                         {"read points", 0.7, 0.85},
+                                         {"divide", 0.85, 0.9},
+                                         {"compare", 0.9, 1}};
+
+py::object text_or_none(const std::string& text) {
+  return text.empty() ? py::object(py::none()) : py::object(text_of(text));
+}
+
+py::list texts_of(const std::vector<std::string>& lines) {
+  py::list texts;
+  for (const std::string& line : lines) texts.append(text_of(line));
+  return texts;
+}
+
+void add_lattice(const std::optional<LatticeInfo>& lattice, py::dict& figures) {
+  figures["scale"] = lattice ? py::object(py::cast(lattice->scale)) : py::none();
+  figures["offset"] = lattice ? py::object(py::cast(lattice->offset)) : py::none();
+}
+
+py::dict points_info(Run& run, const std::string& path, const PointOptions& options) {
+  PointsInfo info;
+  run.expect(kPhasesOfInfo);
+  run.work([&] { info = describe_points(path, options, run.context()); });
+  py::dict figures;
+  figures["format"] = info.format;
+  figures["version"] = text_or_none(info.version);
+  figures["point_format"] =
+      info.point_format < 0 ? py::object(py::none()) : py::object(py::int_(info.point_format));
+  figures["coordinates"] = info.coordinates;
+  figures["points"] = info.counts.kept();
+  figures["filters"] = figures_of(info.counts);
+  figures["extent"] = extent_of(info.extent);
+  figures["header_box"] = extent_of(info.header_box);
+  figures["points_outside"] =
+      info.header_box ? py::object(py::int_(info.points_outside)) : py::object(py::none());
+  add_lattice(info.lattice, figures);
+  figures["crs"] = text_or_none(info.crs);
+  figures["crs_note"] = text_or_none(info.crs_note);
+  figures["software"] = text_or_none(info.software);
+  figures["cells"] = info.cells;
+  return figures;
+}
+
+py::dict mesh_info(Run& run, const std::string& path, const MeshOptions& options) {
+  MeshInfo info;
+  run.expect(kPhasesOfInfo);
+  run.work([&] { info = describe_mesh(path, options, run.context()); });
+  const MeshTotals& totals = info.totals;
+  py::dict figures;
+  figures["format"] = info.format;
+  figures["dimension"] = info.dimension;
+  figures["vertices"] = totals.vertices;
+  figures["simplices"] = totals.simplices;
+  figures["hull_facets"] = totals.hull_facets;
+  figures["canonical_hash"] = hash_text(totals.canonical_hash);
+  figures["points"] = info.tells_totals ? py::object(py::int_(totals.points)) : py::none();
+  figures["duplicates"] = info.tells_totals ? py::object(py::int_(totals.duplicates)) : py::none();
+  figures["extent"] = extent_of(info.extent);
+  add_lattice(info.lattice, figures);
+  figures["input_index"] = info.has_input_index;
+  figures["crs"] = text_or_none(info.crs);
+  figures["peak_live_vertices"] = info.peak_live_vertices;
+  return figures;
+}
+
+py::dict figures_of(const CheckReport& report, int dimension) {
+  py::dict figures;
+  figures["dimension"] = dimension;
+  figures["vertices"] = report.vertices;
+  figures["simplices"] = report.simplices;
+  figures["hull_facets"] = report.hull_facets;
+  figures["canonical_hash"] = hash_text(report.canonical_hash);
+  figures["on_lattice"] = report.on_lattice;
+  figures["properties"] = texts_of(report.proved);
+  figures["faults"] = texts_of(report.faults);
+  figures["fault_count"] = report.fault_count;
+  figures["off_lattice"] = report.off_lattice;
+  figures["other_ties"] = report.other_ties;
+  figures["peak_live_vertices"] = report.peak_live_vertices;
+  figures["peak_open_facets"] = report.peak_open_facets;
+  figures["filters"] = python::figures_of(report.points);
+  return figures;
+}
+
+py::dict check_mesh(Run& run, const std::string& path, const MeshOptions& options,
+                    bool any_delaunay, const std::optional<Inputs>& inputs,
+                    const PointOptions& point_options) {
+  CheckReport report;
+  int dimension = 2;
+  run.expect(kPhasesOfCheck);
+  run.work([&] {
+    const auto mesh = open_mesh(path, options, run.context());
+    dimension = mesh->header().dimension;
+    std::unique_ptr<PointSource> points;
+    if (inputs) {
+      PointOptions how = point_options;
+      how.dimension = dimension;
+      points = open_inputs(*inputs, how, run.context());
+    }
+    report = check(*mesh, {.any_delaunay = any_delaunay}, run.context(), points.get());
+  });
+  return figures_of(report, dimension);
+}
+
+}  // namespace
+
+void bind_questions(py::module_& module) {
+  module.def("points_info", points_info, py::arg("run"), py::arg("path"), py::arg("options"));
+  module.def("mesh_info", mesh_info, py::arg("run"), py::arg("path"), py::arg("options"));
+  module.def("check", check_mesh, py::arg("run"), py::arg("path"), py::arg("options"),
+             py::arg("any_delaunay"), py::arg("points"), py::arg("point_options"));
+}
+
+}  // namespace spillway::python

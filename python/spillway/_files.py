@@ -1,0 +1,373 @@
+"""From files and arrays to files: `triangulate`, `convert`, `generate`, `info` and `check`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Sequence, overload
+
+from . import _spillway
+from ._arrays import Floats
+from ._inputs import (
+    as_dimension,
+    as_inputs,
+    as_path,
+    check_array,
+    check_mesh_options,
+    is_mesh,
+    points_origin,
+)
+from ._options import (
+    CheckOptions,
+    ConvertOptions,
+    InfoOptions,
+    PathLike,
+    RunOptions,
+    TriangulateOptions,
+    make_run,
+    mesh_options,
+    names_for,
+    point_options,
+    put,
+    put_all,
+    refuse,
+    takes,
+)
+from ._reports import CheckReport, ConvertReport, GenerateReport, MeshInfo, PointsInfo, RunReport
+from .errors import InvalidArgumentError
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+
+@takes(TriangulateOptions)
+def triangulate(
+    inputs: Any,
+    output: PathLike,
+    *,
+    dim: int = 2,
+    id: bool = False,
+    output_format: str | None = None,
+    **options: Unpack[TriangulateOptions],
+) -> RunReport:
+    """Triangulate points of any number, through bounded memory, to a file.
+
+    As ``spillway triangulate``. The file gets its name when it is complete; after an error or
+    Ctrl-C nothing is left.
+
+    Parameters
+    ----------
+    inputs : path, sequence of paths, or array_like of shape (n, 2) or (n, 3)
+        Point files, folders (their point files), patterns (``"tiles/*.laz"``), ``"@list"`` for a
+        file that lists such, ``"-"`` for standard input; or coordinates, which must not change
+        meanwhile.
+    output : path
+        The mesh, in the format of its extension.
+    dim : {2, 3}, optional
+        2: triangles over x and y, z is carried along, also that of an array. 3: tetrahedra.
+    id : bool, optional
+        Write each vertex's index in the input.
+    output_format : str, optional
+        The format, where the name does not tell, as ``"ply"`` or ``"spm"``.
+    {options}
+
+    Returns
+    -------
+    RunReport
+        Counts, the canonical hash and what the run took.
+
+    Raises
+    ------
+    spillway.Error
+        With the attribute `code`: ``"bad input"`` for a file that is not what it should be,
+        ``"input or output"`` for what the system refuses, ``"invalid argument"``,
+        ``"degenerate input"``, ``"out of budget"`` for a limit that does not suffice.
+    KeyboardInterrupt
+        On Ctrl-C, as soon as the parts of the work that have been begun are done.
+
+    Warns
+    -----
+    spillway.Warning
+        Of what a run finds worth one. What explains how it goes is logged by the logger
+        ``"spillway"`` at the level INFO.
+    """
+    source = as_inputs(inputs)
+    origin = points_origin(source, as_dimension(dim, source), options, id)
+    path = as_path(output, "output")
+    run = make_run(options)
+    return RunReport(**_spillway.mesh(run, origin, path, output_format or ""))
+
+
+@takes(ConvertOptions)
+def convert(
+    inputs: Any,
+    output: PathLike,
+    *,
+    output_format: str | None = None,
+    mesh_format: str | None = None,
+    las_version: str | None = None,
+    scale: float | Sequence[float] | None = None,
+    offset: float | Sequence[float] | None = None,
+    sorted: bool = False,
+    cell_points: int | None = None,
+    dim: int | None = None,
+    **options: Unpack[ConvertOptions],
+) -> ConvertReport | RunReport:
+    """Write points or a mesh in another format.
+
+    As ``spillway convert``. Content and name tell whether the input is points or a mesh.
+
+    Parameters
+    ----------
+    inputs : path, sequence of paths, or array_like of shape (n, 2) or (n, 3)
+        Points, as `triangulate` takes them, or one file of a mesh.
+    output : path
+        In the format of its extension.
+    output_format : str, optional
+        The format of the output, where the name does not tell.
+    mesh_format : str, optional
+        The input is a mesh of this format, which neither first bytes nor name tell.
+    las_version : {"1.2", "1.4"}, optional
+        Of LAS. By default what the points need.
+    scale : float or sequence of 3 floats, optional
+        Round coordinates of points to multiples of this.
+    offset : float or sequence of 3 floats, optional
+        Where these multiples are counted from.
+    sorted : bool, optional
+        Write points cell by cell; spp only.
+    cell_points : int, optional
+        Most points of a cell.
+    dim : {2, 3}, optional
+        Cells divide the plane (by default), or space.
+    {options}
+
+    Returns
+    -------
+    ConvertReport or RunReport
+        Of points, or of a mesh.
+
+    Raises
+    ------
+    spillway.Error
+        As `triangulate`.
+    """
+    source = as_inputs(inputs)
+    path = as_path(output, "output")
+    cells = {"cell_points": cell_points, "dim": dim}
+    of_points = {"las_version": las_version, "scale": scale, "offset": offset, "sorted": sorted}
+    run = make_run(options)
+    if is_mesh(run, source, mesh_format, options):
+        check_mesh_options(options)
+        refuse({**of_points, **cells}, [*of_points, *cells], "on a mesh")
+        assert isinstance(source, list)
+        origin = _spillway.MeshOrigin(source[0], mesh_options(options, mesh_format))
+        return RunReport(**_spillway.mesh(run, origin, path, output_format or ""))
+    check_array(source, options)
+    how = _spillway.PointFileOptions()
+    put_all(how, {"format": output_format, "las_version": las_version})
+    for name, numbers in (("scale", scale), ("offset", offset)):
+        put(how, name, numbers, lambda target, value: setattr(target, name, _as_axes(value)))
+    if sorted:
+        how.set_sorted(as_dimension(2 if dim is None else dim, source), cell_points or 0)
+    else:
+        refuse(cells, cells, "without sorted=True")
+    which = point_options(options, 2)
+    which.attributes = True
+    return ConvertReport(**_spillway.convert_points(run, source, which, path, how))
+
+
+@overload
+def generate(
+    family: str,
+    count: int,
+    output: None = None,
+    *,
+    dim: int | None = None,
+    seed: int | None = None,
+    **options: Unpack[RunOptions],
+) -> Floats:
+    ...
+
+
+@overload
+def generate(
+    family: str,
+    count: int,
+    output: PathLike,
+    *,
+    dim: int | None = None,
+    seed: int | None = None,
+    grid: tuple[int, int] | None = None,
+    overlap: float | None = None,
+    output_format: str | None = None,
+    las_version: str | None = None,
+    **options: Unpack[RunOptions],
+) -> GenerateReport:
+    ...
+
+
+@takes(RunOptions)
+def generate(
+    family: str,
+    count: int,
+    output: PathLike | None = None,
+    *,
+    dim: int | None = None,
+    seed: int | None = None,
+    grid: tuple[int, int] | None = None,
+    overlap: float | None = None,
+    output_format: str | None = None,
+    las_version: str | None = None,
+    **options: Unpack[RunOptions],
+) -> Floats | GenerateReport:
+    """Make points to try things with, as an array or as files.
+
+    As ``spillway generate``. The same arguments give the same points on every machine.
+
+    Parameters
+    ----------
+    family : str
+        What they look like: ``"uniform"``, ``"terrain"``, ``"circle"``, ...
+    count : int
+        How many.
+    output : path, optional
+        A point file, in the format of its extension. By default an array is made.
+    dim : {2, 3}, optional
+        2 by default. Not for ``"terrain"``, which always has z.
+    seed : int, optional
+        Another seed, other points; 1 by default.
+    grid : (int, int), optional
+        Columns and rows of a survey: a file for each tile; `output` has a ``#`` for column and row.
+    overlap : float, optional
+        With a grid, by how much tiles overlap, in their sides: 0 to 0.4, 0.05 by default.
+    output_format : str, optional
+        The format, where the name does not tell.
+    las_version : {"1.2", "1.4"}, optional
+        Of LAS.
+    {options}
+
+    Returns
+    -------
+    ndarray of float64, shape (count, 2) or (count, 3), or GenerateReport
+        The points, or what was written.
+
+    Raises
+    ------
+    spillway.Error
+        As `triangulate`.
+    """
+    of_files = {"output_format": output_format, "las_version": las_version}
+    of_grid = {"grid": grid, "overlap": overlap}
+    if family == "terrain":
+        refuse({"dim": dim}, ["dim"], 'on "terrain", which always has z')
+    points = _spillway.GenerateOptions()
+    put_all(points, {"family": family, "count": count, "dimension": dim, "seed": seed})
+    run = make_run(options)
+    if output is None:
+        refuse({**of_files, **of_grid}, [*of_files, *of_grid], "without an output")
+        return _spillway.generate_in_memory(run, points)
+    path = as_path(output, "output")
+    if grid is None:
+        refuse(of_grid, ["overlap"], "without a grid")
+        how = _spillway.PointFileOptions()
+        how.exact = True
+        put_all(how, {"format": output_format, "las_version": las_version})
+        return GenerateReport(**_spillway.generate(run, points, path, how))
+    columns, rows = _as_grid(grid)
+    survey = _spillway.GridOptions()
+    put_all(survey, {"columns": columns, "rows": rows, "overlap": overlap})
+    put_all(survey, {"format": output_format, "las_version": las_version})
+    return GenerateReport(**_spillway.generate_survey(run, points, path, survey))
+
+
+@takes(InfoOptions)
+def info(file: PathLike, **options: Unpack[InfoOptions]) -> PointsInfo | MeshInfo:
+    """Tell what a file of points or of a mesh holds.
+
+    As ``spillway info``. All of it is read, so counts and extent are exact, whatever a header says.
+
+    Parameters
+    ----------
+    file : path
+        One file; its first bytes and its name tell whether it holds points or a mesh.
+    {options}
+
+    Returns
+    -------
+    PointsInfo or MeshInfo
+
+    Raises
+    ------
+    spillway.Error
+        As `triangulate`.
+    """
+    paths = [as_path(file, "file")]
+    run = make_run(options)
+    if is_mesh(run, paths, None, options):
+        refuse(options, names_for("points"), "on a mesh")
+        return MeshInfo(**_spillway.mesh_info(run, paths[0], mesh_options({}, None)))
+    return PointsInfo(**_spillway.points_info(run, paths[0], point_options(options, 2)))
+
+
+@takes(CheckOptions)
+def check(
+    mesh: PathLike,
+    *,
+    points: Any = None,
+    any_delaunay: bool = False,
+    mesh_format: str | None = None,
+    **options: Unpack[CheckOptions],
+) -> CheckReport:
+    """Prove that a mesh is the Delaunay triangulation of its vertices, or refute it.
+
+    As ``spillway check``: by exact predicates, and by nothing else of what has made the mesh.
+
+    Parameters
+    ----------
+    mesh : path
+        A file of a mesh.
+    points : path, sequence of paths, or array_like of shape (n, 2) or (n, 3), optional
+        Prove, too, that the vertices are exactly the distinct ones of these points.
+    any_delaunay : bool, optional
+        Accept either way of splitting cocircular facets, for meshes of other programs.
+    mesh_format : str, optional
+        The format of the mesh, where neither first bytes nor name tell.
+    {options}
+
+    Returns
+    -------
+    CheckReport
+        True where the mesh is proved; with the properties that hold, and the first faults.
+
+    Raises
+    ------
+    spillway.Error
+        As `triangulate`. A mesh that is refuted is no error.
+    """
+    path = as_path(mesh, "mesh")
+    source = None
+    if points is None:
+        refuse(options, names_for("points"), "without points")
+    else:
+        source = as_inputs(points, "points")
+        check_array(source, options)
+    run = make_run(options)
+    how = mesh_options({}, mesh_format)
+    which = point_options(options, 2)
+    return CheckReport(**_spillway.check(run, path, how, bool(any_delaunay), source, which))
+
+
+def _as_grid(grid: Any) -> tuple[int, int]:
+    try:
+        columns, rows = grid
+    except TypeError:
+        raise TypeError(f"grid is {grid!r}; give (columns, rows)") from None
+    return columns, rows
+
+
+def _as_axes(values: Any) -> list[float]:
+    """No number, one for all axes, or three."""
+    if values is None:
+        return []
+    numbers = list(values) if isinstance(values, Sequence) else [values]
+    if len(numbers) not in (1, 3):
+        raise InvalidArgumentError(f"{values} has {len(numbers)} numbers; give 1 or 3")
+    return [float(number) for number in numbers]

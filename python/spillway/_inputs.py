@@ -1,0 +1,106 @@
+"""What functions on files take: paths, or arrays of points."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Mapping
+
+from . import _spillway
+from ._arrays import Floats, as_rows
+from ._options import (
+    mesh_options,
+    names_for,
+    point_options,
+    refuse,
+    triangulate_options,
+)
+from .errors import InvalidArgumentError
+
+_PATHS = (str, bytes, os.PathLike)
+
+
+def as_inputs(inputs: Any, name: str = "inputs") -> list[bytes] | Floats:
+    """Paths as bytes, or rows of coordinates."""
+    if isinstance(inputs, _PATHS):
+        return [os.fsencode(inputs)]
+    if isinstance(inputs, (list, tuple)) and any(isinstance(item, _PATHS) for item in inputs):
+        for item in inputs:
+            if not isinstance(item, _PATHS):
+                raise TypeError(
+                    f"{name} has a path and {type(item).__name__}; give paths, or one array"
+                )
+        return [os.fsencode(item) for item in inputs]
+    return as_rows(inputs, name)
+
+
+def as_path(path: Any, name: str) -> bytes:
+    """A path as bytes."""
+    if not isinstance(path, _PATHS):
+        raise TypeError(f"{name} is of type {type(path).__name__}; give a path")
+    return os.fsencode(path)
+
+
+def as_dimension(dim: Any, inputs: list[bytes] | Floats) -> int:
+    """The dimension of a triangulation of these inputs."""
+    if dim not in (2, 3):
+        raise InvalidArgumentError(f"dim is {dim!r}; give 2 or 3")
+    if dim == 3 and not isinstance(inputs, list) and inputs.shape[1] == 2:
+        raise InvalidArgumentError("dim is 3, but inputs has 2 columns; give 3 coordinates a point")
+    return int(dim)
+
+
+def check_array(inputs: list[bytes] | Floats, options: Mapping[str, Any]) -> None:
+    """Refuse options of files where there is an array."""
+    if not isinstance(inputs, list):
+        of_files = [n for n in names_for("points") if n not in ("crs", "force_crs")]
+        refuse(options, of_files, "on an array, of which NumPy selects rows")
+
+
+def is_mesh(
+    run: _spillway.Run,
+    inputs: list[bytes] | Floats,
+    mesh_format: str | None,
+    options: Mapping[str, Any],
+) -> bool:
+    """Whether the inputs are one mesh."""
+    point_format = options.get("input_format") or ""
+    if mesh_format and (point_format or not isinstance(inputs, list) or len(inputs) > 1):
+        refuse({"mesh_format": mesh_format}, ["mesh_format"], "on these inputs, which are points")
+    return _spillway.is_mesh(run, inputs, mesh_format or "", point_format)
+
+
+def check_mesh_options(options: Mapping[str, Any], *, keeps: tuple[str, ...] = ()) -> None:
+    """Refuse options of points where a mesh is read, but those that it keeps."""
+    allowed = {"crs", "force_crs", "max_edge", *keeps}
+    names = [n for n in [*names_for("points"), *names_for("division"), "id"] if n not in allowed]
+    refuse(options, names, "on a mesh")
+
+
+def points_origin(
+    inputs: list[bytes] | Floats, dim: int, options: Mapping[str, Any], id: bool = False
+) -> _spillway.MeshOrigin:
+    """A mesh that is made of points."""
+    check_array(inputs, options)
+    if dim == 3:
+        refuse(options, ["duplicates"], "with dim=3, as it chooses a height")
+    how = triangulate_options(options, dim)
+    how.input_index = bool(id)
+    return _spillway.MeshOrigin(inputs, point_options(options, dim), how)
+
+
+def mesh_origin(
+    run: _spillway.Run,
+    inputs: Any,
+    dim: int,
+    mesh_format: str | None,
+    options: Mapping[str, Any],
+    id: bool = False,
+) -> _spillway.MeshOrigin:
+    """A mesh that is made of points, or that is there."""
+    source = as_inputs(inputs)
+    dim = as_dimension(dim, source)
+    if is_mesh(run, source, mesh_format, options):
+        check_mesh_options({**options, "id": id})
+        assert isinstance(source, list)
+        return _spillway.MeshOrigin(source[0], mesh_options(options, mesh_format))
+    return points_origin(source, dim, options, id)

@@ -1,0 +1,34 @@
+"""What runs say beside their results: warnings of Python, and what explains them to the log."""
+
+from __future__ import annotations
+
+import logging
+import sys
+import warnings
+
+from . import errors
+
+_log = logging.getLogger("spillway")
+
+
+def tell(is_warning: bool, text: str) -> None:
+    """Pass on a message of a run. The extension module calls it, in the thread that called it."""
+    if is_warning:
+        warnings.warn(text, errors.Warning, stacklevel=_levels_to_the_caller())
+    else:
+        _log.info("%s", text)
+
+
+def is_explained() -> bool:
+    """Whether anybody reads what explains a run."""
+    return _log.isEnabledFor(logging.INFO)
+
+
+def _levels_to_the_caller() -> int:
+    """How far up the stack the call of this package is, as `warnings.warn` counts in `tell`."""
+    level = 1
+    frame = sys._getframe(1)
+    while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith("spillway."):
+        frame = frame.f_back
+        level += 1
+    return level

@@ -1,0 +1,449 @@
+"""Options that several functions have: their types, their docstrings, and the way to the library.
+
+A function takes them as ``**options: Unpack[...]`` and is decorated by `takes`, which refuses other
+names and shows the options in its signature and docstring.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import functools
+import inspect
+import operator
+import os
+import pathlib
+import textwrap
+from typing import Any, Callable, Iterable, Mapping, Sequence, TypedDict, TypeVar, Union
+
+from . import _spillway
+from ._arrays import as_thread_count
+from ._messages import is_explained
+from .errors import InvalidArgumentError
+
+PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+class RunOptions(TypedDict, total=False):
+    """What a run may take, and who is told how far it is."""
+
+    memory: int | str | None
+    threads: int | None
+    tmpdir: PathLike | None
+    max_tmp: int | str | None
+    progress: Callable[[float], object] | None
+
+
+class FilterOptions(TypedDict, total=False):
+    """How point files are read, and which of their points."""
+
+    input_format: str | None
+    columns: Sequence[int] | None
+    skip_invalid: bool
+    keep_withheld: bool
+    every: int | None
+    keep_class: int | Iterable[int] | None
+    drop_class: int | Iterable[int] | None
+    returns: int | str | Iterable[int | str] | None
+    thin: float | tuple[float, str] | None
+
+
+class PlaceOptions(TypedDict, total=False):
+    """Filters by place, where a function has no other meaning for these words."""
+
+    bounds: Sequence[float] | None
+    resolution: float | None
+
+
+class SystemOptions(TypedDict, total=False):
+    """Coordinate systems."""
+
+    crs: str | os.PathLike[str] | None
+    force_crs: bool
+
+
+class DivisionOptions(TypedDict, total=False):
+    """How points are triangulated."""
+
+    duplicates: str | None
+    max_edge: float | None
+    distrust_headers: bool
+    tile: int | None
+    base_case: int | None
+    division: str | None
+    children: int | None
+    kernel: str | None
+
+
+class ConvertOptions(FilterOptions, PlaceOptions, SystemOptions, RunOptions, total=False):
+    """Of points that are read."""
+
+
+class InfoOptions(FilterOptions, PlaceOptions, RunOptions, total=False):
+    """Of points that are read, each file by itself."""
+
+
+class CheckOptions(FilterOptions, PlaceOptions, RunOptions, total=False):
+    """Of points that a mesh is compared with."""
+
+    force_crs: bool
+
+
+class DemOptions(DivisionOptions, FilterOptions, SystemOptions, RunOptions, total=False):
+    """Of points that become a raster."""
+
+
+class TriangulateOptions(
+    DivisionOptions, FilterOptions, PlaceOptions, SystemOptions, RunOptions, total=False
+):
+    """Of points that are triangulated."""
+
+
+@dataclasses.dataclass(frozen=True)
+class _Option:
+    kind: str
+    text: str
+    target: str = "run"
+    """What has it: "run", "points" or "division"."""
+    put: Callable[[Any, Any], None] | None = None
+    """Sets it there."""
+
+
+def _attribute(
+    name: str, convert: Callable[[Any], Any] = lambda value: value
+) -> Callable[[Any, Any], None]:
+    return lambda target, value: setattr(target, name, convert(value))
+
+
+def _put_bounds(target: Any, value: Any) -> None:
+    numbers = [float(number) for number in value]
+    if len(numbers) not in (4, 6):
+        raise InvalidArgumentError(
+            f"bounds has {len(numbers)} numbers; give xmin, ymin, xmax, ymax or xmin, ymin, zmin, "
+            "xmax, ymax, zmax"
+        )
+    half = len(numbers) // 2
+    endless = [float("inf")] * (3 - half)
+    low, high = numbers[:half] + [-x for x in endless], numbers[half:] + endless
+    if not all(least <= most for least, most in zip(low, high)):
+        raise InvalidArgumentError(f"bounds has a least coordinate above the most: {numbers}")
+    target.set_bounds(low, high)
+
+
+def _put_thin(target: Any, value: Any) -> None:
+    cell, choice = value if isinstance(value, tuple) else (value, "first")
+    target.set_thin(cell, choice)
+
+
+def _put_returns(target: Any, value: Any) -> None:
+    wanted = [value] if isinstance(value, (str, int)) else list(value)
+    words = [word for word in wanted if isinstance(word, str)]
+    for word in words:
+        if word not in ("first", "last", "single"):
+            raise InvalidArgumentError(
+                f'returns has "{word}"; give "first", "last", "single" and numbers from 1 to 15'
+            )
+    numbers = [operator.index(number) for number in wanted if not isinstance(number, str)]
+    target.set_returns("first" in words, "last" in words, "single" in words, numbers)
+
+
+def _as_list(value: Any) -> list[int]:
+    return [operator.index(n) for n in (value if isinstance(value, Iterable) else [value])]
+
+
+def as_crs(crs: Any) -> str:
+    """A coordinate system as text; a path stands for what is in the file."""
+    if not isinstance(crs, os.PathLike):
+        return "" if crs is None else str(crs)
+    return " ".join(pathlib.Path(crs).read_text(encoding="utf-8").splitlines()).strip()
+
+
+_OPTIONS = {
+    "memory": _Option(
+        "int or str, optional",
+        'Memory to keep to, in bytes or as ``"512M"`` or ``"2G"``: 32M at least, for tetrahedra 96M,'
+        " for rasters and pictures 64M. By default a quarter of the machine's, 2G at most.",
+    ),
+    "threads": _Option(
+        "int, optional",
+        "The most threads to use. By default all that the process may use. The result does not "
+        "depend on it.",
+    ),
+    "tmpdir": _Option(
+        "path, optional",
+        "Where scratch files go that do not fit into memory. By default ``$TMPDIR``, else ``/tmp``.",
+    ),
+    "max_tmp": _Option(
+        "int or str, optional", "Most that may lie there at a time. By default no limit."
+    ),
+    "progress": _Option(
+        "callable, optional",
+        "Told from time to time the fraction that is done, from 0 to 1, the last time with 1, in "
+        "the thread of the caller. What it raises ends the run.",
+    ),
+    "input_format": _Option(
+        "str, optional",
+        'Format of the points, where neither first bytes nor name tell: ``"las"``, ``"laz"``, '
+        '``"copc"``, ``"text"``, ``"npy"`` or ``"spp"``.',
+        "points",
+        _attribute("format"),
+    ),
+    "columns": _Option(
+        "sequence of int, optional",
+        "Of text, the columns of x, y and z, counted from 1.",
+        "points",
+        _attribute("columns", _as_list),
+    ),
+    "skip_invalid": _Option(
+        "bool, optional",
+        "Leave out rows of text and npy that are no points. By default they are an error.",
+        "points",
+        _attribute("skip_invalid"),
+    ),
+    "keep_withheld": _Option(
+        "bool, optional",
+        "Use points that LAS files flag as withheld, too.",
+        "points",
+        _attribute("keep_withheld"),
+    ),
+    "every": _Option(
+        "int, optional",
+        "Use records 0, n, 2n, ... of each file.",
+        "points",
+        _attribute("every"),
+    ),
+    "keep_class": _Option(
+        "int or iterable of int, optional",
+        "Use points of these classes only.",
+        "points",
+        _attribute("classes", _as_list),
+    ),
+    "drop_class": _Option(
+        "int or iterable of int, optional",
+        "Leave out points of these classes.",
+        "points",
+        _attribute("other_classes", _as_list),
+    ),
+    "returns": _Option(
+        "int, str or iterable of these, optional",
+        'Use these returns of a pulse: ``"first"``, ``"last"``, ``"single"`` and numbers.',
+        "points",
+        _put_returns,
+    ),
+    "thin": _Option(
+        "float or (float, str), optional",
+        "Use one point of each cell of a grid with sides of this length: the first one, or as the "
+        'word says ``"first"``, ``"lowest"``, ``"highest"`` or ``"center"``.',
+        "points",
+        _put_thin,
+    ),
+    "bounds": _Option(
+        "sequence of float, optional",
+        "Use points in xmin, ymin, xmax, ymax or xmin, ymin, zmin, xmax, ymax, zmax.",
+        "points",
+        _put_bounds,
+    ),
+    "resolution": _Option(
+        "float, optional",
+        "Of COPC files, read the levels that are needed for points so far apart.",
+        "points",
+        _attribute("resolution"),
+    ),
+    "crs": _Option(
+        "str or path-like, optional",
+        'The coordinate system of inputs that name none: ``"EPSG:n"``, WKT, or a `pathlib.Path` of '
+        "a file with WKT. Nothing is transformed.",
+        "points",
+        _attribute("crs", as_crs),
+    ),
+    "force_crs": _Option(
+        "bool, optional",
+        "Take coordinates as they are, whatever coordinate systems inputs have.",
+        "points",
+        _attribute("foreign_crs"),
+    ),
+    "duplicates": _Option(
+        "str, optional",
+        'Which z a vertex of several points of equal x and y gets: ``"first"``, ``"lowest"``, '
+        '``"highest"`` or ``"mean"``.',
+        "division",
+        _attribute("duplicates"),
+    ),
+    "max_edge": _Option(
+        "float, optional",
+        "Leave out simplices with a longer edge.",
+        "division",
+        _attribute("max_edge"),
+    ),
+    "distrust_headers": _Option(
+        "bool, optional",
+        "Triangulate nothing before all is read: headers may lie about where points are.",
+        "division",
+        lambda target, value: setattr(target, "trust_headers", not value),
+    ),
+    "tile": _Option(
+        "int, optional",
+        "Most points of a tile that is loaded at a time. By default chosen by the memory.",
+        "division",
+        _attribute("tile_points"),
+    ),
+    "base_case": _Option(
+        "int, optional",
+        "Most points of a leaf, which one thread triangulates. By default chosen by number and "
+        "memory.",
+        "division",
+        _attribute("leaf_points"),
+    ),
+    "division": _Option(
+        "str, optional",
+        'Which axis the division of points cuts: ``"least-border"``, ``"longest"``, ``"cycling"`` '
+        'or ``"constant"``.',
+        "division",
+        _attribute("division"),
+    ),
+    "children": _Option(
+        "int, optional",
+        "Parts that are merged at a time, 2 to 1024.",
+        "division",
+        _attribute("children"),
+    ),
+    "kernel": _Option(
+        "str, optional",
+        'What triangulates leaves: ``"spillway"`` or ``"cgal"``. Both give the same mesh.',
+        "division",
+        _attribute("kernel"),
+    ),
+}
+
+
+def takes(kind: Any) -> Callable[[_Function], _Function]:
+    """A decorator for functions that take the options of a TypedDict: it checks their names, and
+    puts them into the signature, and into the docstring in place of ``{options}``."""
+    names = list(kind.__annotations__)
+
+    def decorate(function: _Function) -> _Function:
+        @functools.wraps(function)
+        def checked(*args: Any, **given: Any) -> Any:
+            for name in given:
+                if name not in known:
+                    raise TypeError(_unexpected(function.__name__, name, known))
+            return function(*args, **given)
+
+        signature = inspect.signature(function)
+        own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+        own += [
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None) for name in names
+        ]
+        known = [p.name for p in own]
+        checked.__signature__ = signature.replace(parameters=own)  # type: ignore[attr-defined]
+        checked.__doc__ = (function.__doc__ or "").replace("    {options}\n", _described(names))
+        return checked  # type: ignore[return-value]
+
+    return decorate
+
+
+def _unexpected(function: str, name: str, known: list[str]) -> str:
+    close = difflib.get_close_matches(name, known, 1)
+    hint = f". Did you mean '{close[0]}'?" if close else ""
+    return f"{function}() got an unexpected keyword argument '{name}'{hint}"
+
+
+def _described(names: Iterable[str]) -> str:
+    lines = []
+    for name in names:
+        lines.append(f"    {name} : {_OPTIONS[name].kind}\n")
+        lines += [f"        {line}\n" for line in textwrap.wrap(_OPTIONS[name].text, 92)]
+    return "".join(lines)
+
+
+def put(target: Any, name: str, value: Any, setter: Callable[[Any, Any], None]) -> None:
+    """Set an option of the library. Raises TypeError for a value of another type."""
+    try:
+        setter(target, value)
+    except (TypeError, OverflowError) as fault:
+        kind = _OPTIONS[name].kind if name in _OPTIONS else "a value of another type or range"
+        raise TypeError(f"{name} is {value!r}; give {kind.replace(', optional', '')}") from fault
+
+
+def put_all(target: Any, values: Mapping[str, Any]) -> None:
+    """Set attributes of the library's options, those of the values that are not None."""
+    for name, value in values.items():
+        if value is not None:
+            put(target, name, value, _attribute(name))
+
+
+def is_given(value: Any) -> bool:
+    """Whether an option asks for anything."""
+    return value is not None and value is not False
+
+
+def refuse(options: Mapping[str, Any], names: Iterable[str], where: str) -> None:
+    """Raise InvalidArgumentError for options of these names, which have no effect there."""
+    given = [name for name in names if is_given(options.get(name))]
+    if given:
+        verb, them = ("has", "it") if len(given) == 1 else ("have", "them")
+        raise InvalidArgumentError(
+            f"{', '.join(given)} {verb} no effect {where}: leave {them} out"
+        )
+
+
+def names_for(target: str) -> list[str]:
+    """The names of the options that "points" or "division" have."""
+    return [name for name, option in _OPTIONS.items() if option.target == target]
+
+
+def _fill(target: Any, kind: str, options: Mapping[str, Any]) -> None:
+    for name, option in _OPTIONS.items():
+        if option.target == kind and option.put and is_given(options.get(name)):
+            put(target, name, options[name], option.put)
+
+
+def point_options(options: Mapping[str, Any], dim: int) -> _spillway.PointOptions:
+    """Which points are read, and how."""
+    made = _spillway.PointOptions()
+    made.dimension = dim
+    _fill(made, "points", options)
+    return made
+
+
+def triangulate_options(options: Mapping[str, Any], dim: int) -> _spillway.TriangulateOptions:
+    """How they are triangulated."""
+    made = _spillway.TriangulateOptions()
+    made.dimension = dim
+    _fill(made, "division", options)
+    return made
+
+
+def mesh_options(options: Mapping[str, Any], mesh_format: str | None) -> _spillway.MeshOptions:
+    """How a file of a mesh is read."""
+    made = _spillway.MeshOptions()
+    made.format = mesh_format or ""
+    made.crs = as_crs(options.get("crs"))
+    made.foreign_crs = bool(options.get("force_crs"))
+    return made
+
+
+def make_run(options: Mapping[str, Any]) -> _spillway.Run:
+    """The settings of a run."""
+    progress = options.get("progress")
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress is {progress!r}; give a function that takes a fraction")
+    tmpdir = options.get("tmpdir")
+    return _spillway.Run(
+        _as_size(options.get("memory"), "memory"),
+        as_thread_count(options.get("threads")),
+        b"" if tmpdir is None else os.fsencode(tmpdir),
+        _as_size(options.get("max_tmp"), "max_tmp"),
+        progress,
+        is_explained(),
+    )
+
+
+def _as_size(size: Any, name: str) -> str:
+    if size is None or isinstance(size, str):
+        return size or ""
+    try:
+        return str(operator.index(size))
+    except TypeError:
+        raise TypeError(f'{name} is {size!r}; give a number of bytes, or a text as "512M"') from None

@@ -1,0 +1,361 @@
+"""What is made of a terrain while its triangles pass by: `dem`, `contour` and `render`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, Sequence, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _spillway
+from ._inputs import as_path, mesh_origin
+from ._messages import tell
+from ._options import (
+    DemOptions,
+    PathLike,
+    TriangulateOptions,
+    make_run,
+    put,
+    put_all,
+    refuse,
+    takes,
+)
+from ._reports import ContourReport, PictureReport, RasterReport
+from .errors import InvalidArgumentError
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+
+class Raster(NamedTuple):
+    """A raster in memory."""
+
+    values: NDArray[np.float32]
+    """Shape (rows, columns), or (bands, rows, columns); row 0 is the northernmost; not a number
+    where there is no data."""
+    geotransform: tuple[float, float, float, float, float, float]
+    """As GDAL has it: west, width of a pixel, 0, north, 0, minus the height of a pixel."""
+    crs: str | None
+    """The coordinate system as WKT or ``"EPSG:n"``, where it is known."""
+    report: RasterReport
+    """What the run was like."""
+
+    def __repr__(self) -> str:
+        return f"<spillway.Raster: {self.report._summary()}>"
+
+
+@overload
+def dem(
+    inputs: Any,
+    output: None = None,
+    *,
+    resolution: float | None = None,
+    bounds: Sequence[float] | None = None,
+    clip_bounds: Sequence[float] | None = None,
+    force_size: bool = False,
+    align: bool = False,
+    like: PathLike | None = None,
+    product: str | Sequence[str] = "height",
+    azimuth: float | None = None,
+    altitude: float | None = None,
+    z_factor: float | None = None,
+    mesh_format: str | None = None,
+    **options: Unpack[DemOptions],
+) -> Raster:
+    ...
+
+
+@overload
+def dem(
+    inputs: Any,
+    output: PathLike,
+    *,
+    resolution: float | None = None,
+    bounds: Sequence[float] | None = None,
+    clip_bounds: Sequence[float] | None = None,
+    force_size: bool = False,
+    align: bool = False,
+    like: PathLike | None = None,
+    product: str | Sequence[str] = "height",
+    azimuth: float | None = None,
+    altitude: float | None = None,
+    z_factor: float | None = None,
+    nodata: float | None = None,
+    compress: str | None = None,
+    cog: bool = False,
+    mesh_format: str | None = None,
+    **options: Unpack[DemOptions],
+) -> RasterReport:
+    ...
+
+
+@takes(DemOptions)
+def dem(
+    inputs: Any,
+    output: PathLike | None = None,
+    *,
+    resolution: float | None = None,
+    bounds: Sequence[float] | None = None,
+    clip_bounds: Sequence[float] | None = None,
+    force_size: bool = False,
+    align: bool = False,
+    like: PathLike | None = None,
+    product: str | Sequence[str] = "height",
+    azimuth: float | None = None,
+    altitude: float | None = None,
+    z_factor: float | None = None,
+    nodata: float | None = None,
+    compress: str | None = None,
+    cog: bool = False,
+    mesh_format: str | None = None,
+    **options: Unpack[DemOptions],
+) -> Raster | RasterReport:
+    """Make a raster of heights, slopes or shades, as a GeoTIFF or as an array.
+
+    As ``spillway dem``: interpolated linearly within the triangles of the points.
+
+    Parameters
+    ----------
+    inputs : path, sequence of paths, or array_like of shape (n, 3)
+        Points, as `triangulate` takes them, or one file of a mesh of triangles.
+    output : path, optional
+        A GeoTIFF. By default an array is made, beyond the memory that `memory` limits.
+    resolution : float
+        Side of a pixel, in units of x and y. Not with `like`.
+    bounds : (float, float, float, float), optional
+        Cover xmin, ymin, xmax, ymax. By default all points.
+    clip_bounds : sequence of float, optional
+        Use points in this box, as `bounds` of the other functions.
+    force_size : bool, optional
+        Cover all points, though some may lie far away and pixels be very many.
+    align : bool, optional
+        Put edges of pixels on multiples of the resolution.
+    like : path, optional
+        Put pixels where this raster has them.
+    product : str or sequence of str, optional
+        ``"height"``, ``"slope"``, ``"aspect"``, ``"hillshade"`` or ``"density"``; several are bands.
+    azimuth, altitude : float, optional
+        Where a hillshade's light comes from, and its height above the horizon, in degrees; 315 and
+        45 by default.
+    z_factor : float, optional
+        Multiply heights by this for slope, aspect and hillshade. By default as units tell.
+    nodata : float, optional
+        Of a file, the value of pixels without data; -9999 by default.
+    compress : {"deflate", "zstd", "none"}, optional
+        Compression of a file.
+    cog : bool, optional
+        Make a file cloud optimized, with overviews.
+    mesh_format : str, optional
+        Format of a mesh, where neither first bytes nor name tell.
+    {options}
+
+    Returns
+    -------
+    Raster or RasterReport
+        Without `output` ``(values, geotransform, crs, report)``: values are an ndarray of float32
+        of shape (rows, columns), of a sequence of products (bands, rows, columns), not a number
+        where there is no data. With `output` the report.
+
+    Raises
+    ------
+    spillway.Error
+        As `triangulate`; ``"too large"`` for a raster that is large because of points far away.
+    """
+    products = [product] if isinstance(product, str) else list(product)
+    how = _spillway.DemOptions()
+    put(how, "product", products, lambda target, value: setattr(target, "products", value))
+    _check_products(
+        products, {"azimuth": azimuth, "altitude": altitude, "z_factor": z_factor}, options
+    )
+    if like is None:
+        if resolution is None:
+            raise InvalidArgumentError("resolution, the side of a pixel, is missing (or like)")
+        if bounds is not None:
+            refuse({"force_size": force_size}, ["force_size"], "with bounds")
+        put_all(how, {"resolution": resolution, "bounds": bounds, "align": align})
+        put_all(how, {"many_pixels": force_size})
+    else:
+        places = {"resolution": resolution, "bounds": bounds, "align": align}
+        refuse(
+            {**places, "force_size": force_size},
+            [*places, "force_size"],
+            "with like, which tells where all pixels lie",
+        )
+        how.like = as_path(like, "like")
+        how.foreign_crs = bool(options.get("force_crs"))
+    put_all(how, {"azimuth": azimuth, "altitude": altitude, "z_factor": z_factor})
+    put_all(how, {"max_edge": options.get("max_edge")})
+    of_files = {"nodata": nodata, "compress": compress, "cog": cog}
+    run = make_run(options)
+    origin = mesh_origin(run, inputs, 2, mesh_format, {**options, "bounds": clip_bounds})
+    if output is not None:
+        put_all(how, {"nodata": nodata, "compression": compress, "cloud_optimized": cog})
+        report = RasterReport(**_spillway.dem(run, origin, as_path(output, "output"), how))
+        _warn_of_empty(report)
+        return report
+    refuse(of_files, of_files, "without an output")
+    how.nodata = float("nan")
+    figures, values, crs = _spillway.dem_in_memory(run, origin, how)
+    report = RasterReport(**figures)
+    _warn_of_empty(report)
+    values = values.reshape(len(products), report.rows, report.columns)
+    side = report.resolution
+    return Raster(
+        values[0] if isinstance(product, str) else values,
+        (report.west, side, 0.0, report.north, 0.0, -side),
+        crs or None,
+        report,
+    )
+
+
+@takes(TriangulateOptions)
+def contour(
+    inputs: Any,
+    output: PathLike,
+    *,
+    interval: float | None = None,
+    base: float | None = None,
+    levels: Sequence[float] | None = None,
+    mesh_format: str | None = None,
+    **options: Unpack[TriangulateOptions],
+) -> ContourReport:
+    """Draw lines of equal height to a vector file.
+
+    As ``spillway contour``: lines run with higher ground to their left.
+
+    Parameters
+    ----------
+    inputs : path, sequence of paths, or array_like of shape (n, 3)
+        Points, as `triangulate` takes them, or one file of a mesh of triangles.
+    output : path
+        A file in the format of its extension: ``.gpkg``, ``.shp``, ``.geojson``, ...
+    interval : float
+        Height between two lines. Not with `levels`.
+    base : float, optional
+        A height that intervals are counted from; 0 by default.
+    levels : sequence of float, optional
+        Heights of lines, instead of an interval.
+    mesh_format : str, optional
+        Format of a mesh, where neither first bytes nor name tell.
+    {options}
+
+    Returns
+    -------
+    ContourReport
+        How many lines there are, and what the run was like.
+
+    Raises
+    ------
+    spillway.Error
+        As `triangulate`.
+    """
+    how = _spillway.ContourOptions()
+    if levels is not None:
+        spacing = {"interval": interval, "base": base}
+        refuse(spacing, spacing, "with levels, which names all heights")
+    elif interval is None:
+        raise InvalidArgumentError("interval, the height between two lines, is missing (or levels)")
+    put_all(how, {"interval": interval, "base": base, "levels": levels})
+    put_all(how, {"max_edge": options.get("max_edge")})
+    how.foreign_crs = bool(options.get("force_crs"))
+    run = make_run(options)
+    origin = mesh_origin(run, inputs, 2, mesh_format, options)
+    report = ContourReport(**_spillway.contours(run, origin, as_path(output, "output"), how))
+    if report.lines == 0:
+        tell(
+            True,
+            f"no lines: no level lies above the lowest height, {report.lowest:g}, and up to the "
+            f"highest, {report.highest:g}",
+        )
+    return report
+
+
+@takes(TriangulateOptions)
+def render(
+    inputs: Any,
+    output: PathLike,
+    *,
+    dim: int = 2,
+    size: int | None = None,
+    zoom: Sequence[float] | None = None,
+    wireframe: bool = False,
+    exaggerate: float | None = None,
+    view: tuple[float, float] | None = None,
+    slice: tuple[str, float] | None = None,
+    transparent: bool = False,
+    mesh_format: str | None = None,
+    **options: Unpack[TriangulateOptions],
+) -> PictureReport:
+    """Draw a picture: a terrain as a relief, tetrahedra as their hull or a slice.
+
+    As ``spillway render``.
+
+    Parameters
+    ----------
+    inputs : path, sequence of paths, or array_like of shape (n, 3)
+        Points, as `triangulate` takes them, or one file of a mesh.
+    output : path
+        A PNG.
+    dim : {2, 3}, optional
+        How points are triangulated: 2, a terrain, or 3, tetrahedra.
+    size : int, optional
+        Pixels of the longer side; 1200 by default.
+    zoom : (float, float, float, float), optional
+        Show xmin, ymin, xmax, ymax only.
+    wireframe : bool, optional
+        Draw the edges of triangles.
+    exaggerate : float, optional
+        Shade a terrain as if it were so many times as high. By default such that slopes are seen.
+    view : (float, float), optional
+        Look at tetrahedra from this azimuth and elevation, in degrees; 30 and 25 by default.
+    slice : (str, float), optional
+        Cut tetrahedra by a plane, as ``("z", 0.5)``.
+    transparent : bool, optional
+        Leave the background transparent, not white.
+    mesh_format : str, optional
+        Format of a mesh, where neither first bytes nor name tell.
+    {options}
+
+    Returns
+    -------
+    PictureReport
+        What the picture shows, and what the run was like.
+
+    Raises
+    ------
+    spillway.Error
+        As `triangulate`.
+    """
+    how = _spillway.PictureOptions()
+    put_all(how, {"size": size, "zoom": zoom, "wireframe": wireframe, "view": view})
+    put_all(how, {"exaggeration": exaggerate, "transparent": transparent})
+    put_all(how, {"max_edge": options.get("max_edge")})
+    if slice is not None:
+        put(how, "slice", slice, _put_slice)
+    run = make_run(options)
+    origin = mesh_origin(run, inputs, dim, mesh_format, options)
+    return PictureReport(**_spillway.picture(run, origin, as_path(output, "output"), how))
+
+
+def _put_slice(target: _spillway.PictureOptions, value: tuple[str, float]) -> None:
+    axis, place = value
+    target.set_slice(axis, place)
+
+
+def _check_products(products: list[str], light: dict[str, Any], options: Any) -> None:
+    """Refuse options that make no difference to the products."""
+    if "hillshade" not in products:
+        refuse(light, ["azimuth", "altitude"], "without hillshade among the products")
+    if not {"slope", "aspect", "hillshade"} & set(products):
+        refuse(light, ["z_factor"], "without slope, aspect or hillshade among the products")
+    if products == ["density"]:
+        refuse(options, ["duplicates", "max_edge"], "on density, which counts vertices")
+
+
+def _warn_of_empty(report: RasterReport) -> None:
+    if report.pixels_with_data == 0:
+        tell(
+            True,
+            f"no pixel of the {report.columns} x {report.rows} has a value: the raster lies beside "
+            "the points, or its pixels are too large for them",
+        )

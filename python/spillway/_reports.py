@@ -1,0 +1,260 @@
+"""What calls on files tell of what they did: small objects that do not change."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, Optional, Tuple
+
+Triple = Tuple[float, float, float]
+Extent = Tuple[Triple, Triple]
+
+
+# Attributes that are not printed.
+_TOO_LONG = ("final", "stages", "tile_shapes")
+
+
+class _Report:
+    """Figures that print one a line, and in short as one line."""
+
+    def _summary(self) -> str:
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        return f"<spillway.{type(self).__name__}: {self._summary()}>"
+
+    def __str__(self) -> str:
+        lines = [self._summary()]
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            if value is not None and field.name not in _TOO_LONG:
+                lines.append(f"  {field.name:24} {_text(value)}")
+        return "\n".join(lines)
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {_text(item)}" for name, item in value.items() if item != 0)
+    if isinstance(value, (list, tuple)):
+        return ", ".join(_text(item) for item in value)
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _simplices(dimension: int) -> str:
+    return "triangles" if dimension == 2 else "tetrahedra"
+
+
+def _counts(report: Any) -> str:
+    return f"{report.vertices} vertices, {report.simplices} {_simplices(report.dimension)}"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class RunReport(_Report):
+    """What a run was like that made a mesh, or something of a mesh.
+
+    The attributes are the keys of ``spillway triangulate --stats``; lengths of time are in seconds.
+    Of a mesh that was not triangulated here those about the work are 0.
+    """
+
+    dimension: int
+    points: int
+    duplicates: int
+    vertices: int
+    simplices: int
+    hull_facets: int
+    canonical_hash: str
+    left_out: int
+    on_lattice: bool
+    filters: dict[str, int]
+    output_format: str
+    output_bytes: int
+    threads: int
+    tiles: int
+    tile_capacity: int
+    leaves: int
+    leaf_size: int
+    spilled_points: int
+    spilled_bytes: int
+    divided_points: int
+    first_block_read_points: int
+    tile_shapes: dict[str, int]
+    final: dict[str, Any]
+    retriangulated_points: int
+    border_simplices: int
+    border_bytes: int
+    phases: dict[str, float]
+    stages: dict[str, float]
+    memory_limit: int
+    seconds: float
+
+    def _summary(self) -> str:
+        return f"{self.points} points, {_counts(self)}, hash {self.canonical_hash}"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class RasterReport(RunReport):
+    """What a raster is like, and the run that made it. Lengths are in units of x and y; `west` and
+    `north` are the edges of the corner pixel, `bands` names of products."""
+
+    columns: int
+    rows: int
+    resolution: float
+    west: float
+    north: float
+    bands: list[str]
+    pixels_with_data: int
+    closed_tiles: int
+    spilled_pixel_bytes: int
+
+    def _summary(self) -> str:
+        return (
+            f"{self.columns} x {self.rows} pixels of {self.resolution:.6g}, "
+            f"{self.pixels_with_data} with data; {_counts(self)}"
+        )
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class ContourReport(RunReport):
+    """How many lines there are, of how many points, the least and the greatest height of the
+    terrain, and the run that made them."""
+
+    lines: int
+    line_points: int
+    lowest: float
+    highest: float
+    spilled_line_bytes: int
+
+    def _summary(self) -> str:
+        return f"{self.lines} lines of {self.line_points} points; {_counts(self)}"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class PictureReport(RunReport):
+    """What a picture shows, its size in pixels, and the run that made it."""
+
+    columns: int
+    rows: int
+    description: str
+    edges_too_small: bool
+
+    def _summary(self) -> str:
+        return f"{self.columns} x {self.rows} pixels, {self.description}; {_counts(self)}"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class ConvertReport(_Report):
+    """What became of points that were converted.
+
+    `scale` and `offset` are the lattice that coordinates were rounded to, None if they were not;
+    `farthest` is how far that moved one at most. `lost` names what the output does not hold.
+    """
+
+    written: int
+    filters: dict[str, int]
+    rounded: bool
+    scale: Optional[Triple]
+    offset: Optional[Triple]
+    farthest: float
+    adds_heights: bool
+    lost: list[str]
+    cells: int
+    spilled_points: int
+    spilled_bytes: int
+    seconds: float
+
+    def _summary(self) -> str:
+        return f"{self.written} points written"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class GenerateReport(_Report):
+    """How many points were written, to how many files."""
+
+    points: int
+    files: int
+    seconds: float
+
+    def _summary(self) -> str:
+        return f"{self.points} points in {self.files} file{'' if self.files == 1 else 's'}"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class CheckReport(_Report):
+    """What a check found. It is true where the mesh is proved.
+
+    `properties` has a line for each property that holds, `faults` one for each of the first faults,
+    `fault_count` counts all, and `other_ties` those that ``any_delaunay=True`` accepts.
+    """
+
+    dimension: int
+    vertices: int
+    simplices: int
+    hull_facets: int
+    canonical_hash: str
+    on_lattice: bool
+    properties: list[str]
+    faults: list[str]
+    fault_count: int
+    off_lattice: int
+    other_ties: int
+    peak_live_vertices: int
+    peak_open_facets: int
+    filters: dict[str, int]
+
+    @property
+    def proved(self) -> bool:
+        """Whether all properties hold."""
+        return self.fault_count == 0
+
+    def __bool__(self) -> bool:
+        return self.proved
+
+    def _summary(self) -> str:
+        verdict = "proved" if self.proved else f"refuted by {self.fault_count} faults"
+        return f"{verdict}; {_counts(self)}, hash {self.canonical_hash}"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class PointsInfo(_Report):
+    """What a point file holds. What it does not tell is None; boxes are (lowest, highest) corners."""
+
+    format: str
+    version: Optional[str]
+    point_format: Optional[int]
+    coordinates: int
+    points: int
+    filters: dict[str, int]
+    extent: Optional[Extent]
+    header_box: Optional[Extent]
+    points_outside: Optional[int]
+    scale: Optional[Triple]
+    offset: Optional[Triple]
+    crs: Optional[str]
+    crs_note: Optional[str]
+    software: Optional[str]
+    cells: Optional[int]
+
+    def _summary(self) -> str:
+        return f"{self.points} points, {self.format}"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class MeshInfo(_Report):
+    """What a file of a mesh holds. What it does not tell is None."""
+
+    format: str
+    dimension: int
+    vertices: int
+    simplices: int
+    hull_facets: int
+    canonical_hash: str
+    points: Optional[int]
+    duplicates: Optional[int]
+    extent: Optional[Extent]
+    scale: Optional[Triple]
+    offset: Optional[Triple]
+    input_index: bool
+    crs: Optional[str]
+    peak_live_vertices: Optional[int]
+
+    def _summary(self) -> str:
+        return f"{_counts(self)}, {self.format}, hash {self.canonical_hash}"

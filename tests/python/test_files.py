@@ -1,0 +1,547 @@
+"""Calls from files and arrays to files do what the command does."""
+
+import dataclasses
+import errno
+import inspect
+import json
+import os
+import pathlib
+import pickle
+import re
+import signal
+import threading
+import unittest
+import warnings
+
+import numpy as np
+import spillway
+from support import InFolder, bytes_of, command, degenerate_sets, hash_by_command, random_points
+
+
+class Triangulate(InFolder):
+    def test_a_file_becomes_the_bytes_of_the_command(self):
+        command("generate", "terrain", "-n", 30_000, "-o", "hills.las")
+        for output in ("mesh.spm", "mesh.ply", "mesh.obj"):
+            command("triangulate", "hills.las", "-o", "command." + output, "--memory", "64M")
+            report = spillway.triangulate("hills.las", output, memory="64M")
+            self.assertEqual(bytes_of(output), bytes_of("command." + output))
+            self.assertEqual(report.output_bytes, os.path.getsize(output))
+
+    def test_the_report_has_the_figures_of_the_command(self):
+        command("generate", "terrain", "-n", 30_000, "-o", "hills.las")
+        command("triangulate", "hills.las", "-o", "a.spm", "--memory", "64M", "--stats", "run.json")
+        stats = json.loads(pathlib.Path("run.json").read_text())
+        report = spillway.triangulate("hills.las", "b.spm", memory=64 << 20)
+        figures = dataclasses.asdict(report)
+        self.assertEqual(
+            set(stats) - set(figures),
+            {"version", "inputs", "output", "withheld", "peak_rss_bytes", "task_sums"},
+        )
+        timed = ("seconds", "phases", "stages", "border_simplices", "border_bytes")
+        for key in set(figures) - set(timed):
+            with self.subTest(key=key):
+                self.assertEqual(figures[key], stats[key])
+        self.assertEqual(set(report.phases), set(stats["phases"]))
+
+    def test_every_option_reaches_the_run(self):
+        rng = np.random.default_rng(3)
+        np.savetxt("points.txt", np.column_stack([rng.random((4000, 2)), rng.random(4000)]))
+        cases = {
+            "--id": {"id": True},
+            "--dim 3": {"dim": 3},
+            "--max-edge 0.02": {"max_edge": 0.02},
+            "--every 3": {"every": 3},
+            "--thin 0.05:lowest": {"thin": (0.05, "lowest")},
+            "--thin 0.05": {"thin": 0.05},
+            "--bounds 0,0,0.5,0.7": {"bounds": (0, 0, 0.5, 0.7)},
+            "--bounds 0,0,0.2,0.5,0.7,1": {"bounds": [0, 0, 0.2, 0.5, 0.7, 1]},
+            "--columns 2,3,1": {"columns": (2, 3, 1)},
+            "--input-format text": {"input_format": "text"},
+            "--base-case 100": {"base_case": 100},
+            "--tile 1000 --children 4": {"tile": 1000, "children": 4},
+            "--division cycling --base-case 200": {"division": "cycling", "base_case": 200},
+            "--kernel cgal": {"kernel": "cgal"},
+            "--distrust-headers": {"distrust_headers": True},
+            "--skip-invalid": {"skip_invalid": True},
+            "--output-format ply": {"output_format": "ply"},
+            "--max-tmp 1G --threads 2": {"max_tmp": "1G", "threads": 2},
+        }
+        for words, options in cases.items():
+            with self.subTest(options=words):
+                command("triangulate", "points.txt", "-o", "a.spm", "--memory", "96M", *words.split())
+                spillway.triangulate("points.txt", "b.spm", memory="96M", **options)
+                self.assertEqual(bytes_of("b.spm"), bytes_of("a.spm"))
+
+    def test_filters_by_class_and_return_are_those_of_the_command(self):
+        command("generate", "terrain", "-n", 3000, "-o", "hills.las")
+        cases = {
+            "--keep-class 0-2": {"keep_class": range(3)},
+            "--drop-class 7,18": {"drop_class": [7, 18]},
+            "--returns first,2": {"returns": ["first", 2]},
+            "--returns last": {"returns": "last"},
+            "--keep-withheld": {"keep_withheld": True},
+            "--crs EPSG:2056": {"crs": "EPSG:2056"},
+            "--crs EPSG:2056 --force-crs": {"crs": "EPSG:2056", "force_crs": True},
+        }
+        for words, options in cases.items():
+            with self.subTest(options=words):
+                command("triangulate", "hills.las", "-o", "a.spm", *words.split())
+                spillway.triangulate("hills.las", "b.spm", **options)
+                self.assertEqual(bytes_of("b.spm"), bytes_of("a.spm"))
+        with self.assertRaisesRegex(spillway.Error, "other classes"):
+            spillway.triangulate("hills.las", "b.spm", keep_class=250)
+
+    def test_duplicates_choose_heights(self):
+        points = np.array([[0, 0, 1], [4, 0, 1], [0, 4, 1], [0, 0, 5], [0, 0, 3.0]])
+        for choice, z in {"first": 1, "lowest": 1, "highest": 5, "mean": 3}.items():
+            spillway.triangulate(points, "mesh_.npy", duplicates=choice)
+            vertices = np.load("mesh__vertices.npy")
+            self.assertEqual(vertices[(vertices[:, :2] == 0).all(axis=1)][0, 2], z)
+
+    def test_arrays_of_any_layout_become_the_mesh_of_the_command(self):
+        for dim in (2, 3):
+            points = random_points(3000, dim)
+            expected = hash_by_command(points)
+            wide = np.zeros((3000, 7))
+            wide[:, 1 : 1 + dim] = points
+            for rows in (
+                points,
+                np.asfortranarray(points),
+                wide[:, 1 : 1 + dim],
+                points[::-1],
+                points.tolist(),
+            ):
+                report = spillway.triangulate(rows, "mesh.spm", dim=dim)
+                self.assertEqual(report.canonical_hash, expected)
+                self.assertEqual(report.dimension, dim)
+        heights = np.column_stack([random_points(3000, 2), np.arange(3000)])
+        self.assertEqual(
+            spillway.triangulate(heights, "mesh.spm").canonical_hash,
+            spillway.Delaunay(heights, dim=2).hash,
+        )
+
+    def test_ties_are_broken_as_in_memory(self):
+        for dim in (2, 3):
+            for name, points in degenerate_sets(dim):
+                with self.subTest(dim=dim, points=name):
+                    report = spillway.triangulate(points, "mesh.spm", dim=dim)
+                    self.assertEqual(report.canonical_hash, spillway.Delaunay(points).hash)
+
+    def test_several_files_patterns_and_paths_of_all_types(self):
+        command("generate", "terrain", "-n", 4000, "--grid", "2x2", "-o", "hills_#.las")
+        files = sorted(pathlib.Path(".").glob("hills_*.las"))
+        reports = [
+            spillway.triangulate(inputs, pathlib.Path("mesh.spm"))
+            for inputs in (files, "hills_*.las", b"hills_*.las", [str(file) for file in files])
+        ]
+        self.assertEqual(len({report.canonical_hash for report in reports}), 1)
+        self.assertEqual(reports[0].points, 4000)
+
+    def test_names_that_are_not_utf_8(self):
+        name = b"hills-\xff.npy"
+        with open(name, "wb") as file:
+            np.save(file, random_points(100, 2))
+        spillway.triangulate(name, b"mesh-\xfe.spm")
+        self.assertIn(b"mesh-\xfe.spm", os.listdir(b"."))
+        spillway.triangulate(os.fsdecode(name), "mesh.spm")
+
+    def test_a_coordinate_system_of_an_array_is_written(self):
+        points = np.column_stack([random_points(50, 2), np.zeros(50)]) * 100
+        spillway.triangulate(points, "mesh.spm", crs="EPSG:2056")
+        self.assertEqual(spillway.info("mesh.spm").crs, "EPSG:2056")
+        pathlib.Path("system.wkt").write_text("EPSG:2056\n")
+        spillway.triangulate(points, "other.spm", crs=pathlib.Path("system.wkt"))
+        self.assertEqual(bytes_of("other.spm"), bytes_of("mesh.spm"))
+
+
+class Convert(InFolder):
+    def test_points_become_the_bytes_of_the_command(self):
+        command("generate", "terrain", "-n", 5000, "-o", "hills.las")
+        command("generate", "uniform", "-n", 5000, "-o", "square.npy")
+        cases = [
+            ("hills.las", "a.txt", "", {}),
+            (
+                "hills.las",
+                "a.spp",
+                "--sorted --cell-points 700 --memory 32M",
+                {"sorted": True, "cell_points": 700, "memory": "32M"},
+            ),
+            ("hills.las", "a.las", "--las-version 1.4", {"las_version": "1.4"}),
+            ("hills.las", "a.bin", "--output-format npy --every 2", {"output_format": "npy", "every": 2}),
+            (
+                "square.npy",
+                "a.las",
+                "--scale 0.01 --offset 1,2,3",
+                {"scale": 0.01, "offset": (1, 2, 3)},
+            ),
+        ]
+        for source, output, words, options in cases:
+            with self.subTest(options=words):
+                command("convert", source, "-o", output, *words.split())
+                report = spillway.convert(source, "b" + output[1:], **options)
+                self.assertEqual(bytes_of("b" + output[1:]), bytes_of(output))
+                self.assertGreater(report.written, 0)
+        self.assertTrue(report.rounded)
+        self.assertEqual(report.scale, [0.01] * 3)
+
+    def test_a_mesh_becomes_the_bytes_of_the_command(self):
+        spillway.triangulate(random_points(2000, 2), "mesh.spm")
+        command("convert", "mesh.spm", "-o", "a.ply")
+        report = spillway.convert("mesh.spm", "b.ply")
+        self.assertEqual(bytes_of("b.ply"), bytes_of("a.ply"))
+        self.assertEqual(report.canonical_hash, spillway.info("mesh.spm").canonical_hash)
+
+    def test_arrays_are_written_as_they_are(self):
+        for dim in (2, 3):
+            points = random_points(100, dim)
+            report = spillway.convert(points, "points.npy")
+            np.testing.assert_array_equal(np.load("points.npy"), points)
+            self.assertEqual(report.written, 100)
+
+    def test_options_without_effect_are_refused(self):
+        spillway.triangulate(random_points(50, 2), "mesh.spm")
+        for inputs, options in [
+            ("mesh.spm", {"scale": 0.1}),
+            ("mesh.spm", {"keep_class": 2}),
+            ("mesh.spm", {"every": 2}),
+            (random_points(9, 2), {"every": 2}),
+            (random_points(9, 2), {"cell_points": 100}),
+            (random_points(9, 2), {"mesh_format": "ply"}),
+        ]:
+            with self.subTest(options=options), self.assertRaisesRegex(ValueError, "no effect"):
+                spillway.convert(inputs, "out.spp", **options)
+
+
+class Generate(InFolder):
+    def test_files_and_arrays_are_those_of_the_command(self):
+        command("generate", "uniform", "-n", 1000, "--dim", 3, "--seed", 7, "-o", "a.npy")
+        array = spillway.generate("uniform", 1000, dim=3, seed=7)
+        np.testing.assert_array_equal(array, np.load("a.npy"))
+        self.assertEqual(spillway.generate("circle", 10).shape, (10, 2))
+        self.assertEqual(spillway.generate("terrain", 10).shape, (10, 3))
+        self.assertEqual(spillway.generate("uniform", 0).shape, (0, 2))
+        command("generate", "terrain", "-n", 1000, "-o", "a.las", "--las-version", "1.4")
+        report = spillway.generate("terrain", 1000, "b.las", las_version="1.4")
+        self.assertEqual(bytes_of("b.las"), bytes_of("a.las"))
+        self.assertEqual((report.points, report.files), (1000, 1))
+
+    def test_a_survey_is_that_of_the_command(self):
+        words = ["-n", 3000, "--grid", "3x2", "--overlap", 0.2]
+        command("generate", "terrain", *words, "-o", "a_#.las")
+        report = spillway.generate("terrain", 3000, "b_#.las", grid=(3, 2), overlap=0.2)
+        self.assertEqual(report.files, 6)
+        for file in pathlib.Path(".").glob("a_*.las"):
+            self.assertEqual(bytes_of("b" + file.name[1:]), bytes_of(file))
+
+    def test_options_without_effect_are_refused(self):
+        for options in [{"grid": (2, 2)}, {"overlap": 0.1}, {"output_format": "npy"}]:
+            with self.assertRaisesRegex(ValueError, "without an output"):
+                spillway.generate("uniform", 10, **options)
+        with self.assertRaisesRegex(ValueError, "which always has z"):
+            spillway.generate("terrain", 10, dim=3)
+        with self.assertRaisesRegex(ValueError, "hills"):
+            spillway.generate("hills", 10)
+
+
+class InfoAndCheck(InFolder):
+    def test_info_tells_what_the_command_tells(self):
+        command("generate", "terrain", "-n", 2000, "-o", "hills.las")
+        spillway.triangulate("hills.las", "mesh.spm", id=True)
+        for file, kind in (("hills.las", spillway.PointsInfo), ("mesh.spm", spillway.MeshInfo)):
+            told = json.loads(command("info", file, "--json"))
+            info = spillway.info(file)
+            self.assertIsInstance(info, kind)
+            for key, value in dataclasses.asdict(info).items():
+                if key == "filters" or key not in told:
+                    continue
+                if key in ("extent", "header_box"):
+                    value = None if value is None else {"min": list(value[0]), "max": list(value[1])}
+                with self.subTest(file=file, key=key):
+                    self.assertEqual(value, told[key])
+        self.assertEqual(spillway.info("hills.las", every=4).points, 500)
+
+    def test_a_mesh_is_proved_with_and_without_points(self):
+        points = random_points(1000, 2)
+        spillway.triangulate(points, "mesh.spm")
+        self.assertTrue(spillway.check("mesh.spm"))
+        self.assertTrue(spillway.check("mesh.spm", points=points))
+        np.save("points.npy", points)
+        report = spillway.check("mesh.spm", points="points.npy")
+        self.assertTrue(report.proved)
+        told = json.loads(command("check", "mesh.spm", "--points", "points.npy", "--json"))
+        self.assertEqual(report.properties, told["properties"])
+        self.assertEqual(report.canonical_hash, told["canonical_hash"])
+
+    def test_a_mesh_that_is_none_is_refuted(self):
+        points = random_points(500, 2)
+        spillway.triangulate(points, "mesh.spm")
+        other = points.copy()
+        other[7] += 1e-3
+        report = spillway.check("mesh.spm", points=other)
+        self.assertFalse(report)
+        self.assertEqual(len(report.faults), report.fault_count)
+        self.assertIn("refuted", repr(report))
+        with self.assertRaisesRegex(ValueError, "every has no effect without points"):
+            spillway.check("mesh.spm", every=2)
+
+    def test_either_diagonal_of_a_square_is_accepted_on_demand(self):
+        grid = np.stack(np.meshgrid(*[np.arange(2.0)] * 2), axis=-1).reshape(-1, 2)
+        spillway.triangulate(grid, "mesh.obj")
+        lines = pathlib.Path("mesh.obj").read_text().splitlines()
+        vertices = [line for line in lines if line.startswith("v ")]
+        place = {tuple(map(float, v.split()[1:3])): i + 1 for i, v in enumerate(vertices)}
+        rising = [(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]
+        falling = [(0, 0), (1, 0), (0, 1)], [(1, 0), (1, 1), (0, 1)]
+        found = []
+        for triangles in (rising, falling):
+            faces = ["f " + " ".join(str(place[c]) for c in corners) for corners in triangles]
+            pathlib.Path("other.obj").write_text("\n".join(vertices + faces) + "\n")
+            found.append(bool(spillway.check("other.obj")))
+            self.assertTrue(spillway.check("other.obj", any_delaunay=True))
+        self.assertEqual(sorted(found), [False, True])
+
+
+class Reports(InFolder):
+    def test_they_print_well_and_do_not_change(self):
+        report = spillway.triangulate(random_points(100, 2), "mesh.spm")
+        self.assertRegex(
+            repr(report),
+            r"^<spillway.RunReport: 100 points, 100 vertices, \d+ triangles, hash \w{16}>$",
+        )
+        self.assertIn(f"\n  simplices                {report.simplices}\n", str(report))
+        self.assertLess(max(map(len, str(report).splitlines())), 200)
+        with self.assertRaises(dataclasses.FrozenInstanceError):
+            report.points = 3
+
+
+class Options(unittest.TestCase):
+    # What reports and exceptions have, what is about the terminal, and what plays and shares runs.
+    NOT_HERE = set("help json output parts progress quiet stats tasks verbose".split())
+
+    def test_functions_have_the_options_of_the_command(self):
+        # What a call of a program has besides, and what stands without dashes there.
+        beside = set("inputs file mesh family output threads memory tmpdir max_tmp progress".split())
+        for name in "triangulate dem contour render check convert info generate".split():
+            told = set(re.findall(r"--([a-z][a-z-]+)", command(name, "--help").split("Examples:")[0]))
+            expected = {
+                option.replace("-", "_")
+                for option in told - self.NOT_HERE
+                if not option.startswith("simulate-")
+            }
+            found = set(inspect.signature(getattr(spillway, name)).parameters)
+            with self.subTest(function=name):
+                self.assertEqual(expected - found, set())
+                self.assertEqual(found - expected - beside, set())
+
+    def test_blocks_have_the_options_of_triangulate_and_of_a_mesh(self):
+        found, expected = (
+            set(inspect.signature(call).parameters)
+            for call in (spillway.blocks, spillway.triangulate)
+        )
+        self.assertEqual(found - expected, {"mesh_format"})
+        self.assertEqual(expected - found, {"output", "output_format"})
+
+
+class Errors(InFolder):
+    def test_what_is_wrong_with_a_file_is_raised_with_its_name(self):
+        with self.assertRaisesRegex(OSError, "^cannot open nowhere.las: No such file") as caught:
+            spillway.triangulate("nowhere.las", "mesh.spm")
+        self.assertEqual(caught.exception.code, "input or output")
+        self.assertEqual(caught.exception.errno, errno.ENOENT)
+        self.assertEqual(caught.exception.filename, "nowhere.las")
+        pathlib.Path("typo.txt").write_text("1 2 3\n4 5 6\n7 8 g\n")
+        with self.assertRaisesRegex(ValueError, "typo.txt: line 3") as caught:
+            spillway.triangulate("typo.txt", "mesh.spm")
+        self.assertEqual((caught.exception.file, caught.exception.place), ("typo.txt", ("line", 3)))
+        other = pickle.loads(pickle.dumps(caught.exception))
+        self.assertEqual(other.place, ("line", 3))
+        command("generate", "terrain", "-n", 1000, "-o", "hills.las")
+        pathlib.Path("short.las").write_bytes(bytes_of("hills.las")[:-100])
+        with self.assertRaisesRegex(spillway.errors.BadInputError, "short.las"):
+            spillway.triangulate("short.las", "mesh.spm", tmpdir="tmp")
+        self.assert_nothing_is_left("typo.txt", "hills.las", "short.las")
+
+    def test_errors_name_the_arguments_that_help(self):
+        points = np.column_stack([random_points(100, 2), np.arange(100)])
+        for words, call in [
+            ('memory="64M" is enough', lambda: spillway.dem(points, resolution=1, memory="32M")),
+            ("EPSG:99999999", lambda: spillway.triangulate(points, "a.gpkg", crs="EPSG:99999999")),
+            ("cannot be used with it", lambda: spillway.triangulate("a.npy", "a.spm", keep_class=2)),
+            ("force_crs=True", lambda: spillway.contour(points, "a.geojson", interval=1)),
+            ("columns=", lambda: spillway.triangulate("a.txt", "a.spm")),
+        ]:
+            np.save("a.npy", points)
+            np.savetxt("a.txt", np.column_stack([np.arange(1, 101), points]), fmt="%d %f %f %f")
+            with self.subTest(words=words), self.assertRaisesRegex(spillway.Error, words) as caught:
+                call()
+            self.assertNotIn("--", str(caught.exception))
+
+    def test_a_file_that_was_there_stays_after_an_error(self):
+        pathlib.Path("mesh.spm").write_text("old")
+        with self.assertRaises(spillway.errors.DegenerateInputError):
+            spillway.triangulate(np.zeros((5, 2)), "mesh.spm")
+        self.assertEqual(pathlib.Path("mesh.spm").read_text(), "old")
+
+    def test_wrong_options_are_told_by_their_names(self):
+        points = random_points(20, 2)
+        calls = spillway.triangulate, spillway.convert, spillway.contour, spillway.render
+        for call in calls:
+            with self.assertRaisesRegex(TypeError, "'memmory'. Did you mean 'memory'"):
+                call(points, "out", memmory="1G")
+        for call in (spillway.blocks, spillway.dem):
+            with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'progres'"):
+                call(points, progres=print)
+        for kind, words, options in [
+            (TypeError, "max_edge is 'long'; give float", {"max_edge": "long"}),
+            (TypeError, "every is 1.5; give int", {"every": 1.5}),
+            (TypeError, "memory is 1.5", {"memory": 1.5}),
+            (TypeError, "progress is 3", {"progress": 3}),
+            (ValueError, "memory|size", {"memory": "much"}),
+            (ValueError, "threads is 0", {"threads": 0}),
+            (ValueError, 'duplicates is "any"; give one of first, lowest', {"duplicates": "any"}),
+            (ValueError, 'kernel is "qhull"', {"kernel": "qhull"}),
+            (ValueError, "dim is 4", {"dim": 4}),
+            (ValueError, "dim is 3, but inputs has 2 columns", {"dim": 3}),
+            (ValueError, "format", {"output_format": "docx"}),
+        ]:
+            with self.subTest(options=options), self.assertRaisesRegex(kind, words):
+                inputs = "hills.las" if "every" in options else points
+                spillway.triangulate(inputs, "mesh.spm", **options)
+        for words, options in [
+            ("bounds has 3 numbers", {"bounds": (1, 2, 3)}),
+            ("least coordinate above the most", {"bounds": (1, 0, 0, 1)}),
+            ('returns has "second"', {"returns": "second"}),
+            ('thin is "deepest"', {"thin": (1, "deepest")}),
+            ("no effect with dim=3", {"dim": 3, "duplicates": "mean"}),
+        ]:
+            with self.subTest(options=options), self.assertRaisesRegex(ValueError, words):
+                spillway.triangulate("hills.las", "mesh.spm", **options)
+        self.assert_nothing_is_left()
+
+    def test_wrong_inputs(self):
+        for words, inputs in [
+            (r"shape \(4,\)", np.zeros(4)),
+            (r"shape \(5, 4\)", np.zeros((5, 4))),
+            (r"shape \(0,\)", []),
+            ("elements of type complex128", np.zeros((5, 2), complex)),
+            ("elements of type <U1|is no array", [["a", "b"]]),
+            ("not finite", [[0, 0], [1, np.nan], [1, 1]]),
+        ]:
+            with self.subTest(inputs=inputs), self.assertRaisesRegex(ValueError, words):
+                spillway.triangulate(inputs, "mesh.spm")
+        with self.assertRaisesRegex(TypeError, "a path and ndarray"):
+            spillway.triangulate(["a.las", np.zeros((3, 2))], "mesh.spm")
+        with self.assertRaisesRegex(TypeError, "output is of type int"):
+            spillway.triangulate(np.zeros((3, 2)), 3)
+        with self.assertRaisesRegex(ValueError, "every has no effect on an array"):
+            spillway.triangulate(np.eye(3), "mesh.spm", every=2)
+        with self.assertRaisesRegex(ValueError, "duplicates has no effect on points without z"):
+            spillway.triangulate(random_points(9, 2), "mesh.spm", duplicates="mean")
+        self.assert_nothing_is_left()
+
+    def test_limits_that_do_not_suffice(self):
+        points = random_points(1_000_000, 2)
+        with self.assertRaises(MemoryError) as caught:
+            spillway.triangulate(points, "mesh.spm", memory="1M")
+        self.assertEqual(caught.exception.code, "out of budget")
+        with self.assertRaises(spillway.errors.OutOfBudgetError):
+            spillway.triangulate(points, "mesh.spm", memory="32M", tmpdir="tmp", max_tmp="64K")
+        self.assert_nothing_is_left()
+
+
+class LongWork(InFolder):
+    def test_progress_rises_to_one_in_the_thread_of_the_caller(self):
+        told, threads = [], set()
+
+        def progress(fraction):
+            told.append(fraction)
+            threads.add(threading.get_ident())
+
+        points = random_points(600_000, 2)
+        spillway.triangulate(points, "mesh.spm", threads=1, progress=progress)
+        self.assertGreater(len(told), 1)
+        self.assertEqual(told, sorted(set(told)))
+        self.assertEqual(told[-1], 1)
+        self.assertEqual(threads, {threading.get_ident()})
+
+    def test_progress_of_every_call_ends_with_one(self):
+        spillway.generate("terrain", 2000, "hills.las")
+        for call in [
+            lambda **o: spillway.triangulate("hills.las", "mesh.spm", **o),
+            lambda **o: spillway.convert("hills.las", "hills.spp", sorted=True, **o),
+            lambda **o: spillway.convert("mesh.spm", "mesh.ply", **o),
+            lambda **o: spillway.dem("mesh.spm", resolution=5, **o),
+            lambda **o: spillway.contour("hills.las", "lines.gpkg", interval=10, **o),
+            lambda **o: spillway.render("mesh.ply", "view.png", size=64, **o),
+            lambda **o: spillway.check("mesh.spm", points="hills.las", **o),
+            lambda **o: spillway.info("hills.las", **o),
+            lambda **o: spillway.generate("uniform", 100, **o),
+            lambda **o: list(spillway.blocks("hills.las", **o)),
+        ]:
+            told = []
+            call(progress=told.append)
+            self.assertEqual(told[-1], 1)
+            self.assertEqual(told, sorted(set(told)))
+
+    def test_ctrl_c_leaves_nothing(self):
+        points = random_points(1_500_000, 2)
+
+        def press(fraction):
+            signal.raise_signal(signal.SIGINT)
+
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                spillway.triangulate(
+                    points, "mesh.spm", memory="64M", tmpdir="tmp", threads=1, progress=press
+                )
+        finally:
+            signal.signal(signal.SIGINT, before)
+        self.assert_nothing_is_left()
+
+    def test_what_progress_raises_ends_the_run(self):
+        def progress(fraction):
+            raise ZeroDivisionError
+
+        with self.assertRaises(ZeroDivisionError):
+            spillway.triangulate(
+                random_points(1_000_000, 2), "mesh.spm", memory="64M", tmpdir="tmp", progress=progress
+            )
+        self.assert_nothing_is_left()
+
+    def test_warnings_of_a_run_are_warnings_of_python(self):
+        command("generate", "terrain", "-n", 1000, "-o", "a.las")
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            spillway.dem("a.las", resolution=1e5)
+        self.assertEqual([w.category for w in caught], [spillway.Warning])
+        self.assertEqual(caught[0].filename, __file__)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with self.assertRaises(spillway.Warning):
+                spillway.dem("a.las", resolution=1e5)
+
+    def test_what_explains_a_run_is_logged(self):
+        spillway.generate("terrain", 1000, "hills.las")
+        with self.assertLogs("spillway", "INFO") as logged:
+            spillway.triangulate("hills.las", "mesh.spm")
+        self.assertIn("hills.las", "".join(logged.output))
+
+    def test_runs_beside_each_other(self):
+        results = {}
+
+        def work(number):
+            points = random_points(50_000, 2, seed=number)
+            results[number] = spillway.triangulate(points, f"{number}.spm").canonical_hash
+
+        threads = [threading.Thread(target=work, args=(n,)) for n in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for number, found in results.items():
+            self.assertEqual(found, spillway.Delaunay(random_points(50_000, 2, seed=number)).hash)
+
+
+if __name__ == "__main__":
+    unittest.main()
