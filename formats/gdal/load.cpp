@@ -20,8 +20,9 @@ constexpr const char* kModule = "spillway_gdal.so";
 /// in the folder of libraries when installed.
 constexpr std::array<std::string_view, 3> kFolders = {".", "../lib/spillway",
                                                       "../" SPILLWAY_LIBRARY_FOLDER "/spillway"};
-/// The same, seen from the folder of Spillway's shared library: when installed, and when built.
-constexpr std::array<std::string_view, 2> kLibraryFolders = {"spillway", "../bin"};
+/// The same, seen from the folder of Spillway's shared library: when installed, when built, and in
+/// the Python package.
+constexpr std::array<std::string_view, 3> kLibraryFolders = {"spillway", "../bin", "."};
 
 std::filesystem::path program_folder() {
   std::error_code error;
