@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <mutex>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "src/geometry/canonical_hash.h"
 #include "src/geometry/constructions/circumcentre.h"
@@ -23,18 +26,19 @@ namespace {
 
 constexpr std::size_t kCellGrain = std::size_t{1} << 14;
 
-/// For each place what answer(place, cell) says, `none` for places that are not finite. `cell` is
-/// where a search may begin; it is to be replaced by where it has ended.
-template <int D, class Index, typename Answer>
+/// For each place what answer(places, answers) puts into `answers`, `none` for places that are not
+/// finite. It is asked for some places at a time, each near the one before it.
+template <int D, typename Answer>
 std::vector<Answer> answer_all(
-    const detail::StartTree<D, Index>& starts, unsigned threads, const PointView<D>& places,
-    Answer none, const std::function<Answer(const Point<D>& place, Index& cell)>& answer) {
+    unsigned threads, const PointView<D>& places, Answer none,
+    const std::function<void(std::span<const Point<D>>, std::span<Answer>)>& answer) {
   std::vector<Answer> answers(places.size(), none);
   detail::for_each_near<D>(
       places.size(), threads, [&](std::size_t i) { return places[i]; },
       [&](std::span<const Point<D>> near, std::span<const std::size_t> numbers) {
-        Index cell = starts.find(near[0]);
-        for (std::size_t j = 0; j < near.size(); ++j) answers[numbers[j]] = answer(near[j], cell);
+        std::vector<Answer> some(near.size());
+        answer(near, some);
+        for (std::size_t j = 0; j < some.size(); ++j) answers[numbers[j]] = some[j];
       });
   return answers;
 }
@@ -171,12 +175,13 @@ template <int D, class Index>
 std::vector<Index> Delaunay<D, Index>::locate(PointView<D> places) const {
   const detail::FloatEnvironment environment;
   const auto view = mesh_->view();
-  return answer_all<D, Index, Index>(mesh_->starts(), mesh_->threads, places, -1,
-                                     [&](const Point<D>& place, Index& cell) {
-                                       const auto location = detail::locate<D>(view, place, cell);
-                                       cell = location.last;
-                                       return location.cell;
-                                     });
+  const auto& starts = mesh_->starts();
+  return answer_all<D, Index>(mesh_->threads, places, -1,
+                              [&](std::span<const Point<D>> near, std::span<Index> cells) {
+                                const auto locations = detail::locate_all<D>(view, starts, near);
+                                for (std::size_t j = 0; j < near.size(); ++j)
+                                  cells[j] = locations[j].cell;
+                              });
 }
 
 template <int D, class Index>
@@ -190,12 +195,15 @@ template <int D, class Index>
 std::vector<Index> Delaunay<D, Index>::nearest_vertex(PointView<D> places) const {
   const detail::FloatEnvironment environment;
   const auto view = mesh_->view();
-  return answer_all<D, Index, Index>(
-      mesh_->starts(), mesh_->threads, places, -1, [&](const Point<D>& place, Index& cell) {
-        const Index vertex = detail::nearest_vertex<D>(view, place, cell);
-        cell = view.vertex_cells[vertex];
-        return vertex;
-      });
+  const auto& starts = mesh_->starts();
+  return answer_all<D, Index>(mesh_->threads, places, -1,
+                              [&](std::span<const Point<D>> near, std::span<Index> vertices) {
+                                Index cell = starts.find(near[0]);
+                                for (std::size_t j = 0; j < near.size(); ++j) {
+                                  vertices[j] = detail::nearest_vertex<D>(view, near[j], cell);
+                                  cell = view.vertex_cells[vertices[j]];
+                                }
+                              });
 }
 
 template <int D, class Index>
@@ -208,13 +216,15 @@ std::vector<double> Delaunay<D, Index>::interpolate(std::span<const double> valu
   }
   const detail::FloatEnvironment environment;
   const auto view = mesh_->view();
+  const auto& starts = mesh_->starts();
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  return answer_all<D, Index, double>(
-      mesh_->starts(), mesh_->threads, places, kNone, [&](const Point<D>& place, Index& cell) {
-        const auto location = detail::locate<D>(view, place, cell);
-        cell = location.last;
-        if (location.cell < 0) return kNone;
-        return detail::interpolated_value<D>(view, values, location.cell, place);
+  return answer_all<D, double>(
+      mesh_->threads, places, kNone, [&](std::span<const Point<D>> near, std::span<double> found) {
+        const auto locations = detail::locate_all<D>(view, starts, near);
+        for (std::size_t j = 0; j < near.size(); ++j) {
+          const Index cell = locations[j].cell;
+          found[j] = cell < 0 ? kNone : detail::interpolated_value<D>(view, values, cell, near[j]);
+        }
       });
 }
 
