@@ -40,7 +40,8 @@ def lifted_planes(corners: Floats, centres: Floats) -> Floats:
     with np.errstate(all="ignore"):
         offset = (vertex * vertex).sum(axis=1) - 2 * (centres * vertex).sum(axis=1)
         planes = np.column_stack([2 * centres, np.full(len(centres), -1.0), offset])
-        return planes / np.linalg.norm(planes[:, :-1], axis=1)[:, None]
+        normalized: Floats = planes / np.linalg.norm(planes[:, :-1], axis=1)[:, None]
+        return normalized
 
 
 def _inverse(matrices: Floats) -> Floats:
@@ -50,8 +51,10 @@ def _inverse(matrices: Floats) -> Floats:
         return np.moveaxis(rows, -1, 0)
     a, b, c = np.moveaxis(matrices, 2, 0)
     rows = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1)
-    return rows / (a * rows[:, 0]).sum(axis=1)[:, None, None]
+    inverse: Floats = rows / (a * rows[:, 0]).sum(axis=1)[:, None, None]
+    return inverse
 
 
 def _one_norm(matrices: Floats) -> Floats:
-    return np.abs(matrices).sum(axis=1).max(axis=1)
+    norms: Floats = np.abs(matrices).sum(axis=1).max(axis=1)
+    return norms

@@ -23,7 +23,7 @@ def as_floats(numbers: Any, name: str) -> Floats:
     Such an array is returned as it is, whatever its strides; others are converted. Raises
     InvalidArgumentError for what has no exact value as float64.
     """
-    if isinstance(numbers, np.ma.MaskedArray) and np.ma.is_masked(numbers):
+    if isinstance(numbers, np.ma.MaskedArray) and np.any(numbers.mask):
         raise InvalidArgumentError(f"{name} has masked elements; leave them out")
     try:
         array = np.asarray(numbers)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import importlib
 import sys
 from typing import Any, Callable
 
@@ -262,8 +263,7 @@ class Delaunay:
         ImportError
             Without the package meshio.
         """
-        import meshio
-
+        meshio = importlib.import_module("meshio")
         points = self.points if self.z is None else np.column_stack([self.points, self.z])
         return meshio.Mesh(points, [("triangle" if self.ndim == 2 else "tetra", self.simplices)])
 
@@ -293,12 +293,13 @@ class Delaunay:
     paraboloid_shift = 0.0
     furthest_site = False
 
-    @property
+    @property  # type: ignore[misc]
     def __class__(self) -> type:
         # Users of triangulations in SciPy ask isinstance() for its class, and read arrays of the
         # same names. Whoever asks has imported it, so this need not.
         scipy_module = sys.modules.get("scipy.spatial._qhull")
-        return type(self) if scipy_module is None else scipy_module.Delaunay
+        theirs: type | None = getattr(scipy_module, "Delaunay", None)
+        return type(self) if theirs is None else theirs
 
     @property
     def _points(self) -> Floats:
@@ -309,6 +310,27 @@ class Delaunay:
         """The hyperplanes of the simplices on the paraboloid z = |x|^2, as downward unit normals and
         offsets, shape (nsimplex, ndim + 2)."""
         return frozen(lifted_planes(self.points[self.simplices], self.circumcenters))
+
+    @functools.cached_property
+    def good(self) -> Integers:
+        """One for each simplex: all are wanted."""
+        return frozen(np.ones(self.nsimplex, np.int32))
+
+    @property
+    def vertices(self) -> Integers:
+        """The same as `simplices`."""
+        return self.simplices
+
+    def lift_points(self, x: Any) -> Floats:
+        """Places on the paraboloid z = |x|^2, shape (..., ndim + 1), for places of (..., ndim)."""
+        places = as_places(x, self.ndim)
+        return np.concatenate([places, (places * places).sum(axis=-1, keepdims=True)], axis=-1)
+
+    def plane_distance(self, xi: Any) -> Floats:
+        """How far below the hyperplane of each simplex the lifted places lie, shape (...,
+        nsimplex), for places of (..., ndim): positive within its circumsphere, up to rounding."""
+        distances: Floats = self.lift_points(xi) @ self.equations[:, :-1].T + self.equations[:, -1]
+        return distances
 
 
 def _make_mesh(points: Floats, threads: int, progress: Any) -> Any:
