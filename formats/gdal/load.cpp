@@ -20,8 +20,8 @@ constexpr const char* kModule = "spillway_gdal.so";
 /// in the folder of libraries when installed.
 constexpr std::array<std::string_view, 3> kFolders = {".", "../lib/spillway",
                                                       "../" SPILLWAY_LIBRARY_FOLDER "/spillway"};
-/// The same, seen from the folder of Spillway's shared library, when installed and when built, and
-/// of an extension that has the library in itself and brings the module.
+/// The same, seen from the folder of Spillway's shared library: when installed, when built, and in
+/// the Python package.
 constexpr std::array<std::string_view, 3> kLibraryFolders = {"spillway", "../bin", "."};
 
 std::filesystem::path program_folder() {

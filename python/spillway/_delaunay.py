@@ -298,8 +298,8 @@ class Delaunay:
         # Users of triangulations in SciPy ask isinstance() for its class, and read arrays of the
         # same names. Whoever asks has imported it, so this need not.
         scipy_module = sys.modules.get("scipy.spatial._qhull")
-        kind: type = type(self) if scipy_module is None else scipy_module.Delaunay
-        return kind
+        theirs: type | None = getattr(scipy_module, "Delaunay", None)
+        return type(self) if theirs is None else theirs
 
     @property
     def _points(self) -> Floats:
@@ -310,6 +310,27 @@ class Delaunay:
         """The hyperplanes of the simplices on the paraboloid z = |x|^2, as downward unit normals and
         offsets, shape (nsimplex, ndim + 2)."""
         return frozen(lifted_planes(self.points[self.simplices], self.circumcenters))
+
+    @functools.cached_property
+    def good(self) -> Integers:
+        """One for each simplex: all are wanted."""
+        return frozen(np.ones(self.nsimplex, np.int32))
+
+    @property
+    def vertices(self) -> Integers:
+        """The same as `simplices`."""
+        return self.simplices
+
+    def lift_points(self, x: Any) -> Floats:
+        """Places on the paraboloid z = |x|^2, shape (..., ndim + 1), for places of (..., ndim)."""
+        places = as_places(x, self.ndim)
+        return np.concatenate([places, (places * places).sum(axis=-1, keepdims=True)], axis=-1)
+
+    def plane_distance(self, xi: Any) -> Floats:
+        """How far below the hyperplane of each simplex the lifted places lie, shape (...,
+        nsimplex), for places of (..., ndim): positive within its circumsphere, up to rounding."""
+        distances: Floats = self.lift_points(xi) @ self.equations[:, :-1].T + self.equations[:, -1]
+        return distances
 
 
 def _make_mesh(points: Floats, threads: int, progress: Any) -> Any:

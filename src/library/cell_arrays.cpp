@@ -36,109 +36,90 @@ SlabArray<T> joined(const std::vector<std::vector<T>>& slices) {
 template <int D, class Index>
 class Flattener {
  public:
-  explicit Flattener(const Triangulation<D>& triangulation) : triangulation_(triangulation) {
-    std::size_t slots = 0;
-    for (std::uint32_t b = 0; b < triangulation.lists.size(); ++b) {
-      const std::size_t size = triangulation.lists[b].simplices.size();
-      first_slots_.push_back(slots);
+  Flattener(const Triangulation<D>& triangulation, const CellNumbers<D>& numbers)
+      : triangulation_(triangulation), numbers_(numbers) {
+    for (std::uint32_t l = 0; l < triangulation.lists.size(); ++l) {
+      const std::size_t size = triangulation.lists[l].simplices.size();
       for (std::size_t begin = 0; begin < size; begin += kGrain) {
-        ranges_.push_back({b, begin, std::min(size, begin + kGrain), 0});
+        ranges_.push_back({l, begin, std::min(size, begin + kGrain)});
       }
-      slots += size;
     }
-    numbers_ = SlabArray<Index>(slots);
   }
 
   CellArrays<Index> flatten() && {
-    number_cells();
-    arrays_.vertices = SlabArray<Index>(count_ * (D + 1));
-    arrays_.neighbours = SlabArray<Index>(count_ * (D + 1));
-    arrays_.vertex_cells =
-        SlabArray<Index>(triangulation_.points.size(), std::numeric_limits<Index>::max());
+    arrays_.vertices = SlabArray<Index>(numbers_.count() * (D + 1));
+    arrays_.neighbours = SlabArray<Index>(numbers_.count() * (D + 1));
+    lowest_ = SlabArray<Index>(triangulation_.points.size(), kNone);
     hull_facets_.resize(ranges_.size());
     hull_cells_.resize(ranges_.size());
-    for_each_range([this](std::size_t r) { list_cells(r); });
+    parallel_for(ranges_.size(), 1,
+                 [this](std::size_t r, std::size_t, std::size_t) { list_cells(r); });
     arrays_.hull_facets = joined(hull_facets_);
     arrays_.hull_cells = joined(hull_cells_);
-    for (const Duplicate& duplicate : triangulation_.duplicates) {
-      arrays_.vertex_cells[triangulation_.input_index[duplicate.dropped]] = -1;
-    }
+    list_vertex_cells();
     return std::move(arrays_);
   }
 
  private:
-  /// Some simplices of a list; `first` is the number of the first finite one.
+  static constexpr Index kNone = std::numeric_limits<Index>::max();
+
+  /// Some simplices of a list.
   struct Range {
     std::uint32_t list;
     std::size_t begin, end;
-    std::size_t first;
   };
-
-  template <typename Body>
-  void for_each_range(const Body& body) {
-    parallel_for(ranges_.size(), 1, [&](std::size_t r, std::size_t, std::size_t) { body(r); });
-  }
-
-  [[nodiscard]] const Simplex<D>& simplex_at(const Range& range, std::size_t i) const {
-    return triangulation_.lists[range.list].simplices[i];
-  }
-
-  static bool is_cell(const Simplex<D>& simplex) {
-    return !simplex.removed() && !simplex.infinite();
-  }
-
-  [[nodiscard]] Index& number_of(std::uint32_t list, std::size_t i) {
-    return numbers_[first_slots_[list] + i];
-  }
-
-  void number_cells() {
-    for_each_range([this](std::size_t r) {
-      Range& range = ranges_[r];
-      for (std::size_t i = range.begin; i < range.end; ++i) {
-        range.first += is_cell(simplex_at(range, i)) ? 1 : 0;
-      }
-    });
-    for (Range& range : ranges_) count_ += std::exchange(range.first, count_);
-    for_each_range([this](std::size_t r) {
-      const Range& range = ranges_[r];
-      auto next = static_cast<Index>(range.first);
-      for (std::size_t i = range.begin; i < range.end; ++i) {
-        number_of(range.list, i) = is_cell(simplex_at(range, i)) ? next++ : Index{-1};
-      }
-    });
-  }
 
   void list_cells(std::size_t r) {
     const Range& range = ranges_[r];
+    const SimplexList<D>& list = triangulation_.lists[range.list];
+    const auto* const own_numbers = numbers_.list(range.list);
+    const VertexId* const input_index = triangulation_.input_index.data();
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      const Index cell = number_of(range.list, i);
+      const auto cell =
+          static_cast<Index>(CellNumbers<D>::number(own_numbers, static_cast<std::uint32_t>(i)));
       if (cell < 0) continue;
-      const Simplex<D>& simplex = simplex_at(range, i);
+      const Simplex<D>& simplex = list.simplices[i];
       const std::size_t first = static_cast<std::size_t>(cell) * (D + 1);
+      Index* const vertices = arrays_.vertices.data() + first;
+      Index* const neighbours = arrays_.neighbours.data() + first;
       for (int k = 0; k <= D; ++k) {
-        const auto vertex = static_cast<Index>(triangulation_.input_index[simplex.vertices[k]]);
-        arrays_.vertices[first + k] = vertex;
-        lower_to(arrays_.vertex_cells[vertex], cell);
+        const VertexId vertex = simplex.vertices[k];
+        vertices[k] = static_cast<Index>(input_index[vertex]);
+        lower_to(lowest_[vertex], cell);
       }
-      const SimplexId id{range.list, static_cast<std::uint32_t>(i)};
       for (int k = 0; k <= D; ++k) {
-        const SimplexId neighbour = triangulation_.neighbour(id, k);
-        const Index number = number_of(neighbour.list, neighbour.index);
-        arrays_.neighbours[first + k] = number;
+        const std::uint32_t n = simplex.neighbours[k];
+        const auto number = static_cast<Index>(n < Simplex<D>::kLink
+                                                   ? CellNumbers<D>::number(own_numbers, n)
+                                                   : number_of(list.links[n - Simplex<D>::kLink]));
+        neighbours[k] = number;
         if (number >= 0) continue;
         hull_cells_[r].push_back(cell);
-        for (const int place : facet_places<D>(k)) {
-          hull_facets_[r].push_back(arrays_.vertices[first + place]);
-        }
+        for (const int place : facet_places<D>(k)) hull_facets_[r].push_back(vertices[place]);
       }
     }
   }
 
+  [[nodiscard]] std::int64_t number_of(SimplexId id) const {
+    return CellNumbers<D>::number(numbers_.list(id.list), id.index);
+  }
+
+  /// Vertices lie near each other under the triangulation's numbers, so that the lowest cells were
+  /// gathered under these; points need not under those of the input.
+  void list_vertex_cells() {
+    arrays_.vertex_cells = SlabArray<Index>(lowest_.size());
+    parallel_for(lowest_.size(), kGrain, [this](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        arrays_.vertex_cells[triangulation_.input_index[v]] =
+            lowest_[v] == kNone ? Index{-1} : lowest_[v];
+      }
+    });
+  }
+
   const Triangulation<D>& triangulation_;
-  std::vector<std::size_t> first_slots_;  ///< by list
+  const CellNumbers<D>& numbers_;
   std::vector<Range> ranges_;
-  SlabArray<Index> numbers_;  ///< of cells, by slot; -1 for infinite and removed simplices
-  std::size_t count_ = 0;
+  SlabArray<Index> lowest_;  ///< cell, by the triangulation's vertices; kNone for duplicates
   CellArrays<Index> arrays_;
   std::vector<std::vector<Index>> hull_facets_, hull_cells_;  ///< by range
 };
@@ -146,13 +127,14 @@ class Flattener {
 }  // namespace
 
 template <int D, class Index>
-CellArrays<Index> make_cell_arrays(const Triangulation<D>& triangulation) {
-  return Flattener<D, Index>(triangulation).flatten();
+CellArrays<Index> make_cell_arrays(const Triangulation<D>& triangulation,
+                                   const CellNumbers<D>& numbers) {
+  return Flattener<D, Index>(triangulation, numbers).flatten();
 }
 
-template CellArrays<std::int32_t> make_cell_arrays<2>(const Triangulation<2>&);
-template CellArrays<std::int32_t> make_cell_arrays<3>(const Triangulation<3>&);
-template CellArrays<std::int64_t> make_cell_arrays<2>(const Triangulation<2>&);
-template CellArrays<std::int64_t> make_cell_arrays<3>(const Triangulation<3>&);
+template CellArrays<std::int32_t> make_cell_arrays(const Triangulation<2>&, const CellNumbers<2>&);
+template CellArrays<std::int32_t> make_cell_arrays(const Triangulation<3>&, const CellNumbers<3>&);
+template CellArrays<std::int64_t> make_cell_arrays(const Triangulation<2>&, const CellNumbers<2>&);
+template CellArrays<std::int64_t> make_cell_arrays(const Triangulation<3>&, const CellNumbers<3>&);
 
 }  // namespace spillway::detail

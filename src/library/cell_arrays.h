@@ -7,6 +7,7 @@
 
 #include "src/delaunay/common/slab_array.h"
 #include "src/delaunay/common/triangulation.h"
+#include "src/library/cell_numbers.h"
 
 namespace spillway::detail {
 
@@ -26,10 +27,11 @@ std::span<const T> span_of(const SlabArray<T>& array) {
   return {array.data(), array.size()};
 }
 
-/// Cells are numbered in the order of the triangulation's lists, which does not depend on threads.
-/// An Index must be able to number them. Made by the threads of with_threads().
+/// `numbers` are those of the triangulation's cells, which an Index must be able to hold. Made by
+/// the threads of with_threads().
 template <int D, class Index>
-CellArrays<Index> make_cell_arrays(const Triangulation<D>& triangulation);
+CellArrays<Index> make_cell_arrays(const Triangulation<D>& triangulation,
+                                   const CellNumbers<D>& numbers);
 
 /// The places of cell vertices in the order in which they are the facet opposite the i-th, seen
 /// from outside.

@@ -11,6 +11,7 @@
 
 #include "src/delaunay/delaunay.h"
 #include "src/error.h"
+#include "src/library/cell_numbers.h"
 #include "src/library/query_order.h"
 #include "src/parallel/most_threads.h"
 #include "src/parallel/parallel.h"
@@ -107,24 +108,6 @@ std::vector<spillway::Duplicate<Index>> list_duplicates(const Triangulation<D>& 
   return duplicates;
 }
 
-/// Vertices are numbered along a curve, so that every n-th of them together are spread evenly.
-template <int D, class Index>
-StartTree<D, Index> make_starts(const Triangulation<D>& triangulation,
-                                const CellArrays<Index>& cells) {
-  std::vector<StartPoint<D, Index>> sample;
-  const std::size_t step = StartTree<D, Index>::kSampled;
-  sample.reserve(triangulation.points.size() / step + 1);
-  for (std::size_t v = 0; v < triangulation.points.size(); v += step) {
-    const Index cell = cells.vertex_cells[triangulation.input_index[v]];
-    if (cell >= 0) sample.push_back({triangulation.points[v], cell});
-  }
-  if (sample.empty()) {
-    const Index vertex = cells.vertices[0];
-    sample.push_back({triangulation.points[0], cells.vertex_cells[vertex]});
-  }
-  return StartTree<D, Index>(std::move(sample));
-}
-
 }  // namespace
 
 void require_numbers(std::size_t count, std::size_t most, const std::string& things) {
@@ -148,12 +131,12 @@ MeshData<D, Index> make_mesh(const PointView<D>& points, const spillway::Delauna
   const Triangulation<D> triangulation =
       triangulate<D>(span_of(mesh.points), options, mesh.threads);
   require_span(triangulation.dimension, D, points.size());
-  require_numbers(triangulation.finite_count(), kMostNumbers<Index>, "cells");
-  if (options.stop.stop_requested()) throw Interrupted();
   with_threads(mesh.threads, [&] {
-    mesh.cells = make_cell_arrays<D, Index>(triangulation);
+    const CellNumbers<D> numbers(triangulation);
+    require_numbers(numbers.count(), kMostNumbers<Index>, "cells");
+    if (options.stop.stop_requested()) throw Interrupted();
+    mesh.cells = make_cell_arrays<D, Index>(triangulation, numbers);
     mesh.duplicates = list_duplicates<D, Index>(triangulation);
-    mesh.starts = make_starts<D, Index>(triangulation, mesh.cells);
   });
   return mesh;
 }

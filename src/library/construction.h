@@ -12,18 +12,16 @@
 #include "src/delaunay/common/slab_array.h"
 #include "src/library/cell_arrays.h"
 #include "src/library/mesh_view.h"
-#include "src/library/start_tree.h"
 
 namespace spillway::detail {
 
-/// All that a spillway::Delaunay has.
+/// What a triangulation is made into.
 template <int D, class Index>
 struct MeshData {
   unsigned threads = 1;
   SlabArray<Point<D>> points;
   CellArrays<Index> cells;
   std::vector<spillway::Duplicate<Index>> duplicates;
-  StartTree<D, Index> starts;
 
   [[nodiscard]] MeshView<D, Index> view() const {
     return {span_of(points), span_of(cells.vertices), span_of(cells.neighbours),

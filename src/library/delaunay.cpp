@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <mutex>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "src/geometry/canonical_hash.h"
 #include "src/geometry/constructions/circumcentre.h"
@@ -14,6 +17,8 @@
 #include "src/library/interpolation.h"
 #include "src/library/point_location.h"
 #include "src/library/query_order.h"
+#include "src/library/search_starts.h"
+#include "src/library/start_tree.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway {
@@ -21,18 +26,19 @@ namespace {
 
 constexpr std::size_t kCellGrain = std::size_t{1} << 14;
 
-/// For each place what answer(place, cell) says, `none` for places that are not finite. `cell` is
-/// where a search may begin; it is to be replaced by where it has ended.
-template <int D, class Index, typename Answer>
+/// For each place what answer(places, answers) puts into `answers`, `none` for places that are not
+/// finite. It is asked for some places at a time, each near the one before it.
+template <int D, typename Answer>
 std::vector<Answer> answer_all(
-    const detail::MeshData<D, Index>& mesh, const PointView<D>& places, Answer none,
-    const std::function<Answer(const Point<D>& place, Index& cell)>& answer) {
+    unsigned threads, const PointView<D>& places, Answer none,
+    const std::function<void(std::span<const Point<D>>, std::span<Answer>)>& answer) {
   std::vector<Answer> answers(places.size(), none);
   detail::for_each_near<D>(
-      places.size(), mesh.threads, [&](std::size_t i) { return places[i]; },
+      places.size(), threads, [&](std::size_t i) { return places[i]; },
       [&](std::span<const Point<D>> near, std::span<const std::size_t> numbers) {
-        Index cell = mesh.starts.find(near[0]);
-        for (std::size_t j = 0; j < near.size(); ++j) answers[numbers[j]] = answer(near[j], cell);
+        std::vector<Answer> some(near.size());
+        answer(near, some);
+        for (std::size_t j = 0; j < some.size(); ++j) answers[numbers[j]] = some[j];
       });
   return answers;
 }
@@ -40,7 +46,16 @@ std::vector<Answer> answer_all(
 }  // namespace
 
 template <int D, class Index>
-struct Delaunay<D, Index>::Mesh : detail::MeshData<D, Index> {};
+struct Delaunay<D, Index>::Mesh : detail::MeshData<D, Index> {
+  explicit Mesh(detail::MeshData<D, Index> data) : detail::MeshData<D, Index>(std::move(data)) {}
+
+  [[nodiscard]] const detail::StartTree<D, Index>& starts() const {
+    return starts_.of(this->view(), this->threads);
+  }
+
+ private:
+  detail::SearchStarts<D, Index> starts_;
+};
 
 template <int D, class Index>
 Delaunay<D, Index>::Delaunay(PointView<D> points, const DelaunayOptions& options) {
@@ -153,36 +168,42 @@ template <int D, class Index>
 Index Delaunay<D, Index>::locate(const Point<D>& place) const {
   if (!detail::is_finite<D>(place)) return -1;
   const detail::FloatEnvironment environment;
-  return detail::locate<D>(mesh_->view(), place, mesh_->starts.find(place)).cell;
+  return detail::locate<D>(mesh_->view(), place, mesh_->starts().find(place)).cell;
 }
 
 template <int D, class Index>
 std::vector<Index> Delaunay<D, Index>::locate(PointView<D> places) const {
   const detail::FloatEnvironment environment;
   const auto view = mesh_->view();
-  return answer_all<D, Index, Index>(*mesh_, places, -1, [&](const Point<D>& place, Index& cell) {
-    const auto location = detail::locate<D>(view, place, cell);
-    cell = location.last;
-    return location.cell;
-  });
+  const auto& starts = mesh_->starts();
+  return answer_all<D, Index>(mesh_->threads, places, -1,
+                              [&](std::span<const Point<D>> near, std::span<Index> cells) {
+                                const auto locations = detail::locate_all<D>(view, starts, near);
+                                for (std::size_t j = 0; j < near.size(); ++j)
+                                  cells[j] = locations[j].cell;
+                              });
 }
 
 template <int D, class Index>
 Index Delaunay<D, Index>::nearest_vertex(const Point<D>& place) const {
   if (!detail::is_finite<D>(place)) return -1;
   const detail::FloatEnvironment environment;
-  return detail::nearest_vertex<D>(mesh_->view(), place, mesh_->starts.find(place));
+  return detail::nearest_vertex<D>(mesh_->view(), place, mesh_->starts().find(place));
 }
 
 template <int D, class Index>
 std::vector<Index> Delaunay<D, Index>::nearest_vertex(PointView<D> places) const {
   const detail::FloatEnvironment environment;
   const auto view = mesh_->view();
-  return answer_all<D, Index, Index>(*mesh_, places, -1, [&](const Point<D>& place, Index& cell) {
-    const Index vertex = detail::nearest_vertex<D>(view, place, cell);
-    cell = view.vertex_cells[vertex];
-    return vertex;
-  });
+  const auto& starts = mesh_->starts();
+  return answer_all<D, Index>(mesh_->threads, places, -1,
+                              [&](std::span<const Point<D>> near, std::span<Index> vertices) {
+                                Index cell = starts.find(near[0]);
+                                for (std::size_t j = 0; j < near.size(); ++j) {
+                                  vertices[j] = detail::nearest_vertex<D>(view, near[j], cell);
+                                  cell = view.vertex_cells[vertices[j]];
+                                }
+                              });
 }
 
 template <int D, class Index>
@@ -195,13 +216,15 @@ std::vector<double> Delaunay<D, Index>::interpolate(std::span<const double> valu
   }
   const detail::FloatEnvironment environment;
   const auto view = mesh_->view();
+  const auto& starts = mesh_->starts();
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  return answer_all<D, Index, double>(
-      *mesh_, places, kNone, [&](const Point<D>& place, Index& cell) {
-        const auto location = detail::locate<D>(view, place, cell);
-        cell = location.last;
-        if (location.cell < 0) return kNone;
-        return detail::interpolated_value<D>(view, values, location.cell, place);
+  return answer_all<D, double>(
+      mesh_->threads, places, kNone, [&](std::span<const Point<D>> near, std::span<double> found) {
+        const auto locations = detail::locate_all<D>(view, starts, near);
+        for (std::size_t j = 0; j < near.size(); ++j) {
+          const Index cell = locations[j].cell;
+          found[j] = cell < 0 ? kNone : detail::interpolated_value<D>(view, values, cell, near[j]);
+        }
       });
 }
 

@@ -2,14 +2,22 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "src/geometry/distance.h"
 #include "src/geometry/predicate_stages.h"
 #include "src/geometry/predicates.h"
 #include "src/library/distinct_queue.h"
+#include "src/parallel/parallel.h"
 
 namespace spillway::detail {
 namespace {
+
+/// Walks that take turns: while one waits for memory, the others go on. With half as many a place
+/// takes a sixth longer, with twice as many no less.
+constexpr std::size_t kWalkers = 8;
+/// A walk begins with a search from afar, so it should go to some places.
+constexpr std::size_t kFewestPlaces = 16;
 
 /// On which side of the facet opposite the i-th corner of a cell the place lies: positive inside.
 template <int D>
@@ -107,54 +115,112 @@ bool go_nearer(const MeshView<D, Index>& mesh, const Point<D>& place, Step<Index
   return false;
 }
 
-/// Where a walk ended, as far as it knows.
-template <class Index>
+/// A visibility walk to a place.
+template <int D, class Index>
 struct Walk {
-  Index last;                ///< the last cell
-  bool outside = false;      ///< the place lies beyond a facet of it that is on the hull
-  bool on_boundary = false;  ///< the place lies on its boundary
+  Point<D> place;
+  Index cell;                ///< where it is
+  Index from = -1;           ///< the cell before: the place is strictly on this side of it
+  bool outside = false;      ///< the place lies beyond a facet of the cell that is on the hull
+  bool on_boundary = false;  ///< the place lies on the cell's boundary
   Index vertex = -1;         ///< the vertex that the place is, if it is one
 };
 
+/// Goes to the next cell. Returns false if the walk has come to its end.
 template <int D, class Index>
-Walk<Index> walk(const MeshView<D, Index>& mesh, const Point<D>& place, Index start) {
-  Index cell = start;
-  Index from = -1;
-  for (;;) {
-    const auto corners = mesh.corners(cell);
-    const auto corner = std::find(corners.begin(), corners.end(), place);
-    if (corner != corners.end()) {
-      const Index vertex = mesh.vertex(cell, static_cast<int>(corner - corners.begin()));
-      return {.last = cell, .on_boundary = true, .vertex = vertex};
-    }
-    Index next = cell;
-    bool on_boundary = false;
-    for (int i = 0; i <= D; ++i) {
-      const Index neighbour = mesh.neighbour(cell, i);
-      if (neighbour >= 0 && neighbour == from) continue;  // the place is strictly on this side
-      const int side = side_of_facet<D>(corners, i, place);
-      if (side < 0) {
-        next = neighbour;
-        break;
-      }
-      on_boundary = on_boundary || side == 0;
-    }
-    if (next < 0) return {.last = cell, .outside = true};
-    if (next == cell) return {.last = cell, .on_boundary = on_boundary};
-    from = cell;
-    cell = next;
+bool go_on(const MeshView<D, Index>& mesh, Walk<D, Index>& walk) {
+  const auto corners = mesh.corners(walk.cell);
+  const auto corner = std::find(corners.begin(), corners.end(), walk.place);
+  if (corner != corners.end()) {
+    walk.vertex = mesh.vertex(walk.cell, static_cast<int>(corner - corners.begin()));
+    return false;
   }
+  for (int i = 0; i <= D; ++i) {
+    const Index neighbour = mesh.neighbour(walk.cell, i);
+    if (neighbour >= 0 && neighbour == walk.from) continue;
+    const int side = side_of_facet<D>(corners, i, walk.place);
+    if (side < 0) {
+      walk.outside = neighbour < 0;
+      if (walk.outside) return false;
+      walk.from = std::exchange(walk.cell, neighbour);
+      walk.on_boundary = false;
+      return true;
+    }
+    walk.on_boundary = walk.on_boundary || side == 0;
+  }
+  return false;
 }
+
+template <int D, class Index>
+Location<Index> end_of(const MeshView<D, Index>& mesh, const Walk<D, Index>& walk) {
+  if (walk.outside) return {-1, walk.cell};
+  if (walk.vertex >= 0) return {mesh.vertex_cells[walk.vertex], walk.cell};
+  if (!walk.on_boundary) return {walk.cell, walk.cell};
+  return {lowest_cell_around<D>(mesh, walk.place, walk.cell), walk.cell};
+}
+
+template <int D, class Index>
+void fetch_cell(const MeshView<D, Index>& mesh, Index cell) {
+  const std::size_t first = static_cast<std::size_t>(cell) * (D + 1);
+  __builtin_prefetch(&mesh.vertices[first]);
+  __builtin_prefetch(&mesh.neighbours[first]);
+}
+
+template <int D, class Index>
+void fetch_corners(const MeshView<D, Index>& mesh, Index cell) {
+  for (int i = 0; i <= D; ++i) __builtin_prefetch(&mesh.points[mesh.vertex(cell, i)]);
+}
+
+/// Walks to some places, one after the other.
+template <int D, class Index>
+struct Walker {
+  std::size_t now, end;  ///< numbers of places
+  Walk<D, Index> walk;
+  bool has_corners = false;  ///< whether those of the cell have been fetched
+};
 
 }  // namespace
 
 template <int D, class Index>
 Location<Index> locate(const MeshView<D, Index>& mesh, const Point<D>& place, Index start) {
-  const Walk<Index> end = walk<D>(mesh, place, start);
-  if (end.outside) return {-1, end.last};
-  if (end.vertex >= 0) return {mesh.vertex_cells[end.vertex], end.last};
-  if (!end.on_boundary) return {end.last, end.last};
-  return {lowest_cell_around<D>(mesh, place, end.last), end.last};
+  Walk<D, Index> walk{place, start};
+  while (go_on<D>(mesh, walk)) {
+  }
+  return end_of<D>(mesh, walk);
+}
+
+template <int D, class Index>
+std::vector<Location<Index>> locate_all(const MeshView<D, Index>& mesh,
+                                        const StartTree<D, Index>& starts,
+                                        std::span<const Point<D>> places) {
+  std::vector<Location<Index>> found(places.size());
+  std::vector<Walker<D, Index>> walkers;
+  const std::size_t share = std::max(kFewestPlaces, grain_count(places.size(), kWalkers));
+  for (std::size_t first = 0; first < places.size(); first += share) {
+    const Index start = starts.find(places[first]);
+    walkers.push_back({first, std::min(places.size(), first + share), {places[first], start}});
+    fetch_cell<D>(mesh, start);
+  }
+  while (!walkers.empty()) {
+    for (std::size_t w = 0; w < walkers.size(); ++w) {
+      Walker<D, Index>& walker = walkers[w];
+      if (!std::exchange(walker.has_corners, true)) {
+        fetch_corners<D>(mesh, walker.walk.cell);
+      } else if (go_on<D>(mesh, walker.walk)) {
+        fetch_cell<D>(mesh, walker.walk.cell);
+        walker.has_corners = false;
+      } else {
+        found[walker.now] = end_of<D>(mesh, walker.walk);
+        if (++walker.now < walker.end) {
+          walker.walk = {places[walker.now], walker.walk.cell};
+        } else {
+          walker = walkers.back();
+          walkers.pop_back();
+        }
+      }
+    }
+  }
+  return found;
 }
 
 template <int D, class Index>
@@ -179,12 +245,24 @@ template Location<std::int64_t> locate<2>(const MeshView<2, std::int64_t>&, cons
                                           std::int64_t);
 template Location<std::int64_t> locate<3>(const MeshView<3, std::int64_t>&, const Point<3>&,
                                           std::int64_t);
+template std::vector<Location<std::int32_t>> locate_all<2>(const MeshView<2, std::int32_t>&,
+                                                           const StartTree<2, std::int32_t>&,
+                                                           std::span<const Point<2>>);
 template std::int32_t nearest_vertex<2>(const MeshView<2, std::int32_t>&, const Point<2>&,
                                         std::int32_t);
+template std::vector<Location<std::int32_t>> locate_all<3>(const MeshView<3, std::int32_t>&,
+                                                           const StartTree<3, std::int32_t>&,
+                                                           std::span<const Point<3>>);
 template std::int32_t nearest_vertex<3>(const MeshView<3, std::int32_t>&, const Point<3>&,
                                         std::int32_t);
+template std::vector<Location<std::int64_t>> locate_all<2>(const MeshView<2, std::int64_t>&,
+                                                           const StartTree<2, std::int64_t>&,
+                                                           std::span<const Point<2>>);
 template std::int64_t nearest_vertex<2>(const MeshView<2, std::int64_t>&, const Point<2>&,
                                         std::int64_t);
+template std::vector<Location<std::int64_t>> locate_all<3>(const MeshView<3, std::int64_t>&,
+                                                           const StartTree<3, std::int64_t>&,
+                                                           std::span<const Point<3>>);
 template std::int64_t nearest_vertex<3>(const MeshView<3, std::int64_t>&, const Point<3>&,
                                         std::int64_t);
 

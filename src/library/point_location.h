@@ -1,6 +1,10 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "src/library/mesh_view.h"
+#include "src/library/start_tree.h"
 
 namespace spillway::detail {
 
@@ -17,6 +21,13 @@ struct Location {
 /// the answer does not depend on `start`. The place must be finite.
 template <int D, class Index>
 Location<Index> locate(const MeshView<D, Index>& mesh, const Point<D>& place, Index start);
+
+/// The same for many finite places, which are to lie near each other in their order. Several walks
+/// take turns, since a walk alone spends most of its time waiting for memory.
+template <int D, class Index>
+std::vector<Location<Index>> locate_all(const MeshView<D, Index>& mesh,
+                                        const StartTree<D, Index>& starts,
+                                        std::span<const Point<D>> places);
 
 /// The vertex nearest to a place, the lowest number of several. `start` is any cell; a near one
 /// saves time. Goes from vertex to nearer vertex along edges: where none is nearer, none in the

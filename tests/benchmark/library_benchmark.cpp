@@ -1,7 +1,8 @@
 // A mesh in memory: its construction, and queries of many places, beside CGAL's on the same points
 // and places, sorted along its spatial curve, each search from where the last one ended. Prints a
 // Markdown table of microseconds a point or place, medians over the turns: processor time of the
-// one thread that works, or wall time if there are several.
+// one thread that works, or wall time if there are several. The engine is the part of construction
+// that all other calls share.
 
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_3.h>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "src/delaunay/common/schedule.h"
+#include "src/delaunay/delaunay.h"
 #include "src/generators/generators.h"
 #include "tests/benchmark/cgal_timing.h"
 
@@ -63,7 +65,7 @@ double median_microseconds(const Plan& plan, std::size_t items, const Work& work
 
 template <int D>
 void print_row(const Plan& plan, const std::string& family, const std::string& whose,
-               std::array<double, 6> times) {
+               std::array<double, 7> times) {
   std::string row = fmt::format("| {}D {} | {} | {} |", D, family, plan.points, whose);
   for (const double time : times) {
     row += time > 0 ? fmt::format(" {:.3f} |", time) : std::string(" - |");
@@ -85,15 +87,15 @@ void time_cgal(const Plan& plan, const std::string& family, const std::vector<Po
     return copy;
   };
   typename Cgal<D>::Triangulation triangulation;
-  std::array<double, 6> times{};
-  times[0] = median_microseconds<ProcessorStopwatch>(plan, points.size(), [&] {
+  std::array<double, 7> times{};
+  times[1] = median_microseconds<ProcessorStopwatch>(plan, points.size(), [&] {
     triangulation = typename Cgal<D>::Triangulation(input.begin(), input.end());
   });
-  times[1] = median_microseconds<ProcessorStopwatch>(plan, places.size(), [&] {
+  times[2] = median_microseconds<ProcessorStopwatch>(plan, places.size(), [&] {
     auto cell = triangulation.locate(queries[0]);
     for (const Query& q : sorted()) cell = triangulation.locate(q, cell);
   });
-  times[2] = median_microseconds<ProcessorStopwatch>(plan, places.size(), [&] {
+  times[3] = median_microseconds<ProcessorStopwatch>(plan, places.size(), [&] {
     auto cell = triangulation.locate(queries[0]);
     for (const Query& q : sorted()) {
       cell = Cgal<D>::cell(triangulation.nearest_vertex(q, cell));
@@ -118,6 +120,8 @@ void time_family(const Plan& plan, const std::string& family) {
       return threads == 1 ? median_microseconds<ProcessorStopwatch>(plan, items, work)
                           : median_microseconds<Stopwatch>(plan, items, work);
     };
+    const double engine =
+        time(points.size(), [&] { return delaunay<D>(points, {.threads = threads}); });
     const double construction =
         time(points.size(), [&] { const Delaunay<D> mesh(points, options); });
     const Delaunay<D> mesh(points, options);
@@ -129,9 +133,9 @@ void time_family(const Plan& plan, const std::string& family) {
       for (const auto& place : places) static_cast<void>(mesh.locate(place));
     });
     const double centres = time(points.size(), [&] { return mesh.circumcentres(); });
-    print_row<D>(plan, family,
-                 fmt::format("Spillway, {} thread{}", threads, threads == 1 ? "" : "s"),
-                 {construction, locate, nearest, interpolate, threads == 1 ? one : 0, centres});
+    print_row<D>(
+        plan, family, fmt::format("Spillway, {} thread{}", threads, threads == 1 ? "" : "s"),
+        {engine, construction, locate, nearest, interpolate, threads == 1 ? one : 0, centres});
   }
 }
 
@@ -150,8 +154,9 @@ int main(int argc, char** argv) {
   app.add_flag("--cgal,!--no-cgal", plan.cgal, "Time CGAL, too");
   CLI11_PARSE(app, argc, argv);
   fmt::print(
-      "| points | n | | construction | locate | nearest vertex | interpolate | locate, one by one "
-      "| circumcentres |\n|---|---|---|---|---|---|---|---|---|\n");
+      "| points | n | | engine | construction | locate | nearest vertex | interpolate | locate, "
+      "one by one "
+      "| circumcentres |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const int dimension : plan.dimensions) {
     for (const std::string& family : plan.families) {
       dimension == 2 ? spillway::detail::time_family<2>(plan, family)

@@ -4,11 +4,16 @@
 #include <spillway/delaunay.h>
 
 #include <algorithm>
+#include <array>
+#include <barrier>
 #include <cmath>
 #include <limits>
+#include <thread>
+#include <vector>
 
 #include "src/geometry/distance.h"
 #include "src/geometry/predicates.h"
+#include "src/library/search_starts.h"
 #include "tests/library/point_sets.h"
 
 namespace spillway::detail {
@@ -148,6 +153,50 @@ TYPED_TEST(InMemoryQuery, ManyPlacesAreAnsweredAsEachAlone) {
     for (std::size_t i = 0; i < places.size(); ++i) {
       EXPECT_TRUE(all[i] == interpolated[i] || (std::isnan(all[i]) && cells[i] < 0));
     }
+  }
+}
+
+TYPED_TEST(InMemoryQuery, TheFirstQuestionsMayComeFromManyThreadsAtOnce) {
+  constexpr int D = TypeParam::value;
+  constexpr std::size_t kThreads = 8;
+  const Points<D> points = testing::random_points<D>(70'000, 17);
+  const Points<D> places = places_around<D>(points, 400, 18);
+  const auto expected = Delaunay<D>(points).locate(places);
+  const Delaunay<D> mesh(points);
+  std::barrier together(kThreads);
+  std::array<std::vector<std::int32_t>, kThreads> found;
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t t = 0; t < kThreads; ++t) {
+      threads.emplace_back([&, t] {
+        together.arrive_and_wait();
+        if (t % 2 == 0) {
+          found[t] = mesh.locate(places);
+        } else {
+          for (const auto& place : places) found[t].push_back(mesh.locate(place));
+        }
+      });
+    }
+  }
+  for (const auto& answers : found) EXPECT_EQ(answers, expected);
+}
+
+TYPED_TEST(InMemoryQuery, SearchesBeginNearThePlaceAlsoWherePointsTakeTurnsBetweenClusters) {
+  constexpr int D = TypeParam::value;
+  constexpr std::size_t kClusters = StartTree<D, std::int32_t>::kSampled;
+  Points<D> points = testing::random_points<D>(8'000, 19);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i][0] += 100.0 * static_cast<double>(i % kClusters);
+  }
+  const Delaunay<D> mesh(points);
+  const MeshView<D, std::int32_t> view{mesh.points(), mesh.cell_vertices(), mesh.cell_neighbours(),
+                                       mesh.vertex_cells()};
+  const SearchStarts<D, std::int32_t> starts;
+  for (std::size_t cluster = 0; cluster < kClusters; ++cluster) {
+    const Point<D>& place = points[800 + cluster];
+    const auto corners = view.corners(starts.of(view, 2).find(place));
+    EXPECT_TRUE(std::ranges::any_of(
+        corners, [&](const auto& corner) { return std::abs(corner[0] - place[0]) < 10; }));
   }
 }
 

@@ -77,6 +77,21 @@ class SameAsScipy(unittest.TestCase):
             np.testing.assert_allclose(distances, 0, atol=1e-12)
 
 
+    def test_places_lie_below_the_planes_of_the_circumspheres_that_have_them(self):
+        for dim in DIMENSIONS:
+            tri = spillway.Delaunay(random_points(200, dim))
+            theirs = spatial.Delaunay(tri.points)
+            places = random_points(60, dim, seed=2).reshape(4, 15, dim)
+            self.assertEqual(tri.lift_points(places).shape, theirs.lift_points(places).shape)
+            found = tri.plane_distance(places)
+            self.assertEqual(found.shape, theirs.plane_distance(places).shape)
+            apart = np.linalg.norm(places[..., None, :] - tri.circumcenters, axis=-1)
+            radii = np.linalg.norm(tri.points[tri.simplices[:, 0]] - tri.circumcenters, axis=1)
+            np.testing.assert_array_equal(found > 0, apart < radii)
+            self.assertIs(tri.vertices, tri.simplices)
+            np.testing.assert_array_equal(tri.good, theirs.good)
+
+
 class InTheHandsOfScipy(unittest.TestCase):
     def test_linear_interpolation(self):
         for dim in DIMENSIONS:
