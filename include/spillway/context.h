@@ -82,6 +82,9 @@ struct ContextOptions {
 
 /// What the calls of a program have in common. Nothing of it is kept by the process: two contexts
 /// beside each other do not know of each other. It may be used by several calls, also at a time.
+/// Only what the process has one of is shared: its allocator, to which a run gives what it frees,
+/// and which gives that to the system when all runs under way hold more than the sum of their
+/// limits; and oneTBB's threads, which wait for the next call and end with the last context.
 class SPILLWAY_API Context {
  public:
   /// Throws Error(kInvalidArgument) for sizes that are none, or more than 4,096 threads.

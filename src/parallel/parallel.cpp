@@ -4,6 +4,7 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
+#include <tbb/task_scheduler_observer.h>
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
 #endif
@@ -127,6 +128,26 @@ void start_threads(unsigned threads) {
   started = threads;
 }
 
+/// Lets the library's threads that come to an arena work at the run of whom it is for.
+class RunOfThreads : public tbb::task_scheduler_observer {
+ public:
+  RunOfThreads(tbb::task_arena& arena, RunMemory& memory)
+      : task_scheduler_observer(arena), memory_(memory) {
+    observe(true);
+  }
+  ~RunOfThreads() override { observe(false); }
+
+  void on_scheduler_entry(bool is_worker) override {
+    if (is_worker) work_with(&memory_);
+  }
+  void on_scheduler_exit(bool is_worker) override {
+    if (is_worker) work_with(nullptr);
+  }
+
+ private:
+  RunMemory& memory_;
+};
+
 bool single_threaded() { return tbb::this_task_arena::max_concurrency() == 1; }
 
 }  // namespace
@@ -136,6 +157,7 @@ unsigned available_threads() { return static_cast<unsigned>(tbb::info::default_c
 void with_threads(unsigned threads, const std::function<void()>& work) {
   const ThreadDemand demand(threads);
   tbb::task_arena arena(static_cast<int>(threads));
+  const RunOfThreads run(arena, RunMemory::current());
   arena.execute([&] {
     start_threads(threads);
     work();

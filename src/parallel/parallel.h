@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <future>
 #include <memory>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include "src/runtime/run_memory.h"
 
 namespace spillway::detail {
 
@@ -24,6 +27,16 @@ void with_threads(unsigned threads, const std::function<void()>& work);
 /// For whoever has come to an end with all its calls.
 void release_threads();
 
+/// Does `work` in a thread of its own, beside those of with_threads(): for what waits for a disk
+/// most of the time. The future has what it returns or throws, and waits for it at its end.
+template <typename Work>
+auto in_background(Work work) {
+  return std::async(std::launch::async, [&memory = RunMemory::current(), work = std::move(work)] {
+    const WorksWithMemory works(memory);
+    return work();
+  });
+}
+
 /// Tasks that run at the same time. Inside with_threads(1, ...), run() does the work at once.
 class TaskGroup {
  public:
@@ -34,8 +47,8 @@ class TaskGroup {
 
   void run(std::function<void()> work);
 
-  /// Waits for all tasks, lends a hand meanwhile, and throws what one of them threw. When it returns
-  /// all have been run, whatever tasks elsewhere have thrown.
+  /// Waits for all tasks, lends a hand meanwhile, and throws what one of them threw. When it
+  /// returns all have been run, whatever tasks elsewhere have thrown.
   void wait();
 
  private:

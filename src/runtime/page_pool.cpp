@@ -25,16 +25,15 @@ void give_back(std::byte* begin, std::byte* end) {
 
 }  // namespace
 
-PagePool& PagePool::instance() {
-  static PagePool pool;
-  return pool;
+PagePool::~PagePool() {
+  for (void* const stretch : mapped_) ::munmap(stretch, kMappedPages * kPageBytes);
 }
 
 PagePool::Page PagePool::take() {
   const std::lock_guard lock(mutex_);
   if (kept_.empty() && given_.empty()) map_more();
   std::vector<std::byte*>& from = kept_.empty() ? given_ : kept_;
-  Page page(from.back());
+  Page page(from.back(), {this});
   from.pop_back();
   return page;
 }
@@ -46,12 +45,14 @@ void PagePool::put_back(std::byte* page) {
 
 /// The caller holds the mutex. What is mapped stays so: it takes no memory once it is given back.
 void PagePool::map_more() {
-  kept_.reserve(pages_ + kMappedPages);
-  given_.reserve(pages_ + kMappedPages);
+  const std::size_t pages = (mapped_.size() + 1) * kMappedPages;
+  mapped_.reserve(mapped_.size() + 1);
+  kept_.reserve(pages);
+  given_.reserve(pages);
   void* const memory = ::mmap(nullptr, kMappedPages * kPageBytes, PROT_READ | PROT_WRITE,
                               MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) throw std::bad_alloc();
-  pages_ += kMappedPages;
+  mapped_.push_back(memory);
   for (std::size_t p = kMappedPages; p-- > 0;) {
     given_.push_back(static_cast<std::byte*>(memory) + p * kPageBytes);
   }

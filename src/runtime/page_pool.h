@@ -7,20 +7,25 @@
 
 namespace spillway::detail {
 
-/// Memory in pieces of one size, each a page of its own, for what comes and goes in pieces of any
-/// number. It lies apart from all other memory, so it is not parted by what stays for long: a piece
-/// that is let go of fits whoever asks next, and the system can have it as it is. For any thread.
+/// Memory of a run in pieces of one size, each a page of its own, for what comes and goes in pieces
+/// of any number. It lies apart from all other memory, so it is not parted by what stays for long:
+/// a piece that is let go of fits whoever asks next, and the system can have it as it is. For any
+/// thread.
 class PagePool {
  public:
   static constexpr std::size_t kPageBytes = 4096;
 
   struct PutBack {
-    void operator()(std::byte* page) const { instance().put_back(page); }
+    PagePool* pool = nullptr;
+    void operator()(std::byte* page) const { pool->put_back(page); }
   };
   using Page = std::unique_ptr<std::byte, PutBack>;
 
-  /// That of the process.
-  static PagePool& instance();
+  PagePool() = default;
+  /// Nobody has a page of it.
+  ~PagePool();
+  PagePool(const PagePool&) = delete;
+  PagePool& operator=(const PagePool&) = delete;
 
   /// A page, aligned for any type, that holds anything. Throws std::bad_alloc.
   Page take();
@@ -38,7 +43,7 @@ class PagePool {
   mutable std::mutex mutex_;       ///< guards all others
   std::vector<std::byte*> kept_;   ///< that nobody has, the last one first to be taken
   std::vector<std::byte*> given_;  ///< likewise, but without memory until they are used again
-  std::size_t pages_ = 0;          ///< all there are; both lists have room for them
+  std::vector<void*> mapped_;      ///< stretches of pages; both lists have room for all these
 };
 
 }  // namespace spillway::detail

@@ -305,8 +305,7 @@ void TileEngine<D>::load(Node& node, const Node* next) {
   const std::lock_guard lock(load_mutex_);
   node.stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.read(*node.tree);
   if (next == nullptr || !next->children.empty() || !tree_.on_disk(*next->tree)) return;
-  reading_ahead_ =
-      std::async(std::launch::async, [this, tile = next->tree] { return tree_.read(*tile); });
+  reading_ahead_ = in_background([this, tile = next->tree] { return tree_.read(*tile); });
 }
 
 /// Triangulates a tile or merges.

@@ -11,14 +11,15 @@
 namespace spillway::detail {
 namespace {
 
-std::vector<PagePool::Page> pages(std::size_t count) {
+std::vector<PagePool::Page> pages(PagePool& pool, std::size_t count) {
   std::vector<PagePool::Page> taken(count);
-  for (PagePool::Page& page : taken) page = PagePool::instance().take();
+  for (PagePool::Page& page : taken) page = pool.take();
   return taken;
 }
 
 TEST(PagePool, GivesPagesOfWhichNoTwoAreOne) {
-  const std::vector<PagePool::Page> taken = pages(3000);
+  PagePool pool;
+  const std::vector<PagePool::Page> taken = pages(pool, 3000);
   for (std::size_t p = 0; p < taken.size(); ++p) {
     std::memset(taken[p].get(), static_cast<int>(p % 251), PagePool::kPageBytes);
   }
@@ -31,33 +32,32 @@ TEST(PagePool, GivesPagesOfWhichNoTwoAreOne) {
 }
 
 TEST(PagePool, KeepsWhatIsPutBackUntilItIsGivenBack) {
-  PagePool& pool = PagePool::instance();
-  pool.give_back_free();
-  ASSERT_EQ(pool.kept(), 0U);
+  PagePool pool;
   std::byte* last = nullptr;
   {
-    const std::vector<PagePool::Page> taken = pages(5);
+    const std::vector<PagePool::Page> taken = pages(pool, 5);
     last = taken.back().get();
     *last = std::byte{7};
   }
   EXPECT_EQ(pool.kept(), 5U);
-  EXPECT_EQ(pages(1).front().get(), last) << "the last one first";
+  EXPECT_EQ(pages(pool, 1).front().get(), last) << "the last one first";
   pool.give_back_free();
   EXPECT_EQ(pool.kept(), 0U);
-  std::vector<PagePool::Page> again = pages(5);  // they can be used as before
+  std::vector<PagePool::Page> again = pages(pool, 5);  // they can be used as before
   for (PagePool::Page& page : again) *page = std::byte{1};
   again.clear();
   EXPECT_EQ(pool.kept(), 5U);
 }
 
 TEST(PagePool, ServesManyThreads) {
+  PagePool pool;
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t) {
-    threads.emplace_back([t] {
+    threads.emplace_back([&pool, t] {
       for (int round = 0; round < 50; ++round) {
-        const std::vector<PagePool::Page> taken = pages(40);
+        const std::vector<PagePool::Page> taken = pages(pool, 40);
         for (const PagePool::Page& page : taken) *page = static_cast<std::byte>(t);
-        if (round % 10 == t) PagePool::instance().give_back_free();
+        if (round % 10 == t) pool.give_back_free();
         for (const PagePool::Page& page : taken) ASSERT_EQ(*page, static_cast<std::byte>(t));
       }
     });

@@ -1,5 +1,5 @@
 spillway_test(stream_unit_test unit
-  SOURCES runtime/page_pool_test.cpp runtime/work_lease_test.cpp
+  SOURCES runtime/page_pool_test.cpp runtime/run_memory_test.cpp runtime/work_lease_test.cpp
           stream/output/heights_test.cpp stream/output/open_facets_test.cpp
           stream/output/sequencer_test.cpp stream/plan/memory_plan_test.cpp
           stream/sinks/contour_shares_test.cpp stream/sinks/contour_test.cpp stream/sinks/raster_store_test.cpp
@@ -72,7 +72,7 @@ spillway_mpi_test(rank_output_test
 spillway_test(stream_library_test unit
   SOURCES stream/library/convert_points_test.cpp stream/library/generate_grid_test.cpp
           stream/library/generate_test.cpp stream/library/misuse_test.cpp
-          stream/library/passed_on_test.cpp
+          stream/library/passed_on_test.cpp stream/library/runs_beside_test.cpp
           stream/library/sort_points_test.cpp stream/library/triangulate_test.cpp
           stream/library/products/check_test.cpp stream/library/products/info_test.cpp
           stream/library/products/point_comparison_test.cpp stream/library/products/product_test.cpp

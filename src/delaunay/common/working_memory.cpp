@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "src/runtime/run_memory.h"
+
 namespace spillway::detail {
 namespace {
 
@@ -34,10 +36,8 @@ struct KeptSlabs {
 
   std::vector<Slab>& operator[](SlabUse use) { return of_use[static_cast<std::size_t>(use)]; }
 
-  static KeptSlabs& instance() {
-    static KeptSlabs kept;
-    return kept;
-  }
+  /// Those of the run.
+  static std::shared_ptr<KeptSlabs> current() { return RunMemory::current().get<KeptSlabs>(); }
 };
 
 using SlabIterator = std::vector<Slab>::iterator;
@@ -122,37 +122,40 @@ void Slab::release_behind(std::size_t used) {
 
 Slab kept_or_new_slab(SlabUse use, std::size_t bytes) {
   {
-    KeptSlabs& kept = KeptSlabs::instance();
-    const std::lock_guard lock(kept.mutex);
-    const auto found = smallest_with(bytes, kept[use]);
-    if (found != kept[use].end() && found->capacity() <= bytes + bytes / 8) {
-      return take(found, kept[use]);
+    const auto kept = KeptSlabs::current();
+    const std::lock_guard lock(kept->mutex);
+    std::vector<Slab>& slabs = (*kept)[use];
+    const auto found = smallest_with(bytes, slabs);
+    if (found != slabs.end() && found->capacity() <= bytes + bytes / 8) {
+      return take(found, slabs);
     }
   }
   return Slab::of(bytes);
 }
 
 BorrowedSlab::BorrowedSlab(SlabUse use, std::size_t bytes) : use_(use) {
-  KeptSlabs& kept = KeptSlabs::instance();
-  const std::lock_guard lock(kept.mutex);
-  if (kept[use].empty()) return;
-  const auto found = smallest_with(bytes, kept[use]);
-  slab_ = take(found == kept[use].end() ? found - 1 : found, kept[use]);
+  const auto kept = KeptSlabs::current();
+  const std::lock_guard lock(kept->mutex);
+  std::vector<Slab>& slabs = (*kept)[use];
+  if (slabs.empty()) return;
+  const auto found = smallest_with(bytes, slabs);
+  slab_ = take(found == slabs.end() ? found - 1 : found, slabs);
 }
 
 BorrowedSlab::~BorrowedSlab() { keep_slab(use_, std::move(slab_)); }
 
 void keep_slab(SlabUse use, Slab slab) {
   if (slab.capacity() == 0) return;
-  KeptSlabs& kept = KeptSlabs::instance();
-  const std::lock_guard lock(kept.mutex);
-  kept[use].insert(smallest_with(slab.capacity(), kept[use]), std::move(slab));
+  const auto kept = KeptSlabs::current();
+  const std::lock_guard lock(kept->mutex);
+  std::vector<Slab>& slabs = (*kept)[use];
+  slabs.insert(smallest_with(slab.capacity(), slabs), std::move(slab));
 }
 
 void release_kept_slabs(std::size_t larger_than) {
-  KeptSlabs& kept = KeptSlabs::instance();
-  const std::lock_guard lock(kept.mutex);
-  for (std::vector<Slab>& slabs : kept.of_use) {
+  const auto kept = KeptSlabs::current();
+  const std::lock_guard lock(kept->mutex);
+  for (std::vector<Slab>& slabs : kept->of_use) {
     slabs.erase(smallest_with(larger_than + 1, slabs), slabs.end());
   }
 }

@@ -9,6 +9,8 @@
 #include <mutex>
 #include <new>
 
+#include "src/runtime/run_memory.h"
+
 namespace spillway::detail {
 namespace {
 
@@ -33,31 +35,31 @@ KernelArena::KernelArena() {
 
 KernelArena::~KernelArena() {
   current_arena = nullptr;
-  const std::lock_guard lock(kept().mutex);
-  std::move(kept_chunks_.begin(), kept_chunks_.end(), std::back_inserter(kept().chunks));
+  const auto kept = KernelArena::kept();
+  const std::lock_guard lock(kept->mutex);
+  std::move(kept_chunks_.begin(), kept_chunks_.end(), std::back_inserter(kept->chunks));
 }
 
 KernelArena& KernelArena::current() { return *current_arena; }
 
 void KernelArena::Free::operator()(std::byte* chunk) const { std::free(chunk); }
 
-auto KernelArena::kept() -> Kept& {
-  static Kept kept;
-  return kept;
-}
+auto KernelArena::kept() -> std::shared_ptr<Kept> { return RunMemory::current().get<Kept>(); }
 
 void KernelArena::release_kept_memory() {
-  const std::lock_guard lock(kept().mutex);
-  kept().chunks.clear();
+  const auto kept = KernelArena::kept();
+  const std::lock_guard lock(kept->mutex);
+  kept->chunks.clear();
 }
 
 /// Chunks that span huge pages ask for them; small base cases stay small.
 auto KernelArena::make_chunk(std::size_t bytes) -> Chunk {
   if (bytes == kStandardChunk) {
-    const std::lock_guard lock(kept().mutex);
-    if (!kept().chunks.empty()) {
-      Chunk chunk = std::move(kept().chunks.back());
-      kept().chunks.pop_back();
+    const auto kept = KernelArena::kept();
+    const std::lock_guard lock(kept->mutex);
+    if (!kept->chunks.empty()) {
+      Chunk chunk = std::move(kept->chunks.back());
+      kept->chunks.pop_back();
       return chunk;
     }
   }

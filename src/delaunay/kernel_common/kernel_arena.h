@@ -25,7 +25,7 @@ class KernelArena {
   /// Memory that lasts as long as the arena, aligned for any type. Throws std::bad_alloc.
   void* allocate(std::size_t bytes);
 
-  /// Gives the system all that is kept for coming base cases, of all threads.
+  /// Gives the system all that is kept for coming base cases of the run.
   static void release_kept_memory();
 
  private:
@@ -36,7 +36,7 @@ class KernelArena {
   struct Kept;
 
   static Chunk make_chunk(std::size_t bytes);
-  static Kept& kept();
+  static std::shared_ptr<Kept> kept();
 
   std::vector<Chunk> own_chunks_;   ///< of other sizes than the standard one
   std::vector<Chunk> kept_chunks_;  ///< of the standard size, to be kept

@@ -8,10 +8,13 @@
 #include <optional>
 #include <string>
 
+#include "src/runtime/run_memory.h"
+
 namespace spillway::detail {
 
 /// Tells a program how far its run is, one call at a time, and ends the run when the program asks
-/// for it. All functions may be called by many threads.
+/// for it. All functions may be called by many threads; what the run keeps (RunMemory) lasts as
+/// long, so the thread that makes it destroys it.
 class RunWatch {
  public:
   /// `context` must outlive it.
@@ -44,6 +47,7 @@ class RunWatch {
   void report(Phase& phase, Progress::Event event, std::uint64_t done,
               std::optional<double> fraction);
 
+  const RunScope run_;
   const ContextOptions& options_;
   std::mutex& mutex_;  // of the context; guards what follows
   Phase phase_;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "src/geometry/framed_point.h"
 #include "src/runtime/page_pool.h"
+#include "src/runtime/run_memory.h"
 
 namespace spillway::detail {
 
@@ -19,6 +21,13 @@ namespace spillway::detail {
 /// than a page of points more than there are.
 class PointBuffer {
  public:
+  PointBuffer() = default;
+  ~PointBuffer() { pages_.clear(); }  // before their pool may go
+  PointBuffer(PointBuffer&&) noexcept = default;
+  PointBuffer& operator=(PointBuffer&&) noexcept = default;
+  PointBuffer(const PointBuffer&) = delete;
+  PointBuffer& operator=(const PointBuffer&) = delete;
+
   /// Points of a chunk.
   static constexpr std::size_t kChunk = 4096;
   /// Most points in a page.
@@ -31,7 +40,7 @@ class PointBuffer {
       page_points_ = index.empty() ? kPagePoints : kIndexedPoints;
     }
     while (!points.empty()) {
-      if (size_ == room()) pages_.push_back(PagePool::instance().take());
+      if (size_ == room()) add_page();
       const std::size_t used = size_ % page_points_;
       const std::size_t count = std::min(points.size(), page_points_ - used);
       std::byte* const page = pages_.back().get();
@@ -102,6 +111,11 @@ class PointBuffer {
   static constexpr std::size_t kIndexOffset = kIndexedPoints * sizeof(LatticePoint);
   static_assert(std::is_trivially_copyable_v<LatticePoint>);
 
+  void add_page() {
+    if (pool_ == nullptr) pool_ = RunMemory::current().get<PagePool>();
+    pages_.push_back(pool_->take());
+  }
+
   [[nodiscard]] std::span<const LatticePoint> points_of(std::size_t page) const {
     return {reinterpret_cast<const LatticePoint*>(pages_[page].get()),
             std::min(page_points_, size_ - page * page_points_)};
@@ -113,6 +127,7 @@ class PointBuffer {
   }
 
   std::vector<PagePool::Page> pages_;  ///< all full but the last one
+  std::shared_ptr<PagePool> pool_;     ///< of all pages; assigned after them
   std::size_t page_points_ = kPagePoints;
   std::size_t size_ = 0;
 };
