@@ -54,6 +54,15 @@ void bind_choice(py::class_<Options>& bound, const char* name, Choice Options::*
   bound.def_property(name, get, set);
 }
 
+/// Sets a box of the plane: (xmin, ymin, xmax, ymax), or None.
+template <typename Options>
+auto plane_box_setter(std::optional<Extent> Options::*member) {
+  return [member](Options& options, const std::optional<std::array<double, 4>>& box) {
+    options.*member = std::nullopt;
+    if (box) options.*member = Extent{{(*box)[0], (*box)[1], 0}, {(*box)[2], (*box)[3], 0}};
+  };
+}
+
 void bind_point_options(py::module_& module) {
   py::class_<PointOptions>(module, "PointOptions")
       .def(py::init())
@@ -136,7 +145,7 @@ void bind_product_options(py::module_& module) {
             }
           })
       .def_readwrite("resolution", &DemOptions::resolution)
-      .def_readwrite("bounds", &DemOptions::bounds)
+      .def_property("bounds", py::cpp_function(), plane_box_setter(&DemOptions::bounds))
       .def_readwrite("align", &DemOptions::align)
       .def_readwrite("many_pixels", &DemOptions::many_pixels)
       .def_readwrite("like", &DemOptions::like)
@@ -158,7 +167,7 @@ void bind_product_options(py::module_& module) {
   py::class_<PictureOptions>(module, "PictureOptions")
       .def(py::init())
       .def_readwrite("size", &PictureOptions::size)
-      .def_readwrite("zoom", &PictureOptions::zoom)
+      .def_property("zoom", py::cpp_function(), plane_box_setter(&PictureOptions::zoom))
       .def_readwrite("wireframe", &PictureOptions::wireframe)
       .def_readwrite("exaggeration", &PictureOptions::exaggeration)
       .def_readwrite("view", &PictureOptions::view)

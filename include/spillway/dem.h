@@ -4,9 +4,9 @@
 #include <spillway/choices.h>
 #include <spillway/context.h>
 #include <spillway/export.h>
+#include <spillway/extent.h>
 #include <spillway/mesh.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -22,10 +22,9 @@ SPILLWAY_API const std::vector<std::string>& dem_product_names();
 struct DemOptions {
   std::vector<DemProduct> products{DemProduct::kHeight};  ///< the bands
   double resolution = 0;                                  ///< side of a pixel
-  /// What to cover, as xmin, ymin, xmax, ymax; empty: all vertices.
-  std::optional<std::array<double, 4>> bounds{};
-  bool align = false;        ///< edges of pixels lie on multiples of the resolution
-  bool many_pixels = false;  ///< cover all vertices, though some may lie far away
+  std::optional<Extent> bounds{};  ///< what to cover in x and y; empty: all vertices
+  bool align = false;              ///< edges of pixels lie on multiples of the resolution
+  bool many_pixels = false;        ///< cover all vertices, though some may lie far away
   /// A raster whose pixels are taken over, instead of the four members above.
   std::string like{};
   bool foreign_crs = false;  ///< though it has another coordinate system

@@ -4,6 +4,7 @@
 #include <spillway/choices.h>
 #include <spillway/context.h>
 #include <spillway/export.h>
+#include <spillway/extent.h>
 #include <spillway/mesh.h>
 
 #include <array>
@@ -20,10 +21,9 @@ inline constexpr std::uint32_t kMostPictureSize = 20'000;
 
 /// What is to be seen, and how.
 struct PictureOptions {
-  std::uint32_t size = 1200;  ///< pixels of the longer side
-  /// Of a terrain or a slice, show xmin, ymin, xmax, ymax only.
-  std::optional<std::array<double, 4>> zoom{};
-  bool wireframe = false;  ///< edges of triangles
+  std::uint32_t size = 1200;     ///< pixels of the longer side
+  std::optional<Extent> zoom{};  ///< of a terrain or a slice, show this part in x and y only
+  bool wireframe = false;        ///< edges of triangles
   /// Of a terrain: shade as if it were so many times as high; empty: such that slopes are seen.
   std::optional<double> exaggeration{};
   /// Of a hull: azimuth, clockwise from north (y), and elevation above the horizon, in degrees.

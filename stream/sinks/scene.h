@@ -71,8 +71,8 @@ std::unique_ptr<Scene> make_relief_scene(const PictureOptions& options, const Sc
 std::unique_ptr<Scene> make_space_scene(const PictureOptions& options, const SceneMesh& mesh);
 
 /// A box of the plane, as options give it.
-inline Box<2> plane_box(const std::array<double, 4>& box) {
-  return {{box[0], box[1]}, {box[2], box[3]}};
+inline Box<2> plane_box(const Extent& box) {
+  return {{box.low[0], box.low[1]}, {box.high[0], box.high[1]}};
 }
 
 }  // namespace spillway::detail

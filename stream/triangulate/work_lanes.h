@@ -97,8 +97,9 @@ class WorkLanes {
   /// Who finds that a node is just being begun goes on: that may wait for what this thread has to
   /// do, and whoever begins it looks for lanes itself.
   bool may_begin_lane() {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock) return false;
+    const std::unique_lock none_is_begun(begin_mutex_, std::try_to_lock);
+    if (!none_is_begun) return false;
+    const std::lock_guard lock(mutex_);
     if (failed_ || lanes_ >= most_lanes_ || ready_.size() <= starting_) return false;
     if (!has_room(*ready_.front())) return false;
     ++lanes_;
@@ -132,16 +133,22 @@ class WorkLanes {
   }
 
   Node* take(bool is_lane) {
-    const std::lock_guard lock(mutex_);
-    if (failed_ || ready_.empty() || !has_room(*ready_.front())) {
-      if (is_lane) --lanes_;
-      return nullptr;
+    const std::lock_guard none_is_begun(begin_mutex_);
+    Node* node = nullptr;
+    Node* next = nullptr;
+    {
+      const std::lock_guard lock(mutex_);
+      if (failed_ || ready_.empty() || !has_room(*ready_.front())) {
+        if (is_lane) --lanes_;
+        return nullptr;
+      }
+      node = ready_.front();
+      ready_.pop_front();
+      ready_weight_ -= work_.weight(*node);
+      under_way_ += work_.weight(*node);
+      if (!ready_.empty()) next = ready_.front();
     }
-    Node* const node = ready_.front();
-    ready_.pop_front();
-    ready_weight_ -= work_.weight(*node);
-    under_way_ += work_.weight(*node);
-    work_.begin(*node, ready_.empty() ? nullptr : ready_.front());
+    work_.begin(*node, next);
     return node;
   }
 
@@ -151,7 +158,8 @@ class WorkLanes {
   TaskGroup* group_ = nullptr;
   std::atomic<std::uint64_t> under_way_ = 0;  ///< weight
   std::atomic<bool> failed_ = false;
-  mutable std::mutex mutex_;  ///< guards the next four; held while a node is begun
+  std::mutex begin_mutex_;    ///< held while a node is begun, which may wait; taken before mutex_
+  mutable std::mutex mutex_;  ///< guards the next four
   std::deque<Node*> ready_;
   std::uint64_t ready_weight_ = 0;
   std::size_t starting_ = 0;  ///< lanes that have not taken anything yet

@@ -73,12 +73,12 @@ void check_products(const CommandLine& app, const std::vector<DemProduct>& produ
   }
 }
 
-std::array<double, 4> parse_raster_bounds(const std::string& text) {
+Extent parse_raster_bounds(const std::string& text) {
   const Extent box = parse_bounds(text);
   if (std::isfinite(box.low[2]) || !(box.low[0] < box.high[0] && box.low[1] < box.high[1])) {
     throw UsageError(fmt::format("\"{}\" is not an area; give xmin,ymin,xmax,ymax", text));
   }
-  return {box.low[0], box.low[1], box.high[0], box.high[1]};
+  return box;
 }
 
 }  // namespace

@@ -53,11 +53,11 @@ Slice parse_slice(const std::string& text) {
   return {static_cast<int>(axis), *value};
 }
 
-std::array<double, 4> parse_zoom(const std::vector<double>& numbers) {
+Extent parse_zoom(const std::vector<double>& numbers) {
   if (numbers.size() != 4 || numbers[0] >= numbers[2] || numbers[1] >= numbers[3]) {
     throw UsageError("--zoom takes a box of some area: xmin,ymin,xmax,ymax");
   }
-  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+  return {{numbers[0], numbers[1], 0}, {numbers[2], numbers[3], 0}};
 }
 
 PictureOptions picture_options(const RenderCommandOptions& options) {

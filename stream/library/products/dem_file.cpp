@@ -97,12 +97,12 @@ GridRequest grid_request(const spillway::DemOptions& options) {
   }
   GridRequest grid{.resolution = options.resolution, .align = options.align};
   if (!options.bounds) return grid;
-  const auto& [west, south, east, north] = *options.bounds;
-  if (!(west < east && south < north)) {
-    throw InvalidArgument(fmt::format("{}, {}, {}, {} is not an area: xmin, ymin, xmax, ymax", west,
-                                      south, east, north));
+  const auto& [low, high] = *options.bounds;
+  if (!(low[0] < high[0] && low[1] < high[1])) {
+    throw InvalidArgument(fmt::format("{}, {}, {}, {} is not an area: xmin, ymin, xmax, ymax",
+                                      low[0], low[1], high[0], high[1]));
   }
-  grid.bounds = Box<2>{{west, south}, {east, north}};
+  grid.bounds = Box<2>{{low[0], low[1]}, {high[0], high[1]}};
   return grid;
 }
 

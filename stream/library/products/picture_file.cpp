@@ -30,8 +30,8 @@ void check(const PictureOptions& options) {
                                       kLeastPictureSize, kMostPictureSize, options.size));
   }
   if (options.zoom) {
-    const auto& [left, bottom, right, top] = *options.zoom;
-    if (!(left < right && bottom < top)) {
+    const auto& [low, high] = *options.zoom;
+    if (!(low[0] < high[0] && low[1] < high[1])) {
       throw InvalidArgument("a zoom is a box of some area: xmin, ymin, xmax, ymax");
     }
   }

@@ -119,7 +119,8 @@ TEST_F(Products, PixelsInMemoryAreThoseOfAPlaneAndNeedNoFile) {
   const auto points = ramp();
   const auto source = points_in_memory(points);
   DemPixels pixels;
-  const auto dem = create_dem(pixels, {.resolution = 0.04, .bounds = {{0, 0, 22, 10}}}, context_);
+  const auto dem =
+      create_dem(pixels, {.resolution = 0.04, .bounds = Extent{{0, 0}, {22, 10}}}, context_);
   const Report report = triangulate(*source, *dem, {}, context_);
   EXPECT_EQ(report.output_bytes, 0U);
   EXPECT_TRUE(fs::is_empty(folder_));
@@ -206,8 +207,8 @@ TEST_F(Products, ADemIsTheSameOfPointsOfAMeshAndByAProgram) {
   EXPECT_EQ(report.output_format, "tif");
   const auto points = ramp();
   const auto source = points_in_memory(points);
-  const auto dem = create_dem(
-      file("part.tif"), {.resolution = 0.5, .bounds = std::array{5.0, 5.0, 8.0, 7.0}}, context_);
+  const auto dem =
+      create_dem(file("part.tif"), {.resolution = 0.5, .bounds = Extent{{5, 5}, {8, 7}}}, context_);
   triangulate(*source, *dem, {}, context_);
   EXPECT_EQ(dem->report().columns, 6U);
   EXPECT_EQ(dem->report().rows, 4U);
