@@ -508,6 +508,11 @@ class Errors(InFolder):
             spillway.triangulate(random_points(9, 2), "mesh.spm", duplicates="mean")
         self.assert_nothing_is_left()
 
+    def test_more_points_than_memory_holds_are_a_memory_error_before_the_work(self):
+        for count in (10**15, 2**61):
+            with self.assertRaisesRegex(MemoryError, "memory ran out"):
+                spillway.generate("uniform", count)
+
     def test_limits_that_do_not_suffice(self):
         points = random_points(1_000_000, 2)
         with self.assertRaises(MemoryError) as caught:
@@ -566,6 +571,22 @@ class LongWork(InFolder):
                 )
         finally:
             signal.signal(signal.SIGINT, before)
+        self.assert_nothing_is_left()
+
+    def test_ctrl_c_ends_the_wait_for_a_pipe_that_nobody_writes_to(self):
+        os.mkfifo("pipe")
+        reader, writer = os.pipe()
+        self.addCleanup(os.close, reader)
+        self.addCleanup(os.close, writer)
+        before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        try:
+            for name in ("pipe", f"/dev/fd/{reader}"):
+                signal.setitimer(signal.ITIMER_REAL, 0.1)
+                with self.assertRaises(KeyboardInterrupt):
+                    spillway.triangulate(name, "mesh.spm", input_format="npy")
+        finally:
+            signal.signal(signal.SIGALRM, before)
+        os.remove("pipe")
         self.assert_nothing_is_left()
 
     def test_what_progress_raises_ends_the_run(self):
