@@ -2,6 +2,8 @@
 #include <spillway/error.h>
 
 #include <exception>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "python/advice.h"
@@ -23,6 +25,10 @@ void translate(std::exception_ptr fault) {
         make(to_string(error.code()), text_of(advised_message(error)), text_of(facts.file),
              to_string(facts.place.unit), facts.place.number, facts.system_error);
     PyErr_SetObject(py::type::handle_of(made).ptr(), made.ptr());
+  } catch (const std::bad_alloc&) {
+    PyErr_SetString(PyExc_MemoryError, "memory ran out");
+  } catch (const std::length_error&) {
+    PyErr_SetString(PyExc_MemoryError, "memory ran out: no array can be so long");
   }
 }
 

@@ -82,10 +82,11 @@ py::dict figures_of(const PointCounts& counts) {
 
 py::object extent_of(const std::optional<Extent>& extent) {
   if (!extent) return py::none();
-  const auto corner = [](const std::array<double, 3>& at) {
-    return py::make_tuple(at[0], at[1], at[2]);
-  };
-  return py::make_tuple(corner(extent->low), corner(extent->high));
+  return py::make_tuple(triple_of(extent->low), triple_of(extent->high));
+}
+
+py::tuple triple_of(const std::array<double, 3>& axes) {
+  return py::make_tuple(axes[0], axes[1], axes[2]);
 }
 
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }

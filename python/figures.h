@@ -4,6 +4,7 @@
 #include <spillway/extent.h>
 #include <spillway/report.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,6 +19,9 @@ pybind11::dict figures_of(const PointCounts& counts);
 
 /// (lowest, highest corner), or None.
 pybind11::object extent_of(const std::optional<Extent>& extent);
+
+/// One number for each axis.
+pybind11::tuple triple_of(const std::array<double, 3>& axes);
 
 /// 16 hexadecimal digits.
 std::string hash_text(std::uint64_t hash);

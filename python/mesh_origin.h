@@ -1,7 +1,7 @@
 #pragma once
 
-#include <spillway/totals.h>
 #include <spillway/mesh.h>
+#include <spillway/totals.h>
 #include <spillway/triangulate.h>
 
 #include <string>

@@ -98,7 +98,7 @@ void bind_point_options(py::module_& module) {
       .def_readwrite("foreign_crs", &MeshOptions::foreign_crs);
   py::class_<PointFileOptions>(module, "PointFileOptions")
       .def(py::init())
-      .def_readwrite("format", &PointFileOptions::format)
+      .def_readwrite("output_format", &PointFileOptions::format)
       .def_readwrite("las_version", &PointFileOptions::las_version)
       .def_readwrite("scale", &PointFileOptions::scale)
       .def_readwrite("offset", &PointFileOptions::offset)
@@ -147,7 +147,7 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("resolution", &DemOptions::resolution)
       .def_property("bounds", py::cpp_function(), plane_box_setter(&DemOptions::bounds))
       .def_readwrite("align", &DemOptions::align)
-      .def_readwrite("many_pixels", &DemOptions::many_pixels)
+      .def_readwrite("force_size", &DemOptions::many_pixels)
       .def_readwrite("like", &DemOptions::like)
       .def_readwrite("foreign_crs", &DemOptions::foreign_crs)
       .def_readwrite("azimuth", &DemOptions::azimuth)
@@ -155,8 +155,8 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("z_factor", &DemOptions::z_factor)
       .def_readwrite("max_edge", &DemOptions::max_edge)
       .def_readwrite("nodata", &DemOptions::nodata)
-      .def_readwrite("compression", &DemOptions::compression)
-      .def_readwrite("cloud_optimized", &DemOptions::cloud_optimized);
+      .def_readwrite("compress", &DemOptions::compression)
+      .def_readwrite("cog", &DemOptions::cloud_optimized);
   py::class_<ContourOptions>(module, "ContourOptions")
       .def(py::init())
       .def_readwrite("interval", &ContourOptions::interval)
@@ -169,7 +169,7 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("size", &PictureOptions::size)
       .def_property("zoom", py::cpp_function(), plane_box_setter(&PictureOptions::zoom))
       .def_readwrite("wireframe", &PictureOptions::wireframe)
-      .def_readwrite("exaggeration", &PictureOptions::exaggeration)
+      .def_readwrite("exaggerate", &PictureOptions::exaggeration)
       .def_readwrite("view", &PictureOptions::view)
       .def_readwrite("transparent", &PictureOptions::transparent)
       .def_readwrite("max_edge", &PictureOptions::max_edge)
@@ -183,14 +183,17 @@ void bind_generate_options(py::module_& module) {
       .def(py::init())
       .def_readwrite("family", &GenerateOptions::family)
       .def_readwrite("count", &GenerateOptions::count)
-      .def_readwrite("dimension", &GenerateOptions::dimension)
+      .def_readwrite("dim", &GenerateOptions::dimension)
       .def_readwrite("seed", &GenerateOptions::seed);
   py::class_<GridOptions>(module, "GridOptions")
       .def(py::init())
-      .def_readwrite("columns", &GridOptions::columns)
-      .def_readwrite("rows", &GridOptions::rows)
+      .def("set_grid",
+           [](GridOptions& options, int columns, int rows) {
+             options.columns = columns;
+             options.rows = rows;
+           })
       .def_readwrite("overlap", &GridOptions::overlap)
-      .def_readwrite("format", &GridOptions::format)
+      .def_readwrite("output_format", &GridOptions::format)
       .def_readwrite("las_version", &GridOptions::las_version);
 }
 

@@ -30,8 +30,8 @@ py::dict figures_of(const PointConversion& done, const Run& run) {
   figures["written"] = done.written;
   figures["filters"] = python::figures_of(done.points);
   figures["rounded"] = done.rounded;
-  figures["scale"] = done.rounded ? py::object(py::cast(done.scale)) : py::none();
-  figures["offset"] = done.rounded ? py::object(py::cast(done.offset)) : py::none();
+  figures["scale"] = done.rounded ? py::object(triple_of(done.scale)) : py::none();
+  figures["offset"] = done.rounded ? py::object(triple_of(done.offset)) : py::none();
   figures["farthest"] = done.farthest;
   figures["adds_heights"] = done.adds_heights;
   figures["lost"] = done.lost;
@@ -79,7 +79,11 @@ py::dict generate_survey(Run& run, const GenerateOptions& options, const std::st
 /// Keeps points as rows of `columns` coordinates.
 class Rows final : public PointSink {
  public:
-  void begin(const PointsHeader& header) override { columns_ = header.coordinates; }
+  /// Memory that is too little is told before the work.
+  void begin(const PointsHeader& header) override {
+    columns_ = header.coordinates;
+    numbers_.reserve(header.count.value_or(0) * columns_);
+  }
 
   void write(std::span<const Point<3>> points) override {
     for (const Point<3>& point : points) {

@@ -36,8 +36,8 @@ py::list texts_of(const std::vector<std::string>& lines) {
 }
 
 void add_lattice(const std::optional<LatticeInfo>& lattice, py::dict& figures) {
-  figures["scale"] = lattice ? py::object(py::cast(lattice->scale)) : py::none();
-  figures["offset"] = lattice ? py::object(py::cast(lattice->offset)) : py::none();
+  figures["scale"] = lattice ? py::object(triple_of(lattice->scale)) : py::none();
+  figures["offset"] = lattice ? py::object(triple_of(lattice->offset)) : py::none();
 }
 
 py::dict points_info(Run& run, const std::string& path, const PointOptions& options) {

@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <stop_token>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -23,6 +25,9 @@ constexpr std::size_t kOutputBuffer = std::size_t{1} << 20;
 
 // Linux transfers at most 2 GiB - 4 KiB in one call; smaller pieces keep errors close to the cause.
 constexpr std::size_t kLargestTransfer = std::size_t{1} << 28;
+
+// How soon a reader that waits for a pipe notices that it is to stop.
+constexpr int kPatienceInMilliseconds = 50;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
@@ -48,9 +53,20 @@ class Descriptor {
   int fd_;
 };
 
+/// Waits until there is something to read, or no one is left who writes. Throws Interrupted.
+void wait_for_writer(int fd, const std::stop_token& stop) {
+  pollfd pipe{.fd = fd, .events = POLLIN, .revents = 0};
+  int ready = 0;
+  while (ready == 0 || (ready < 0 && errno == EINTR)) {
+    if (stop.stop_requested()) throw Interrupted();
+    ready = ::poll(&pipe, 1, kPatienceInMilliseconds);
+  }
+}
+
 class DiskInput : public InputFile {
  public:
-  DiskInput(int fd, std::string name) : file_(fd), name_(std::move(name)) {
+  DiskInput(int fd, std::string name, std::stop_token stop)
+      : file_(fd), name_(std::move(name)), stop_(std::move(stop)) {
     struct stat status {};
     if (::fstat(fd, &status) != 0) fail(errno);
     if (S_ISDIR(status.st_mode)) {
@@ -67,6 +83,7 @@ class DiskInput : public InputFile {
 
   std::size_t read(std::span<std::byte> buffer) override {
     return read_all(buffer, [this](std::span<std::byte> rest, std::size_t /*done*/) {
+      if (!size_ && stop_.stop_possible()) wait_for_writer(file_.get(), stop_);
       return ::read(file_.get(), rest.data(), rest.size());
     });
   }
@@ -113,6 +130,7 @@ class DiskInput : public InputFile {
 
   Descriptor file_;
   std::string name_;
+  std::stop_token stop_;
   off_t start_ = 0;  // where reading began
   std::optional<std::uint64_t> size_;
 };
@@ -217,19 +235,24 @@ int copy_of_standard(int descriptor, int wrong_direction, const std::string& wha
 
 class Disk : public FileSystem {
  public:
+  explicit Disk(std::stop_token stop = {}) : stop_(std::move(stop)) {}
+
   std::unique_ptr<InputFile> open(const std::string& path) override {
     if (path == "-") {
       const int fd = copy_of_standard(STDIN_FILENO, O_WRONLY, "cannot read standard input");
-      return std::make_unique<DiskInput>(fd, "standard input");
+      return std::make_unique<DiskInput>(fd, "standard input", stop_);
     }
-    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    // To open a named pipe waits for a writer, which cannot be stopped: the first read waits then.
+    const int at_once = stop_.stop_possible() ? O_NONBLOCK : 0;
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | at_once);
     if (fd < 0) {
       const int error = errno;
       throw SystemRefusal(fmt::format("cannot open {}: {}{}", path, reason(error),
                                       error == ENOENT ? "; check the name" : ""),
                           path, error);
     }
-    return std::make_unique<DiskInput>(fd, path);
+    if (at_once != 0) static_cast<void>(::fcntl(fd, F_SETFL, O_RDONLY));
+    return std::make_unique<DiskInput>(fd, path, stop_);
   }
 
   std::unique_ptr<OutputFile> create(const std::string& path) override {
@@ -255,6 +278,9 @@ class Disk : public FileSystem {
     struct stat status {};
     return ::stat(path.c_str(), &status) == 0;
   }
+
+ private:
+  std::stop_token stop_;
 };
 
 }  // namespace
@@ -268,6 +294,10 @@ std::unique_ptr<OutputFile> create_private_file(const std::string& path, const s
 FileSystem& disk() {
   static Disk instance;
   return instance;
+}
+
+std::unique_ptr<FileSystem> disk_until(std::stop_token stop) {
+  return std::make_unique<Disk>(std::move(stop));
 }
 
 }  // namespace spillway::detail

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 
 namespace spillway::detail {
@@ -79,5 +80,9 @@ class FileSystem {
 /// The machine's own files. A closed pipe is seen as ClosedPipe only where SIGPIPE is ignored,
 /// which is main's business.
 FileSystem& disk();
+
+/// The same; reading a pipe throws Interrupted when `stop` is requested while it waits for a
+/// writer.
+std::unique_ptr<FileSystem> disk_until(std::stop_token stop);
 
 }  // namespace spillway::detail

@@ -16,8 +16,8 @@ def barycentric_transform(corners: Floats) -> Floats:
     Shapes: corners (m, D+1, D), result (m, D+1, D).
     """
     last = corners[:, -1]
-    edges = corners[:, :-1] - last[:, None]
     with np.errstate(all="ignore"):
+        edges = corners[:, :-1] - last[:, None]
         size = np.abs(edges).max(axis=(1, 2))
         inverse = _inverse(np.swapaxes(edges / size[:, None, None], 1, 2))
         condition = _one_norm(inverse) * _one_norm(np.swapaxes(edges, 1, 2)) / size

@@ -23,7 +23,7 @@ def as_floats(numbers: Any, name: str) -> Floats:
     Such an array is returned as it is, whatever its strides; others are converted. Raises
     InvalidArgumentError for what has no exact value as float64.
     """
-    if isinstance(numbers, np.ma.MaskedArray) and np.any(numbers.mask):
+    if _has_masked(numbers):
         raise InvalidArgumentError(f"{name} has masked elements; leave them out")
     try:
         array = np.asarray(numbers)
@@ -31,6 +31,10 @@ def as_floats(numbers: Any, name: str) -> Floats:
         raise InvalidArgumentError(f"{name} is no array of numbers: {fault}") from fault
     if array.dtype == np.float64 and array.dtype.isnative:
         return array
+    if array.dtype == object and array.ndim == 0:
+        raise InvalidArgumentError(
+            f"{name} is of type {type(numbers).__name__}; give an array of numbers"
+        )
     if array.dtype.kind not in "iuf" or array.dtype.itemsize > 8:
         raise InvalidArgumentError(
             f"{name} has elements of type {array.dtype}; give real numbers of at most 64 bits, "
@@ -58,7 +62,7 @@ def as_rows(points: Any, name: str) -> Floats:
 def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:
     """Coordinates as rows of two or three, and the heights that points in the plane carry."""
     array = as_rows(points, "points")
-    if dim not in (None, 2, 3):
+    if dim is not None and not is_dimension(dim):
         raise InvalidArgumentError(f"dim is {dim!r}; give 2, 3 or None")
     columns = array.shape[1]
     if dim == 3 and columns == 2:
@@ -70,6 +74,11 @@ def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:
     if bad.size > 0:
         raise InvalidArgumentError(f"point {bad[0]} has a z that is not finite: {z[bad[0]]}")
     return array[:, :2], frozen(z)
+
+
+def is_dimension(dim: Any) -> bool:
+    """Whether this is 2 or 3."""
+    return np.ndim(dim) == 0 and dim in (2, 3)
 
 
 def as_places(places: Any, ndim: int) -> Floats:
@@ -86,10 +95,19 @@ def as_thread_count(threads: Any) -> int:
     """A number of threads; 0 stands for as many as the process may use."""
     if threads is None:
         return 0
-    count = operator.index(threads)
+    try:
+        count = operator.index(threads)
+    except TypeError:
+        raise TypeError(f"threads is {threads!r}; give an int, or None for all") from None
     if count < 1 or count > 4096:
         raise InvalidArgumentError(f"threads is {count}; give 1 to 4096, or None for all")
     return count
+
+
+def _has_masked(numbers: Any) -> bool:
+    """Whether an array hides some of its elements, or a list has such rows."""
+    parts = numbers if isinstance(numbers, (list, tuple)) else [numbers]
+    return any(isinstance(part, np.ma.MaskedArray) and np.any(part.mask) for part in parts)
 
 
 def frozen(array: _Array) -> _Array:

@@ -189,7 +189,7 @@ class Delaunay:
         spillway.Error
             Also a ValueError: for places of another shape, and for a tolerance.
         """
-        if tol:
+        if tol is not None and np.any(tol):
             raise InvalidArgumentError(f"tol is {tol!r}, but the search is exact; leave it out")
         return self._ask(self._mesh.locate, xi, self.simplices.dtype)
 
@@ -247,13 +247,13 @@ class Delaunay:
                 f"values has the shape {table.shape}; its first axis must have {self.npoints}, "
                 "one for each point"
             )
-        columns = np.ascontiguousarray(table.reshape(self.npoints, -1).T)
-        answers = [
-            self._ask(functools.partial(self._mesh.interpolate, column), xi, np.float64)
-            for column in columns
-        ]
-        found = np.stack(answers, axis=-1)
-        return found.reshape(found.shape[:-1] + table.shape[1:])
+        places = as_places(xi, self.ndim)
+        columns = np.require(table.reshape(self.npoints, -1).T, requirements=["C", "A"])
+        found = np.empty((*places.shape[:-1], len(columns)))
+        for k, column in enumerate(columns):
+            question = functools.partial(self._mesh.interpolate, column)
+            found[..., k] = self._ask(question, places, np.float64)
+        return found.reshape(places.shape[:-1] + table.shape[1:])
 
     def to_meshio(self) -> Any:
         """The triangulation as a `meshio.Mesh`; points in the plane have their z.

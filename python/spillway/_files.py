@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Sequence, overload
+import functools
+from typing import TYPE_CHECKING, Any, Iterable, Sequence, overload
 
 from . import _spillway
 from ._arrays import Floats
 from ._inputs import (
     as_dimension,
     as_inputs,
-    as_path,
     check_array,
     check_mesh_options,
     is_mesh,
@@ -22,6 +22,10 @@ from ._options import (
     PathLike,
     RunOptions,
     TriangulateOptions,
+    as_path,
+    as_reals,
+    as_word,
+    attribute,
     make_run,
     mesh_options,
     names_for,
@@ -92,8 +96,9 @@ def triangulate(
     source = as_inputs(inputs)
     origin = points_origin(source, as_dimension(dim, source), options, id)
     path = as_path(output, "output")
+    form = as_word(output_format, "output_format")
     run = make_run(options)
-    return RunReport(**_spillway.mesh(run, origin, path, output_format or ""))
+    return RunReport(**_spillway.mesh(run, origin, path, form))
 
 
 @takes(ConvertOptions)
@@ -159,14 +164,16 @@ def convert(
         refuse({**of_points, **cells}, [*of_points, *cells], "on a mesh")
         assert isinstance(source, list)
         origin = _spillway.MeshOrigin(source[0], mesh_options(options, mesh_format))
-        return RunReport(**_spillway.mesh(run, origin, path, output_format or ""))
+        form = as_word(output_format, "output_format")
+        return RunReport(**_spillway.mesh(run, origin, path, form))
     check_array(source, options)
     how = _spillway.PointFileOptions()
-    put_all(how, {"format": output_format, "las_version": las_version})
-    for name, numbers in (("scale", scale), ("offset", offset)):
-        put(how, name, numbers, lambda target, value: setattr(target, name, _as_axes(value)))
+    put_all(how, {"output_format": output_format, "las_version": las_version})
+    put(how, "scale", scale, attribute("scale", _as_axes))
+    put(how, "offset", offset, attribute("offset", _as_axes))
     if sorted:
-        how.set_sorted(as_dimension(2 if dim is None else dim, source), cell_points or 0)
+        dimension = as_dimension(2 if dim is None else dim, source)
+        put(how, "cell_points", cell_points or 0, functools.partial(_put_sorted, dimension))
     else:
         refuse(cells, cells, "without sorted=True")
     which = point_options(options, 2)
@@ -259,7 +266,8 @@ def generate(
     if family == "terrain":
         refuse({"dim": dim}, ["dim"], 'on "terrain", which always has z')
     points = _spillway.GenerateOptions()
-    put_all(points, {"family": family, "count": count, "dimension": dim, "seed": seed})
+    put_all(points, {"family": family, "dim": dim, "seed": seed})
+    put(points, "count", count, attribute("count"))
     run = make_run(options)
     if output is None:
         refuse({**of_files, **of_grid}, [*of_files, *of_grid], "without an output")
@@ -269,12 +277,12 @@ def generate(
         refuse(of_grid, ["overlap"], "without a grid")
         how = _spillway.PointFileOptions()
         how.exact = True
-        put_all(how, {"format": output_format, "las_version": las_version})
+        put_all(how, {"output_format": output_format, "las_version": las_version})
         return GenerateReport(**_spillway.generate(run, points, path, how))
-    columns, rows = _as_grid(grid)
     survey = _spillway.GridOptions()
-    put_all(survey, {"columns": columns, "rows": rows, "overlap": overlap})
-    put_all(survey, {"format": output_format, "las_version": las_version})
+    put(survey, "grid", grid, _put_grid)
+    put_all(survey, {"overlap": overlap})
+    put_all(survey, {"output_format": output_format, "las_version": las_version})
     return GenerateReport(**_spillway.generate_survey(run, points, path, survey))
 
 
@@ -355,19 +363,20 @@ def check(
     return CheckReport(**_spillway.check(run, path, how, bool(any_delaunay), source, which))
 
 
-def _as_grid(grid: Any) -> tuple[int, int]:
-    try:
-        columns, rows = grid
-    except TypeError:
-        raise TypeError(f"grid is {grid!r}; give (columns, rows)") from None
-    return columns, rows
+def _put_sorted(dim: int, target: _spillway.PointFileOptions, cell_points: int) -> None:
+    target.set_sorted(dim, cell_points)
+
+
+def _put_grid(target: _spillway.GridOptions, value: tuple[int, int]) -> None:
+    columns, rows = value
+    target.set_grid(columns, rows)
 
 
 def _as_axes(values: Any) -> list[float]:
     """No number, one for all axes, or three."""
     if values is None:
         return []
-    numbers = list(values) if isinstance(values, Sequence) else [values]
-    if len(numbers) not in (1, 3):
-        raise InvalidArgumentError(f"{values} has {len(numbers)} numbers; give 1 or 3")
-    return [float(number) for number in numbers]
+    axes = as_reals(values if isinstance(values, Iterable) else [values])
+    if len(axes) not in (1, 3):
+        raise InvalidArgumentError(f"{values} has {len(axes)} numbers; give 1 or 3")
+    return axes

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import os
-from typing import Any, Mapping
+from typing import Any, Iterable, Mapping, Sequence
 
 from . import _spillway
-from ._arrays import Floats, as_rows
+from ._arrays import Floats, as_rows, is_dimension
 from ._options import (
+    PATHS,
+    as_path,
+    as_word,
     mesh_options,
     names_for,
     point_options,
@@ -16,33 +18,32 @@ from ._options import (
 )
 from .errors import InvalidArgumentError
 
-_PATHS = (str, bytes, os.PathLike)
-
 
 def as_inputs(inputs: Any, name: str = "inputs") -> list[bytes] | Floats:
     """Paths as bytes, or rows of coordinates."""
-    if isinstance(inputs, _PATHS):
-        return [os.fsencode(inputs)]
-    if isinstance(inputs, (list, tuple)) and any(isinstance(item, _PATHS) for item in inputs):
-        for item in inputs:
-            if not isinstance(item, _PATHS):
-                raise TypeError(
-                    f"{name} has a path and {type(item).__name__}; give paths, or one array"
-                )
-        return [os.fsencode(item) for item in inputs]
+    if isinstance(inputs, PATHS):
+        return [as_path(inputs, name)]
+    if isinstance(inputs, (list, tuple)):
+        if not inputs:
+            raise InvalidArgumentError(f"{name} is empty; give paths, or an array of points")
+        if any(isinstance(item, PATHS) for item in inputs):
+            for item in inputs:
+                if not isinstance(item, PATHS):
+                    raise TypeError(
+                        f"{name} has a path and {type(item).__name__}; give paths, or one array"
+                    )
+            return [as_path(item, name) for item in inputs]
+    elif isinstance(inputs, Iterable) and not isinstance(inputs, Sequence):
+        if not hasattr(inputs, "__array__") and not hasattr(inputs, "__array_interface__"):
+            raise TypeError(
+                f"{name} is of type {type(inputs).__name__}; give paths in a list, or an array"
+            )
     return as_rows(inputs, name)
-
-
-def as_path(path: Any, name: str) -> bytes:
-    """A path as bytes."""
-    if not isinstance(path, _PATHS):
-        raise TypeError(f"{name} is of type {type(path).__name__}; give a path")
-    return os.fsencode(path)
 
 
 def as_dimension(dim: Any, inputs: list[bytes] | Floats) -> int:
     """The dimension of a triangulation of these inputs."""
-    if dim not in (2, 3):
+    if not is_dimension(dim):
         raise InvalidArgumentError(f"dim is {dim!r}; give 2 or 3")
     if dim == 3 and not isinstance(inputs, list) and inputs.shape[1] == 2:
         raise InvalidArgumentError("dim is 3, but inputs has 2 columns; give 3 coordinates a point")
@@ -63,10 +64,10 @@ def is_mesh(
     options: Mapping[str, Any],
 ) -> bool:
     """Whether the inputs are one mesh."""
-    point_format = options.get("input_format") or ""
+    point_format = as_word(options.get("input_format"), "input_format")
     if mesh_format and (point_format or not isinstance(inputs, list) or len(inputs) > 1):
         refuse({"mesh_format": mesh_format}, ["mesh_format"], "on these inputs, which are points")
-    return _spillway.is_mesh(run, inputs, mesh_format or "", point_format)
+    return _spillway.is_mesh(run, inputs, as_word(mesh_format, "mesh_format"), point_format)
 
 
 def check_mesh_options(options: Mapping[str, Any], *, keeps: tuple[str, ...] = ()) -> None:

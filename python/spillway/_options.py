@@ -10,17 +10,20 @@ import dataclasses
 import difflib
 import functools
 import inspect
+import numbers
 import operator
 import os
 import pathlib
+import re
 import textwrap
 from typing import Any, Callable, Iterable, Mapping, Sequence, TypedDict, TypeVar, Union
 
 from . import _spillway
 from ._arrays import as_thread_count
 from ._messages import is_explained
-from .errors import InvalidArgumentError
+from .errors import Error, InvalidArgumentError
 
+PATHS = (str, bytes, os.PathLike)
 PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -90,7 +93,15 @@ class CheckOptions(FilterOptions, PlaceOptions, RunOptions, total=False):
     force_crs: bool
 
 
-class DemOptions(DivisionOptions, FilterOptions, SystemOptions, RunOptions, total=False):
+class ClipOptions(TypedDict, total=False):
+    """Filters by place, where `bounds` and `resolution` are those of a raster."""
+
+    clip_bounds: Sequence[float] | None
+
+
+class DemOptions(
+    DivisionOptions, FilterOptions, ClipOptions, SystemOptions, RunOptions, total=False
+):
     """Of points that become a raster."""
 
 
@@ -110,24 +121,25 @@ class _Option:
     """Sets it there."""
 
 
-def _attribute(
+def attribute(
     name: str, convert: Callable[[Any], Any] = lambda value: value
 ) -> Callable[[Any, Any], None]:
+    """What sets an attribute to a value that is converted, for `put`."""
     return lambda target, value: setattr(target, name, convert(value))
 
 
-def _put_bounds(target: Any, value: Any) -> None:
-    numbers = [float(number) for number in value]
-    if len(numbers) not in (4, 6):
+def _put_box(name: str, target: Any, value: Any) -> None:
+    box = as_reals(value)
+    if len(box) not in (4, 6):
         raise InvalidArgumentError(
-            f"bounds has {len(numbers)} numbers; give xmin, ymin, xmax, ymax or xmin, ymin, zmin, "
+            f"{name} has {len(box)} numbers; give xmin, ymin, xmax, ymax or xmin, ymin, zmin, "
             "xmax, ymax, zmax"
         )
-    half = len(numbers) // 2
+    half = len(box) // 2
     endless = [float("inf")] * (3 - half)
-    low, high = numbers[:half] + [-x for x in endless], numbers[half:] + endless
+    low, high = box[:half] + [-x for x in endless], box[half:] + endless
     if not all(least <= most for least, most in zip(low, high)):
-        raise InvalidArgumentError(f"bounds has a least coordinate above the most: {numbers}")
+        raise InvalidArgumentError(f"{name} has a least coordinate above the most: {box}")
     target.set_bounds(low, high)
 
 
@@ -144,12 +156,38 @@ def _put_returns(target: Any, value: Any) -> None:
             raise InvalidArgumentError(
                 f'returns has "{word}"; give "first", "last", "single" and numbers from 1 to 15'
             )
-    numbers = [operator.index(number) for number in wanted if not isinstance(number, str)]
-    target.set_returns("first" in words, "last" in words, "single" in words, numbers)
+    counted = [operator.index(number) for number in wanted if not isinstance(number, str)]
+    target.set_returns("first" in words, "last" in words, "single" in words, counted)
 
 
 def _as_list(value: Any) -> list[int]:
     return [operator.index(n) for n in (value if isinstance(value, Iterable) else [value])]
+
+
+def as_reals(values: Any) -> list[float]:
+    """Numbers as floats. Raises TypeError for a text, of which each letter would be one."""
+    if isinstance(values, (str, bytes)):
+        raise TypeError(f"{values!r} is a text")
+    return [float(value) for value in values]
+
+
+def as_path(path: Any, name: str) -> bytes:
+    """A path as bytes."""
+    if not isinstance(path, PATHS):
+        raise TypeError(f"{name} is of type {type(path).__name__}; give a path")
+    made = os.fsencode(path)
+    if not made:
+        raise InvalidArgumentError(f"{name} is empty; give a path")
+    if b"\0" in made:
+        raise InvalidArgumentError(f"{name} is {path!r}; no path has a null character in it")
+    return made
+
+
+def as_word(word: Any, name: str) -> str:
+    """A word; empty for None."""
+    if word is not None and not isinstance(word, str):
+        raise TypeError(f"{name} is {word!r}; give str")
+    return word or ""
 
 
 def as_crs(crs: Any) -> str:
@@ -187,43 +225,43 @@ _OPTIONS = {
         'Format of the points, where neither first bytes nor name tell: ``"las"``, ``"laz"``, '
         '``"copc"``, ``"text"``, ``"npy"`` or ``"spp"``.',
         "points",
-        _attribute("format"),
+        attribute("format"),
     ),
     "columns": _Option(
         "sequence of int, optional",
         "Of text, the columns of x, y and z, counted from 1.",
         "points",
-        _attribute("columns", _as_list),
+        attribute("columns", _as_list),
     ),
     "skip_invalid": _Option(
         "bool, optional",
         "Leave out rows of text and npy that are no points. By default they are an error.",
         "points",
-        _attribute("skip_invalid"),
+        attribute("skip_invalid"),
     ),
     "keep_withheld": _Option(
         "bool, optional",
         "Use points that LAS files flag as withheld, too.",
         "points",
-        _attribute("keep_withheld"),
+        attribute("keep_withheld"),
     ),
     "every": _Option(
         "int, optional",
         "Use records 0, n, 2n, ... of each file.",
         "points",
-        _attribute("every"),
+        attribute("every"),
     ),
     "keep_class": _Option(
         "int or iterable of int, optional",
         "Use points of these classes only.",
         "points",
-        _attribute("classes", _as_list),
+        attribute("classes", _as_list),
     ),
     "drop_class": _Option(
         "int or iterable of int, optional",
         "Leave out points of these classes.",
         "points",
-        _attribute("other_classes", _as_list),
+        attribute("other_classes", _as_list),
     ),
     "returns": _Option(
         "int, str or iterable of these, optional",
@@ -242,39 +280,45 @@ _OPTIONS = {
         "sequence of float, optional",
         "Use points in xmin, ymin, xmax, ymax or xmin, ymin, zmin, xmax, ymax, zmax.",
         "points",
-        _put_bounds,
+        functools.partial(_put_box, "bounds"),
+    ),
+    "clip_bounds": _Option(
+        "sequence of float, optional",
+        "Use points in xmin, ymin, xmax, ymax or xmin, ymin, zmin, xmax, ymax, zmax.",
+        "points",
+        functools.partial(_put_box, "clip_bounds"),
     ),
     "resolution": _Option(
         "float, optional",
         "Of COPC files, read the levels that are needed for points so far apart.",
         "points",
-        _attribute("resolution"),
+        attribute("resolution"),
     ),
     "crs": _Option(
         "str or path-like, optional",
         'The coordinate system of inputs that name none: ``"EPSG:n"``, WKT, or a `pathlib.Path` of '
         "a file with WKT. Nothing is transformed.",
         "points",
-        _attribute("crs", as_crs),
+        attribute("crs", as_crs),
     ),
     "force_crs": _Option(
         "bool, optional",
         "Take coordinates as they are, whatever coordinate systems inputs have.",
         "points",
-        _attribute("foreign_crs"),
+        attribute("foreign_crs"),
     ),
     "duplicates": _Option(
         "str, optional",
         'Which z a vertex of several points of equal x and y gets: ``"first"``, ``"lowest"``, '
         '``"highest"`` or ``"mean"``.',
         "division",
-        _attribute("duplicates"),
+        attribute("duplicates"),
     ),
     "max_edge": _Option(
         "float, optional",
         "Leave out simplices with a longer edge.",
         "division",
-        _attribute("max_edge"),
+        attribute("max_edge"),
     ),
     "distrust_headers": _Option(
         "bool, optional",
@@ -286,40 +330,41 @@ _OPTIONS = {
         "int, optional",
         "Most points of a tile that is loaded at a time. By default chosen by the memory.",
         "division",
-        _attribute("tile_points"),
+        attribute("tile_points"),
     ),
     "base_case": _Option(
         "int, optional",
         "Most points of a leaf, which one thread triangulates. By default chosen by number and "
         "memory.",
         "division",
-        _attribute("leaf_points"),
+        attribute("leaf_points"),
     ),
     "division": _Option(
         "str, optional",
         'Which axis the division of points cuts: ``"least-border"``, ``"longest"``, ``"cycling"`` '
         'or ``"constant"``.',
         "division",
-        _attribute("division"),
+        attribute("division"),
     ),
     "children": _Option(
         "int, optional",
         "Parts that are merged at a time, 2 to 1024.",
         "division",
-        _attribute("children"),
+        attribute("children"),
     ),
     "kernel": _Option(
         "str, optional",
         'What triangulates leaves: ``"spillway"`` or ``"cgal"``. Both give the same mesh.',
         "division",
-        _attribute("kernel"),
+        attribute("kernel"),
     ),
 }
 
 
 def takes(kind: Any) -> Callable[[_Function], _Function]:
     """A decorator for functions that take the options of a TypedDict: it checks their names, and
-    puts them into the signature, and into the docstring in place of ``{options}``."""
+    puts them into the signature, and into the docstring in place of ``{options}``. Of a value of a
+    wrong type it tells what the docstring says."""
     names = list(kind.__annotations__)
 
     def decorate(function: _Function) -> _Function:
@@ -328,7 +373,10 @@ def takes(kind: Any) -> Callable[[_Function], _Function]:
             for name in given:
                 if name not in known:
                     raise TypeError(_unexpected(function.__name__, name, known))
-            return function(*args, **given)
+            try:
+                return function(*args, **given)
+            except _Unfit as fault:
+                raise fault.told(kinds) from fault.__cause__
 
         signature = inspect.signature(function)
         own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
@@ -338,6 +386,7 @@ def takes(kind: Any) -> Callable[[_Function], _Function]:
         known = [p.name for p in own]
         checked.__signature__ = signature.replace(parameters=own)  # type: ignore[attr-defined]
         checked.__doc__ = (function.__doc__ or "").replace("    {options}\n", _described(names))
+        kinds = _kinds(checked.__doc__)
         return checked  # type: ignore[return-value]
 
     return decorate
@@ -357,20 +406,46 @@ def _described(names: Iterable[str]) -> str:
     return "".join(lines)
 
 
+def _kinds(doc: str) -> dict[str, str]:
+    """The kind of each parameter that a docstring describes."""
+    kinds = {}
+    for names, kind in re.findall(r"^    (\w+(?:, \w+)*) : (.+)$", doc, re.MULTILINE):
+        kinds.update(dict.fromkeys(names.split(", "), kind.replace(", optional", "")))
+    return kinds
+
+
+class _Unfit(Exception):
+    """A value that the library's option cannot have. `takes` tells the caller."""
+
+    def __init__(self, name: str, value: Any) -> None:
+        super().__init__(name, value)
+        self.name, self.value = name, value
+
+    def told(self, kinds: Mapping[str, str]) -> Exception:
+        """The exception for callers of a function whose parameters are of these kinds."""
+        kind = kinds[self.name]
+        if isinstance(self.value, numbers.Integral) and re.search(r"\bint\b", kind):
+            return InvalidArgumentError(f"{self.name} is {self.value}, which is out of range")
+        return TypeError(f"{self.name} is {self.value!r}; give {kind}")
+
+
 def put(target: Any, name: str, value: Any, setter: Callable[[Any, Any], None]) -> None:
-    """Set an option of the library. Raises TypeError for a value of another type."""
+    """Set an option of the library, in a function that is decorated by `takes`: this raises
+    TypeError for a value of another type."""
     try:
         setter(target, value)
-    except (TypeError, OverflowError) as fault:
-        kind = _OPTIONS[name].kind if name in _OPTIONS else "a value of another type or range"
-        raise TypeError(f"{name} is {value!r}; give {kind.replace(', optional', '')}") from fault
+    except Error:
+        raise
+    except (TypeError, ValueError, OverflowError) as fault:
+        raise _Unfit(name, value) from fault
 
 
 def put_all(target: Any, values: Mapping[str, Any]) -> None:
-    """Set attributes of the library's options, those of the values that are not None."""
+    """Set attributes of the library's options, named as the arguments are, to the values that are
+    not None."""
     for name, value in values.items():
         if value is not None:
-            put(target, name, value, _attribute(name))
+            put(target, name, value, attribute(name))
 
 
 def is_given(value: Any) -> bool:
@@ -418,7 +493,7 @@ def triangulate_options(options: Mapping[str, Any], dim: int) -> _spillway.Trian
 def mesh_options(options: Mapping[str, Any], mesh_format: str | None) -> _spillway.MeshOptions:
     """How a file of a mesh is read."""
     made = _spillway.MeshOptions()
-    made.format = mesh_format or ""
+    made.format = as_word(mesh_format, "mesh_format")
     made.crs = as_crs(options.get("crs"))
     made.foreign_crs = bool(options.get("force_crs"))
     return made
@@ -433,7 +508,7 @@ def make_run(options: Mapping[str, Any]) -> _spillway.Run:
     return _spillway.Run(
         _as_size(options.get("memory"), "memory"),
         as_thread_count(options.get("threads")),
-        b"" if tmpdir is None else os.fsencode(tmpdir),
+        b"" if tmpdir is None else as_path(tmpdir, "tmpdir"),
         _as_size(options.get("max_tmp"), "max_tmp"),
         progress,
         is_explained(),

@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _spillway
-from ._inputs import as_path, mesh_origin
+from ._inputs import mesh_origin
 from ._messages import tell
 from ._options import (
     DemOptions,
     PathLike,
     TriangulateOptions,
+    as_path,
     make_run,
     put,
     put_all,
@@ -51,7 +52,6 @@ def dem(
     *,
     resolution: float | None = None,
     bounds: Sequence[float] | None = None,
-    clip_bounds: Sequence[float] | None = None,
     force_size: bool = False,
     align: bool = False,
     like: PathLike | None = None,
@@ -72,7 +72,6 @@ def dem(
     *,
     resolution: float | None = None,
     bounds: Sequence[float] | None = None,
-    clip_bounds: Sequence[float] | None = None,
     force_size: bool = False,
     align: bool = False,
     like: PathLike | None = None,
@@ -96,7 +95,6 @@ def dem(
     *,
     resolution: float | None = None,
     bounds: Sequence[float] | None = None,
-    clip_bounds: Sequence[float] | None = None,
     force_size: bool = False,
     align: bool = False,
     like: PathLike | None = None,
@@ -124,8 +122,6 @@ def dem(
         Side of a pixel, in units of x and y. Not with `like`.
     bounds : (float, float, float, float), optional
         Cover xmin, ymin, xmax, ymax. By default all points.
-    clip_bounds : sequence of float, optional
-        Use points in this box, as `bounds` of the other functions.
     force_size : bool, optional
         Cover all points, though some may lie far away and pixels be very many.
     align : bool, optional
@@ -161,9 +157,9 @@ def dem(
     spillway.Error
         As `triangulate`; ``"too large"`` for a raster that is large because of points far away.
     """
-    products = [product] if isinstance(product, str) else list(product)
     how = _spillway.DemOptions()
-    put(how, "product", products, lambda target, value: setattr(target, "products", value))
+    put(how, "product", product, _put_products)
+    products = how.products
     _check_products(
         products, {"azimuth": azimuth, "altitude": altitude, "z_factor": z_factor}, options
     )
@@ -173,7 +169,7 @@ def dem(
         if bounds is not None:
             refuse({"force_size": force_size}, ["force_size"], "with bounds")
         put_all(how, {"resolution": resolution, "bounds": bounds, "align": align})
-        put_all(how, {"many_pixels": force_size})
+        put_all(how, {"force_size": force_size})
     else:
         places = {"resolution": resolution, "bounds": bounds, "align": align}
         refuse(
@@ -187,9 +183,9 @@ def dem(
     put_all(how, {"max_edge": options.get("max_edge")})
     of_files = {"nodata": nodata, "compress": compress, "cog": cog}
     run = make_run(options)
-    origin = mesh_origin(run, inputs, 2, mesh_format, {**options, "bounds": clip_bounds})
+    origin = mesh_origin(run, inputs, 2, mesh_format, options)
     if output is not None:
-        put_all(how, {"nodata": nodata, "compression": compress, "cloud_optimized": cog})
+        put_all(how, of_files)
         report = RasterReport(**_spillway.dem(run, origin, as_path(output, "output"), how))
         _warn_of_empty(report)
         return report
@@ -253,6 +249,8 @@ def contour(
     if levels is not None:
         spacing = {"interval": interval, "base": base}
         refuse(spacing, spacing, "with levels, which names all heights")
+        if np.size(levels) == 0:
+            raise InvalidArgumentError("levels is empty; give heights, or an interval")
     elif interval is None:
         raise InvalidArgumentError("interval, the height between two lines, is missing (or levels)")
     put_all(how, {"interval": interval, "base": base, "levels": levels})
@@ -328,7 +326,7 @@ def render(
     """
     how = _spillway.PictureOptions()
     put_all(how, {"size": size, "zoom": zoom, "wireframe": wireframe, "view": view})
-    put_all(how, {"exaggeration": exaggerate, "transparent": transparent})
+    put_all(how, {"exaggerate": exaggerate, "transparent": transparent})
     put_all(how, {"max_edge": options.get("max_edge")})
     if slice is not None:
         put(how, "slice", slice, _put_slice)
@@ -340,6 +338,10 @@ def render(
 def _put_slice(target: _spillway.PictureOptions, value: tuple[str, float]) -> None:
     axis, place = value
     target.set_slice(axis, place)
+
+
+def _put_products(target: _spillway.DemOptions, value: str | Sequence[str]) -> None:
+    target.products = [value] if isinstance(value, str) else list(value)
 
 
 def _check_products(products: list[str], light: dict[str, Any], options: Any) -> None:

@@ -76,7 +76,7 @@ class MeshOptions:
     foreign_crs: bool
 
 class PointFileOptions:
-    format: str
+    output_format: str
     las_version: str
     scale: list[float]
     offset: list[float]
@@ -100,7 +100,7 @@ class DemOptions:
     resolution: float
     bounds: tuple[float, float, float, float] | None
     align: bool
-    many_pixels: bool
+    force_size: bool
     like: bytes | str
     foreign_crs: bool
     azimuth: float
@@ -108,8 +108,8 @@ class DemOptions:
     z_factor: float | None
     max_edge: float | None
     nodata: float
-    compression: str
-    cloud_optimized: bool
+    compress: str
+    cog: bool
 
 class ContourOptions:
     interval: float
@@ -122,7 +122,7 @@ class PictureOptions:
     size: int
     zoom: tuple[float, float, float, float] | None
     wireframe: bool
-    exaggeration: float | None
+    exaggerate: float | None
     view: tuple[float, float] | None
     transparent: bool
     max_edge: float | None
@@ -131,15 +131,14 @@ class PictureOptions:
 class GenerateOptions:
     family: str
     count: int
-    dimension: int
+    dim: int
     seed: int
 
 class GridOptions:
-    columns: int
-    rows: int
     overlap: float
-    format: str
+    output_format: str
     las_version: str
+    def set_grid(self, columns: int, rows: int) -> None: ...
 
 _Inputs = list[bytes] | Floats
 _Figures = dict[str, Any]

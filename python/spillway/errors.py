@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 __all__ = [
     "BadInputError",
     "ClosedPipeError",
@@ -71,6 +73,11 @@ class InputOutputError(Error, OSError):
     """The system refuses to read, to write or to create something."""
 
     code = "input or output"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # OSError leaves out what was set after it was made.
+        kind, text = type(self), str(self)
+        return kind, (text,), {**vars(self), "errno": self.errno, "filename": self.filename}
 
 
 class OutOfBudgetError(Error, MemoryError):

@@ -101,6 +101,15 @@ class BadPoints(unittest.TestCase):
         points[2, 0] = np.ma.masked
         self.refused(errors.InvalidArgumentError, "masked", points)
 
+    def test_rows_that_are_masked(self):
+        rows = [np.ma.array([1.0, 2.0], mask=[True, False]), [3, 4], [9, 1]]
+        self.refused(errors.InvalidArgumentError, "masked", rows)
+
+    def test_what_is_no_array_at_all(self):
+        for points in (None, (row for row in [[0, 0], [1, 0], [0, 1]]), {(0, 0), (1, 0), (0, 1)}):
+            name = type(points).__name__
+            self.refused(errors.InvalidArgumentError, f"points is of type {name}; give", points)
+
     def test_degenerate(self):
         line = np.outer(np.arange(9.0), [1, 2, 3])
         for dim, points in {
@@ -118,13 +127,15 @@ class BadPoints(unittest.TestCase):
     def test_dim(self):
         self.refused(errors.InvalidArgumentError, "dim is 4", random_points(9, 3), dim=4)
         self.refused(errors.InvalidArgumentError, "2 columns", random_points(9, 2), dim=3)
+        both = np.array([2, 3])
+        self.refused(errors.InvalidArgumentError, "dim is array", random_points(9, 3), dim=both)
 
     def test_threads_and_progress(self):
         points = random_points(9, 2)
         for threads in (0, -1, 4097):
             self.refused(errors.InvalidArgumentError, "threads is", points, threads=threads)
         for options in ({"threads": "2"}, {"threads": 1.5}, {"progress": 3}):
-            with self.assertRaises(TypeError):
+            with self.assertRaisesRegex(TypeError, f"{next(iter(options))} is .*; give"):
                 spillway.Delaunay(points, **options)
 
 

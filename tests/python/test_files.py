@@ -2,6 +2,7 @@
 
 import dataclasses
 import errno
+import functools
 import inspect
 import json
 import os
@@ -182,7 +183,7 @@ class Convert(InFolder):
                 self.assertEqual(bytes_of("b" + output[1:]), bytes_of(output))
                 self.assertGreater(report.written, 0)
         self.assertTrue(report.rounded)
-        self.assertEqual(report.scale, [0.01] * 3)
+        self.assertEqual(report.scale, (0.01, 0.01, 0.01))
 
     def test_a_mesh_becomes_the_bytes_of_the_command(self):
         spillway.triangulate(random_points(2000, 2), "mesh.spm")
@@ -190,6 +191,13 @@ class Convert(InFolder):
         report = spillway.convert("mesh.spm", "b.ply")
         self.assertEqual(bytes_of("b.ply"), bytes_of("a.ply"))
         self.assertEqual(report.canonical_hash, spillway.info("mesh.spm").canonical_hash)
+
+    def test_scales_and_offsets_may_be_arrays(self):
+        points = random_points(100, 3)
+        axes = np.array([0.5, 0.25, 0.125])
+        for scale in (axes, iter(axes), tuple(axes)):
+            report = spillway.convert(points, "points.las", scale=scale, offset=np.zeros(3))
+            self.assertEqual(report.scale, tuple(axes))
 
     def test_arrays_are_written_as_they_are(self):
         for dim in (2, 3):
@@ -257,6 +265,7 @@ class InfoAndCheck(InFolder):
                 if key in ("extent", "header_box"):
                     value = None if value is None else {"min": list(value[0]), "max": list(value[1])}
                 with self.subTest(file=file, key=key):
+                    value = list(value) if isinstance(value, tuple) else value
                     self.assertEqual(value, told[key])
         self.assertEqual(spillway.info("hills.las", every=4).points, 500)
 
@@ -394,6 +403,16 @@ class Errors(InFolder):
         for kind, words, options in [
             (TypeError, "max_edge is 'long'; give float", {"max_edge": "long"}),
             (TypeError, "every is 1.5; give int", {"every": 1.5}),
+            (ValueError, "every is -1, which is out of range", {"every": -1}),
+            (ValueError, "tile is 1180591620717411303424", {"tile": 2**70}),
+            (TypeError, r"bounds is '1234'; give sequence", {"bounds": "1234", "every": 1}),
+            (TypeError, r"bounds is \('a', 1", {"bounds": ("a", 1, 2, 3), "every": 1}),
+            (TypeError, r"thin is \(1,\); give float or", {"thin": (1,), "every": 1}),
+            (TypeError, "output_format is 3; give str", {"output_format": 3}),
+            (TypeError, "input_format is 3; give str", {"input_format": 3, "every": 1}),
+            (TypeError, "tmpdir is of type int; give a path", {"tmpdir": 3}),
+            (TypeError, "threads is 1.5; give an int", {"threads": 1.5}),
+            (ValueError, r"dim is array", {"dim": np.array([2, 3])}),
             (TypeError, "memory is 1.5", {"memory": 1.5}),
             (TypeError, "progress is 3", {"progress": 3}),
             (ValueError, "memory|size", {"memory": "much"}),
@@ -418,11 +437,61 @@ class Errors(InFolder):
                 spillway.triangulate("hills.las", "mesh.spm", **options)
         self.assert_nothing_is_left()
 
+    def test_wrong_arguments_of_one_function_are_told_with_what_its_docstring_says(self):
+        points = random_points(20, 3)
+        convert = functools.partial(spillway.convert, points, "out.spp")
+        generate, dem = spillway.generate, functools.partial(spillway.dem, points)
+        raster = functools.partial(dem, "out.tif", resolution=1)
+        render = functools.partial(spillway.render, points, "out.png")
+        for kind, words, call, options in [
+            (TypeError, "scale is '123'; give float or", convert, {"scale": "123"}),
+            (ValueError, "2 numbers; give 1 or 3", convert, {"scale": [1, 2]}),
+            (ValueError, "cell_points is -1", convert, {"sorted": True, "cell_points": -1}),
+            (TypeError, "mesh_format is 3", spillway.check, {"mesh": "a", "mesh_format": 3}),
+            (ValueError, "count is -1, which", generate, {"family": "uniform", "count": -1}),
+            (TypeError, "count is None; give int", generate, {"family": "uniform", "count": None}),
+            (TypeError, "exaggerate is 'x'; give float", render, {"exaggerate": "x"}),
+            (TypeError, "slice is 'z'; give", render, {"slice": "z"}),
+            (TypeError, "product is None; give str", dem, {"product": None}),
+            (TypeError, "cog is 'yes'; give bool", raster, {"cog": "yes"}),
+            (TypeError, r"bounds is \(1, 2\); give \(float,", raster, {"bounds": (1, 2)}),
+            (ValueError, "clip_bounds has no effect on an array", raster, {"clip_bounds": (1, 2)}),
+        ]:
+            with self.subTest(options=options), self.assertRaisesRegex(kind, words):
+                call(**options)
+        with self.assertRaisesRegex(TypeError, r"grid is \(2,\); give \(int, int\)"):
+            generate("uniform", 9, "out#.npy", grid=(2,))
+        with self.assertRaisesRegex(ValueError, "levels is empty"):
+            spillway.contour(points, "out.gpkg", levels=[])
+        self.assert_nothing_is_left()
+
+    def test_names_that_no_file_can_have_are_refused(self):
+        points = random_points(20, 3)
+        for words, name in [("empty", ""), ("null character", "mesh\0.ply")]:
+            for call in [
+                lambda: spillway.triangulate(points, name),
+                lambda: spillway.triangulate(name, "mesh.ply"),
+                lambda: spillway.triangulate(["hills.las", name], "mesh.ply"),
+                lambda: spillway.info(name),
+                lambda: spillway.dem(points, like=name),
+                lambda: spillway.triangulate(points, "mesh.ply", tmpdir=name),
+            ]:
+                with self.assertRaisesRegex(ValueError, words):
+                    call()
+        self.assert_nothing_is_left()
+
+    def test_paths_that_come_one_by_one_are_refused_with_a_hint(self):
+        for inputs in (pathlib.Path(".").glob("*.las"), {"hills.las"}, open(os.devnull)):
+            with self.assertRaisesRegex(TypeError, "give paths in a list, or an array"):
+                spillway.triangulate(inputs, "mesh.spm")
+        inputs.close()
+
     def test_wrong_inputs(self):
         for words, inputs in [
             (r"shape \(4,\)", np.zeros(4)),
             (r"shape \(5, 4\)", np.zeros((5, 4))),
-            (r"shape \(0,\)", []),
+            ("is empty; give paths", []),
+            ("is of type NoneType", None),
             ("elements of type complex128", np.zeros((5, 2), complex)),
             ("elements of type <U1|is no array", [["a", "b"]]),
             ("not finite", [[0, 0], [1, np.nan], [1, 1]]),
@@ -438,6 +507,11 @@ class Errors(InFolder):
         with self.assertRaisesRegex(ValueError, "duplicates has no effect on points without z"):
             spillway.triangulate(random_points(9, 2), "mesh.spm", duplicates="mean")
         self.assert_nothing_is_left()
+
+    def test_more_points_than_memory_holds_are_a_memory_error_before_the_work(self):
+        for count in (10**15, 2**61):
+            with self.assertRaisesRegex(MemoryError, "memory ran out"):
+                spillway.generate("uniform", count)
 
     def test_limits_that_do_not_suffice(self):
         points = random_points(1_000_000, 2)
@@ -497,6 +571,22 @@ class LongWork(InFolder):
                 )
         finally:
             signal.signal(signal.SIGINT, before)
+        self.assert_nothing_is_left()
+
+    def test_ctrl_c_ends_the_wait_for_a_pipe_that_nobody_writes_to(self):
+        os.mkfifo("pipe")
+        reader, writer = os.pipe()
+        self.addCleanup(os.close, reader)
+        self.addCleanup(os.close, writer)
+        before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        try:
+            for name in ("pipe", f"/dev/fd/{reader}"):
+                signal.setitimer(signal.ITIMER_REAL, 0.1)
+                with self.assertRaises(KeyboardInterrupt):
+                    spillway.triangulate(name, "mesh.spm", input_format="npy")
+        finally:
+            signal.signal(signal.SIGALRM, before)
+        os.remove("pipe")
         self.assert_nothing_is_left()
 
     def test_what_progress_raises_ends_the_run(self):

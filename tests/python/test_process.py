@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import copy
+import errno
 import os
 import pickle
 import signal
@@ -38,6 +39,14 @@ class Copies(unittest.TestCase):
         self.assertEqual(
             (type(other), str(other)), (type(caught.exception), str(caught.exception))
         )
+
+    def test_a_pickled_error_keeps_file_and_number_of_the_system(self):
+        with self.assertRaises(OSError) as caught:
+            spillway.info("not there.las")
+        other = pickle.loads(pickle.dumps(caught.exception))
+        for error in (caught.exception, other):
+            self.assertEqual((error.errno, error.filename), (errno.ENOENT, "not there.las"))
+            self.assertEqual((error.file, str(error)), ("not there.las", str(caught.exception)))
 
 
 class Threads(unittest.TestCase):

@@ -1,6 +1,7 @@
 """Questions to a triangulation: against brute force, on edges and vertices, and outside."""
 
 import unittest
+import warnings
 
 import numpy as np
 import spillway
@@ -110,6 +111,15 @@ class Interpolate(unittest.TestCase):
         self.assertEqual(found.shape, (4, 2, 2, 3))
         np.testing.assert_array_equal(found[..., 1, 2], tri.interpolate(places, values[:, 1, 2]))
 
+    def test_values_without_components_or_not_aligned(self):
+        points = random_points(100, 2)
+        tri = spillway.Delaunay(points)
+        self.assertEqual(tri.interpolate(points[:7], np.zeros((100, 0))).shape, (7, 0))
+        record = np.zeros(100, [("flag", "u1"), ("value", float)])
+        record["value"] = points[:, 0]
+        found = tri.interpolate(points, record["value"])
+        np.testing.assert_array_equal(found, points[:, 0])
+
     def test_bad_values(self):
         tri = spillway.Delaunay(SQUARE)
         for values in ([1, 2, 3], 5, ["a"] * 4, [1j] * 4):
@@ -140,6 +150,12 @@ class Arrays(unittest.TestCase):
     def test_transform_is_no_number_where_a_simplex_is_flat(self):
         tri = spillway.Delaunay([[0, 0], [1, 0], [2, 1e-18]])
         self.assertTrue(np.isnan(tri.transform[0, :2]).all())
+
+    def test_transform_does_not_warn_of_the_largest_coordinates(self):
+        square = np.array([[-1, -1], [1, -1], [-1, 1], [1, 1.5]]) * (np.finfo(float).max / 2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(spillway.Delaunay(2 * (square / 1.5)).transform.shape, (2, 3, 2))
 
     def test_faces_lead_each_simplex_with_its_number_of_vertices(self):
         for dim in DIMENSIONS:

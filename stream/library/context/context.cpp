@@ -15,7 +15,7 @@
 namespace spillway {
 
 Context::Context(ContextOptions options)
-    : options_(std::move(options)), state_(std::make_shared<detail::ContextState>()) {
+    : options_(std::move(options)), state_(std::make_shared<detail::ContextState>(options_.stop)) {
   if (options_.threads > detail::kMostThreads) {
     throw Error(ErrorCode::kInvalidArgument,
                 fmt::format("{} threads are more than {}", options_.threads, detail::kMostThreads));
@@ -47,11 +47,11 @@ std::shared_ptr<ScratchFolder> ContextState::scratch(const Context& context) {
 std::shared_ptr<ProbedInput> ContextState::Files::input(const std::string& path) {
   std::error_code ignored;
   if (path != "-" && (std::filesystem::is_regular_file(path, ignored) || !exists(path))) {
-    return std::make_shared<ProbedInput>(disk(), path);
+    return std::make_shared<ProbedInput>(*disk_, path);
   }
   const std::lock_guard lock(mutex_);
   std::shared_ptr<ProbedInput>& pipe = pipes_[path];
-  if (!pipe) pipe = std::make_shared<ProbedInput>(disk(), path);
+  if (!pipe) pipe = std::make_shared<ProbedInput>(*disk_, path);
   return pipe;
 }
 
@@ -62,7 +62,7 @@ std::unique_ptr<InputFile> ContextState::Files::open(const std::string& path) {
     const auto found = pipes_.find(path);
     if (found != pipes_.end()) looked_at = found->second;
   }
-  return looked_at ? looked_at->open(path) : disk().open(path);
+  return looked_at ? looked_at->open(path) : disk_->open(path);
 }
 
 }  // namespace spillway::detail

@@ -5,7 +5,9 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
+#include <utility>
 
 #include "formats/disk/file_system.h"
 #include "formats/disk/scratch_folder.h"
@@ -17,7 +19,8 @@ namespace spillway::detail {
 /// pipe.
 class ContextState {
  public:
-  ContextState() = default;
+  /// Whoever waits for a pipe ends when `stop` is requested.
+  explicit ContextState(std::stop_token stop) : files_(std::move(stop)) {}
   /// No threads outlive the last context.
   ~ContextState();
   ContextState(const ContextState&) = delete;
@@ -40,17 +43,20 @@ class ContextState {
   /// Gives out pipes that were looked at.
   class Files final : public FileSystem {
    public:
+    explicit Files(std::stop_token stop) : disk_(disk_until(std::move(stop))) {}
+
     std::shared_ptr<ProbedInput> input(const std::string& path);
 
     std::unique_ptr<InputFile> open(const std::string& path) override;
     std::unique_ptr<OutputFile> create(const std::string& path) override {
-      return disk().create(path);
+      return disk_->create(path);
     }
     [[nodiscard]] bool exists(const std::string& path) const override {
-      return disk().exists(path);
+      return disk_->exists(path);
     }
 
    private:
+    const std::unique_ptr<FileSystem> disk_;
     std::mutex mutex_;
     std::map<std::string, std::shared_ptr<ProbedInput>> pipes_;  // guarded by mutex_
   };

@@ -4,11 +4,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stop_token>
 #include <thread>
+#include <vector>
 
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/input_bytes.h"
@@ -232,6 +236,36 @@ TEST_F(Disk, FillsTheBufferFromAPipe) {
   EXPECT_FALSE(file->seek(0));
   EXPECT_FALSE(file->read_at(0, buffer));
   writer.join();
+}
+
+TEST_F(Disk, AStopEndsTheWaitForAPipeWithoutAWriterAndForOneThatIsSilent) {
+  const std::string name = path("pipe");
+  ASSERT_EQ(::mkfifo(name.c_str(), 0600), 0);
+  for (const bool silent : {false, true}) {
+    std::stop_source stop;
+    const auto input = disk_until(stop.get_token())->open(name);
+    const int writer = silent ? ::open(name.c_str(), O_WRONLY) : -1;
+    const std::jthread later([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      stop.request_stop();
+    });
+    std::array<std::byte, 4> bytes{};
+    EXPECT_THROW(input->read(bytes), Interrupted);
+    if (writer >= 0) ::close(writer);
+  }
+}
+
+TEST_F(Disk, APipeThatCanBeStoppedIsReadToItsEndFromAWriterThatComesLater) {
+  const std::string name = path("pipe");
+  ASSERT_EQ(::mkfifo(name.c_str(), 0600), 0);
+  const std::stop_source stop;
+  const auto input = disk_until(stop.get_token())->open(name);
+  const std::jthread writer([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    put_content(name, std::string(100'000, 'x'));
+  });
+  std::vector<std::byte> bytes(200'000);
+  EXPECT_EQ(input->read(bytes), 100'000u);
 }
 
 TEST_F(Disk, AMissingFileIsAnError) {
