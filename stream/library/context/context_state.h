@@ -20,7 +20,7 @@ namespace spillway::detail {
 class ContextState {
  public:
   /// Whoever waits for a pipe ends when `stop` is requested.
-  explicit ContextState(std::stop_token stop) : files_(std::move(stop)) {}
+  explicit ContextState(std::stop_token stop = {}) : files_(std::move(stop)) {}
   /// No threads outlive the last context.
   ~ContextState();
   ContextState(const ContextState&) = delete;
