@@ -10,7 +10,10 @@ add_library(laz_encoder STATIC EXCLUDE_FROM_ALL
 target_link_libraries(laz_encoder PUBLIC spillway_formats GTest::gmock)
 
 spillway_test(laz_test unit
-  SOURCES formats/points/laz/laz_encoder/laz_encoder_test.cpp formats/points/laz/laz_round_trip_test.cpp
+  SOURCES
+    formats/points/laz/laz_encoder/laz_encoder_test.cpp
+    formats/points/laz/laz_round_trip_test.cpp
+    formats/points/laz/laz_writer_test.cpp
   LIBS laz_encoder)
 spillway_test(laz_corruption_test fault
   SOURCES formats/points/laz/laz_corruption_test.cpp
