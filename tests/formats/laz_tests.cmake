@@ -6,12 +6,14 @@ add_library(laz_encoder STATIC EXCLUDE_FROM_ALL
   formats/points/laz/laz_encoder/laz_damage.cpp
   formats/points/laz/laz_encoder/laz_excerpt.cpp
   formats/points/laz/laz_encoder/laz_file.cpp
-  formats/points/laz/laz_encoder/random_records.cpp)
+  formats/points/laz/laz_encoder/random_records.cpp
+  formats/points/laz/laz_encoder/record_decoder.cpp)
 target_link_libraries(laz_encoder PUBLIC spillway_formats GTest::gmock)
 
 spillway_test(laz_test unit
   SOURCES
     formats/points/laz/laz_encoder/laz_encoder_test.cpp
+    formats/points/laz/laz_records_test.cpp
     formats/points/laz/laz_round_trip_test.cpp
     formats/points/laz/laz_writer_test.cpp
   LIBS laz_encoder)
