@@ -7,7 +7,8 @@ add_library(laz_encoder STATIC EXCLUDE_FROM_ALL
   formats/points/laz/laz_encoder/laz_excerpt.cpp
   formats/points/laz/laz_encoder/laz_file.cpp
   formats/points/laz/laz_encoder/random_records.cpp
-  formats/points/laz/laz_encoder/record_decoder.cpp)
+  formats/points/laz/laz_encoder/record_decoder.cpp
+  formats/points/laz/laz_encoder/record_items.cpp)
 target_link_libraries(laz_encoder PUBLIC spillway_formats GTest::gmock)
 
 spillway_test(laz_test unit
