@@ -43,6 +43,7 @@ class LazWriter : public PointWriter {
         laz_(laz_record_for(content_.point_format())),
         chunk_bytes_(kChunkPoints * content_.record_length()),
         encoded_(std::max<std::size_t>(1, sharing_.at_once)) {
+    records_.reserve(encoded_.size() * chunk_bytes_);
     content_.compress(laz_);
     std::vector<std::byte> head = content_.head();
     pointer_at_ = head.size();
