@@ -7,6 +7,7 @@
 
 #include "formats/bytes/word_list.h"
 #include "formats/compression/decompress.h"
+#include "formats/disk/extension.h"
 #include "formats/disk/spooled_output.h"
 #include "src/error.h"
 
@@ -28,6 +29,13 @@ std::string written_extensions(bool all, std::string_view last, PointFormats for
   return word_list(extensions, last);
 }
 
+/// Whether others would take it for COPC, which has the extension of LAZ.
+bool is_copc_name(const std::string& path) {
+  const std::size_t last = path.rfind('.');
+  return last != std::string::npos && extension_of(path) == "laz" &&
+         extension_of(path.substr(0, last)) == "copc";
+}
+
 /// The format by its name, or by the path's; it need not be one that is written.
 const PointFormat& chosen_format(const std::string& path, const std::string& format_name,
                                  PointFormats formats) {
@@ -37,6 +45,11 @@ const PointFormat& chosen_format(const std::string& path, const std::string& for
         fmt::format("cannot write {}: compressed points are not written; write them "
                     "to {} and compress that",
                     path, written_extensions(false, "or", formats)),
+        {.file = path});
+  }
+  if (is_copc_name(path)) {
+    throw InvalidArgument(
+        fmt::format("cannot write {}: COPC is read, not written; end the name in .laz alone", path),
         {.file = path});
   }
   if (const PointFormat* const format = point_format_of_path(path, formats)) return *format;
@@ -52,11 +65,9 @@ const PointFormat& point_format_to_write(const std::string& path, const std::str
                                          PointFormats formats) {
   const PointFormat& format = chosen_format(path, format_name, formats);
   if (is_written(format)) return format;
-  throw InvalidArgument(
-      fmt::format(
-          "cannot write {}: {} is read, not written; write .las, or .spp, which is compressed too",
-          name_of_output(path), format.title),
-      {.file = path});
+  throw InvalidArgument(fmt::format("cannot write {}: {} is read, not written; write .laz",
+                                    name_of_output(path), format.title),
+                        {.file = path});
 }
 
 std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::string& path,

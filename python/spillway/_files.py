@@ -131,7 +131,7 @@ def convert(
     mesh_format : str, optional
         The input is a mesh of this format, which neither first bytes nor name tell.
     las_version : {"1.2", "1.4"}, optional
-        Of LAS. By default what the points need.
+        Of LAS and LAZ. By default what the points need.
     scale : float or sequence of 3 floats, optional
         Round coordinates of points to multiples of this.
     offset : float or sequence of 3 floats, optional
@@ -248,7 +248,7 @@ def generate(
     output_format : str, optional
         The format, where the name does not tell.
     las_version : {"1.2", "1.4"}, optional
-        Of LAS.
+        Of LAS and LAZ.
     {options}
 
     Returns

@@ -42,9 +42,11 @@ void pass_on(PointStream& points, unsigned threads, RunWatch& watch,
 
 PointConversion to_file(const RunPoints& points, PointFile& file, unsigned threads,
                         RunWatch& watch) {
-  file.start(points);
+  file.start(points, {.at_once = threads, .run = share_out});
   pass_on(*points.stream, threads, watch, [&](PointBlock& block) { file.append(block); });
-  return file.complete();
+  PointConversion done;
+  with_threads(threads, [&] { done = file.complete(); });
+  return done;
 }
 
 PointConversion to_program(const RunPoints& points, spillway::PointSink& sink, unsigned threads,

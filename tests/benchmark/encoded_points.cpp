@@ -1,5 +1,5 @@
-// encoded_points FILE... --output-dir DIR: files of points on a lattice as LAZ or COPC, which
-// Spillway reads and does not write, as in encoded_files.h. One file is in memory for each thread.
+// encoded_points FILE... --output-dir DIR: files of points on a lattice as LAZ or COPC, as in
+// encoded_files.h. One file is in memory for each thread.
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
 // laz_benchmark FILE...: reads each file to its end, on one thread and on several, and prints one
-// Markdown table. Medians over the repetitions, after one run that warms the caches of the disk.
+// Markdown table; with --encoding, encodes the chunks of LAZ files again, with all attributes, on
+// one thread. Medians over the repetitions, after one run that warms the caches of the disk.
 // Where other programs share the processor, processor time is the better measure of one thread.
 
 #include <fmt/format.h>
@@ -10,14 +11,21 @@
 #include <filesystem>
 #include <mutex>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "formats/bytes/bytes.h"
+#include "formats/bytes/input_bytes.h"
 #include "formats/disk/file_system.h"
 #include "formats/inputs/open_points.h"
 #include "formats/points/common/point_reader.h"
+#include "formats/points/las/las_header.h"
+#include "formats/points/laz/chunk_encoder.h"
+#include "formats/points/laz/chunk_table.h"
 #include "src/error.h"
+#include "tests/formats/points/laz/laz_encoder/record_decoder.h"
 
 namespace spillway::detail {
 namespace {
@@ -28,6 +36,7 @@ struct Plan {
   unsigned threads = 2;
   bool attributes = false;
   bool keep_withheld = false;
+  bool encoding = false;
 };
 
 /// Takes pieces in turns with other threads, and decodes them beside each other.
@@ -97,6 +106,66 @@ Speed median_speed(const Plan& plan, const std::string& file, unsigned threads) 
   return {median(by_clock), median(by_processor), speed.points};
 }
 
+/// The records of the chunks of a LAZ file.
+struct Chunks {
+  LazChunkFormat format;
+  std::vector<std::string> records;  ///< of each chunk
+  std::uint64_t points = 0;
+  std::uint64_t bytes = 0;  ///< compressed
+};
+
+Chunks chunks_of(const std::string& file) {
+  InputBytes source(disk().open(file));
+  const LasHeader las = read_las_header(source);
+  const std::optional<LazChunkTable> table = las.laz ? read_chunk_table(source, las) : std::nullopt;
+  if (!table) throw Error(fmt::format("{} has no chunks of LAZ", file));
+  Chunks chunks{.format = las.laz->format, .records = {}};
+  for (const LazChunk& place : table->chunks) {
+    std::vector<std::byte> bytes(place.bytes);
+    source.seek(place.offset);
+    source.read(bytes);
+    std::string& records = chunks.records.emplace_back();
+    for (const std::string& record :
+         testing::decode_laz_records(chunks.format, bytes, place.count)) {
+      records += record;
+    }
+    chunks.points += place.count;
+    chunks.bytes += place.bytes;
+  }
+  return chunks;
+}
+
+/// Encodes as a writer does; returns the bytes.
+std::uint64_t encode(const Chunks& chunks) {
+  std::uint64_t bytes = 0;
+  std::vector<std::byte> encoded;
+  for (const std::string& records : chunks.records) {
+    encoded.clear();
+    LazChunkEncoder(chunks.format).encode(as_bytes_of(records), encoded);
+    bytes += encoded.size();
+  }
+  return bytes;
+}
+
+void print_encoding_table(const Plan& plan) {
+  fmt::print("| file | points | encoded by processor time, million points/s | size ratio |\n");
+  fmt::print("|---|---|---|---|\n");
+  for (const std::string& file : plan.files) {
+    const Chunks chunks = chunks_of(file);
+    const std::uint64_t bytes = encode(chunks);
+    std::vector<double> speeds;
+    for (unsigned r = 0; r < plan.repetitions; ++r) {
+      const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+      encode(chunks);
+      speeds.push_back(static_cast<double>(chunks.points) * 1e-6 /
+                       (seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start));
+    }
+    fmt::print("| {} | {} | {:.2f} | {:.3f} |\n", std::filesystem::path(file).filename().string(),
+               chunks.points, median(speeds),
+               static_cast<double>(bytes) / static_cast<double>(chunks.bytes));
+  }
+}
+
 void print_table(const Plan& plan) {
   fmt::print(
       "| file | points | 1 thread, million points/s | by processor time | {} threads | ratio |\n",
@@ -116,15 +185,20 @@ void print_table(const Plan& plan) {
 
 int main(int argc, char** argv) {
   spillway::detail::Plan plan;
-  CLI::App app("Times the reading of LAZ and other point files");
+  CLI::App app("Times the reading of LAZ and other point files, and the encoding of LAZ");
   app.add_option("files", plan.files)->required();
   app.add_option("-r,--repetitions", plan.repetitions)->check(CLI::Range(1, 1000));
   app.add_option("--threads", plan.threads, "in the second turn")->check(CLI::Range(1, 1024));
   app.add_flag("--attributes", plan.attributes, "also classes, returns and flags");
   app.add_flag("--keep-withheld", plan.keep_withheld, "flags are not needed, then");
+  app.add_flag("--encoding", plan.encoding, "encode chunks of LAZ instead of reading");
   CLI11_PARSE(app, argc, argv);
   try {
-    spillway::detail::print_table(plan);
+    if (plan.encoding) {
+      spillway::detail::print_encoding_table(plan);
+    } else {
+      spillway::detail::print_table(plan);
+    }
   } catch (const spillway::detail::Error& error) {
     fmt::print(stderr, "laz_benchmark: {}\n", error.what());
     return 1;

@@ -2,8 +2,9 @@ spillway_test(laz_reader_test unit
   SOURCES formats/points/copc/copc_test.cpp formats/points/laz/laz_reader_test.cpp
   LIBS laz_encoder fmt::fmt)
 spillway_test(laz_shared_data_test unit
-  SOURCES formats/points/laz/laz_shared_data_test.cpp
-  LIBS spillway_formats fmt::fmt)
+  SOURCES
+    formats/points/laz/laz_encoder_shared_data_test.cpp formats/points/laz/laz_shared_data_test.cpp
+  LIBS laz_encoder fmt::fmt)
 spillway_test(point_pieces_test unit
   SOURCES formats/points/point_pieces_test.cpp
   LIBS laz_encoder fmt::fmt)

@@ -1,22 +1,22 @@
-# An encoder of LAZ and COPC, which only tests need.
+# Files of LAZ and COPC as tests need them, and what of these Spillway does not write.
 add_library(laz_encoder STATIC EXCLUDE_FROM_ALL
   formats/points/copc/encoded_files.cpp formats/points/copc/point_octree.cpp
-  formats/points/laz/laz_encoder/arithmetic_encoder.cpp
   formats/points/laz/laz_encoder/chunk_encoder.cpp
-  formats/points/laz/laz_encoder/gps_time_encoder.cpp
-  formats/points/laz/laz_encoder/integer_compressor.cpp
-  formats/points/laz/laz_encoder/item_encoder.cpp
+  formats/points/laz/laz_encoder/items_v1_encoder.cpp
   formats/points/laz/laz_encoder/laz_damage.cpp
   formats/points/laz/laz_encoder/laz_excerpt.cpp
   formats/points/laz/laz_encoder/laz_file.cpp
-  formats/points/laz/laz_encoder/point10_encoder.cpp
-  formats/points/laz/laz_encoder/point14_encoder.cpp
   formats/points/laz/laz_encoder/random_records.cpp
-  formats/points/laz/laz_encoder/rgb_encoder.cpp)
+  formats/points/laz/laz_encoder/record_decoder.cpp
+  formats/points/laz/laz_encoder/record_items.cpp)
 target_link_libraries(laz_encoder PUBLIC spillway_formats GTest::gmock)
 
 spillway_test(laz_test unit
-  SOURCES formats/points/laz/laz_encoder/laz_encoder_test.cpp formats/points/laz/laz_round_trip_test.cpp
+  SOURCES
+    formats/points/laz/laz_encoder/laz_encoder_test.cpp
+    formats/points/laz/laz_records_test.cpp
+    formats/points/laz/laz_round_trip_test.cpp
+    formats/points/laz/laz_writer_test.cpp
   LIBS laz_encoder)
 spillway_test(laz_corruption_test fault
   SOURCES formats/points/laz/laz_corruption_test.cpp

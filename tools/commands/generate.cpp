@@ -28,7 +28,8 @@ constexpr const char* kExamples =
     "  spillway generate circle -n 1000 | spillway triangulate - -o disc.obj\n"
     "  spillway generate terrain -n 1e8 --grid 20x20 -o 'survey/hills_#.las'  400 overlapping "
     "files\n"
-    "LAS takes the families of integers: lattice, terrain, duplicates, collinear, coplanar.\n"
+    "LAS and LAZ take the families of integers: lattice, terrain, duplicates, collinear, "
+    "coplanar.\n"
     "The same family, number, dimension and seed give the same points on every machine.";
 
 struct GenerateCommandOptions {

@@ -11,13 +11,13 @@ namespace spillway::detail {
 
 void add_las_version(CommandLine& app, PointOutput& output) {
   add_choice(app, "--las-version", output.las_version, {"1.2", "1.4"},
-             "Version of LAS to write, with point format 0 or 6");
+             "Version of LAS and LAZ to write, with point format 0 or 6");
 }
 
 void check_las_version(const PointOutput& output, bool is_las) {
   if (is_las || output.las_version.empty()) return;
-  throw UsageError(
-      fmt::format("--las-version is for LAS, and {} is not LAS: leave it out", output.name()));
+  throw UsageError(fmt::format("--las-version is for LAS and LAZ, and {} is neither: leave it out",
+                               output.name()));
 }
 
 std::string format_name_of(const PointOutput& output) {

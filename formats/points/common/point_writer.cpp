@@ -6,6 +6,14 @@
 
 namespace spillway::detail {
 
+void share(const WorkSharing& sharing, std::size_t count, const WorkSharing::Body& body) {
+  if (sharing.run) {
+    sharing.run(count, body);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) body(i);
+  }
+}
+
 void PointWriter::set_regions(std::span<const PointRegion> /*regions*/) {
   throw InvalidArgument("this format of points has no regions");
 }

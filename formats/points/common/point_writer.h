@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,26 +16,41 @@
 
 namespace spillway::detail {
 
+/// Work that several threads may share.
+struct WorkSharing {
+  using Body = std::function<void(std::size_t i)>;
+
+  std::size_t at_once = 1;  ///< how many threads there are for it
+  /// Calls body(0) to body(count - 1), in any order and several at a time, and throws what one of
+  /// them throws. Empty: the calling thread does all, in order.
+  std::function<void(std::size_t count, const Body& body)> run{};
+};
+
+/// Calls body(0) to body(count - 1) by that.
+void share(const WorkSharing& sharing, std::size_t count, const WorkSharing::Body& body);
+
 /// What a point file to be written holds.
 struct PointWriterOptions {
-  std::string format;   ///< "las", "text", "npy" or "spp"; empty: by extension
-  int coordinates = 3;  ///< 2: x and y only (not LAS)
-  /// How many points will come, where known. The headers of LAS and npy tell it, so on a pipe they
-  /// need it, or `scratch`.
+  std::string format;   ///< "las", "laz", "text", "npy" or "spp"; empty: by extension
+  int coordinates = 3;  ///< 2: x and y only (not LAS, LAZ)
+  /// How many points will come, where known. The headers of LAS, LAZ and npy tell it, so on a pipe
+  /// they need it, or `scratch`.
   std::optional<std::uint64_t> count{};
-  std::optional<Lattice> lattice{};  ///< set if the points come as integers; LAS requires it
+  std::optional<Lattice> lattice{};  ///< set if the points come as integers; LAS and LAZ require it
   std::optional<Box<3>> extent{};    ///< in output coordinates, where known; told by spp only
-  std::string crs{};                 ///< as in PointHeader; told by LAS and spp
+  std::string crs{};                 ///< as in PointHeader; told by LAS, LAZ and spp
   /// `crs` as WKT where it is a code and the caller knows; without, LAS tells the code.
   std::string crs_wkt{};
   /// Points come region by region, as set_regions() tells; for formats that hold regions. Count and
   /// extent follow from these.
   bool by_regions = false;
-  bool attributes = false;  ///< attributes will come too; LAS holds them, the others drop them
-  std::string version{};    ///< of LAS, "1.2" or "1.4"; empty: 1.2 unless `count` needs 1.4
+  bool attributes = false;  ///< attributes will come too; LAS and LAZ hold them, others drop them
+  std::string version{};    ///< of LAS and LAZ, "1.2" or "1.4"; empty: 1.2 unless `count` needs 1.4
   /// Where an output that cannot go back to its header waits until the header is known; the folder
   /// must outlive the writer.
   ScratchFolder* scratch = nullptr;
+  /// For formats that compress.
+  WorkSharing sharing{};
 };
 
 /// Writes points. Nothing appears under the final name before finish().

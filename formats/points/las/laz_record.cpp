@@ -123,6 +123,43 @@ LazRecord parse_laz_record(std::span<const std::byte> content, int point_format,
   return record;
 }
 
+LazChunkFormat laz_format_to_write(int point_format, std::size_t extra_bytes) {
+  LazChunkFormat format;
+  format.layered = point_format >= 6;
+  for (const LazItemType type : items_of(point_format, extra_bytes > 0)) {
+    const ItemKind& kind = kind_of(type);
+    const std::uint16_t version =
+        format.layered ? 3 : std::min<std::uint16_t>(2, kind.most_version);
+    const std::size_t size = kind.size > 0 ? kind.size : extra_bytes;
+    format.items.push_back({type, static_cast<std::uint16_t>(size), version});
+  }
+  return format;
+}
+
+std::vector<std::byte> laz_record_bytes(const LazRecord& record) {
+  // The version of the format that is written, as LASzip counts.
+  constexpr std::uint8_t kMajor = 3;
+  constexpr std::uint8_t kMinor = 4;
+  constexpr std::int64_t kUnused = -1;
+  const std::vector<LazItem>& items = record.format.items;
+  std::vector<std::byte> bytes(kRecordSize + items.size() * kItemSize);
+  store(bytes.data(), static_cast<std::uint16_t>(record.compressor));
+  store(&bytes[4], kMajor);
+  store(&bytes[5], kMinor);
+  store(&bytes[12], record.chunk_points.value_or(kVariableChunks));
+  store(&bytes[16], kUnused);
+  store(&bytes[24], kUnused);
+  store(&bytes[32], static_cast<std::uint16_t>(items.size()));
+  std::byte* at = &bytes[kRecordSize];
+  for (const LazItem& item : items) {
+    store(at, static_cast<std::uint16_t>(item.type));
+    store(at + 2, item.size);
+    store(at + 4, item.version);
+    at += kItemSize;
+  }
+  return bytes;
+}
+
 std::size_t laz_layers(const LazChunkFormat& format) {
   std::size_t layers = 0;
   for (const LazItem& item : format.items) {

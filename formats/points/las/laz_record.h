@@ -57,6 +57,13 @@ struct LazRecord {
 LazRecord parse_laz_record(std::span<const std::byte> content, int point_format,
                            std::size_t record_length, const FileSpot& where);
 
+/// The items of records of a point format with so many bytes behind it, in the versions that are
+/// written: pointwise 2 (wave packets 1), layered 3.
+LazChunkFormat laz_format_to_write(int point_format, std::size_t extra_bytes);
+
+/// The content of such a record; compressed.
+std::vector<std::byte> laz_record_bytes(const LazRecord& record);
+
 /// Layers of a chunk of that format.
 std::size_t laz_layers(const LazChunkFormat& format);
 

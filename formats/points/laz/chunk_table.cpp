@@ -42,8 +42,6 @@ std::uint64_t load_at(InputBytes& source, std::uint64_t position) {
   return load<std::uint64_t>(bytes.data());
 }
 
-constexpr std::uint64_t kToldAtTheEnd = ~std::uint64_t{0};  // of the file
-
 /// Nothing if the writer did not come to writing it.
 std::optional<TableRange> find_table(InputBytes& source, const LasHeader& las) {
   const std::uint64_t size = source.size().value();
@@ -51,7 +49,7 @@ std::optional<TableRange> find_table(InputBytes& source, const LasHeader& las) {
   if (first_chunk > size) fail_before_chunks(source, size);
   TableRange range{load_at(source, las.offset_to_points), size};
   if (range.offset == las.offset_to_points) return std::nullopt;
-  if (range.offset == kToldAtTheEnd) {
+  if (range.offset == kChunkTableAtTheEnd) {
     range.end -= kChunkTablePointer;
     range.offset = load_at(source, range.end);
   }
@@ -93,7 +91,7 @@ std::optional<std::uint64_t> read_end_of_chunks(InputBytes& source, const LasHea
     fail_before_chunks(source, source.position());
   }
   const auto end = load<std::uint64_t>(bytes.data());
-  if (end == kToldAtTheEnd || end == las.offset_to_points) return std::nullopt;
+  if (end == kChunkTableAtTheEnd || end == las.offset_to_points) return std::nullopt;
   if (end < source.position()) {
     fail(source, las.offset_to_points,
          fmt::format("the chunk table should be at byte {}, before the compressed chunks "

@@ -25,6 +25,8 @@ struct LazChunkTable {
 
 /// Size of the pointer to the chunk table, which stands before the first chunk.
 inline constexpr std::size_t kChunkTablePointer = 8;
+/// What it says where the last bytes of the file are the pointer.
+inline constexpr std::uint64_t kChunkTableAtTheEnd = ~std::uint64_t{0};
 
 /// What the table lists, in a file that can be read from any byte on (`source` is left somewhere).
 /// Nothing if the table was never written.

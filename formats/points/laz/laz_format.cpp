@@ -4,6 +4,7 @@
 
 #include "formats/points/las/las_variant.h"
 #include "formats/points/laz/laz_reader.h"
+#include "formats/points/laz/laz_writer.h"
 
 namespace spillway::detail {
 namespace {
@@ -25,8 +26,17 @@ constinit const PointFormat kLazPoints = {
     .title = "LAZ",
     .extensions = kExtensions,
     .holds_crs = true,
+    .wants_wkt = true,
     .holds_attributes = true,
+    .needs_heights = true,
+    .needs_lattice = true,
+    .has_versions = true,
     .las_variant = &kVariant,
+    .open_writer =
+        [](std::unique_ptr<OutputFile> file, const std::string& /*path*/,
+           const PointWriterOptions& options) { return open_laz_writer(std::move(file), options); },
+    .header_comes_last =
+        [](const PointWriterOptions& options) { return !options.count || options.attributes; },
 };
 
 }  // namespace spillway::detail

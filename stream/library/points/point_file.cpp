@@ -12,6 +12,7 @@
 #include "formats/points/point_formats.h"
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
+#include "src/parallel/parallel.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/points/lost_fields.h"
 #include "stream/library/points/public_points.h"
@@ -55,13 +56,18 @@ std::string wkt_of_code(const std::string& crs) {
 
 }  // namespace
 
+void share_out(std::size_t count, const WorkSharing::Body& body) {
+  parallel_for(count, 1, [&](std::size_t i, std::size_t, std::size_t) { body(i); });
+}
+
 PointFile::PointFile(const std::string& path, const PointFileOptions& options,
                      const Context& context, FileSystem& files)
     : files_(files),
       path_(path),
       options_(options),
       format_(format_to_write(path, options.format)),
-      scratch_(context.state().scratch(context)) {
+      scratch_(context.state().scratch(context)),
+      threads_(context.threads()) {
   check(options);
 }
 
@@ -70,7 +76,7 @@ PointFile::~PointFile() = default;
 void PointFile::check(const PointFileOptions& options) const {
   const std::string& version = options.las_version;
   if (!version.empty() && !format_.has_versions) {
-    throw InvalidArgument(fmt::format("only LAS has versions, and {} is none", path_));
+    throw InvalidArgument(fmt::format("only LAS and LAZ have versions, and {} is neither", path_));
   }
   if (!version.empty() && version != "1.2" && version != "1.4") {
     throw InvalidArgument(
@@ -98,7 +104,7 @@ void PointFile::check(const PointFileOptions& options) const {
   }
 }
 
-void PointFile::start(const RunPoints& points) {
+void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
   if (begun_ || finished_) throw InvalidArgument("a file of points begins once");
   begun_ = true;
   how_.format = format_.name;
@@ -106,6 +112,7 @@ void PointFile::start(const RunPoints& points) {
   how_.coordinates = !points.has_heights && !adds_heights_ ? 2 : 3;
   how_.crs = points.crs;
   how_.scratch = scratch_.get();
+  how_.sharing = sharing;
   how_.by_regions = options_.sorted.has_value();
   // Points may be left out of LAS, since they are flagged as withheld.
   if (std::ranges::none_of(points.headers, is_las)) how_.count = points.records;
@@ -200,7 +207,10 @@ void PointFile::begin(const PointsHeader& header) {
   points.crs = header.crs;
   source_ = checked_lattice(header.lattice);
   points.heights_on_lattice = source_ && header.lattice->has_z;
-  start(points);
+  start(points, {.at_once = threads_,
+                 .run = [threads = threads_](std::size_t count, const WorkSharing::Body& body) {
+                   with_threads(threads, [&] { share_out(count, body); });
+                 }});
 }
 
 void PointFile::write(std::span<const spillway::Point<3>> points) {

@@ -18,6 +18,9 @@
 
 namespace spillway::detail {
 
+/// For WorkSharing, inside of with_threads().
+void share_out(std::size_t count, const WorkSharing::Body& body);
+
 /// A point file in the making. Inside of the library start(), append() and complete() stand for
 /// begin(), write() and finish().
 class PointFile final : public spillway::PointSink {
@@ -38,8 +41,9 @@ class PointFile final : public spillway::PointSink {
   }
 
   /// Decides how these points are written. Where a lattice is to be chosen and no extent is known,
-  /// the first block decides, and the file is created then.
-  void start(const RunPoints& points);
+  /// the first block decides, and the file is created then. Compression in append() is shared out
+  /// by `sharing`.
+  void start(const RunPoints& points, const WorkSharing& sharing = {});
   /// The next points, as `points.stream` gives them, with their index; they are changed.
   void append(PointBlock& block);
 
@@ -72,6 +76,7 @@ class PointFile final : public spillway::PointSink {
   PointFileOptions options_;
   const PointFormat& format_;
   std::shared_ptr<ScratchFolder> scratch_;
+  unsigned threads_;  ///< of a program that writes
   PointWriterOptions how_;
   bool adds_heights_ = false;
   bool rounds_ = false;

@@ -94,7 +94,8 @@ TEST_P(PointFaults, AnUnfinishedFileIsDropped) {
   EXPECT_TRUE(files.parts.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PointFaults, ::testing::Values("a.las", "a.xyz", "a.npy", "a.spp"),
+INSTANTIATE_TEST_SUITE_P(All, PointFaults,
+                         ::testing::Values("a.las", "a.laz", "a.xyz", "a.npy", "a.spp"),
                          [](const auto& tested) { return tested.param.substr(2); });
 
 TEST(ShrinkingFile, LasEndsWithinAPoint) {

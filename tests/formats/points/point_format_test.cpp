@@ -115,11 +115,13 @@ TEST(PointFormatChoice, OutputWithoutKnownFormat) {
   FaultyFileSystem files;
   EXPECT_THROW(open_point_writer(files, "-", {}), InvalidArgument);
   EXPECT_THROW(open_point_writer(files, "a.dat", {}), InvalidArgument);
-  EXPECT_THROW(open_point_writer(files, "a.laz", {}), InvalidArgument);
+  EXPECT_THAT(error_of([&] { open_point_writer(files, "a.COPC.laz", {}); }),
+              HasSubstr("COPC is read, not written; end the name in .laz alone"));
   EXPECT_THROW(open_point_writer(files, "a.xyz.gz", {}), InvalidArgument);
-  PointWriterOptions laz;
-  laz.format = "laz";
-  EXPECT_THROW(open_point_writer(files, "-", laz), InvalidArgument);
+  PointWriterOptions copc;
+  copc.format = "copc";
+  EXPECT_THAT(error_of([&] { open_point_writer(files, "-", copc); }),
+              HasSubstr("standard output: COPC is read, not written; write .laz"));
   EXPECT_EQ(files.count(Call::kCreate), 0);
 }
 
@@ -128,7 +130,7 @@ TEST(PointFormatChoice, PipeThatNeedsTheCountBeforehand) {
   files.seekable = false;
   PointWriterOptions options;
   options.lattice = Lattice{};
-  for (const char* name : {"a.las", "a.npy"}) {
+  for (const char* name : {"a.las", "a.laz", "a.npy"}) {
     EXPECT_THAT(error_of([&] { open_point_writer(files, name, options); }),
                 HasSubstr("not known beforehand; write text or spp"));
     EXPECT_TRUE(files.parts.empty());

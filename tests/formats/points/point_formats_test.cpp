@@ -50,7 +50,7 @@ TEST(PointFormatTable, OneFormatIsText) {
 }
 
 TEST(PointFormatTable, ListsForMessagesAreInItsOrder) {
-  EXPECT_EQ(list_of_points(is_written, "or"), "LAS, text, npy or spp");
+  EXPECT_EQ(list_of_points(is_written, "or"), "LAS, LAZ, text, npy or spp");
   EXPECT_THAT(point_extensions(),
               ElementsAre(".las", ".laz", ".txt", ".xyz", ".csv", ".asc", ".npy", ".spp"));
 }

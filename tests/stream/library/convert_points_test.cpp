@@ -5,8 +5,14 @@
 #include <spillway/convert.h>
 #include <spillway/generate.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "tests/stream/library/call_test.h"
 
@@ -29,6 +35,11 @@ class Convert : public testing::CallTest {
 
   std::vector<Point<3>> read(const std::string& name) {
     return testing::all_of(*open_points({file(name)}, {}, Context(options())));
+  }
+
+  std::string content(const std::string& name) {
+    std::ifstream stream(file(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
   }
 
   const std::vector<Point<3>> points_{{0.1234, 7, 1}, {5, 0.5, 2}, {3, 3, 3.25}};
@@ -101,6 +112,37 @@ TEST_F(Convert, WritesAFileThatAProgramFillsByItself) {
   EXPECT_FALSE(std::filesystem::exists(file("points.xyz")));
   sink->finish();
   EXPECT_EQ(read("points.xyz"), points_);
+}
+
+TEST_F(Convert, LazHasTheSameBytesWithAnyNumberOfThreads) {
+  const GenerateOptions hills{.family = "terrain", .count = 230'000};
+  std::vector<std::string> contents;
+  for (const unsigned threads : {1U, 2U, 5U}) {
+    ContextOptions how = options();
+    how.threads = threads;
+    const Context context(how);
+    convert(*generate_points(hills), *create_points(file("hills.laz"), {}, context), context);
+    contents.push_back(content("hills.laz"));
+  }
+  EXPECT_EQ(read("hills.laz"), testing::all_of(*generate_points(hills)));
+  EXPECT_TRUE(contents[1] == contents[0]);
+  EXPECT_TRUE(contents[2] == contents[0]);
+}
+
+TEST_F(Convert, AProgramFillsLazOnAllThreads) {
+  const auto all = testing::all_of(*generate_points({.family = "terrain", .count = 210'000}));
+  const Context context(options());
+  const auto sink = create_points(file("hills.laz"), {.scale = {0.01}}, context);
+  sink->begin({});
+  for (std::span<const Point<3>> rest = all; !rest.empty();) {
+    const std::size_t some = std::min<std::size_t>(rest.size(), 9'999);
+    sink->write(rest.first(some));
+    rest = rest.subspan(some);
+  }
+  sink->finish();
+  const auto back = read("hills.laz");
+  ASSERT_EQ(back.size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) ASSERT_NEAR(back[i][2], all[i][2], 0.0051) << i;
 }
 
 TEST_F(Convert, RefusesOptionsThatCannotBe) {

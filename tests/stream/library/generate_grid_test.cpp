@@ -59,8 +59,10 @@ class GeneratedGrid : public testing::CallTest {
 };
 
 TEST_F(GeneratedGrid, HoldsEachPointOfAFamilyOnceAndInOrder) {
-  for (const auto& [family, name] : std::map<std::string, std::string>{
-           {"terrain", "a_#.las"}, {"uniform", "a_#.spp"}, {"circle", "a_#.npy"}}) {
+  for (const auto& [family, name] : std::map<std::string, std::string>{{"terrain", "a_#.las"},
+                                                                       {"lattice", "a_#.laz"},
+                                                                       {"uniform", "a_#.spp"},
+                                                                       {"circle", "a_#.npy"}}) {
     const GenerateOptions what{.family = family, .count = 70'000, .seed = 3};
     const GridReport report = write(what, name, {.columns = 4, .rows = 3, .overlap = 0.1});
     const auto tiles = files();
@@ -139,7 +141,7 @@ TEST_F(GeneratedGrid, RefusesWhatCannotBeAndLeavesNothing) {
   EXPECT_EQ(code(terrain, "a_#.las", {.columns = 0}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code(terrain, "a_#.las", {.columns = 101, .rows = 100}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code(terrain, "a_#.las", {.overlap = 0.41}), ErrorCode::kInvalidArgument);
-  EXPECT_EQ(code(terrain, "a_#.laz", {}), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(code(terrain, "a_#.copc.laz", {}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code(terrain, "a.las", {}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code({.family = "uniform", .count = 9}, "a_#.las", {}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code({.family = "clouds"}, "a_#.las", {}), ErrorCode::kInvalidArgument);

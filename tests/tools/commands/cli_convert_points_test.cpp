@@ -255,12 +255,40 @@ TEST(ConvertPoints, KeepsTheCoordinateSystem) {
               HasSubstr("colour, coordinate system\n"));
 }
 
+TEST(ConvertPoints, WritesLazAndReadsItBackAsTheSameLas) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 120000 -o in.las");
+  for (const std::string version : {"1.2", "1.4"}) {
+    work.succeed("spillway convert -q in.las -o there.laz --las-version " + version);
+    EXPECT_EQ(work.info("there.laz")["format"], "laz");
+    EXPECT_EQ(work.info("there.laz")["version"], version);
+    EXPECT_LT(work.read("there.laz").size(), work.read("in.las").size() / 4);
+    work.succeed("spillway convert -q there.laz -o back.las --las-version 1.2");
+    EXPECT_EQ(work.read("back.las"), work.read("in.las")) << version;
+  }
+}
+
+TEST(ConvertPoints, WritesLazIntoAPipe) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 120000 -o in.las\n"
+      "spillway generate -q terrain -n 120000 --output-format laz -o - > there.laz\n"
+      "spillway convert -q there.laz -o file.las\n"
+      "cat there.laz | spillway convert -q - -o pipe.las\n"
+      "cat in.las | spillway convert -q - --output-format laz -o - > again.laz\n"
+      "spillway convert -q again.laz -o again.las");
+  for (const char* const name : {"file.las", "pipe.las", "again.las"}) {
+    EXPECT_EQ(work.read(name), work.read("in.las")) << name;
+  }
+}
+
 TEST(ConvertPoints, RefusesWhatItCannotDoAndLeavesNothing) {
   const Workspace work;
   work.write("in.txt", "1 2 3\n");
-  EXPECT_THAT(work.run("spillway convert in.txt -o out.laz").err, HasSubstr("LAZ is read, not"));
-  EXPECT_EQ(work.run("spillway convert in.txt -o out.laz").exit_code, 2);
-  EXPECT_EQ(work.run("spillway generate terrain -n 9 -o out.laz").exit_code, 2);
+  const Result copc = work.run("spillway convert in.txt -o out.copc.laz");
+  EXPECT_THAT(copc.err, HasSubstr("COPC is read, not written"));
+  EXPECT_EQ(copc.exit_code, 2);
+  EXPECT_EQ(work.run("spillway generate terrain -n 9 -o out.copc.laz").exit_code, 2);
   EXPECT_THAT(work.run("spillway convert in.txt -o out.ply").err, HasSubstr("these are points"));
   EXPECT_EQ(work.run("spillway convert in.txt -o out.dat").exit_code, 2);
   work.succeed("spillway generate -q uniform -n 9 | spillway triangulate -q - -o mesh.spm");

@@ -1,5 +1,5 @@
 #pragma once
-// LAZ and COPC files of given points, which Spillway reads and does not write. What records have
+// LAZ and COPC files of given points, in memory. What records have
 // besides coordinates, class and returns is 0, and takes hardly space; an octree is made as in
 // point_octree.h. Headers tell the extent.
 

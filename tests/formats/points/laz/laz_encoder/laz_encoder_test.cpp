@@ -3,8 +3,9 @@
 
 #include <array>
 
+#include "formats/bytes/bytes.h"
+#include "formats/points/laz/encoding/integer_encoder.h"
 #include "tests/formats/points/laz/laz_encoder/chunk_encoder.h"
-#include "tests/formats/points/laz/laz_encoder/integer_compressor.h"
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
 
 // The encoder against streams that a reference encoder made of the same values.
@@ -29,40 +30,48 @@ std::string to_hex(std::string_view bytes) {
   return hex;
 }
 
+std::string finished(laz::ArithmeticEncoder& encoder) {
+  std::vector<std::byte> bytes;
+  encoder.finish(bytes);
+  return std::string(as_text(bytes));
+}
+
 TEST(LazEncoder, WritesTheReferenceStreamOfEachKindOfSymbol) {
-  ArithmeticEncoder encoder;
-  SymbolModel four(4);
-  SymbolModel hundred(100);
-  BitModel bit;
+  laz::ArithmeticEncoder encoder;
+  laz::SymbolModel<4> four(4);
+  laz::SymbolModel<100> hundred(100);
+  laz::BitModel bit;
   for (const unsigned s : {2, 2, 0, 3, 3, 1, 2, 2, 2, 0}) encoder.symbol(s, four);
   for (const unsigned s : {57, 99, 0}) encoder.symbol(s, hundred);
-  for (const unsigned b : {1, 0, 0, 1, 1, 1}) encoder.bit(b, bit);
+  for (const unsigned b : {1, 0, 0, 1, 1, 1}) encoder.bit(b == 1, bit);
   encoder.raw(19, 5);
   encoder.raw(0xbeef, 16);
   encoder.raw(0xabcdef, 24);
   encoder.raw(0xdeadbeef, 32);
   encoder.symbol(1, four);
-  EXPECT_EQ(to_hex(encoder.finish()), "a3d0df38921a486504d3dc9cba72e43c000000");
+  EXPECT_EQ(to_hex(finished(encoder)), "a3d0df38921a486504d3dc9cba72e43c000000");
 }
 
 struct Coded {
   std::int32_t prediction;
   std::size_t context;
   std::int32_t value;
-  unsigned k;
+  unsigned width;
 };
 
-std::string encode(IntegerCompressor& values, std::span<const Coded> all) {
-  ArithmeticEncoder encoder;
+template <unsigned Bits>
+std::string encode(laz::IntegerEncoder<Bits>& values, std::span<const Coded> all) {
+  laz::ArithmeticEncoder encoder;
   for (const Coded& coded : all) {
-    values.encode(encoder, coded.prediction, coded.value, coded.context);
-    EXPECT_EQ(values.k(), coded.k) << coded.prediction << " -> " << coded.value;
+    values.encode(encoder, static_cast<std::uint32_t>(coded.prediction),
+                  static_cast<std::uint32_t>(coded.value), coded.context);
+    EXPECT_EQ(values.width(), coded.width) << coded.prediction << " -> " << coded.value;
   }
-  return to_hex(encoder.finish());
+  return to_hex(finished(encoder));
 }
 
 TEST(LazEncoder, WritesTheReferenceStreamOfIntegers) {
-  IntegerCompressor values(32, 2);
+  laz::IntegerEncoder<32> values(2);
   const std::array<Coded, 11> coded = {{{0, 0, 0, 0},
                                         {0, 0, 1, 0},
                                         {0, 1, -1, 1},
@@ -78,7 +87,7 @@ TEST(LazEncoder, WritesTheReferenceStreamOfIntegers) {
 }
 
 TEST(LazEncoder, WritesTheReferenceStreamOfShortIntegers) {
-  IntegerCompressor values(16, 1);
+  laz::IntegerEncoder<16> values(1);
   const std::array<Coded, 6> coded = {{{0, 0, 65535, 1},
                                        {65535, 0, 0, 0},
                                        {1000, 0, 40000, 15},

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "tests/formats/points/laz/laz_encoder/integer_compressor.h"
+#include "formats/bytes/bytes.h"
+#include "formats/points/laz/chunk_table_bytes.h"
 
 namespace spillway::detail::testing {
 
@@ -36,21 +37,13 @@ std::vector<LazItem> laz_items(int point_format, std::size_t extra_bytes, int ve
 
 std::string laz_table_bytes(std::span<const LazFile::TableEntry> table, bool with_counts,
                             std::uint32_t version) {
-  std::string bytes = bytes_of(version) + bytes_of(static_cast<std::uint32_t>(table.size()));
-  if (table.empty()) return bytes;
-  ArithmeticEncoder encoder;
-  IntegerCompressor values(32, 2);
-  LazFile::TableEntry last{0, 0};
+  std::vector<LazChunk> chunks;
   for (const LazFile::TableEntry& entry : table) {
-    const auto encode = [&](std::uint32_t before, std::uint32_t value, std::size_t context) {
-      values.encode(encoder, static_cast<std::int32_t>(before), static_cast<std::int32_t>(value),
-                    context);
-    };
-    if (with_counts) encode(last.count, entry.count, 0);
-    encode(last.bytes, entry.bytes, 1);
-    last = entry;
+    chunks.push_back({.bytes = entry.bytes, .count = entry.count});
   }
-  return bytes + encoder.finish();
+  std::string bytes(as_text(chunk_table_bytes(chunks, with_counts)));
+  put(bytes, 0, version);
+  return bytes;
 }
 
 LazFile make_laz_file(const LazFormat& format, std::span<const std::string> records) {

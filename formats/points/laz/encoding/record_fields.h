@@ -1,0 +1,56 @@
+#pragma once
+// Where the fields of a LAS record lie, and differences of their values.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "formats/bytes/bytes.h"
+
+namespace spillway::detail::laz {
+
+inline constexpr std::size_t kX = 0;
+inline constexpr std::size_t kY = 4;
+inline constexpr std::size_t kZ = 8;
+inline constexpr std::size_t kIntensity = 12;
+inline constexpr std::size_t kReturns = 14;
+
+namespace core10 {
+inline constexpr std::size_t kSize = 20;
+inline constexpr std::size_t kClass = 15;
+inline constexpr std::size_t kAngle = 16;
+inline constexpr std::size_t kUser = 17;
+inline constexpr std::size_t kSource = 18;
+}  // namespace core10
+
+namespace core14 {
+inline constexpr std::size_t kSize = 30;
+inline constexpr std::size_t kFlags = 15;
+inline constexpr std::size_t kClass = 16;
+inline constexpr std::size_t kUser = 17;
+inline constexpr std::size_t kAngle = 18;
+inline constexpr std::size_t kSource = 20;
+inline constexpr std::size_t kGpsTime = 22;
+}  // namespace core14
+
+/// The byte at a place in a record.
+inline unsigned byte_at(const std::byte* record, std::size_t at) {
+  return std::to_integer<unsigned>(record[at]);
+}
+
+/// A value modulo 2^32, for sums and differences that wrap around.
+inline std::uint32_t word_at(const std::byte* record, std::size_t at) {
+  return load<std::uint32_t>(record + at);
+}
+
+inline std::uint16_t short_at(const std::byte* record, std::size_t at) {
+  return load<std::uint16_t>(record + at);
+}
+
+/// a - b as 64-bit patterns.
+inline std::int64_t difference64(std::uint64_t a, std::uint64_t b) {
+  return static_cast<std::int64_t>(a - b);
+}
+
+inline bool fits_32_bits(std::int64_t value) { return value == static_cast<std::int32_t>(value); }
+
+}  // namespace spillway::detail::laz
