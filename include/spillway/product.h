@@ -40,6 +40,13 @@ concept ProductState = std::copy_constructible<State> &&
   state.combine(other);
 };
 
+/// A state that knows its bytes, for other processes.
+template <typename State>
+concept ProductStateOfBytes = requires(const State& state, std::span<const std::byte> bytes) {
+  { state.bytes() } -> std::same_as<std::vector<std::byte>>;
+  State(bytes);
+};
+
 /// A state of any type; programs use Product. What a thread does (Sink), how the shares of threads
 /// and processes are put together (Combine), and what is there in the end (Finalize) as in M.
 /// Raasveldt and H. Muehleisen, "DuckDB: an Embeddable Analytical Database", SIGMOD 2019.
@@ -106,7 +113,7 @@ class Product {
       state_.combine(static_cast<const Share&>(other).state_);
     }
     [[nodiscard]] std::vector<std::byte> bytes() const override {
-      if constexpr (requires { State(std::span<const std::byte>(state_.bytes())); }) {
+      if constexpr (ProductStateOfBytes<State>) {
         return state_.bytes();
       } else if constexpr (std::is_trivially_copyable_v<State>) {
         const auto bytes = std::as_bytes(std::span(&state_, 1));
@@ -116,7 +123,7 @@ class Product {
       }
     }
     void combine_bytes(std::span<const std::byte> bytes) override {
-      if constexpr (requires { State(std::span<const std::byte>(state_.bytes())); }) {
+      if constexpr (ProductStateOfBytes<State>) {
         state_.combine(State(bytes));
       } else if constexpr (std::is_trivially_copyable_v<State>) {
         State other = empty_;

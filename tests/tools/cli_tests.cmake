@@ -80,5 +80,5 @@ add_dependencies(added_product_test mean_slope_command)
 # Two runs of the same commands make the same files and messages, and leave nothing in temporary folders.
 add_test(NAME Digests.TwoRunsAreTheSame
   COMMAND ${PROJECT_SOURCE_DIR}/tests/digests.sh --twice $<TARGET_FILE:spillway>
-    "^(generate-terrain|mesh-(spm|npy|gpkg)|option-(stats|json|tiles)|core-space|thin-lowest|dem-products|contour-shp|render-wireframe|info-points|check-points|convert-text|batch-several|fault-(cut|max-edge)|usage-option)$")
+    "^(generate-terrain|mesh-(spm|npy|gpkg)|option-(stats|json|tiles)|core-space|thin-lowest|dem-products|contour-shp|render-wireframe|info-points|check-points|convert-text|convert-to-laz|batch-several|fault-(cut|max-edge)|usage-option)$")
 set_tests_properties(Digests.TwoRunsAreTheSame PROPERTIES LABELS cli TIMEOUT 300)

@@ -10,6 +10,7 @@
 #include "tests/error_facts.h"
 #include "tests/formats/point_test_helpers.h"
 #include "tests/formats/points/las/las_file.h"
+#include "tests/formats/points/random_attributes.h"
 
 namespace spillway::detail::testing {
 namespace {
@@ -80,19 +81,6 @@ std::vector<LatticePoint> random_integers(std::size_t count) {
   points[0] = {std::numeric_limits<std::int32_t>::min(), 0, 0};
   points[1] = {0, std::numeric_limits<std::int32_t>::max(), -1};
   return points;
-}
-
-std::vector<PointAttributes> random_attributes(std::size_t count, bool version14) {
-  std::mt19937 random(3);
-  std::vector<PointAttributes> attributes(count);
-  const std::uint32_t returns = version14 ? 16 : 8;
-  for (PointAttributes& a : attributes) {
-    a.classification = static_cast<std::uint8_t>(random() % (version14 ? 256 : 32));
-    a.return_number = static_cast<std::uint8_t>(random() % returns);
-    a.return_count = static_cast<std::uint8_t>(random() % returns);
-    a.flags = static_cast<std::uint8_t>(random() % returns);
-  }
-  return attributes;
 }
 
 std::vector<LatticePoint> random_doubles(std::size_t count) {
@@ -171,7 +159,7 @@ TEST(LasWriter, KeepsAttributes) {
   for (const std::string version : {"1.2", "1.4"}) {
     PointWriterOptions options = with_lattice(kCentimetres);
     options.version = version;
-    const auto attributes = random_attributes(points.size(), version == "1.4");
+    const auto attributes = random_attributes(points.size(), version == "1.4", 3);
     const AllPoints back = read_with_attributes(written(points, attributes, options));
     EXPECT_EQ(back.header.version, version);
     EXPECT_EQ(back.header.point_format, version == "1.4" ? 6 : 0);
@@ -182,7 +170,7 @@ TEST(LasWriter, KeepsAttributes) {
 
 TEST(LasWriter, GivesVersion12AttributesToVersion14AndBack) {
   const std::vector<LatticePoint> points = random_integers(1000);
-  const auto attributes = random_attributes(points.size(), false);
+  const auto attributes = random_attributes(points.size(), false, 3);
   PointWriterOptions options = with_lattice({});
   options.version = "1.4";
   const AllPoints there = read_with_attributes(written(points, attributes, options));
@@ -369,7 +357,7 @@ std::string piped(const std::string& path, const std::vector<LatticePoint>& poin
 
 TEST(SpooledOutput, GivesAPipeWhatAFileWouldHold) {
   const std::vector<LatticePoint> points = random_integers(200000);
-  const auto attributes = random_attributes(points.size(), false);
+  const auto attributes = random_attributes(points.size(), false, 3);
   PointWriterOptions options = with_lattice(kCentimetres);
   EXPECT_EQ(piped("a.npy", points, {}, options), written_as_is("a.npy", points, {}, options));
   options.attributes = true;

@@ -17,6 +17,7 @@
 #include "formats/points/las/las_header.h"
 #include "formats/points/las/laz_record.h"
 #include "tests/formats/point_test_helpers.h"
+#include "tests/formats/points/random_attributes.h"
 
 namespace spillway::detail::testing {
 namespace {
@@ -35,19 +36,6 @@ std::vector<LatticePoint> scan_lines(std::size_t count) {
     points[i] = {double(i % 1000), double(i / 1000) + double(random() % 3), double(random() % 50)};
   }
   return points;
-}
-
-std::vector<PointAttributes> random_attributes(std::size_t count, bool version14) {
-  std::mt19937 random(12);
-  std::vector<PointAttributes> attributes(count);
-  const std::uint32_t returns = version14 ? 16 : 8;
-  for (PointAttributes& a : attributes) {
-    a.classification = static_cast<std::uint8_t>(random() % (version14 ? 256 : 32));
-    a.return_number = static_cast<std::uint8_t>(random() % returns);
-    a.return_count = static_cast<std::uint8_t>(random() % returns);
-    a.flags = static_cast<std::uint8_t>(random() % returns);
-  }
-  return attributes;
 }
 
 PointWriterOptions options_of(const std::string& version) {
@@ -114,7 +102,7 @@ TEST_P(LazWriter, GivesBackPointsOfAnyNumberOfChunks) {
 
 TEST_P(LazWriter, KeepsAttributes) {
   const std::vector<LatticePoint> points = scan_lines(kChunk + 10);
-  const auto attributes = random_attributes(points.size(), version14());
+  const auto attributes = random_attributes(points.size(), version14(), 12);
   const std::string laz = written("a.laz", points, attributes, options_of(GetParam()));
   const AllPoints back = read_back(laz, true);
   EXPECT_TRUE(back.points == points);
@@ -123,7 +111,7 @@ TEST_P(LazWriter, KeepsAttributes) {
 
 TEST_P(LazWriter, HasTheHeaderOfTheSameLasButForItsCompression) {
   const std::vector<LatticePoint> points = scan_lines(1000);
-  const auto attributes = random_attributes(points.size(), version14());
+  const auto attributes = random_attributes(points.size(), version14(), 12);
   const std::string las = written("a.las", points, attributes, options_of(GetParam()));
   std::string laz = written("a.laz", points, attributes, options_of(GetParam()));
   const auto begin_of_points =
