@@ -58,6 +58,8 @@ class SharedMeshOutput : public MeshOutput {
         ranks_(ranks),
         created_(std::move(created)) {
     if (!created_) unfinished_.emplace(temporary_path);
+    // Open MPI tries locks on a file of this name while it opens ours.
+    const OthersUnfinishedFile lock_test(temporary_path + ".locktest.0");
     run_collective_step(ranks, [&] { file_.emplace(ranks, temporary_path, target_.path); });
   }
 
