@@ -25,7 +25,7 @@
 #include "formats/points/laz/chunk_encoder.h"
 #include "formats/points/laz/chunk_table.h"
 #include "src/error.h"
-#include "tests/formats/points/laz/laz_encoder/record_decoder.h"
+#include "tests/formats/points/laz/laz_encoder/decoded_records.h"
 
 namespace spillway::detail {
 namespace {
@@ -124,11 +124,7 @@ Chunks chunks_of(const std::string& file) {
     std::vector<std::byte> bytes(place.bytes);
     source.seek(place.offset);
     source.read(bytes);
-    std::string& records = chunks.records.emplace_back();
-    for (const std::string& record :
-         testing::decode_laz_records(chunks.format, bytes, place.count)) {
-      records += record;
-    }
+    chunks.records.push_back(testing::decode_laz_records(chunks.format, bytes, place.count));
     chunks.points += place.count;
     chunks.bytes += place.bytes;
   }

@@ -2,13 +2,12 @@
 add_library(laz_encoder STATIC EXCLUDE_FROM_ALL
   formats/points/copc/encoded_files.cpp formats/points/copc/point_octree.cpp
   formats/points/laz/laz_encoder/chunk_encoder.cpp
+  formats/points/laz/laz_encoder/decoded_records.cpp
   formats/points/laz/laz_encoder/items_v1_encoder.cpp
   formats/points/laz/laz_encoder/laz_damage.cpp
   formats/points/laz/laz_encoder/laz_excerpt.cpp
   formats/points/laz/laz_encoder/laz_file.cpp
-  formats/points/laz/laz_encoder/random_records.cpp
-  formats/points/laz/laz_encoder/record_decoder.cpp
-  formats/points/laz/laz_encoder/record_items.cpp)
+  formats/points/laz/laz_encoder/random_records.cpp)
 target_link_libraries(laz_encoder PUBLIC spillway_formats GTest::gmock)
 
 spillway_test(laz_test unit

@@ -10,8 +10,8 @@
 #include "formats/bytes/bytes.h"
 #include "formats/points/laz/chunk_decoder.h"
 #include "formats/points/laz/chunk_table.h"
-#include "formats/points/laz/coding/point14_layers.h"
 #include "formats/points/laz/file_bytes.h"
+#include "formats/points/laz/laz_detail.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -269,8 +269,7 @@ class LazReader : public PointReader {
     chunk.count = count;
     std::uint64_t wanted = 0;
     std::uint64_t others = 0;
-    const std::size_t wanted_layers =
-        needs_attributes() ? laz::Point14Layers::kLayers : laz::Point14Layers::kCoordinateLayers;
+    const std::size_t wanted_layers = laz_wanted_layers(format, detail());
     for (std::size_t i = 0; i < layers; ++i) {
       std::byte* const size = &raw.bytes[sizes_at + i * sizeof(std::uint32_t)];
       (i < wanted_layers ? wanted : others) += load<std::uint32_t>(size);
@@ -379,10 +378,14 @@ class LazReader : public PointReader {
 
   [[nodiscard]] bool needs_attributes() const { return attributes_ || withheld_flag_ != 0; }
 
+  [[nodiscard]] LazDetail detail() const {
+    return needs_attributes() ? LazDetail::kAttributes : LazDetail::kCoordinates;
+  }
+
   std::unique_ptr<LazChunkDecoder> take_decoder() const {
     const std::lock_guard lock(idle_mutex_);
     if (idle_.empty()) {
-      return std::make_unique<LazChunkDecoder>(las_.laz->format, needs_attributes());
+      return std::make_unique<LazChunkDecoder>(las_.laz->format, detail());
     }
     std::unique_ptr<LazChunkDecoder> decoder = std::move(idle_.back());
     idle_.pop_back();

@@ -2,30 +2,39 @@
 
 #include <algorithm>
 
-#include "formats/bytes/bytes.h"
+#include "formats/points/laz/coding/record_fields.h"
 #include "formats/points/laz/coding/return_tables.h"
 #include "src/error.h"
 
 namespace spillway::detail::laz {
 namespace {
 
-enum LayerIndex : unsigned { kXy, kZ, kClassification, kFlags };
+enum LayerIndex : unsigned { kXyLayer, kZLayer, kClassLayer, kFlagsLayer };
 
 }  // namespace
 
 Point14 Point14::of_record(const std::byte* record) {
-  const unsigned returns = load<std::uint8_t>(record + 14);
-  const unsigned bits = load<std::uint8_t>(record + 15);
+  const unsigned returns = byte_at(record, kReturns);
+  const unsigned bits = byte_at(record, core14::kFlags);
   Point14 point;
-  point.x = load<std::int32_t>(record);
-  point.y = load<std::int32_t>(record + 4);
-  point.z = load<std::int32_t>(record + 8);
+  point.x = load<std::int32_t>(record + kX);
+  point.y = load<std::int32_t>(record + kY);
+  point.z = load<std::int32_t>(record + kZ);
   point.return_number = returns & 15U;
   point.return_count = returns >> 4U;
   point.channel = bits >> 4U & 3U;
   point.flags = (bits & 15U) | (bits >> 6U) << 4U;
-  point.classification = load<std::uint8_t>(record + 16);
+  point.classification = load<std::uint8_t>(record + core14::kClass);
   return point;
+}
+
+void Point14::store_in(std::byte* record) const {
+  store(record + kX, x);
+  store(record + kY, y);
+  store(record + kZ, z);
+  put_byte(record, kReturns, return_number | return_count << 4U);
+  put_byte(record, core14::kFlags, (flags & 15U) | channel << 4U | (flags >> 4U) << 6U);
+  store(record + core14::kClass, classification);
 }
 
 void Point14Layers::Context::begin(const Point14& point) {
@@ -47,19 +56,17 @@ void Point14Layers::Context::begin(const Point14& point) {
   used = true;
 }
 
-void Point14Layers::begin(const Point14& first, std::span<const std::byte> layers,
-                          const std::array<std::size_t, kLayers>& sizes, std::uint64_t count) {
-  if (count > 1 && sizes[kXy] == 0) throw Error("the compressed chunk has no coordinates");
-  for (std::size_t i = 0; i < kLayers; ++i) {
-    layers_[i].present = sizes[i] > 0;
-    layers_[i].stream =
-        sizes[i] > 0 ? ArithmeticDecoder(layers.first(sizes[i])) : ArithmeticDecoder();
-    layers = layers.subspan(sizes[i]);
-  }
+std::span<const std::byte> Point14Layers::begin(const Point14& first,
+                                                std::span<const std::byte> layers,
+                                                std::span<const std::size_t, kLayers> sizes,
+                                                std::uint64_t count) {
+  if (count > 1 && sizes[kXyLayer] == 0) throw Error("the compressed chunk has no coordinates");
+  for (std::size_t i = 0; i < kLayers; ++i) layers = layers_[i].begin(layers, sizes[i]);
   for (const auto& context : contexts_) {
     if (context) context->used = false;
   }
   current_ = &use(first.channel, first);
+  return layers;
 }
 
 Point14Layers::Context& Point14Layers::use(unsigned channel, const Point14& last) {
@@ -69,8 +76,8 @@ Point14Layers::Context& Point14Layers::use(unsigned channel, const Point14& last
   return *context;
 }
 
-void Point14Layers::decode() {
-  ArithmeticDecoder xy = layers_[kXy].stream;
+Point14Changes Point14Layers::decode() {
+  ArithmeticDecoder xy = layers_[kXyLayer].stream;
   const Point14& before = current_->last;
   const unsigned change_context = (before.return_number == 1 ? 1U : 0U) |
                                   (before.return_number >= before.return_count ? 2U : 0U) |
@@ -107,32 +114,34 @@ void Point14Layers::decode() {
   const std::uint32_t dy = context.dy.decode(xy, context.dy_median[median].get(), dy_context);
   point.y = static_cast<std::int32_t>(point.y + dy);
   context.dy_median[median].add(static_cast<std::int32_t>(dy));
-  layers_[kXy].stream = xy;
+  layers_[kXyLayer].stream = xy;
 
-  if (layers_[kZ].present) {
-    ArithmeticDecoder stream = layers_[kZ].stream;
+  if (layers_[kZLayer].present) {
+    ArithmeticDecoder stream = layers_[kZLayer].stream;
     const unsigned width = (dx_width + context.dy.width()) / 2;
     std::int32_t& last_z = context.last_z[return_level(returns, number)];
     last_z = static_cast<std::int32_t>(
         context.z.decode(stream, last_z, single + (std::min(width, 18U) & ~1U)));
     point.z = last_z;
-    layers_[kZ].stream = stream;
+    layers_[kZLayer].stream = stream;
   }
-  if (layers_[kClassification].present) {
+  if (layers_[kClassLayer].present) {
     const unsigned only = number == 1 && number >= returns ? 1 : 0;
-    point.classification = layers_[kClassification].stream.symbol(
+    point.classification = layers_[kClassLayer].stream.symbol(
         context.classification.at(2U * (point.classification & 31U) + only));
   }
-  if (layers_[kFlags].present) {
-    point.flags = layers_[kFlags].stream.symbol(context.flags.at(point.flags));
+  if (layers_[kFlagsLayer].present) {
+    point.flags = layers_[kFlagsLayer].stream.symbol(context.flags.at(point.flags));
   }
   context.time_changed = time_changed;
+  return {.channel = (changed & 64U) != 0,
+          .time = time_changed,
+          .angle = (changed & 8U) != 0,
+          .source = (changed & 32U) != 0};
 }
 
 void Point14Layers::end() const {
-  for (const Layer& layer : layers_) {
-    if (!layer.stream.rest().empty()) throw Error("a compressed layer is longer than its points");
-  }
+  for (const Layer& layer : layers_) layer.end();
 }
 
 }  // namespace spillway::detail::laz

@@ -8,11 +8,12 @@
 #include <span>
 
 #include "formats/points/laz/coding/integer_decoder.h"
+#include "formats/points/laz/coding/layer.h"
 #include "formats/points/laz/coding/streaming_median.h"
 
 namespace spillway::detail::laz {
 
-/// What is wanted of the first 30 bytes of a record, and what the wanted layers need.
+/// What the first layers hold of the first 30 bytes of a record.
 struct Point14 {
   std::int32_t x = 0;
   std::int32_t y = 0;
@@ -25,22 +26,33 @@ struct Point14 {
 
   /// Reads a record as it is without compression.
   static Point14 of_record(const std::byte* record);
+  /// Writes these fields likewise.
+  void store_in(std::byte* record) const;
 };
 
-/// Decodes coordinates, returns, classification and flags; the layers after these are not needed,
-/// as no layer depends on those after it. Each scanner channel has its own models and last point.
+/// What the first layer says of a point besides its fields; other layers depend on it.
+struct Point14Changes {
+  bool channel = false;
+  bool time = false;
+  bool angle = false;
+  bool source = false;
+};
+
+/// Decodes coordinates, returns, classification and flags; no layer depends on those after it, so
+/// the others may be left out. Each scanner channel has its own models and last point.
 class Point14Layers {
  public:
   static constexpr std::size_t kCoordinateLayers = 2;  ///< x, y and returns; z
   static constexpr std::size_t kLayers = 4;            ///< also classification; flags
 
-  /// Begins a chunk. `layers` has the bytes of the layers one after the other; a layer of size 0
-  /// leaves its values as they are in the first point.
-  void begin(const Point14& first, std::span<const std::byte> layers,
-             const std::array<std::size_t, kLayers>& sizes, std::uint64_t count);
+  /// Begins a chunk. `layers` begins with the bytes of these layers one after the other; returns
+  /// those after them. A layer of size 0 leaves its values as they are in the first point.
+  std::span<const std::byte> begin(const Point14& first, std::span<const std::byte> layers,
+                                   std::span<const std::size_t, kLayers> sizes,
+                                   std::uint64_t count);
 
   /// The next point.
-  void decode();
+  Point14Changes decode();
 
   /// The point decoded last, at first the chunk's first one.
   [[nodiscard]] const Point14& point() const { return current_->last; }
@@ -68,11 +80,6 @@ class Point14Layers {
     Point14 last;
     bool time_changed = false;
     bool used = false;  // in this chunk
-  };
-
-  struct Layer {
-    bool present = false;
-    ArithmeticDecoder stream;
   };
 
   Context& use(unsigned channel, const Point14& last);

@@ -338,7 +338,8 @@ TEST(LazChunk, ReferenceChunksGiveTheirRecordsFromSpansOfAnySize) {
   for (const ChunkCase& c : reference_chunks()) {
     const Bytes chunk = bytes_of(c.chunk);
     for (const bool wants_attributes : {false, true}) {
-      LazChunkDecoder decoder(c.format, wants_attributes);
+      LazChunkDecoder decoder(c.format,
+                              wants_attributes ? LazDetail::kAttributes : LazDetail::kCoordinates);
       for (const std::size_t span_size :
            {std::size_t{1}, std::size_t{3}, std::size_t{40}, SIZE_MAX}) {
         SCOPED_TRACE(c.name + ", pieces of " + std::to_string(span_size));
@@ -369,7 +370,7 @@ TEST(LazChunk, TellsHowManyBytesLieBehindIt) {
     Bytes chunk = bytes_of(c.chunk);
     chunk.resize(chunk.size() + 5);
     SplitBytes split(chunk);
-    LazChunkDecoder decoder(c.format, true);
+    LazChunkDecoder decoder(c.format, LazDetail::kAttributes);
     std::vector<LatticePoint> points(c.records.size());
     std::vector<PointAttributes> attributes(points.size());
     decoder.begin(split, points.size());
@@ -396,7 +397,7 @@ std::string outcome(LazChunkDecoder& decoder, std::span<const std::byte> chunk, 
 TEST(LazChunk, TruncatedAnywhereIsAnError) {
   for (const ChunkCase& c : reference_chunks()) {
     const Bytes chunk = bytes_of(c.chunk);
-    LazChunkDecoder decoder(c.format, true);
+    LazChunkDecoder decoder(c.format, LazDetail::kAttributes);
     for (std::size_t size = 0; size < chunk.size(); ++size) {
       EXPECT_THAT(outcome(decoder, std::span(chunk).first(size), c.records.size()),
                   HasSubstr("ends too early"))
@@ -408,14 +409,14 @@ TEST(LazChunk, TruncatedAnywhereIsAnError) {
 
 TEST(LazChunk, WrongCountInALayeredChunkIsAnError) {
   const ChunkCase c = reference_chunks().back();
-  LazChunkDecoder decoder(c.format, true);
+  LazChunkDecoder decoder(c.format, LazDetail::kAttributes);
   EXPECT_THAT(outcome(decoder, bytes_of(c.chunk), c.records.size() + 1),
               HasSubstr("another number of points"));
 }
 
 TEST(LazChunk, HugeLayerIsAnErrorAndTakesNoMemory) {
   const ChunkCase c = reference_chunks().back();
-  LazChunkDecoder decoder(c.format, true);
+  LazChunkDecoder decoder(c.format, LazDetail::kAttributes);
   Bytes chunk = bytes_of(c.chunk);
   store(chunk.data() + 37 + 4, std::uint32_t{0xFFFFFFFF});
   EXPECT_THAT(outcome(decoder, chunk, c.records.size()), HasSubstr("ends too early"));
@@ -424,7 +425,7 @@ TEST(LazChunk, HugeLayerIsAnErrorAndTakesNoMemory) {
 TEST(LazChunk, FlippedBitsGivePointsOrAnError) {
   for (const ChunkCase& c : reference_chunks()) {
     const Bytes sound = bytes_of(c.chunk);
-    LazChunkDecoder decoder(c.format, true);
+    LazChunkDecoder decoder(c.format, LazDetail::kAttributes);
     for (std::size_t bit = 0; bit < 8 * sound.size(); ++bit) {
       Bytes chunk = sound;
       chunk[bit / 8] ^= std::byte{1} << bit % 8;
@@ -448,7 +449,7 @@ TEST(LazChunk, RandomBytesGivePointsOrAnError) {
                               version, {}, {}));
   }
   for (const ChunkCase& c : cases) {
-    LazChunkDecoder decoder(c.format, true);
+    LazChunkDecoder decoder(c.format, LazDetail::kAttributes);
     for (int round = 0; round < 20; ++round) {
       Bytes chunk(c.format.layered ? 37 + 4 + 12 * 4 + 4 * kLayerSize : 50000);
       std::generate(chunk.begin(), chunk.end(), noise);
