@@ -63,9 +63,9 @@ void LayeredChunk::decode(std::span<LatticePoint> points, std::span<PointAttribu
 void LayeredChunk::decode_records(std::span<std::byte> records) {
   for (; !records.empty(); records = records.subspan(record_.size())) {
     if (!at_first_) {
-      const Point14Changes changes = points_.decode();
+      points_.decode();
       points_.point().store_in(record_.data());
-      others_->decode(points_.point(), changes, record_.data());
+      others_->decode(points_.point(), points_.changes(), record_.data());
     }
     at_first_ = false;
     std::ranges::copy(record_, records.begin());

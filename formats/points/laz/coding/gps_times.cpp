@@ -5,8 +5,8 @@
 
 namespace spillway::detail::laz {
 
-template <bool kLayered>
-void GpsTimeDecoder<kLayered>::reset(std::uint64_t first) {
+template <bool kLayered, Keep kKeep>
+void GpsTimeDecoder<kLayered, kKeep>::reset(std::uint64_t first) {
   multiple_.reset();
   zero_.reset();
   difference_.reset();
@@ -16,8 +16,8 @@ void GpsTimeDecoder<kLayered>::reset(std::uint64_t first) {
   newest_ = 0;
 }
 
-template <bool kLayered>
-std::uint64_t GpsTimeDecoder<kLayered>::decode(ArithmeticDecoder& stream) {
+template <bool kLayered, Keep kKeep>
+void GpsTimeDecoder<kLayered, kKeep>::decode(ArithmeticDecoder& stream) {
   constexpr unsigned kUnchanged = 511;
   constexpr unsigned kNewSequence = 512;
   constexpr unsigned kLargest = 500;   // multiple; above follow -1, -2, ...
@@ -35,7 +35,7 @@ std::uint64_t GpsTimeDecoder<kLayered>::decode(ArithmeticDecoder& stream) {
       }
       if (kind == 1) {
         const std::uint32_t difference = difference_.decode(local, 0, 0);
-        sequence.time = sum64(sequence.time, difference);
+        sequence.add(difference);
         sequence.difference = static_cast<std::int32_t>(difference);
         sequence.extreme = 0;
       } else if (kind == 2) {
@@ -64,7 +64,7 @@ std::uint64_t GpsTimeDecoder<kLayered>::decode(ArithmeticDecoder& stream) {
                                                        : 6;
     const std::uint32_t difference = difference_.decode(
         local, factor * static_cast<std::uint32_t>(sequence.difference), context);
-    sequence.time = sum64(sequence.time, difference);
+    sequence.add(difference);
     if (multiple == 1) {
       sequence.extreme = 0;
     } else if (multiple == 0 || multiple == kLargest || multiple == kSmallest) {
@@ -76,11 +76,10 @@ std::uint64_t GpsTimeDecoder<kLayered>::decode(ArithmeticDecoder& stream) {
     break;
   }
   stream = local;
-  return sequences_[current_].time;
 }
 
-template <bool kLayered>
-void GpsTimeDecoder<kLayered>::begin_sequence(ArithmeticDecoder& stream) {
+template <bool kLayered, Keep kKeep>
+void GpsTimeDecoder<kLayered, kKeep>::begin_sequence(ArithmeticDecoder& stream) {
   const auto last_high = static_cast<std::uint32_t>(sequences_[current_].time >> 32U);
   const std::uint64_t high = difference_.decode(stream, last_high, 8);
   newest_ = (newest_ + 1) & 3U;
@@ -90,11 +89,13 @@ void GpsTimeDecoder<kLayered>::begin_sequence(ArithmeticDecoder& stream) {
 
 template <Keep kKeep>
 void GpsTime11V2<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
-  KeptPart<kKeep>(part).put(0, times_.decode(stream));
+  times_.decode(stream);
+  KeptPart<kKeep>(part).put(0, times_.time());
 }
 
-template class GpsTimeDecoder<false>;
-template class GpsTimeDecoder<true>;
+template class GpsTimeDecoder<false, Keep::kNeeded>;
+template class GpsTimeDecoder<false, Keep::kWhole>;
+template class GpsTimeDecoder<true, Keep::kWhole>;
 template class GpsTime11V2<Keep::kNeeded>;
 template class GpsTime11V2<Keep::kWhole>;
 

@@ -12,18 +12,23 @@ namespace spillway::detail::laz {
 
 /// Decodes GPS times as bit patterns: four sequences, as pulses of several scanners alternate, each
 /// running with a step of its own. `kLayered`: there is no symbol for a time that does not change.
-template <bool kLayered>
+template <bool kLayered, Keep kKeep>
 class GpsTimeDecoder {
  public:
   void reset(std::uint64_t first);
-  /// The next time.
-  std::uint64_t decode(ArithmeticDecoder& stream);
+  void decode(ArithmeticDecoder& stream);
+  /// The time decoded last, if times are kept.
+  [[nodiscard]] std::uint64_t time() const { return sequences_[current_].time; }
 
  private:
   struct Sequence {
     std::uint64_t time = 0;
     std::int32_t difference = 0;
     unsigned extreme = 0;
+
+    void add(std::uint32_t step) {
+      if constexpr (kKeep == Keep::kWhole) time = sum64(time, step);
+    }
   };
 
   void begin_sequence(ArithmeticDecoder& stream);
@@ -46,7 +51,7 @@ class GpsTime11V2 final : public PointwiseItem {
   void decode(ArithmeticDecoder& stream, std::byte* part) override;
 
  private:
-  GpsTimeDecoder<false> times_;
+  GpsTimeDecoder<false, kKeep> times_;
 };
 
 }  // namespace spillway::detail::laz

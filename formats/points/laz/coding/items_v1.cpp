@@ -36,6 +36,7 @@ void Point10V1<kKeep>::reset(const std::byte* first) {
 
 template <Keep kKeep>
 void Point10V1<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
+  const KeptPart<kKeep> kept(part);
   ArithmeticDecoder local = stream;
   Point10& point = point_;
   const auto dx = static_cast<std::int32_t>(dx_.decode(local, median(last_dx_), 0));
@@ -50,14 +51,21 @@ void Point10V1<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
   oldest_ = oldest_ == 2 ? 0 : oldest_ + 1;
 
   const unsigned changed = local.symbol(changed_.at(0));
-  if ((changed & 32U) != 0) point.intensity = intensity_.decode(local, point.intensity, 0);
+  if ((changed & 32U) != 0) {
+    kept.put_short(kIntensity, intensity_.decode(local, kept.short_at(kIntensity), 0));
+  }
   if ((changed & 16U) != 0) point.returns = local.symbol(returns_.at(point.returns));
   if ((changed & 8U) != 0) {
     point.classification = local.symbol(classification_.at(point.classification));
   }
-  if ((changed & 4U) != 0) point.angle = angle_.decode(local, point.angle, width < 3 ? 1 : 0);
+  if ((changed & 4U) != 0) {
+    const unsigned last = kept.byte_at(core10::kAngle);
+    kept.put_byte(core10::kAngle, angle_.decode(local, last, width < 3 ? 1 : 0));
+  }
   if ((changed & 2U) != 0) point.user = local.symbol(user_.at(point.user));
-  if ((changed & 1U) != 0) point.source = source_.decode(local, point.source, 0);
+  if ((changed & 1U) != 0) {
+    kept.put_short(core10::kSource, source_.decode(local, kept.short_at(core10::kSource), 0));
+  }
   stream = local;
   if constexpr (kKeep == Keep::kWhole) point.store_in(part);
 }
@@ -124,7 +132,7 @@ void Rgb12V1<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
   ArithmeticDecoder local = stream;
   const unsigned used = local.symbol(used_.at(0));
   for (unsigned i = 0; i < 6; ++i) {
-    if ((used >> i & 1U) != 0) kept.put_byte(i, bytes_.decode(local, kept.byte(i), i));
+    if ((used >> i & 1U) != 0) kept.put_byte(i, bytes_.decode(local, kept.byte_at(i), i));
   }
   stream = local;
 }
@@ -148,19 +156,19 @@ void WavePacket13<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
   kept.put_byte(wave_packet::kIndex, local.symbol(index_.at(0)));
   auto offset = kept.template get<std::uint64_t>(wave_packet::kOffset);
   last_kind_ = local.symbol(offset_kind_.at(last_kind_));
-  if (last_kind_ == 1) offset += kept.word(wave_packet::kSize);
+  if (last_kind_ == 1) offset += kept.word_at(wave_packet::kSize);
   if (last_kind_ == 2) {
     last_step_ = offset_.decode(local, last_step_, 0);
     offset = sum64(offset, last_step_);
   }
   if (last_kind_ == 3) offset = local.raw64();
   kept.put(wave_packet::kOffset, offset);
-  kept.put(wave_packet::kSize, size_.decode(local, kept.word(wave_packet::kSize), 0));
+  kept.put(wave_packet::kSize, size_.decode(local, kept.word_at(wave_packet::kSize), 0));
   kept.put(wave_packet::kReturnPoint,
-           return_point_.decode(local, kept.word(wave_packet::kReturnPoint), 0));
+           return_point_.decode(local, kept.word_at(wave_packet::kReturnPoint), 0));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t at = wave_packet::kDirection + 4 * axis;
-    kept.put(at, direction_.decode(local, kept.word(at), axis));
+    kept.put(at, direction_.decode(local, kept.word_at(at), axis));
   }
   stream = local;
 }
@@ -170,7 +178,7 @@ void ByteV1<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
   const KeptPart<kKeep> kept(part);
   ArithmeticDecoder local = stream;
   for (std::size_t i = 0; i < bytes_; ++i) {
-    kept.put_byte(i, decoder_.decode(local, kept.byte(i), i));
+    kept.put_byte(i, decoder_.decode(local, kept.byte_at(i), i));
   }
   stream = local;
 }

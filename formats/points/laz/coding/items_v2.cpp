@@ -6,6 +6,39 @@
 #include "formats/points/laz/coding/return_tables.h"
 
 namespace spillway::detail::laz {
+namespace {
+
+/// The six bytes of the last colour, which become those of the next one.
+template <Keep kKeep>
+class Colour {
+ public:
+  explicit Colour(std::byte* part) : kept_(part) {}
+
+  /// Adds a difference to the prediction of a byte: green moves as red did, and blue as the two did
+  /// on average.
+  void move(unsigned i, unsigned difference) {
+    if constexpr (kKeep == Keep::kWhole) {
+      const int last = static_cast<int>(kept_.byte_at(i));
+      const int step = i < 2 ? 0 : i < 4 ? steps_[i - 2] : (steps_[i - 4] + steps_[i - 2]) / 2;
+      const auto predicted = static_cast<unsigned>(std::clamp(last + step, 0, 255));
+      const unsigned byte = (predicted + difference) & 0xFFU;
+      steps_[i] = static_cast<int>(byte) - last;
+      kept_.put_byte(i, byte);
+    }
+  }
+
+  void make_grey() {
+    const auto red = kept_.template get<std::uint16_t>(0);
+    kept_.put(2, red);
+    kept_.put(4, red);
+  }
+
+ private:
+  KeptPart<kKeep> kept_;
+  std::array<int, 6> steps_{};
+};
+
+}  // namespace
 
 template <Keep kKeep>
 void Point10V2<kKeep>::reset(const std::byte* first) {
@@ -28,6 +61,8 @@ void Point10V2<kKeep>::reset(const std::byte* first) {
 
 template <Keep kKeep>
 void Point10V2<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
+  constexpr bool kWhole = kKeep == Keep::kWhole;
+  const KeptPart<kKeep> kept(part);
   ArithmeticDecoder local = stream;
   Point10& point = point_;
   const unsigned changed = local.symbol(changed_.at(0));
@@ -36,17 +71,23 @@ void Point10V2<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
   const unsigned returns = point.returns >> 3U & 7U;
   const unsigned map = kReturnMap8[returns][number];
   const unsigned single = returns == 1 ? 1 : 0;
-  std::uint16_t& intensity = last_intensity_[map];
   if ((changed & 16U) != 0) {
-    intensity = static_cast<std::uint16_t>(intensity_.decode(local, intensity, std::min(map, 3U)));
+    const std::uint32_t last = kWhole ? last_intensity_[map] : 0;
+    const std::uint32_t intensity = intensity_.decode(local, last, std::min(map, 3U));
+    if constexpr (kWhole) last_intensity_[map] = static_cast<std::uint16_t>(intensity);
   }
-  point.intensity = intensity;
+  kept.put_short(kIntensity, kWhole ? last_intensity_[map] : 0);
   if ((changed & 8U) != 0) {
     point.classification = local.symbol(classification_.at(point.classification));
   }
-  if ((changed & 4U) != 0) point.angle += local.symbol(angle_.at(point.returns >> 6U & 1U));
+  if ((changed & 4U) != 0) {
+    const unsigned step = local.symbol(angle_.at(point.returns >> 6U & 1U));
+    kept.put_byte(core10::kAngle, kept.byte_at(core10::kAngle) + step);
+  }
   if ((changed & 2U) != 0) point.user = local.symbol(user_.at(point.user));
-  if ((changed & 1U) != 0) point.source = source_.decode(local, point.source, 0);
+  if ((changed & 1U) != 0) {
+    kept.put_short(core10::kSource, source_.decode(local, kept.short_at(core10::kSource), 0));
+  }
 
   const std::uint32_t dx = dx_.decode(local, dx_median_[map].get(), single);
   point.x = static_cast<std::int32_t>(point.x + dx);
@@ -60,7 +101,7 @@ void Point10V2<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
   last_z = static_cast<std::int32_t>(z_.decode(local, last_z, z_context));
   point.z = last_z;
   stream = local;
-  if constexpr (kKeep == Keep::kWhole) point.store_in(part);
+  if constexpr (kWhole) point.store_in(part);
 }
 
 template <Keep kKeep>
@@ -72,33 +113,18 @@ void Rgb12V2<kKeep>::reset(const std::byte* /*first*/) {
 template <Keep kKeep>
 void Rgb12V2<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
   constexpr unsigned kColoured = 64;
-  const KeptPart<kKeep> kept(part);
   ArithmeticDecoder local = stream;
   const unsigned used = local.symbol(used_.at(0));
-  std::array<int, 6> steps{};  // of the bytes so far
-  for (const unsigned i : {0U, 1U}) {
-    if ((used >> i & 1U) == 0) continue;
-    const unsigned last = kept.byte(i);
-    const unsigned byte = (last + local.symbol(differences_.at(i))) & 0xFFU;
-    steps[i] = static_cast<int>(byte) - static_cast<int>(last);
-    kept.put_byte(i, byte);
-  }
+  Colour<kKeep> colour(part);
+  if ((used & 1U) != 0) colour.move(0, local.symbol(differences_.at(0)));
+  if ((used & 2U) != 0) colour.move(1, local.symbol(differences_.at(1)));
   if ((used & kColoured) != 0) {
     // Low bytes of green and blue, then the high ones.
     for (const unsigned i : {2U, 4U, 3U, 5U}) {
-      if ((used >> i & 1U) == 0) continue;
-      const int last = static_cast<int>(kept.byte(i));
-      // Green moves as red did, and blue as the two did on average.
-      const int step = i < 4 ? steps[i - 2] : (steps[i - 4] + steps[i - 2]) / 2;
-      const auto predicted = static_cast<unsigned>(std::clamp(last + step, 0, 255));
-      const unsigned byte = (predicted + local.symbol(differences_.at(i))) & 0xFFU;
-      steps[i] = static_cast<int>(byte) - last;
-      kept.put_byte(i, byte);
+      if ((used >> i & 1U) != 0) colour.move(i, local.symbol(differences_.at(i)));
     }
   } else {
-    const auto red = kept.template get<std::uint16_t>(0);
-    kept.put(2, red);
-    kept.put(4, red);
+    colour.make_grey();
   }
   stream = local;
 }
@@ -108,7 +134,7 @@ void ByteV2<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
   const KeptPart<kKeep> kept(part);
   ArithmeticDecoder local = stream;
   for (std::size_t i = 0; i < bytes_; ++i) {
-    kept.put_byte(i, kept.byte(i) + local.symbol(differences_.at(i)));
+    kept.put_byte(i, kept.byte_at(i) + local.symbol(differences_.at(i)));
   }
   stream = local;
 }

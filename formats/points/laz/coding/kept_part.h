@@ -26,8 +26,9 @@ class KeptPart {
     if constexpr (kKeep == Keep::kWhole) return load<T>(bytes_ + at);
     return {};
   }
-  [[nodiscard]] unsigned byte(std::size_t at) const { return get<std::uint8_t>(at); }
-  [[nodiscard]] std::uint32_t word(std::size_t at) const { return get<std::uint32_t>(at); }
+  [[nodiscard]] unsigned byte_at(std::size_t at) const { return get<std::uint8_t>(at); }
+  [[nodiscard]] unsigned short_at(std::size_t at) const { return get<std::uint16_t>(at); }
+  [[nodiscard]] std::uint32_t word_at(std::size_t at) const { return get<std::uint32_t>(at); }
 
   template <typename T>
   void put(std::size_t at, T value) const {
@@ -35,6 +36,10 @@ class KeptPart {
   }
   /// Keeps the lowest byte.
   void put_byte(std::size_t at, unsigned value) const { put(at, static_cast<std::uint8_t>(value)); }
+  /// Keeps the lowest 16 bits.
+  void put_short(std::size_t at, std::uint32_t value) const {
+    put(at, static_cast<std::uint16_t>(value));
+  }
 
  private:
   std::byte* bytes_;

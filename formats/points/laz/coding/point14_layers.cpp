@@ -38,7 +38,7 @@ void Point14::store_in(std::byte* record) const {
 }
 
 void Point14Layers::Context::begin(const Point14& point) {
-  changed.reset();
+  changes.reset();
   channel.reset();
   return_count.reset();
   return_number.reset();
@@ -52,7 +52,7 @@ void Point14Layers::Context::begin(const Point14& point) {
   dy_median.fill({});
   last_z.fill(point.z);
   last = point;
-  time_changed = false;
+  changed = 0;
   used = true;
 }
 
@@ -76,13 +76,13 @@ Point14Layers::Context& Point14Layers::use(unsigned channel, const Point14& last
   return *context;
 }
 
-Point14Changes Point14Layers::decode() {
+void Point14Layers::decode() {
   ArithmeticDecoder xy = layers_[kXyLayer].stream;
   const Point14& before = current_->last;
   const unsigned change_context = (before.return_number == 1 ? 1U : 0U) |
                                   (before.return_number >= before.return_count ? 2U : 0U) |
-                                  (current_->time_changed ? 4U : 0U);
-  const unsigned changed = xy.symbol(current_->changed.at(change_context));
+                                  (current_->changed >> 2U & 4U);
+  const unsigned changed = xy.symbol(current_->changes.at(change_context));
   if ((changed & 64U) != 0) {
     const unsigned channel = (before.channel + xy.symbol(current_->channel.at(0)) + 1) & 3U;
     current_ = &use(channel, before);
@@ -91,6 +91,7 @@ Point14Changes Point14Layers::decode() {
   Context& context = *current_;
   Point14& point = context.last;
   const bool time_changed = (changed & 16U) != 0;
+  context.changed = changed;
 
   unsigned returns = point.return_count;
   if ((changed & 4U) != 0) returns = xy.symbol(context.return_count.at(returns));
@@ -133,9 +134,12 @@ Point14Changes Point14Layers::decode() {
   if (layers_[kFlagsLayer].present) {
     point.flags = layers_[kFlagsLayer].stream.symbol(context.flags.at(point.flags));
   }
-  context.time_changed = time_changed;
+}
+
+Point14Changes Point14Layers::changes() const {
+  const unsigned changed = current_->changed;
   return {.channel = (changed & 64U) != 0,
-          .time = time_changed,
+          .time = (changed & 16U) != 0,
           .angle = (changed & 8U) != 0,
           .source = (changed & 32U) != 0};
 }

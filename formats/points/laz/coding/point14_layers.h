@@ -30,7 +30,7 @@ struct Point14 {
   void store_in(std::byte* record) const;
 };
 
-/// What the first layer says of a point besides its fields; other layers depend on it.
+/// What the first layer says of a point besides its fields.
 struct Point14Changes {
   bool channel = false;
   bool time = false;
@@ -52,10 +52,13 @@ class Point14Layers {
                                    std::uint64_t count);
 
   /// The next point.
-  Point14Changes decode();
+  void decode();
 
   /// The point decoded last, at first the chunk's first one.
   [[nodiscard]] const Point14& point() const { return current_->last; }
+
+  /// What changed with it.
+  [[nodiscard]] Point14Changes changes() const;
 
   /// Checks that all layers have been read to their ends.
   void end() const;
@@ -64,7 +67,7 @@ class Point14Layers {
   struct Context {
     void begin(const Point14& point);
 
-    SymbolModels<128> changed{8};
+    SymbolModels<128> changes{8};
     SymbolModels<3> channel{1};
     SymbolModels<16> return_count{16};
     SymbolModels<16> return_number{16};
@@ -78,8 +81,8 @@ class Point14Layers {
     std::array<StreamingMedian, 12> dy_median{};
     std::array<std::int32_t, 8> last_z{};
     Point14 last;
-    bool time_changed = false;
-    bool used = false;  // in this chunk
+    unsigned changed = 0;  // with the last point
+    bool used = false;     // in this chunk
   };
 
   Context& use(unsigned channel, const Point14& last);

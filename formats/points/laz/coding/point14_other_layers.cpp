@@ -67,7 +67,8 @@ void Point14OtherLayers::decode(const Point14& point, const Point14Changes& chan
     fields.source = context.source.decode(layers_[kSourceLayer].stream, fields.source, 0);
   }
   if (layers_[kTimeLayer].present && changes.time) {
-    fields.time = context.time.decode(layers_[kTimeLayer].stream);
+    context.time.decode(layers_[kTimeLayer].stream);
+    fields.time = context.time.time();
   }
   store(record + kIntensity, fields.intensity);
   store(record + core14::kUser, fields.user);

@@ -48,7 +48,7 @@ class Point14OtherLayers {
     IntegerDecoder<16> angle{2};
     SymbolModels<256> user{64};
     IntegerDecoder<16> source{1};
-    GpsTimeDecoder<true> time;
+    GpsTimeDecoder<true, Keep::kWhole> time;
     std::array<std::uint16_t, 8> last_intensity{};  // of pulses of a kind
     Fields last;
     bool used = false;  // in this chunk

@@ -9,12 +9,9 @@ Point10 Point10::of_record(const std::byte* record) {
   point.x = load<std::int32_t>(record + kX);
   point.y = load<std::int32_t>(record + kY);
   point.z = load<std::int32_t>(record + kZ);
-  point.intensity = load<std::uint16_t>(record + kIntensity);
   point.returns = load<std::uint8_t>(record + kReturns);
   point.classification = load<std::uint8_t>(record + core10::kClass);
-  point.angle = load<std::uint8_t>(record + core10::kAngle);
   point.user = load<std::uint8_t>(record + core10::kUser);
-  point.source = load<std::uint16_t>(record + core10::kSource);
   return point;
 }
 
@@ -22,12 +19,9 @@ void Point10::store_in(std::byte* record) const {
   store(record + kX, x);
   store(record + kY, y);
   store(record + kZ, z);
-  store(record + kIntensity, intensity);
   store(record + kReturns, returns);
   store(record + core10::kClass, classification);
-  store(record + core10::kAngle, angle);
   store(record + core10::kUser, user);
-  store(record + core10::kSource, source);
 }
 
 }  // namespace spillway::detail::laz

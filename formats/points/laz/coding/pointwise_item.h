@@ -20,29 +20,26 @@ class PointwiseItem {
   virtual void decode(ArithmeticDecoder& stream, std::byte* part) = 0;
 };
 
-/// The first 20 bytes of a record.
+/// What is needed of the first 20 bytes of a record: what is wanted without whole records, and what
+/// decoding depends on.
 struct Point10 {
   std::int32_t x = 0;
   std::int32_t y = 0;
   std::int32_t z = 0;
-  std::uint16_t intensity = 0;
   std::uint8_t returns = 0;  ///< bits 0-2: return number, 3-5: number of returns, 6: scan direction
   std::uint8_t classification = 0;  ///< bits 0-4: class, 5: synthetic, 6: key-point, 7: withheld
-  std::uint8_t angle = 0;
   std::uint8_t user = 0;
-  std::uint16_t source = 0;
 
   /// Reads a record as it is without compression.
   static Point10 of_record(const std::byte* record);
-  /// Writes it likewise.
+  /// Writes these fields likewise.
   void store_in(std::byte* record) const;
 };
 
 /// The item that all others follow.
 class Point10Item : public PointwiseItem {
  public:
-  /// The point decoded last, after reset() the chunk's first one. Intensity, angle and source are
-  /// only kept with all bytes.
+  /// The point decoded last, after reset() the chunk's first one.
   [[nodiscard]] const Point10& point() const { return point_; }
 
  protected:
