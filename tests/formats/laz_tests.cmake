@@ -18,7 +18,9 @@ spillway_test(laz_test unit
     formats/points/laz/laz_writer_test.cpp
   LIBS laz_encoder)
 spillway_test(laz_corruption_test fault
-  SOURCES formats/points/laz/laz_corruption_test.cpp
+  SOURCES
+    formats/points/laz/laz_corruption_test.cpp
+    formats/points/laz/laz_record_damage_test.cpp
   LIBS laz_encoder
   TIMEOUT 600)
 

@@ -364,6 +364,39 @@ TEST(LazChunk, ReferenceChunksGiveTheirRecordsFromSpansOfAnySize) {
   }
 }
 
+TEST(LazChunk, ReferenceChunksGiveTheirWholeRecordsFromSpansOfAnySize) {
+  for (const ChunkCase& c : reference_chunks()) {
+    const Bytes chunk = bytes_of(c.chunk);
+    Bytes sound;
+    for (const std::string_view record : c.records) {
+      const Bytes bytes = bytes_of(record);
+      sound.insert(sound.end(), bytes.begin(), bytes.end());
+    }
+    LazChunkDecoder decoder(c.format, LazDetail::kRecords);
+    for (const std::size_t span_size :
+         {std::size_t{1}, std::size_t{3}, std::size_t{40}, SIZE_MAX}) {
+      SCOPED_TRACE(c.name + ", pieces of " + std::to_string(span_size));
+      SplitBytes split(chunk, span_size);
+      Bytes records(sound.size());
+      decoder.begin(split, c.records.size());
+      decoder.decode_records(records);
+      EXPECT_EQ(decoder.end(), 0);
+      EXPECT_EQ(split.left(), 0);
+      EXPECT_EQ(records, sound);
+    }
+  }
+}
+
+TEST(LazDetail, TellsWhichLayersAreWanted) {
+  const LazChunkFormat layered{.items = {{LazItemType::kPoint14, 30, 3},
+                                         {LazItemType::kRgbNir14, 8, 3},
+                                         {LazItemType::kByte14, 5, 3}},
+                               .layered = true};
+  EXPECT_EQ(laz_wanted_layers(layered, LazDetail::kCoordinates), 2U);
+  EXPECT_EQ(laz_wanted_layers(layered, LazDetail::kAttributes), 4U);
+  EXPECT_EQ(laz_wanted_layers(layered, LazDetail::kRecords), 9U + 2 + 5);
+}
+
 TEST(LazChunk, TellsHowManyBytesLieBehindIt) {
   for (const ChunkCase& c : reference_chunks()) {
     SCOPED_TRACE(c.name);
