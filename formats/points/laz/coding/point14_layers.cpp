@@ -53,7 +53,6 @@ void Point14Layers::Context::begin(const Point14& point) {
   last_z.fill(point.z);
   last = point;
   changed = 0;
-  used = true;
 }
 
 std::span<const std::byte> Point14Layers::begin(const Point14& first,
@@ -62,18 +61,9 @@ std::span<const std::byte> Point14Layers::begin(const Point14& first,
                                                 std::uint64_t count) {
   if (count > 1 && sizes[kXyLayer] == 0) throw Error("the compressed chunk has no coordinates");
   for (std::size_t i = 0; i < kLayers; ++i) layers = layers_[i].begin(layers, sizes[i]);
-  for (const auto& context : contexts_) {
-    if (context) context->used = false;
-  }
-  current_ = &use(first.channel, first);
+  contexts_.reset();
+  current_ = &contexts_.use(first.channel, first);
   return layers;
-}
-
-Point14Layers::Context& Point14Layers::use(unsigned channel, const Point14& last) {
-  std::unique_ptr<Context>& context = contexts_[channel];
-  if (!context) context = std::make_unique<Context>();
-  if (!context->used) context->begin(last);
-  return *context;
 }
 
 void Point14Layers::decode() {
@@ -85,7 +75,7 @@ void Point14Layers::decode() {
   const unsigned changed = xy.symbol(current_->changes.at(change_context));
   if ((changed & 64U) != 0) {
     const unsigned channel = (before.channel + xy.symbol(current_->channel.at(0)) + 1) & 3U;
-    current_ = &use(channel, before);
+    current_ = &contexts_.use(channel, before);
     current_->last.channel = static_cast<std::uint8_t>(channel);
   }
   Context& context = *current_;

@@ -4,9 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 
+#include "formats/points/laz/coding/by_channel.h"
 #include "formats/points/laz/coding/integer_decoder.h"
 #include "formats/points/laz/coding/layer.h"
 #include "formats/points/laz/coding/streaming_median.h"
@@ -82,13 +82,10 @@ class Point14Layers {
     std::array<std::int32_t, 8> last_z{};
     Point14 last;
     unsigned changed = 0;  // with the last point
-    bool used = false;     // in this chunk
   };
 
-  Context& use(unsigned channel, const Point14& last);
-
   std::array<Layer, kLayers> layers_;
-  std::array<std::unique_ptr<Context>, 4> contexts_;
+  ByChannel<Context> contexts_;
   Context* current_ = nullptr;
 };
 

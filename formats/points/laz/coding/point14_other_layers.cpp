@@ -17,35 +17,25 @@ void Point14OtherLayers::Context::begin(const Fields& first) {
   time.reset(first.time);
   last_intensity.fill(first.intensity);
   last = first;
-  used = true;
 }
 
 std::span<const std::byte> Point14OtherLayers::begin(const std::byte* first,
                                                      std::span<const std::byte> layers,
                                                      std::span<const std::size_t, kLayers> sizes) {
   for (std::size_t i = 0; i < kLayers; ++i) layers = layers_[i].begin(layers, sizes[i]);
-  for (const auto& context : contexts_) {
-    if (context) context->used = false;
-  }
-  current_ = &use(Point14::of_record(first).channel,
-                  {.intensity = load<std::uint16_t>(first + kIntensity),
-                   .angle = load<std::uint16_t>(first + core14::kAngle),
-                   .user = load<std::uint8_t>(first + core14::kUser),
-                   .source = load<std::uint16_t>(first + core14::kSource),
-                   .time = load<std::uint64_t>(first + core14::kGpsTime)});
+  contexts_.reset();
+  current_ = &contexts_.use(Point14::of_record(first).channel,
+                            Fields{.intensity = load<std::uint16_t>(first + kIntensity),
+                                   .angle = load<std::uint16_t>(first + core14::kAngle),
+                                   .user = load<std::uint8_t>(first + core14::kUser),
+                                   .source = load<std::uint16_t>(first + core14::kSource),
+                                   .time = load<std::uint64_t>(first + core14::kGpsTime)});
   return layers;
-}
-
-Point14OtherLayers::Context& Point14OtherLayers::use(unsigned channel, const Fields& last) {
-  std::unique_ptr<Context>& context = contexts_[channel];
-  if (!context) context = std::make_unique<Context>();
-  if (!context->used) context->begin(last);
-  return *context;
 }
 
 void Point14OtherLayers::decode(const Point14& point, const Point14Changes& changes,
                                 std::byte* record) {
-  if (changes.channel) current_ = &use(point.channel, current_->last);
+  if (changes.channel) current_ = &contexts_.use(point.channel, current_->last);
   Context& context = *current_;
   Fields& fields = context.last;
   const unsigned time_changed = changes.time ? 1 : 0;

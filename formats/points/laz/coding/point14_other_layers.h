@@ -4,9 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 
+#include "formats/points/laz/coding/by_channel.h"
 #include "formats/points/laz/coding/gps_times.h"
 #include "formats/points/laz/coding/integer_decoder.h"
 #include "formats/points/laz/coding/layer.h"
@@ -51,13 +51,10 @@ class Point14OtherLayers {
     GpsTimeDecoder<true, Keep::kWhole> time;
     std::array<std::uint16_t, 8> last_intensity{};  // of pulses of a kind
     Fields last;
-    bool used = false;  // in this chunk
   };
 
-  Context& use(unsigned channel, const Fields& last);
-
   std::array<Layer, kLayers> layers_;
-  std::array<std::unique_ptr<Context>, 4> contexts_;
+  ByChannel<Context> contexts_;
   Context* current_ = nullptr;
 };
 
