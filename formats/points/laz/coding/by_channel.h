@@ -13,8 +13,9 @@ class ByChannel {
   void reset() { came_.fill(false); }
 
   /// The channel's context; if the channel comes for the first time, after `begin(last)` of it.
+  /// Channels change rarely, and the code that decodes points needs the registers.
   template <typename Last>
-  Context& use(unsigned channel, const Last& last) {
+  [[gnu::noinline]] Context& use(unsigned channel, const Last& last) {
     std::unique_ptr<Context>& context = contexts_[channel];
     if (!context) context = std::make_unique<Context>();
     if (!came_[channel]) context->begin(last);
