@@ -79,12 +79,15 @@ void tell_notices(const SourceFacts& facts, const HeaderSurveyOptions& options) 
   for (const Notice& notice : notices) {
     const std::string more =
         notice.count > 1 ? fmt::format(" (and {} more)", notice.count - 1) : std::string();
-    options.warn(fmt::format("{}{}: {}", *notice.first == "-" ? "standard input" : *notice.first,
-                             more, *notice.text));
+    options.warn(notice_of_input(*notice.first, *notice.text, more));
   }
 }
 
 }  // namespace
+
+std::string notice_of_input(const std::string& name, std::string_view text, std::string_view more) {
+  return fmt::format("{}{}: {}", name == "-" ? "standard input" : name, more, text);
+}
 
 HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& paths,
                             const HeaderSurveyOptions& options) {

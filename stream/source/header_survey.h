@@ -32,6 +32,10 @@ struct HeaderSurvey {
   std::vector<std::shared_ptr<PointReader>> readers;
 };
 
+/// What is told of an input of that name, and perhaps of `more` ones.
+std::string notice_of_input(const std::string& name, std::string_view text,
+                            std::string_view more = {});
+
 /// Looks at the headers of all inputs. Throws Error that names all inputs that cannot be opened or
 /// do not have what the dimension and the filter need, or two of different coordinate systems.
 HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& paths,

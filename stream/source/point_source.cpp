@@ -203,6 +203,9 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   if (!piece.counted) return;
   const std::lock_guard lock(counts_mutex_);
   counts_ += counts;
+  for (const std::string& text : block.notices) {
+    options_.warn(notice_of_input(facts_.inputs[piece.input].header.name, text));
+  }
 }
 
 /// The points of all inputs reach the cells in their order.

@@ -23,7 +23,14 @@ struct AllPoints {
   std::vector<std::uint64_t> index;
   std::vector<PointAttributes> attributes;
   std::uint64_t withheld = 0;
+  std::vector<std::string> notices;  ///< that came with blocks
 };
+
+/// Adds what a block tells besides its points.
+inline void add_counts(const PointBlock& block, AllPoints& all) {
+  all.withheld += block.withheld;
+  all.notices.insert(all.notices.end(), block.notices.begin(), block.notices.end());
+}
 
 inline AllPoints read_all_points(FileSystem& files, const std::string& path,
                                  const PointReaderOptions& options = {}) {
@@ -37,10 +44,10 @@ inline AllPoints read_all_points(FileSystem& files, const std::string& path,
     all.points.insert(all.points.end(), block.points.begin(), block.points.end());
     all.index.insert(all.index.end(), block.index.begin(), block.index.end());
     all.attributes.insert(all.attributes.end(), block.attributes.begin(), block.attributes.end());
-    all.withheld += block.withheld;
+    add_counts(block, all);
   }
   EXPECT_EQ(block.size(), 0U);
-  all.withheld += block.withheld;
+  add_counts(block, all);
   return all;
 }
 

@@ -45,6 +45,8 @@ struct PointBlock {
   std::uint64_t withheld = 0;
   /// Records left out of it because they are no points (PointReaderOptions::skip_invalid).
   std::uint64_t invalid = 0;
+  /// What came to light only when these were read, as PointHeader::notices.
+  std::vector<std::string> notices;
 
   [[nodiscard]] std::size_t size() const { return points.size(); }
   void clear() {
@@ -52,6 +54,7 @@ struct PointBlock {
     index.clear();
     attributes.clear();
     withheld = invalid = 0;
+    notices.clear();
   }
 };
 
@@ -145,7 +148,7 @@ class PointReader {
   virtual void decode(RawPoints& raw, PointBlock& block) const;
 
   /// Both steps: replaces `block` by the next points, at least one; false at the end, where
-  /// `block.withheld` and `block.invalid` still count.
+  /// `block.withheld` and `block.invalid` still count, and notices are told.
   bool read(PointBlock& block);
 
   /// Into how many pieces the source falls that can be read in any order, also by readers of it in

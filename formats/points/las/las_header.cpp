@@ -382,23 +382,42 @@ void find_points(InputBytes& source, LasHeader& header, const std::string& doubt
   }
 }
 
-/// Says what follows the points that the header counts, where there is room for more of them.
-void tell_of_more(const InputBytes& source, LasHeader& header) {
+/// Whether what follows the points from `begin` to `end` is padding, by its first bytes.
+bool begins_as_padding(InputBytes& source, std::uint64_t begin, std::uint64_t end) {
+  constexpr std::uint64_t kLooksAt = std::uint64_t{1} << 16;
+  const std::uint64_t back = source.position();
+  if (!source.seek(begin)) return false;
+  const bool padding = is_padding(source.peek(std::min(end - begin, kLooksAt)));
+  source.seek(back);
+  return padding;
+}
+
+/// Finds out what follows the points that the header counts, where there is room for more of them.
+void look_for_more(InputBytes& source, LasHeader& header) {
   const std::optional<std::uint64_t> size = source.size();
   if (!size) return;
   const std::uint64_t begin = source.position();
   const std::uint64_t end = std::min(*size, header.offset_behind_points.value_or(*size));
   const std::uint64_t told = begin + header.count * header.record_length;
-  if (end < told + header.record_length) return;
+  if (end < told + header.record_length || begins_as_padding(source, told, end)) return;
+  header.more = (end - told) / header.record_length;
   header.notices.push_back(fmt::format(
       "the header counts {} points, but {} bytes follow them, room for {} more, which are not "
       "read; if they are points, correct the count in the header ({})",
-      header.count, end - told, (end - told) / header.record_length,
-      header.version == "1.4" || header.version == "1.5" ? "8 bytes from byte 247 on"
-                                                         : "4 bytes from byte 107 on"));
+      header.count, end - told, header.more, place_of_count(header)));
 }
 
 }  // namespace
+
+bool is_padding(std::span<const std::byte> bytes) {
+  return std::ranges::all_of(bytes, [](std::byte byte) { return byte == std::byte{0}; });
+}
+
+std::string place_of_count(const LasHeader& las) {
+  return las.version == "1.4" || las.version == "1.5"
+             ? fmt::format("8 bytes from byte {} on", las_field::kCount)
+             : fmt::format("4 bytes from byte {} on", las_field::kLegacyCount);
+}
 
 LasHeader read_las_header(InputBytes& source) {
   constexpr unsigned kFormatBits = 0x3f;
@@ -434,7 +453,7 @@ LasHeader read_las_header(InputBytes& source) {
                          : fmt::format(", and its {} variable length records do not fit before "
                                        "them, either",
                                        layout.vlr_count));
-    tell_of_more(source, header);
+    look_for_more(source, header);
   }
   return header;
 }

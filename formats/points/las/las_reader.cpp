@@ -46,7 +46,8 @@ class LasReader : public PointReader {
         in_pieces_(path != "-" && source_->seekable()),
         at_any_byte_(in_pieces_ && source_->read_at(0, {})),
         begin_(source_->position()),
-        end_(las_.count) {}
+        end_(las_.count),
+        end_is_known_(source_->size().has_value()) {}
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
@@ -58,7 +59,8 @@ class LasReader : public PointReader {
     raw.unread = at_any_byte_;
     if (!raw.unread) check_complete(raw, source_->read(raw.bytes));
     next_ += raw.count;
-    return raw.count > 0;
+    if (next_ == las_.count && !std::exchange(end_is_known_, true)) look_behind_points(raw);
+    return raw.count > 0 || !raw.decoded.notices.empty();
   }
 
   void decode(RawPoints& raw, PointBlock& block) const override {
@@ -83,6 +85,7 @@ class LasReader : public PointReader {
     block.index.resize(kept);
     block.attributes.resize(attributes_ ? kept : 0);
     block.withheld = raw.count - kept;
+    block.notices = std::move(raw.decoded.notices);
   }
 
   /// A piece is what fetch() takes at a time.
@@ -108,6 +111,18 @@ class LasReader : public PointReader {
                    at_byte(end));
   }
 
+  /// Says that more points may follow the last one that the header counts.
+  void look_behind_points(RawPoints& raw) {
+    const std::uint64_t end = begin_ + las_.count * las_.record_length;
+    if (las_.offset_behind_points.value_or(~std::uint64_t{0}) < end + las_.record_length) return;
+    const std::span<const std::byte> next = source_->peek(las_.record_length);
+    if (next.size() < las_.record_length || is_padding(next)) return;
+    raw.decoded.notices.push_back(fmt::format(
+        "the header counts {} points, but more bytes follow them, which are not read; if they are "
+        "points, correct the count in the header ({})",
+        las_.count, place_of_count(las_)));
+  }
+
   void go_to_piece(std::uint64_t piece) override {
     next_ = piece * block_points_;
     end_ = next_ + std::min<std::uint64_t>(block_points_, las_.count - next_);
@@ -125,6 +140,7 @@ class LasReader : public PointReader {
   std::uint64_t begin_;     // byte of the first record
   std::uint64_t end_;       // number of the first record that is not to be read
   std::uint64_t next_ = 0;  // number of the next record
+  bool end_is_known_;       // no look behind the points is needed
 };
 
 }  // namespace

@@ -66,7 +66,7 @@ class LazReader : public PointReader {
     raw.decoded.clear();
     raw.count = 0;
     if (left_ == 0) {
-      if (next_ == end_) return false;
+      if (next_ == end_) return tell_of_more(raw);
       if (las_.laz->format.layered) {
         fetch_layered(raw);
       } else {
@@ -93,6 +93,7 @@ class LazReader : public PointReader {
       fail_at(raw.offset, error);
     }
     give_back(std::move(decoder));
+    block.notices.clear();
   }
 
   /// A piece is a chunk of the list.
@@ -149,9 +150,37 @@ class LazReader : public PointReader {
         table->more == 1 ? "is" : "are"));
   }
 
+  /// Where there is no list, says at the end that chunks follow the last point that the header
+  /// counts.
+  bool tell_of_more(RawPoints& raw) {
+    if (chunks_ || is_unchunked() || chunks_end_ == kUnlimited) return false;
+    const std::uint64_t begin = stream_.position();
+    if (std::exchange(chunks_end_, kUnlimited) < begin + shortest_chunk(las_)) return false;
+    raw.decoded.notices.push_back(fmt::format(
+        "the header counts {} points, but more chunks of them follow, which are not read; write "
+        "the file again, or correct the count in the header ({})",
+        las_.count, place_of_count(las_)));
+    return true;
+  }
+
+  /// A file without points needs no table, but may have chunks that its header does not count.
+  void look_for_uncounted_chunks(bool seekable) {
+    if (is_unchunked()) return;
+    try {
+      if (seekable) {
+        take_table(read_chunk_table(*source_, las_));
+      } else {
+        chunks_end_ = read_end_of_chunks(*source_, las_).value_or(kUnlimited);
+      }
+    } catch (const BadInput&) {
+      chunks_end_ = kUnlimited;
+    }
+  }
+
   void find_chunks() {
     const bool seekable = source_->seekable();
     if (las_.count == 0) {
+      look_for_uncounted_chunks(seekable);
       if (seekable) chunks_.emplace();
       return;
     }

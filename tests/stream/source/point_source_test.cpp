@@ -231,6 +231,14 @@ TEST_F(PointSourceTest, ExpectsNoMoreThanFiltersLeave) {
   EXPECT_EQ(PointSource(files_, {"a.las"}, options).count(), std::nullopt);
 }
 
+TEST_F(PointSourceTest, WarnsByNameOfWhatComesToLightWhilePointsAreRead) {
+  files_.seekable = false;
+  files_.files["a.las"] = diagonal(10).bytes();
+  files_.files["b.las"] = diagonal(10).bytes() + std::string(40, 'E');
+  EXPECT_EQ(read({"a.las", "b.las"}).points.size(), 18U);
+  EXPECT_THAT(warnings_, ::testing::StartsWith("b.las: the header counts 10 points, but more"));
+}
+
 TEST_F(PointSourceTest, TextHasNoClassesAndIsNamed) {
   files_.files["a.las"] = diagonal(10).bytes();
   files_.files["b.txt"] = "0 0 0\n1 0 0\n";

@@ -204,6 +204,17 @@ TEST(Copc, AnOctreeThatHasNotAllPointsTellsNoRegions) {
   EXPECT_EQ(all.header.count, all.points.size());
 }
 
+TEST(Copc, NodesThatTheHeaderDoesNotCountAreSaidWhereTheyAreNotRead) {
+  CopcFile file = deep_file();
+  file.laz.count -= file.laz.chunks.back().count;
+  const AllPoints all = read_content("a.copc.laz", file.bytes(), selection({}, 0));
+  EXPECT_EQ(all.points.size(), file.laz.count);
+  EXPECT_THAT(all.header.notices,
+              ::testing::ElementsAre(HasSubstr("but 1 more chunk of them follows")));
+  EXPECT_THAT(error_of_content("a.copc.laz", file.bytes(), selection({}, 1e-300)),
+              HasSubstr("but the file has"));
+}
+
 TEST(Copc, BoundsAndResolutionSelectNodes) {
   expect_random_selections(deep_file().bytes(), {{500000, 4000000, 0}, {500064, 4000064, 64}}, 4);
 }
