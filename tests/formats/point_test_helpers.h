@@ -23,12 +23,14 @@ struct AllPoints {
   std::vector<std::uint64_t> index;
   std::vector<PointAttributes> attributes;
   std::uint64_t withheld = 0;
+  std::uint64_t lost = 0;            ///< as blocks told
   std::vector<std::string> notices;  ///< that came with blocks
 };
 
 /// Adds what a block tells besides its points.
 inline void add_counts(const PointBlock& block, AllPoints& all) {
   all.withheld += block.withheld;
+  all.lost += block.lost;
   all.notices.insert(all.notices.end(), block.notices.begin(), block.notices.end());
 }
 

@@ -9,6 +9,7 @@ spillway_test(points_test unit
     formats/disk/file_digest_test.cpp
     formats/points/las/geotiff_keys_test.cpp
     formats/points/las/las_reader_test.cpp
+    formats/points/las/las_salvage_test.cpp
     formats/points/las/las_shared_data_test.cpp
     formats/points/npy/npy_reader_test.cpp
     formats/points/invalid_rows_test.cpp

@@ -45,6 +45,8 @@ struct PointBlock {
   std::uint64_t withheld = 0;
   /// Records left out of it because they are no points (PointReaderOptions::skip_invalid).
   std::uint64_t invalid = 0;
+  /// Records that should have come with these, and are lost (PointReaderOptions::salvage).
+  std::uint64_t lost = 0;
   /// What came to light only when these were read, as PointHeader::notices.
   std::vector<std::string> notices;
 
@@ -53,7 +55,7 @@ struct PointBlock {
     points.clear();
     index.clear();
     attributes.clear();
-    withheld = invalid = 0;
+    withheld = invalid = lost = 0;
     notices.clear();
   }
 };
@@ -112,6 +114,9 @@ struct PointHeader {
   bool regions_are_exact = false;  ///< not rounded: the reader proves that no point lies outside
   /// Of which the reader keeps a PointRegion each; a region has one or more.
   std::uint64_t cells = 0;
+  /// Records that the source should hold and does not (PointReaderOptions::salvage); `count` is
+  /// without them.
+  std::uint64_t lost = 0;
 };
 
 struct PointReaderOptions {
@@ -127,6 +132,10 @@ struct PointReaderOptions {
   std::optional<std::array<int, 3>> columns{};
   /// Of text and npy: leave out and count rows that are no points.
   bool skip_invalid = false;
+  /// Of LAS and LAZ: give the points that are whole of a file that is cut off or damaged, and those
+  /// that its header does not count. Where lost ones are known of beforehand, PointHeader::lost has
+  /// them, else blocks.
+  bool salvage = false;
 };
 
 /// A stream of points from one source. fetch() takes the next batch of the input, in order;
@@ -148,7 +157,7 @@ class PointReader {
   virtual void decode(RawPoints& raw, PointBlock& block) const;
 
   /// Both steps: replaces `block` by the next points, at least one; false at the end, where
-  /// `block.withheld` and `block.invalid` still count, and notices are told.
+  /// `block.withheld`, `block.invalid` and `block.lost` still count, and notices are told.
   bool read(PointBlock& block);
 
   /// Into how many pieces the source falls that can be read in any order, also by readers of it in

@@ -13,6 +13,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/gdal/crs_text.h"
 #include "formats/points/las/geotiff_keys.h"
+#include "formats/points/las/uncompressed_points.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -350,76 +351,9 @@ void check_compression(const InputBytes& source, const Layout& layout, LasHeader
   if (!header.laz || !header.laz->format.layered) header.copc.reset();
 }
 
-/// Goes to the first uncompressed point and checks that the file can hold all of them.
-/// `doubt`: what else speaks against the file.
-void find_points(InputBytes& source, LasHeader& header, const std::string& doubt) {
-  constexpr std::uint16_t kStart = 0xCCDD;
-  constexpr std::uint16_t kStartSwapped = 0xDDCC;
-  const std::optional<std::uint64_t> size = source.size();
-  const auto room = [&] { return (*size - header.offset_to_points) / header.record_length; };
-  if (header.version == "1.0") {
-    const std::span<const std::byte> begin = source.peek(sizeof(kStart));
-    const auto value = begin.size() < sizeof(kStart) ? 0 : load<std::uint16_t>(begin.data());
-    if (value == kStart || value == kStartSwapped) {
-      if (!size) {
-        fail(source, header.offset_to_points,
-             "without the size of the file it is not clear where the points of this LAS 1.0 "
-             "file begin; give it by its name instead of on a pipe");
-      }
-      header.offset_to_points += sizeof(kStart);
-      if (room() >= header.count) {
-        source.skip(sizeof(kStart));
-        return;
-      }
-      header.offset_to_points -= sizeof(kStart);
-    }
-  }
-  if (size && header.count > room()) {
-    fail(source, *size,
-         fmt::format("the header says {} points of {} bytes, but the file ends at byte {}, "
-                     "after {} of them{}; get a complete copy",
-                     header.count, header.record_length, *size, room(), doubt));
-  }
-}
-
-/// Whether what follows the points from `begin` to `end` is padding, by its first bytes.
-bool begins_as_padding(InputBytes& source, std::uint64_t begin, std::uint64_t end) {
-  constexpr std::uint64_t kLooksAt = std::uint64_t{1} << 16;
-  const std::uint64_t back = source.position();
-  if (!source.seek(begin)) return false;
-  const bool padding = is_padding(source.peek(std::min(end - begin, kLooksAt)));
-  source.seek(back);
-  return padding;
-}
-
-/// Finds out what follows the points that the header counts, where there is room for more of them.
-void look_for_more(InputBytes& source, LasHeader& header) {
-  const std::optional<std::uint64_t> size = source.size();
-  if (!size) return;
-  const std::uint64_t begin = source.position();
-  const std::uint64_t end = std::min(*size, header.offset_behind_points.value_or(*size));
-  const std::uint64_t told = begin + header.count * header.record_length;
-  if (end < told + header.record_length || begins_as_padding(source, told, end)) return;
-  header.more = (end - told) / header.record_length;
-  header.notices.push_back(fmt::format(
-      "the header counts {} points, but {} bytes follow them, room for {} more, which are not "
-      "read; if they are points, correct the count in the header ({})",
-      header.count, end - told, header.more, place_of_count(header)));
-}
-
 }  // namespace
 
-bool is_padding(std::span<const std::byte> bytes) {
-  return std::ranges::all_of(bytes, [](std::byte byte) { return byte == std::byte{0}; });
-}
-
-std::string place_of_count(const LasHeader& las) {
-  return las.version == "1.4" || las.version == "1.5"
-             ? fmt::format("8 bytes from byte {} on", las_field::kCount)
-             : fmt::format("4 bytes from byte {} on", las_field::kLegacyCount);
-}
-
-LasHeader read_las_header(InputBytes& source) {
+LasHeader read_las_header(InputBytes& source, bool salvage) {
   constexpr unsigned kFormatBits = 0x3f;
   const std::vector<std::byte> bytes = read_public_header(source);
   const Layout layout = read_layout(bytes);
@@ -449,11 +383,11 @@ LasHeader read_las_header(InputBytes& source) {
   if (!header.laz) {
     const bool all_vlrs = vlrs == layout.vlr_count;
     find_points(source, header,
-                all_vlrs ? ""
-                         : fmt::format(", and its {} variable length records do not fit before "
-                                       "them, either",
-                                       layout.vlr_count));
-    look_for_more(source, header);
+                {.salvage = salvage,
+                 .doubt = all_vlrs ? ""
+                                   : fmt::format(", and its {} variable length records do not fit "
+                                                 "before them, either",
+                                                 layout.vlr_count)});
   }
   return header;
 }
@@ -465,6 +399,7 @@ PointHeader las_point_header(const LasHeader& las, const std::string& path) {
   header.version = las.version;
   header.point_format = las.point_format;
   header.count = las.count;
+  header.lost = las.lost;
   header.lattice = las.lattice;
   if (!las.extent.empty()) header.extent = las.extent;
   header.crs = las.crs;

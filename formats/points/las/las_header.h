@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -86,21 +85,14 @@ struct LasHeader {
   std::optional<std::uint64_t> offset_behind_points;
   std::optional<LazRecord> laz;  ///< set if the points are compressed
   std::optional<CopcInfo> copc;  ///< set if they are and lie in an octree
-  /// Whole records that the bytes after the uncompressed points have room for, unless these look
-  /// like something else; 0 if the size of the file is unknown.
-  std::uint64_t more = 0;
+  std::uint64_t lost = 0;        ///< as PointHeader has it
 };
-
-/// Whether bytes behind the points are padding: zeros.
-bool is_padding(std::span<const std::byte> bytes);
-
-/// The place of the number of points in the header, for messages.
-std::string place_of_count(const LasHeader& las);
 
 /// Reads everything before the first point, and after the points where the coordinate system is
 /// not told before and the source can go there. Throws Error, before anything is allocated, if a
-/// field contradicts another one or the size of the file.
-LasHeader read_las_header(InputBytes& source);
+/// field contradicts another one or the size of the file. With `salvage`, `count` is what a file of
+/// uncompressed points holds, and not what it should.
+LasHeader read_las_header(InputBytes& source, bool salvage = false);
 
 /// The same as any point source has it, for a source of that name.
 PointHeader las_point_header(const LasHeader& las, const std::string& path);

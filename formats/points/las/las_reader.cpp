@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "formats/bytes/bytes.h"
+#include "formats/points/las/uncompressed_points.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -45,22 +46,27 @@ class LasReader : public PointReader {
         block_points_(std::clamp<std::size_t>(kBlockBytes / las_.record_length, 1, kBlockPoints)),
         in_pieces_(path != "-" && source_->seekable()),
         at_any_byte_(in_pieces_ && source_->read_at(0, {})),
+        salvage_(options.salvage),
         begin_(source_->position()),
         end_(las_.count),
-        end_is_known_(source_->size().has_value()) {}
+        end_is_known_(source_->size().has_value()) {
+    if (salvage_ && !end_is_known_) header_.count.reset();
+  }
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
   bool fetch(RawPoints& raw) override {
+    if (next_ == end_ && !std::exchange(end_is_known_, true)) look_behind_points(raw);
     raw.offset = begin_ + next_ * las_.record_length;
     raw.first = next_;
     raw.count = std::min<std::uint64_t>(block_points_, end_ - next_);
     raw.bytes.resize(raw.count * las_.record_length);
     raw.unread = at_any_byte_;
+    const std::uint64_t wanted = raw.count;
     if (!raw.unread) check_complete(raw, source_->read(raw.bytes));
     next_ += raw.count;
-    if (next_ == las_.count && !std::exchange(end_is_known_, true)) look_behind_points(raw);
-    return raw.count > 0 || !raw.decoded.notices.empty();
+    if (raw.count < wanted && !source_->size()) end_ = next_;
+    return wanted > 0 || !raw.decoded.notices.empty();
   }
 
   void decode(RawPoints& raw, PointBlock& block) const override {
@@ -85,6 +91,7 @@ class LasReader : public PointReader {
     block.index.resize(kept);
     block.attributes.resize(attributes_ ? kept : 0);
     block.withheld = raw.count - kept;
+    block.lost = raw.decoded.lost;
     block.notices = std::move(raw.decoded.notices);
   }
 
@@ -95,32 +102,52 @@ class LasReader : public PointReader {
   }
 
   [[nodiscard]] std::optional<double> fraction_read() const override {
-    return las_.count == 0 ? 1.0 : static_cast<double>(next_) / static_cast<double>(las_.count);
+    if (next_ >= las_.count) return 1;
+    return static_cast<double>(next_) / static_cast<double>(las_.count);
   }
 
  private:
-  /// Refuses a file that ends early: the same words for all that is behind its end.
-  void check_complete(const RawPoints& raw, std::size_t got) const {
+  /// Looks at a batch of which `got` bytes are there. A file that ends early is refused, in the
+  /// same words for all that is behind its end; or whole records are kept, and `raw.decoded` tells
+  /// of the others.
+  void check_complete(RawPoints& raw, std::size_t got) const {
     if (got == raw.bytes.size()) return;
     const std::uint64_t end =
         std::min(raw.offset + got, source_->size().value_or(raw.offset + got));
-    throw BadInput(source_->name(),
-                   fmt::format("the file ends at byte {}, within point {} of {}; get a complete "
-                               "copy",
-                               end, (end - begin_) / las_.record_length, las_.count),
-                   at_byte(end));
+    const std::uint64_t whole = (end - begin_) / las_.record_length;
+    if (!salvage_) {
+      throw BadInput(source_->name(),
+                     fmt::format("the file ends at byte {}, within point {} of {}; get a complete "
+                                 "copy",
+                                 end, whole, las_.count),
+                     at_byte(end), Remedy::kSalvage);
+    }
+    // Nobody knows of a pipe what else it would have had.
+    const std::uint64_t expected = source_->size() ? raw.first + raw.count : las_.count;
+    raw.count = got / las_.record_length;
+    raw.bytes.resize(raw.count * las_.record_length);
+    const std::uint64_t lost = expected - std::min(expected, raw.first + raw.count);
+    if (lost == 0) return;
+    raw.decoded.lost = lost;
+    raw.decoded.notices.push_back(
+        fmt::format("the file ends at byte {}, within point {} of {}: {} are lost", end, whole,
+                    las_.count, lost));
   }
 
-  /// Says that more points may follow the last one that the header counts.
+  /// Finds out whether points follow the last one that the header counts.
   void look_behind_points(RawPoints& raw) {
-    const std::uint64_t end = begin_ + las_.count * las_.record_length;
-    if (las_.offset_behind_points.value_or(~std::uint64_t{0}) < end + las_.record_length) return;
+    const std::uint64_t behind = las_.offset_behind_points.value_or(~std::uint64_t{0});
+    const std::uint64_t room = (behind - std::min(begin_, behind)) / las_.record_length;
+    if (room <= las_.count) return;
     const std::span<const std::byte> next = source_->peek(las_.record_length);
     if (next.size() < las_.record_length || is_padding(next)) return;
+    if (salvage_) end_ = room;
     raw.decoded.notices.push_back(fmt::format(
-        "the header counts {} points, but more bytes follow them, which are not read; if they are "
-        "points, correct the count in the header ({})",
-        las_.count, place_of_count(las_)));
+        "the header counts {} points, but more bytes follow them, which are {}", las_.count,
+        salvage_ ? std::string("read, too")
+                 : fmt::format("not read; if they are points, correct the count in the header "
+                               "({}), or salvage them",
+                               place_of_count(las_))));
   }
 
   void go_to_piece(std::uint64_t piece) override {
@@ -136,7 +163,8 @@ class LasReader : public PointReader {
   unsigned withheld_mask_;
   std::size_t block_points_;
   bool in_pieces_;
-  bool at_any_byte_;        // so that several threads read at a time
+  bool at_any_byte_;  // so that several threads read at a time
+  bool salvage_;
   std::uint64_t begin_;     // byte of the first record
   std::uint64_t end_;       // number of the first record that is not to be read
   std::uint64_t next_ = 0;  // number of the next record

@@ -3,15 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <mutex>
+#include <numeric>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "formats/bytes/bytes.h"
+#include "formats/points/las/uncompressed_points.h"
 #include "formats/points/laz/chunk_decoder.h"
 #include "formats/points/laz/chunk_table.h"
 #include "formats/points/laz/coding/point14_layers.h"
 #include "formats/points/laz/file_bytes.h"
+#include "formats/points/laz/salvaged_chunks.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -47,16 +52,17 @@ class LazReader : public PointReader {
         header_(las_point_header(las, path)),
         attributes_(options.attributes),
         withheld_flag_(options.keep_withheld ? 0U : PointAttributes::kWithheld),
+        salvage_(options.salvage),
         count_(las.count),
         stream_(*source_) {
     if (chosen) {
-      chunks_ = std::move(chosen->chunks);
+      count_chunks(std::move(chosen->chunks));
       header_.regions = std::move(chosen->regions);
-      count_chosen(options);
+      keep_to_bounds(options);
     } else {
       find_chunks();
     }
-    count_ = end_ = header_.count.value();
+    count_ = end_ = header_.count.value_or(las_.count);
     number_chunks();
   }
 
@@ -65,16 +71,19 @@ class LazReader : public PointReader {
   bool fetch(RawPoints& raw) override {
     raw.decoded.clear();
     raw.count = 0;
-    if (left_ == 0) {
-      if (next_ == end_) return tell_of_more(raw);
-      if (las_.laz->format.layered) {
-        fetch_layered(raw);
-      } else {
-        fetch_pointwise(raw);
-      }
+    if (left_ == 0 && is_done()) return tell_of_more(raw);
+    try {
+      fetch_next(raw);
+    } catch (const BadInput& error) {
+      if (!salvage_) throw;
+      lose(raw, error);
     }
-    if (raw.count == 0) decode_in_order(raw.decoded);
     if (!header_.regions.empty()) raw.region = next_chunk_ - 1;
+    if (next_ > count_ && !std::exchange(told_of_more_, true)) {
+      raw.decoded.notices.push_back(fmt::format(
+          "the header counts {} points, but more chunks of them follow, which are read, too",
+          las_.count));
+    }
     return true;
   }
 
@@ -90,10 +99,15 @@ class LazReader : public PointReader {
       decode_points(*decoder, raw.first, raw.count, block);
       check_end(decoder->end() == 0);
     } catch (const Error& error) {
-      fail_at(raw.offset, error);
+      if (!salvage_) fail_at(raw.offset, error);
+      block.clear();
+      block.lost = raw.count;
+      block.notices.push_back(text_of_loss(raw.count, fault_at(raw.offset, error)));
+      return;
     }
     give_back(std::move(decoder));
-    block.notices.clear();
+    block.lost = 0;
+    block.notices = std::move(raw.decoded.notices);
   }
 
   /// A piece is a chunk of the list.
@@ -115,12 +129,15 @@ class LazReader : public PointReader {
   }
 
   [[noreturn]] void fail(const std::string& what, FilePlace place = {}) const {
-    throw BadInput(source_->name(), what, place);
+    throw BadInput(source_->name(), what, place, Remedy::kSalvage);
+  }
+
+  static std::string fault_at(std::uint64_t offset, const Error& error) {
+    return fmt::format("the chunk at byte {}: {}", offset, error.what());
   }
 
   [[noreturn]] void fail_at(std::uint64_t offset, const Error& error) const {
-    fail(fmt::format("the chunk at byte {}: {}; get a complete copy", offset, error.what()),
-         at_byte(offset));
+    fail(fault_at(offset, error) + "; get a complete copy", at_byte(offset));
   }
 
   [[noreturn]] void fail_truncated() const {
@@ -129,13 +146,36 @@ class LazReader : public PointReader {
          at_byte(source_->position()));
   }
 
+  static std::string text_of_loss(std::uint64_t lost, std::string_view why) {
+    return fmt::format("{} point{} lost: {}", lost, lost == 1 ? " is" : "s are", why);
+  }
+
+  /// Leaves out what is left of a chunk that is not as it should be. Without a list nobody knows
+  /// where the next one begins: then all others are lost, too.
+  void lose(RawPoints& raw, const BadInput& error) {
+    raw.bytes.clear();
+    raw.count = 0;
+    left_ = 0;
+    PointBlock& block = raw.decoded;
+    if (chunks_) {
+      const LazChunk& chunk = (*chunks_)[next_chunk_ - 1];
+      block.lost = first_of_chunk_[next_chunk_ - 1] + chunk.count - next_;
+      next_ += block.lost;
+    } else {
+      block.lost = count_ - std::min(count_, next_);
+      end_ = next_;
+      chunks_end_ = kUnlimited;
+    }
+    std::string_view why = error.what();
+    if (why.starts_with(source_->name() + ": ")) why.remove_prefix(source_->name().size() + 2);
+    if (block.lost > 0) block.notices.push_back(text_of_loss(block.lost, why));
+  }
+
   static void check_end(bool at_end) {
     if (!at_end) throw Error("its points end before it does");
   }
 
-  void count_chosen(const PointReaderOptions& options) {
-    header_.count = 0;
-    for (const LazChunk& chunk : *chunks_) *header_.count += chunk.count;
+  void keep_to_bounds(const PointReaderOptions& options) {
     if (options.bounds && header_.extent) intersect(*options.bounds);
   }
 
@@ -177,8 +217,42 @@ class LazReader : public PointReader {
     }
   }
 
+  /// Finds what there is of the chunks, whatever the header counts.
+  void salvage_what_is_there(bool seekable) {
+    std::optional<SalvagedChunks> found;
+    if (seekable && !is_unchunked()) found = salvage_chunks(*source_, las_);
+    if (found) {
+      header_.lost = found->lost;
+      if (found->more) header_.extent.reset();  // may be of those that the header counts
+      std::ranges::move(found->notices, std::back_inserter(header_.notices));
+      count_chunks(std::move(found->chunks));
+      return;
+    }
+    header_.count.reset();
+    if (is_unchunked()) {
+      chunks_end_ = las_.offset_behind_points.value_or(kUnlimited);
+      source_->seek(las_.offset_to_points);
+    } else if (seekable) {
+      chunks_end_ = plausible_end_of_chunks(*source_, las_).value_or(kUnlimited);
+    } else {
+      chunks_end_ = read_end_of_chunks(*source_, las_).value_or(kUnlimited);
+    }
+    refuse_unlisted(seekable);
+  }
+
+  /// Takes a list, and the number of points in it.
+  void count_chunks(std::vector<LazChunk> chunks) {
+    header_.count = 0;
+    for (const LazChunk& chunk : chunks) *header_.count += chunk.count;
+    chunks_ = std::move(chunks);
+  }
+
   void find_chunks() {
     const bool seekable = source_->seekable();
+    if (salvage_) {
+      salvage_what_is_there(seekable);
+      return;
+    }
     if (las_.count == 0) {
       look_for_uncounted_chunks(seekable);
       if (seekable) chunks_.emplace();
@@ -194,14 +268,17 @@ class LazReader : public PointReader {
     } else {
       chunks_end_ = read_end_of_chunks(*source_, las_).value_or(kUnlimited);
     }
-    if (!chunks_ && !las_.laz->chunk_points && !las_.laz->format.layered) {
-      fail(seekable
-               ? "the table of the compressed chunks is missing, and they have different "
-                 "sizes; write the file again"
-               : "its compressed chunks have different sizes, which are in a table at its end; "
-                 "give the file by its name instead of on a pipe",
-           at_byte(las_.offset_to_points));
-    }
+    if (!chunks_) refuse_unlisted(seekable);
+  }
+
+  /// Throws for chunks that can only be found by their table.
+  void refuse_unlisted(bool seekable) const {
+    if (is_unchunked() || las_.laz->chunk_points || las_.laz->format.layered) return;
+    fail(seekable ? "the table of the compressed chunks is missing, and they have different "
+                    "sizes; write the file again"
+                  : "its compressed chunks have different sizes, which are in a table at its end; "
+                    "give the file by its name instead of on a pipe",
+         at_byte(las_.offset_to_points));
   }
 
   void number_chunks() {
@@ -230,6 +307,17 @@ class LazReader : public PointReader {
     return las_.laz->compressor == LazCompressor::kPointwise;
   }
 
+  /// Whether chunks of a pipe are taken as they come, whatever the header counts: they tell their
+  /// numbers of points.
+  [[nodiscard]] bool takes_all() const { return salvage_ && !chunks_ && las_.laz->format.layered; }
+
+  /// Whether there are no more chunks.
+  [[nodiscard]] bool is_done() const {
+    if (next_ < end_) return false;
+    return !takes_all() || chunks_end_ == kUnlimited ||
+           stream_.position() + shortest_chunk(las_) > chunks_end_;
+  }
+
   /// The next chunk of the list, with the source at its begin; or what is known of the chunk that
   /// begins where the last one ended: most points and bytes that it may have.
   LazChunk next_chunk() {
@@ -237,7 +325,8 @@ class LazReader : public PointReader {
       const std::uint64_t most =
           is_unchunked() ? kUnlimited : las_.laz->chunk_points.value_or(kUnlimited);
       const std::uint64_t begin = stream_.position();
-      return {begin, chunks_end_ - std::min(begin, chunks_end_), std::min(most, count_ - next_)};
+      return {begin, chunks_end_ - std::min(begin, chunks_end_),
+              takes_all() ? most : std::min(most, count_ - next_)};
     }
     const LazChunk& chunk = (*chunks_)[next_chunk_++];
     if (source_->position() != chunk.offset) source_->seek(chunk.offset);
@@ -250,6 +339,7 @@ class LazReader : public PointReader {
   [[nodiscard]] bool may_leave(std::uint64_t bytes, std::uint64_t points) const {
     if (bytes == 0) return true;
     if (chunks_) return false;
+    if (takes_all()) return true;
     if (points < count_ || chunks_end_ == kUnlimited) return true;
     const std::uint32_t of_each = las_.laz->chunk_points.value_or(1);
     return points % of_each == 0 && bytes >= shortest_chunk(las_);
@@ -262,6 +352,17 @@ class LazReader : public PointReader {
     next_ += chunk.count;
   }
 
+  void fetch_next(RawPoints& raw) {
+    if (left_ == 0) {
+      if (las_.laz->format.layered) {
+        fetch_layered(raw);
+      } else {
+        fetch_pointwise(raw);
+      }
+    }
+    if (raw.count == 0) decode_in_order(raw.decoded);
+  }
+
   void fetch_pointwise(RawPoints& raw) {
     const LazChunk chunk = next_chunk();
     const bool listed = chunks_.has_value();
@@ -272,7 +373,26 @@ class LazReader : public PointReader {
       return;
     }
     stream_.limit(chunk.bytes);
+    if (salvage_ && listed) {
+      prove(chunk, stream_);
+      source_->seek(chunk.offset);
+      stream_.limit(chunk.bytes);
+    }
     begin_in_order(chunk, stream_);
+  }
+
+  /// Decodes a large chunk without giving out its points, which in blocks could not be taken back.
+  void prove(const LazChunk& chunk, LazBytes& bytes) {
+    const std::uint64_t first = next_;
+    PointBlock dropped;
+    try {
+      begin_in_order(chunk, bytes);
+      while (left_ > 0) decode_in_order(dropped);
+    } catch (const Error&) {
+      next_ = first;
+      throw;
+    }
+    next_ = first;
   }
 
   /// Reads the layers that are wanted, which are the first, and marks the others as empty.
@@ -287,7 +407,7 @@ class LazReader : public PointReader {
     if (head > chunk.bytes) fail_layers(chunk, head);
     append(raw.bytes, head);
     const auto count = load<std::uint32_t>(&raw.bytes[count_at]);
-    const bool exact = chunks_ || las_.laz->chunk_points;
+    const bool exact = chunks_ || (las_.laz->chunk_points && !takes_all());
     if (exact ? count != chunk.count : count == 0 || count > chunk.count) {
       fail(fmt::format(
                "the chunk at byte {} says it has {} points, but {} are expected; the file is "
@@ -314,6 +434,10 @@ class LazReader : public PointReader {
     if (raw.bytes.size() <= kLargestPieceBytes && chunk.count <= kLargestPiecePoints) {
       hand_out(raw, chunk);
       return;
+    }
+    if (salvage_ && chunks_) {
+      MemoryBytes bytes_to_prove(raw.bytes);
+      prove(chunk, bytes_to_prove);
     }
     held_ = std::move(raw.bytes);
     raw.bytes = {};
@@ -348,12 +472,46 @@ class LazReader : public PointReader {
 
   void decode_in_order(PointBlock& block) {
     const std::uint64_t count = std::min<std::uint64_t>(left_, kBlockPoints);
+    if (salvage_ && !chunks_ && !las_.laz->format.layered) {
+      decode_while_whole(count, block);
+      return;
+    }
     checked([&] {
       decode_points(*in_order_, next_, count, block);
       next_ += count;
       left_ -= count;
       if (left_ == 0) end_in_order();
     });
+  }
+
+  /// The same point by point, of a stream that may be cut off: then the block has the points of
+  /// which all bytes are there when it throws, and none if something else is wrong.
+  void decode_while_whole(std::uint64_t count, PointBlock& block) {
+    block.points.resize(count);
+    block.attributes.resize(needs_attributes() ? count : 0);
+    const std::uint64_t first = next_;
+    std::uint64_t whole = 0;
+    try {
+      for (std::uint64_t i = 0; i < count; ++i) {
+        in_order_->decode(std::span(block.points).subspan(i, 1),
+                          needs_attributes() ? std::span(block.attributes).subspan(i, 1)
+                                             : std::span<PointAttributes>());
+        // From here on the decoder could go on with what it has read ahead.
+        if (in_order_->end() > 0 || !stream_.at_end()) whole = i + 1;
+      }
+      next_ += count;
+      left_ -= count;
+      if (left_ == 0) end_in_order();
+      number_points(first, block);
+    } catch (const Error& error) {
+      if (stream_.read_failed()) throw;
+      if (!stream_.at_end()) whole = 0;
+      next_ = first + whole;
+      block.points.resize(whole);
+      block.attributes.resize(needs_attributes() ? whole : 0);
+      number_points(first, block);
+      fail_at(in_order_at_, error);
+    }
   }
 
   void end_in_order() {
@@ -383,10 +541,16 @@ class LazReader : public PointReader {
   void decode_points(LazChunkDecoder& decoder, std::uint64_t first, std::uint64_t count,
                      PointBlock& block) const {
     block.points.resize(count);
-    block.index.resize(count);
     block.attributes.resize(needs_attributes() ? count : 0);
     decoder.decode(block.points, block.attributes);
-    for (std::size_t i = 0; i < count; ++i) block.index[i] = first + i;
+    number_points(first, block);
+  }
+
+  /// Completes a block of points that have been decoded.
+  void number_points(std::uint64_t first, PointBlock& block) const {
+    block.index.resize(block.size());
+    std::iota(block.index.begin(), block.index.end(), first);
+    block.withheld = 0;
     if (withheld_flag_ != 0) drop_withheld(block);
     if (!attributes_) block.attributes.clear();
   }
@@ -428,6 +592,8 @@ class LazReader : public PointReader {
   PointHeader header_;
   bool attributes_;
   unsigned withheld_flag_;
+  bool salvage_;
+  bool told_of_more_ = false;
   std::uint64_t count_ = 0;  // of all records that come
   std::uint64_t next_ = 0;   // number of the next record
   std::uint64_t end_ = 0;    // number of the first record that is not to be read

@@ -91,7 +91,7 @@ TEST(LasReader, LeavesOutWhatFollowsThePointsAndSaysSo) {
               ElementsAre(fmt::format(
                   "the header counts 3 points, but 1000 bytes follow them, room for {} more, which "
                   "are not read; if they are points, correct the count in the header (4 bytes from "
-                  "byte 107 on)",
+                  "byte 107 on), or salvage them",
                   1000 / file.record_length())));
 }
 
