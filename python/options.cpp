@@ -70,6 +70,8 @@ void bind_point_options(py::module_& module) {
       .def_readwrite("format", &PointOptions::format)
       .def_readwrite("columns", &PointOptions::columns)
       .def_readwrite("skip_invalid", &PointOptions::skip_invalid)
+      .def_readwrite("salvage", &PointOptions::salvage)
+      .def_readwrite("skip_broken", &PointOptions::skip_broken)
       .def_readwrite("keep_withheld", &PointOptions::keep_withheld)
       .def_readwrite("every", &PointOptions::every)
       .def_readwrite("classes", &PointOptions::classes)

@@ -92,6 +92,14 @@ struct PointOptions {
   std::string crs{};
   bool foreign_crs = false;  ///< take coordinates as they are, whatever their coordinate systems
   bool attributes = false;   ///< read classes, returns and flags, too, for convert()
+  /// Of LAS and LAZ files that are cut off or damaged, use the points that are whole, and count the
+  /// others as lost, with a warning; and use those that a header does not count. Without it such a
+  /// file is an error. Runs whose points are lost or found so do not know beforehand how many come.
+  bool salvage = false;
+  /// Leave out files that cannot be opened, or whose headers are broken, and name them in the
+  /// report (skipped_files). It is an error if there are no others. A file that fails later, while
+  /// its points are read, ends the run.
+  bool skip_broken = false;
 };
 
 /// All points of files, one file after the other. A path may be a file, a folder (its point files),

@@ -44,6 +44,8 @@ class FilterOptions(TypedDict, total=False):
     input_format: str | None
     columns: Sequence[int] | None
     skip_invalid: bool
+    salvage: bool
+    skip_broken: bool
     keep_withheld: bool
     every: int | None
     keep_class: int | Iterable[int] | None
@@ -238,6 +240,20 @@ _OPTIONS = {
         "Leave out rows of text and npy that are no points. By default they are an error.",
         "points",
         attribute("skip_invalid"),
+    ),
+    "salvage": _Option(
+        "bool, optional",
+        "Use the points that are whole of LAS and LAZ files that are cut off or damaged, with a "
+        "warning that counts the others. By default such a file is an error.",
+        "points",
+        attribute("salvage"),
+    ),
+    "skip_broken": _Option(
+        "bool, optional",
+        "Leave out files that cannot be opened, or whose headers are broken, and name them in the "
+        "figures as `skipped_files`. By default they are an error.",
+        "points",
+        attribute("skip_broken"),
     ),
     "keep_withheld": _Option(
         "bool, optional",

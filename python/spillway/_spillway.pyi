@@ -58,6 +58,8 @@ class PointOptions:
     format: str
     columns: list[int]
     skip_invalid: bool
+    salvage: bool
+    skip_broken: bool
     keep_withheld: bool
     every: int
     classes: list[int]

@@ -14,6 +14,7 @@
 #include "stream/library/points/program_points.h"
 #include "stream/library/points/public_points.h"
 #include "stream/library/sort_points.h"
+#include "stream/source/point_source.h"
 
 namespace spillway::detail {
 namespace {
@@ -90,6 +91,7 @@ PointConversion convert(PointSource& source, PointSink& sink, const Context& con
                                          : to_program(run, sink, context.threads(), watch);
   watch.end(run.stream->points_read());
   done.points = run.stream->counts();
+  if (run.files != nullptr) done.skipped_files = run.files->skipped();
   return done;
 }
 

@@ -14,6 +14,7 @@
 #include "stream/library/run.h"
 #include "stream/pipeline.h"
 #include "stream/plan/run_trace.h"
+#include "stream/source/point_source.h"
 
 namespace spillway::detail {
 namespace {
@@ -95,6 +96,7 @@ Report triangulate_here(Run& run) {
   }
   report.dimension = run.options.dimension;
   report.points = points.counts();
+  if (run.points.files != nullptr) report.skipped_files = run.points.files->skipped();
   report.on_lattice = points.lattice().has_value();
   refuse_empty_mesh(report, run.options.max_edge);
   run.sink.complete(run.watch, report);

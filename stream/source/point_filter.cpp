@@ -56,7 +56,11 @@ std::optional<Box<3>> PointFilter::loose_bounds() const {
 }
 
 void refuse_empty_input(const PointCounts& counts) {
-  if (counts.read == 0) throw Error("the input has no points", ErrorCode::kDegenerateInput);
+  if (counts.read == 0) {
+    throw Error(counts.lost == 0 ? std::string("the input has no points")
+                                 : fmt::format("all {} points of the input are lost", counts.lost),
+                ErrorCode::kDegenerateInput);
+  }
   throw Error("the filters leave no points: " + describe(counts), ErrorCode::kDegenerateInput);
 }
 
@@ -92,6 +96,9 @@ namespace spillway {
 
 std::string describe(const PointCounts& counts) {
   std::string text = fmt::format("{} points read", counts.read);
+  if (counts.lost > 0) {
+    text += fmt::format(" ({} {} lost)", counts.lost, counts.lost == 1 ? "is" : "are");
+  }
   const std::array<std::pair<std::uint64_t, std::string>, 7> dropped = {
       {{counts.invalid, "invalid"},
        {counts.withheld, "withheld"},

@@ -21,6 +21,7 @@ HeaderSurveyOptions survey_options(const PointSourceOptions& options) {
           .reader = reader_options(options),
           .filter = options.filter,
           .crs = options.crs,
+          .skip_broken = options.skip_broken,
           .digests = options.digests,
           .warn = options.warn,
           .detail = options.detail};
@@ -35,20 +36,25 @@ std::uint64_t first_record(const RawPoints& raw) {
 
 PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
                          const PointSourceOptions& options)
-    : PointSource(files, paths, options, survey_headers(files, paths, survey_options(options)),
-                  "") {}
+    : PointSource(files, options, survey_headers(files, paths, survey_options(options)), "") {
+  for (const SourceFacts::Input& input : facts_.inputs) lost_in_headers_ += input.header.lost;
+}
 
 PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
                          const PointSourceOptions& options, const SourceFacts& facts)
-    : PointSource(files, paths, options, HeaderSurvey{facts, {}}, options.viewer) {}
+    : PointSource(files, options, HeaderSurvey{facts, {}, paths, {}}, options.viewer) {
+  tells_ = false;
+}
 
-PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
-                         const PointSourceOptions& options, HeaderSurvey survey, std::string viewer)
+PointSource::PointSource(FileSystem& files, const PointSourceOptions& options, HeaderSurvey survey,
+                         std::string viewer)
     : options_(options),
       facts_(std::move(survey.facts)),
       coordinates_(facts_, options.dimension, options.filter, options.detail),
       regions_(facts_, coordinates_, options.filter),
-      pieces_(files, paths, facts_, std::move(survey.readers),
+      paths_(std::move(survey.paths)),
+      skipped_(std::move(survey.skipped)),
+      pieces_(files, paths_, facts_, std::move(survey.readers),
               {reader_options(options), std::move(viewer), options.detail}),
       world_extent_(find_world_extent()) {
   if (const auto told = facts_.extent(options.filter.bounds))
@@ -79,8 +85,8 @@ std::optional<Box<3>> PointSource::find_world_extent() const {
 }
 
 std::optional<std::uint64_t> PointSource::count() const {
-  const bool filtered =
-      options_.filter.active() || options_.thinning || options_.reader.resolution > 0;
+  const bool filtered = options_.filter.active() || options_.thinning ||
+                        options_.reader.resolution > 0 || options_.reader.salvage;
   return filtered ? std::nullopt : facts_.records();
 }
 
@@ -194,6 +200,7 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   PointCounts counts;
   counts.invalid = block.invalid;
   counts.withheld = block.withheld;
+  counts.lost = block.lost;
   counts.read = block.size() + block.invalid + block.withheld;
   if (options_.filter.active()) apply_filter(options_.filter, lattice(), block, counts);
   if (!positions_.empty()) {
@@ -204,7 +211,12 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   const std::lock_guard lock(counts_mutex_);
   counts_ += counts;
   for (const std::string& text : block.notices) {
-    options_.warn(notice_of_input(facts_.inputs[piece.input].header.name, text));
+    std::string notice = notice_of_input(facts_.inputs[piece.input].header.name, text);
+    if (tells_) {
+      options_.warn(notice);
+    } else {
+      untold_.push_back(std::move(notice));
+    }
   }
 }
 
@@ -224,6 +236,7 @@ void PointSource::thin_inputs() {
 PointCounts PointSource::counts() const {
   const std::lock_guard lock(counts_mutex_);
   PointCounts counts = counts_;
+  counts.lost += lost_in_headers_;
   if (thinning_) counts.thinned = thinning_->dropped();
   return counts;
 }

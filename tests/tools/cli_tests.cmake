@@ -37,7 +37,7 @@ spillway_command_test(cli_out_of_core_fault_tests fault
   tools/process/cli_out_of_core_fault_test.cpp)
 spillway_command_test(cli_input_tests cli
   tools/inputs/cli_crs_test.cpp tools/inputs/cli_filter_test.cpp tools/inputs/cli_inputs_test.cpp
-  tools/inputs/cli_lattice_test.cpp tools/inputs/cli_table_test.cpp tools/inputs/cli_survey_test.cpp)
+  tools/inputs/cli_lattice_test.cpp tools/inputs/cli_salvage_test.cpp tools/inputs/cli_table_test.cpp tools/inputs/cli_survey_test.cpp)
 
 spillway_command_test(cli_encoded_tests cli
   tools/inputs/cli_encoded_test.cpp)

@@ -16,6 +16,7 @@
 #include "src/error.h"
 #include "src/runtime/process_memory.h"
 #include "tools/commands/command.h"
+#include "tools/commands/skipped_inputs.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 #include "tools/options/point_output.h"
@@ -117,10 +118,10 @@ void tell_changes(const PointConversion& done, Progress& progress) {
   }
   if (done.adds_heights) progress.say("the points have no z: in LAS it is 0");
   if (!done.lost.empty()) progress.say(fmt::format("not kept: {}", fmt::join(done.lost, ", ")));
-  if (done.points.dropped() > 0) progress.say(describe(done.points));
+  if (!done.points.all_kept()) progress.say(describe(done.points));
 }
 
-void run_points(const ConvertCommandOptions& options, const Context& context, Progress& progress) {
+int run_points(const ConvertCommandOptions& options, const Context& context, Progress& progress) {
   check_points_output(options);
   const PointOutput& output = options.output;
   PointFileOptions written{.format = format_name_of(output),
@@ -140,7 +141,7 @@ void run_points(const ConvertCommandOptions& options, const Context& context, Pr
   progress.detail(fmt::format("peak memory {} bytes", peak_memory()));
   if (!options.sorted) {
     progress.say(fmt::format("{} points in {}", done.written, output.name()));
-    return;
+    return tell_skipped(done.skipped_files, progress);
   }
   if (done.spilled_points > 0) {
     progress.detail(fmt::format("{} points written to scratch files, {} bytes", done.spilled_points,
@@ -148,6 +149,7 @@ void run_points(const ConvertCommandOptions& options, const Context& context, Pr
   }
   progress.say(fmt::format("{} points in {}, sorted in {} cell{}", done.written, output.name(),
                            done.cells, done.cells == 1 ? "" : "s"));
+  return tell_skipped(done.skipped_files, progress);
 }
 
 /// Throws if the output is of a point format, and of no mesh format.
@@ -214,10 +216,9 @@ int run(const ConvertCommandOptions& options) {
   Progress progress = make_progress(options.report, reads_pipe);
   const Context context(context_options(options.memory, 0, progress));
   if (kind_of(options, context) == InputKind::kPoints) {
-    run_points(options, context, progress);
-  } else {
-    run_mesh(options, context, progress);
+    return run_points(options, context, progress);
   }
+  run_mesh(options, context, progress);
   return kExitDone;
 }
 

@@ -169,6 +169,8 @@ PointSourceOptions FilePoints::source_options(const PointOptions& options, const
   how.reader.format = options.format;
   how.reader.columns = columns_of(options.columns);
   how.reader.skip_invalid = options.skip_invalid;
+  how.reader.salvage = options.salvage;
+  how.skip_broken = options.skip_broken;
   how.reader.keep_withheld = options.keep_withheld;
   how.reader.attributes = options.attributes;
   how.reader.resolution = options.resolution;
