@@ -239,6 +239,28 @@ TEST_F(PointSourceTest, WarnsByNameOfWhatComesToLightWhilePointsAreRead) {
   EXPECT_THAT(warnings_, ::testing::StartsWith("b.las: the header counts 10 points, but more"));
 }
 
+TEST_F(PointSourceTest, CountsLostPointsOnceAndPromisesNoNumberOfPoints) {
+  files_.files["a.las"] = diagonal(100).bytes();
+  files_.files["b.las"] = diagonal(100).bytes();
+  files_.truncate("a.las", 227 + 20 * 60 + 7);
+  PointSourceOptions options;
+  options.reader.keep_withheld = options.reader.salvage = true;
+  EXPECT_EQ(PointSource(files_, {"a.las", "b.las"}, options).count(), std::nullopt);
+  EXPECT_EQ(PointSource(files_, {"a.las", "b.las"}, options).expected(), 160U);
+  for (const bool seekable : {true, false}) {
+    files_.seekable = seekable;
+    warnings_.clear();
+    const Everything all = read({"a.las", "b.las"}, options);
+    EXPECT_EQ(all.points.size(), 160U);
+    EXPECT_EQ(all.index.back(), 159U);
+    EXPECT_EQ(all.counts.read, 160U);
+    EXPECT_EQ(all.counts.lost, 40U);
+    EXPECT_EQ(describe(all.counts), "160 points read (40 are lost), 160 kept");
+    EXPECT_THAT(warnings_, ::testing::StartsWith("a.las: the file ends at byte 1434, "));
+    EXPECT_EQ(std::ranges::count(warnings_, '\n'), 1);
+  }
+}
+
 TEST_F(PointSourceTest, TextHasNoClassesAndIsNamed) {
   files_.files["a.las"] = diagonal(10).bytes();
   files_.files["b.txt"] = "0 0 0\n1 0 0\n";
