@@ -45,7 +45,6 @@ class FilterOptions(TypedDict, total=False):
     columns: Sequence[int] | None
     skip_invalid: bool
     salvage: bool
-    skip_broken: bool
     keep_withheld: bool
     every: int | None
     keep_class: int | Iterable[int] | None
@@ -61,11 +60,12 @@ class PlaceOptions(TypedDict, total=False):
     resolution: float | None
 
 
-class SystemOptions(TypedDict, total=False):
-    """Coordinate systems."""
+class JoinOptions(TypedDict, total=False):
+    """How files become one: their coordinate systems, and those that cannot be read."""
 
     crs: str | os.PathLike[str] | None
     force_crs: bool
+    skip_broken: bool
 
 
 class DivisionOptions(TypedDict, total=False):
@@ -81,7 +81,7 @@ class DivisionOptions(TypedDict, total=False):
     kernel: str | None
 
 
-class ConvertOptions(FilterOptions, PlaceOptions, SystemOptions, RunOptions, total=False):
+class ConvertOptions(FilterOptions, PlaceOptions, JoinOptions, RunOptions, total=False):
     """Of points that are read."""
 
 
@@ -102,13 +102,13 @@ class ClipOptions(TypedDict, total=False):
 
 
 class DemOptions(
-    DivisionOptions, FilterOptions, ClipOptions, SystemOptions, RunOptions, total=False
+    DivisionOptions, FilterOptions, ClipOptions, JoinOptions, RunOptions, total=False
 ):
     """Of points that become a raster."""
 
 
 class TriangulateOptions(
-    DivisionOptions, FilterOptions, PlaceOptions, SystemOptions, RunOptions, total=False
+    DivisionOptions, FilterOptions, PlaceOptions, JoinOptions, RunOptions, total=False
 ):
     """Of points that are triangulated."""
 
