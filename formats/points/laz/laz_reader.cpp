@@ -274,11 +274,12 @@ class LazReader : public PointReader {
   /// Throws for chunks that can only be found by their table.
   void refuse_unlisted(bool seekable) const {
     if (is_unchunked() || las_.laz->chunk_points || las_.laz->format.layered) return;
-    fail(seekable ? "the table of the compressed chunks is missing, and they have different "
-                    "sizes; write the file again"
-                  : "its compressed chunks have different sizes, which are in a table at its end; "
-                    "give the file by its name instead of on a pipe",
-         at_byte(las_.offset_to_points));
+    throw BadInput(source_->name(),
+                   seekable ? "the table of the compressed chunks is missing, and they have "
+                              "different sizes; write the file again"
+                            : "its compressed chunks have different sizes, which are in a table at "
+                              "its end; give the file by its name instead of on a pipe",
+                   at_byte(las_.offset_to_points));
   }
 
   void number_chunks() {
