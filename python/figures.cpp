@@ -33,6 +33,7 @@ void add_mesh(const Report& report, py::dict& figures) {
   figures["left_out"] = report.left_out;
   figures["on_lattice"] = report.on_lattice;
   figures["filters"] = figures_of(report.points);
+  figures["skipped_files"] = figures_of(report.skipped_files);
   figures["output_format"] = report.output_format;
   figures["output_bytes"] = report.output_bytes;
 }
@@ -74,10 +75,19 @@ py::dict figures_of(const Report& report, const Run& run) {
 }
 
 py::dict figures_of(const PointCounts& counts) {
-  return py::dict(
-      "read"_a = counts.read, "invalid"_a = counts.invalid, "withheld"_a = counts.withheld,
-      "every"_a = counts.skipped, "class"_a = counts.classes, "returns"_a = counts.returns,
-      "bounds"_a = counts.bounds, "thinned"_a = counts.thinned, "kept"_a = counts.kept());
+  return py::dict("read"_a = counts.read, "invalid"_a = counts.invalid,
+                  "withheld"_a = counts.withheld, "lost"_a = counts.lost,
+                  "every"_a = counts.skipped, "class"_a = counts.classes,
+                  "returns"_a = counts.returns, "bounds"_a = counts.bounds,
+                  "thinned"_a = counts.thinned, "kept"_a = counts.kept());
+}
+
+py::list figures_of(const std::vector<SkippedFile>& files) {
+  py::list figures;
+  for (const SkippedFile& file : files) {
+    figures.append(py::dict("path"_a = file.path, "message"_a = file.message));
+  }
+  return figures;
 }
 
 py::object extent_of(const std::optional<Extent>& extent) {

@@ -16,6 +16,8 @@ class Run;
 /// The figures of a run under the names that `--stats` has.
 pybind11::dict figures_of(const Report& report, const Run& run);
 pybind11::dict figures_of(const PointCounts& counts);
+/// The path and the message of each.
+pybind11::list figures_of(const std::vector<SkippedFile>& files);
 
 /// (lowest, highest corner), or None.
 pybind11::object extent_of(const std::optional<Extent>& extent);

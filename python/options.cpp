@@ -70,6 +70,8 @@ void bind_point_options(py::module_& module) {
       .def_readwrite("format", &PointOptions::format)
       .def_readwrite("columns", &PointOptions::columns)
       .def_readwrite("skip_invalid", &PointOptions::skip_invalid)
+      .def_readwrite("salvage", &PointOptions::salvage)
+      .def_readwrite("skip_broken", &PointOptions::skip_broken)
       .def_readwrite("keep_withheld", &PointOptions::keep_withheld)
       .def_readwrite("every", &PointOptions::every)
       .def_readwrite("classes", &PointOptions::classes)
@@ -77,7 +79,7 @@ void bind_point_options(py::module_& module) {
       .def_readwrite("resolution", &PointOptions::resolution)
       .def_readwrite("crs", &PointOptions::crs)
       .def_readwrite("foreign_crs", &PointOptions::foreign_crs)
-      .def_readwrite("attributes", &PointOptions::attributes)
+      .def_readwrite("metadata", &PointOptions::metadata)
       .def("set_returns",
            [](PointOptions& options, bool first, bool last, bool single, std::vector<int> numbers) {
              options.returns = Returns{first, last, single, std::move(numbers)};
@@ -103,6 +105,7 @@ void bind_point_options(py::module_& module) {
       .def_readwrite("scale", &PointFileOptions::scale)
       .def_readwrite("offset", &PointFileOptions::offset)
       .def_readwrite("exact", &PointFileOptions::exact)
+      .def_readwrite("attributes", &PointFileOptions::attributes)
       .def("set_sorted", [](PointFileOptions& options, int dimension, std::uint64_t cell_points) {
         options.sorted = SortOptions{dimension, cell_points};
       });

@@ -29,6 +29,7 @@ py::dict figures_of(const PointConversion& done, const Run& run) {
   py::dict figures;
   figures["written"] = done.written;
   figures["filters"] = python::figures_of(done.points);
+  figures["skipped_files"] = python::figures_of(done.skipped_files);
   figures["rounded"] = done.rounded;
   figures["scale"] = done.rounded ? py::object(triple_of(done.scale)) : py::none();
   figures["offset"] = done.rounded ? py::object(triple_of(done.offset)) : py::none();

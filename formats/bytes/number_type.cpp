@@ -5,6 +5,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstring>
+#include <limits>
 
 namespace spillway::detail {
 namespace {
@@ -22,52 +23,35 @@ T load_value(const std::byte* bytes, bool swap) {
 /// Calls f with the number in its own type.
 template <typename F>
 auto visit(NumberType type, const std::byte* bytes, bool swap, const F& f) {
-  switch (type) {
-    case NumberType::kInt8:
-      return f(load_value<std::int8_t>(bytes, swap));
-    case NumberType::kUint8:
-      return f(load_value<std::uint8_t>(bytes, swap));
-    case NumberType::kInt16:
-      return f(load_value<std::int16_t>(bytes, swap));
-    case NumberType::kUint16:
-      return f(load_value<std::uint16_t>(bytes, swap));
-    case NumberType::kInt32:
-      return f(load_value<std::int32_t>(bytes, swap));
-    case NumberType::kUint32:
-      return f(load_value<std::uint32_t>(bytes, swap));
-    case NumberType::kInt64:
-      return f(load_value<std::int64_t>(bytes, swap));
-    case NumberType::kUint64:
-      return f(load_value<std::uint64_t>(bytes, swap));
-    case NumberType::kFloat32:
-      return f(load_value<float>(bytes, swap));
-    case NumberType::kFloat64:
-      break;
-  }
-  return f(load_value<double>(bytes, swap));
+  return with_number_type(
+      type, [&](auto number) { return f(load_value<decltype(number)>(bytes, swap)); });
 }
 
 }  // namespace
 
-std::size_t size_of(NumberType type) {
-  switch (type) {
-    case NumberType::kInt8:
-    case NumberType::kUint8:
-      return 1;
-    case NumberType::kInt16:
-    case NumberType::kUint16:
-      return 2;
-    case NumberType::kInt32:
-    case NumberType::kUint32:
-    case NumberType::kFloat32:
-      return 4;
-    default:
-      return 8;
-  }
+std::string_view name_of(NumberType type) {
+  constexpr std::array<std::string_view, 10> kNames = {"int8",    "uint8",  "int16", "uint16",
+                                                       "int32",   "uint32", "int64", "uint64",
+                                                       "float32", "float64"};
+  return kNames.at(static_cast<std::size_t>(type));
 }
 
 double load_number(NumberType type, const std::byte* bytes, bool swap) {
   return visit(type, bytes, swap, [](auto value) { return static_cast<double>(value); });
+}
+
+bool store_number(NumberType type, std::byte* bytes, double value) {
+  return with_number_type(type, [&](auto number) {
+    using Number = decltype(number);
+    if constexpr (std::integral<Number>) {
+      // The first number above all is a power of two, and so exact.
+      const double above = std::ldexp(1.0, std::numeric_limits<Number>::digits);
+      const auto least = static_cast<double>(std::numeric_limits<Number>::min());
+      if (!(value >= least && value < above) || value != std::floor(value)) return false;
+    }
+    store(bytes, static_cast<Number>(value));
+    return true;
+  });
 }
 
 std::optional<std::uint64_t> load_index(NumberType type, const std::byte* bytes, bool swap) {

@@ -11,7 +11,8 @@ namespace spillway::detail {
 
 std::unique_ptr<PointReader> open_las(PointInput input, const PointReaderOptions& options,
                                       PointFormats formats) {
-  const LasHeader las = read_las_header(*input.source);
+  const LasHeader las =
+      read_las_header(*input.source, {.salvage = options.salvage, .metadata = options.metadata});
   for (const PointFormat* const format : formats) {
     const LasVariant* const variant = format->las_variant;
     if (variant == nullptr || !variant->is_told(las)) continue;

@@ -29,6 +29,7 @@ struct PointConversion {
   std::uint64_t cells = 0;
   std::uint64_t spilled_points = 0;
   std::uint64_t spilled_bytes = 0;
+  std::vector<SkippedFile> skipped_files{};  ///< as Report has them
 };
 
 /// Gives all points of the source to the sink, which it begins and finishes. A sink that is a

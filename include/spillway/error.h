@@ -44,6 +44,7 @@ enum class Remedy {
   kUnknownCrs,       ///< naming the coordinate system, or taking coordinates as they are
   kWrongCrs,         ///< naming another coordinate system than that which an input names
   kGroundScale,      ///< saying how heights relate to x and y, or which system these are in
+  kSalvage,          ///< taking the points that are whole of a file that is cut off or damaged
 };
 
 /// What a place in a file is counted in.

@@ -18,6 +18,8 @@ struct PointCounts {
   std::uint64_t returns = 0;   ///< of other returns
   std::uint64_t bounds = 0;    ///< outside of the bounds
   std::uint64_t thinned = 0;   ///< another one stands for their cell
+  /// Not read, though the files should hold them: what PointOptions::salvage could not save.
+  std::uint64_t lost = 0;
   /// Bit n: points of class n are among those that `classes` counts.
   std::bitset<256> other_classes{};
 
@@ -30,6 +32,7 @@ struct PointCounts {
     returns += other.returns;
     bounds += other.bounds;
     thinned += other.thinned;
+    lost += other.lost;
     other_classes |= other.other_classes;
     return *this;
   }
@@ -38,11 +41,14 @@ struct PointCounts {
   [[nodiscard]] std::uint64_t dropped() const {
     return invalid + withheld + skipped + classes + returns + bounds + thinned;
   }
+  /// Whether every point of the files is used.
+  [[nodiscard]] bool all_kept() const { return dropped() == 0 && lost == 0; }
   [[nodiscard]] std::uint64_t kept() const { return read - dropped(); }
 };
 
 /// One line: "500 points read, 12 withheld, 300 outside the bounds, 188 kept". Where none are kept,
-/// it names other classes: "500 points read, 500 of other classes (1, 3-5), 0 kept".
+/// it names other classes: "500 points read, 500 of other classes (1, 3-5), 0 kept". Lost points
+/// are told of, too: "480 points read (20 are lost), 480 kept".
 SPILLWAY_API std::string describe(const PointCounts& counts);
 
 }  // namespace spillway

@@ -70,7 +70,7 @@ struct Returns {
 
 /// Which points of files are used, and how these are read. Filters apply in the order of members.
 struct PointOptions {
-  int dimension = 2;     ///< in which they will be triangulated: 2 or 3
+  int dimension = 2;     ///< in which they will be triangulated: 2 or 3; 0: they will not be
   std::string format{};  ///< "las", "text", ... ; empty: by first bytes and name
   /// Of text: the columns of x, y and, if there is a third one, z, counted from 1; empty: by their
   /// names, or, where these are missing, the first ones.
@@ -91,7 +91,15 @@ struct PointOptions {
   /// Nothing is transformed. With `foreign_crs` also of inputs that name another one.
   std::string crs{};
   bool foreign_crs = false;  ///< take coordinates as they are, whatever their coordinate systems
-  bool attributes = false;   ///< read classes, returns and flags, too, for convert()
+  bool metadata = false;     ///< keep what LAS files tell besides points, for convert() to LAS
+  /// Of LAS and LAZ files that are cut off or damaged, use the points that are whole, and count the
+  /// others as lost, with a warning; and use those that a header does not count. Without it such a
+  /// file is an error. Runs whose points are lost or found so do not know beforehand how many come.
+  bool salvage = false;
+  /// Leave out files that cannot be opened, or whose headers are broken, and name them in the
+  /// report (skipped_files). It is an error if there are no others. A file that fails later, while
+  /// its points are read, ends the run.
+  bool skip_broken = false;
 };
 
 /// All points of files, one file after the other. A path may be a file, a folder (its point files),
@@ -143,8 +151,12 @@ struct PointFileOptions {
   /// Round coordinates to multiples of this, counted from `offset`: no number, one for all axes, or
   /// three. LAS and LAZ, which hold integers, are rounded to a lattice of their own choice without.
   std::vector<double> scale{};
-  std::vector<double> offset{};         ///< likewise
-  bool exact = false;                   ///< refuse to round by a choice of its own
+  std::vector<double> offset{};  ///< likewise
+  bool exact = false;            ///< refuse to round by a choice of its own
+  /// Names of the attributes that are written, of those that points carry, "all" for all of them;
+  /// nothing: all that the format holds, but none in text, unless it is CSV. convert() throws
+  /// Error(kInvalidArgument) for one that no point has.
+  std::optional<std::vector<std::string>> attributes{};
   std::optional<SortOptions> sorted{};  ///< of spp, by convert() only
 };
 

@@ -2,6 +2,7 @@
 // What runs count and time.
 
 #include <spillway/point_counts.h>
+#include <spillway/skipped_file.h>
 #include <spillway/totals.h>
 
 #include <cstddef>
@@ -59,6 +60,8 @@ struct Report : RunFigures {
   std::string output_format{};     ///< of files: "spm", "tif", ...
   std::uint64_t output_bytes = 0;  ///< of files
   double write_seconds = 0;        ///< wall time of completing the output
+  /// Inputs that PointOptions::skip_broken left out. What was made is complete without them.
+  std::vector<SkippedFile> skipped_files{};
 };
 
 }  // namespace spillway

@@ -111,6 +111,7 @@ def convert(
     las_version: str | None = None,
     scale: float | Sequence[float] | None = None,
     offset: float | Sequence[float] | None = None,
+    attributes: str | Sequence[str] | None = None,
     sorted: bool = False,
     cell_points: int | None = None,
     dim: int | None = None,
@@ -136,6 +137,9 @@ def convert(
         Round coordinates of points to multiples of this.
     offset : float or sequence of 3 floats, optional
         Where these multiples are counted from.
+    attributes : str or sequence of str, optional
+        Names of the attributes of points that are written, or "all". By default all that the format
+        holds, but none in text, unless it is CSV.
     sorted : bool, optional
         Write points cell by cell; spp only.
     cell_points : int, optional
@@ -157,7 +161,13 @@ def convert(
     source = as_inputs(inputs)
     path = as_path(output, "output")
     cells = {"cell_points": cell_points, "dim": dim}
-    of_points = {"las_version": las_version, "scale": scale, "offset": offset, "sorted": sorted}
+    of_points = {
+        "las_version": las_version,
+        "scale": scale,
+        "offset": offset,
+        "attributes": attributes,
+        "sorted": sorted,
+    }
     run = make_run(options)
     if is_mesh(run, source, mesh_format, options):
         check_mesh_options(options)
@@ -171,13 +181,16 @@ def convert(
     put_all(how, {"output_format": output_format, "las_version": las_version})
     put(how, "scale", scale, attribute("scale", _as_axes))
     put(how, "offset", offset, attribute("offset", _as_axes))
+    if attributes is not None:
+        names = [attributes] if isinstance(attributes, str) else list(attributes)
+        how.attributes = [as_word(name, "attributes") for name in names]
     if sorted:
         dimension = as_dimension(2 if dim is None else dim, source)
         put(how, "cell_points", cell_points or 0, functools.partial(_put_sorted, dimension))
     else:
         refuse(cells, cells, "without sorted=True")
-    which = point_options(options, 2)
-    which.attributes = True
+    which = point_options(options, 2 if sorted else 0)
+    which.metadata = True
     return ConvertReport(**_spillway.convert_points(run, source, which, path, how))
 
 

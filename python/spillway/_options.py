@@ -44,6 +44,7 @@ class FilterOptions(TypedDict, total=False):
     input_format: str | None
     columns: Sequence[int] | None
     skip_invalid: bool
+    salvage: bool
     keep_withheld: bool
     every: int | None
     keep_class: int | Iterable[int] | None
@@ -59,11 +60,12 @@ class PlaceOptions(TypedDict, total=False):
     resolution: float | None
 
 
-class SystemOptions(TypedDict, total=False):
-    """Coordinate systems."""
+class JoinOptions(TypedDict, total=False):
+    """How files become one: their coordinate systems, and those that cannot be read."""
 
     crs: str | os.PathLike[str] | None
     force_crs: bool
+    skip_broken: bool
 
 
 class DivisionOptions(TypedDict, total=False):
@@ -79,7 +81,7 @@ class DivisionOptions(TypedDict, total=False):
     kernel: str | None
 
 
-class ConvertOptions(FilterOptions, PlaceOptions, SystemOptions, RunOptions, total=False):
+class ConvertOptions(FilterOptions, PlaceOptions, JoinOptions, RunOptions, total=False):
     """Of points that are read."""
 
 
@@ -100,13 +102,13 @@ class ClipOptions(TypedDict, total=False):
 
 
 class DemOptions(
-    DivisionOptions, FilterOptions, ClipOptions, SystemOptions, RunOptions, total=False
+    DivisionOptions, FilterOptions, ClipOptions, JoinOptions, RunOptions, total=False
 ):
     """Of points that become a raster."""
 
 
 class TriangulateOptions(
-    DivisionOptions, FilterOptions, PlaceOptions, SystemOptions, RunOptions, total=False
+    DivisionOptions, FilterOptions, PlaceOptions, JoinOptions, RunOptions, total=False
 ):
     """Of points that are triangulated."""
 
@@ -238,6 +240,20 @@ _OPTIONS = {
         "Leave out rows of text and npy that are no points. By default they are an error.",
         "points",
         attribute("skip_invalid"),
+    ),
+    "salvage": _Option(
+        "bool, optional",
+        "Use the points that are whole of LAS and LAZ files that are cut off or damaged, with a "
+        "warning that counts the others. By default such a file is an error.",
+        "points",
+        attribute("salvage"),
+    ),
+    "skip_broken": _Option(
+        "bool, optional",
+        "Leave out files that cannot be opened, or whose headers are broken, and name them in the "
+        "figures as `skipped_files`. By default they are an error.",
+        "points",
+        attribute("skip_broken"),
     ),
     "keep_withheld": _Option(
         "bool, optional",

@@ -65,6 +65,7 @@ class RunReport(_Report):
     left_out: int
     on_lattice: bool
     filters: dict[str, int]
+    skipped_files: list[dict[str, str]]
     output_format: str
     output_bytes: int
     threads: int
@@ -150,6 +151,7 @@ class ConvertReport(_Report):
 
     written: int
     filters: dict[str, int]
+    skipped_files: list[dict[str, str]]
     rounded: bool
     scale: Optional[Triple]
     offset: Optional[Triple]

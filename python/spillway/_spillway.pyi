@@ -58,6 +58,8 @@ class PointOptions:
     format: str
     columns: list[int]
     skip_invalid: bool
+    salvage: bool
+    skip_broken: bool
     keep_withheld: bool
     every: int
     classes: list[int]
@@ -65,7 +67,7 @@ class PointOptions:
     resolution: float
     crs: str
     foreign_crs: bool
-    attributes: bool
+    metadata: bool
     def set_returns(self, first: bool, last: bool, single: bool, numbers: list[int]) -> None: ...
     def set_bounds(self, low: list[float], high: list[float]) -> None: ...
     def set_thin(self, cell: float, choice: str) -> None: ...
@@ -81,6 +83,7 @@ class PointFileOptions:
     scale: list[float]
     offset: list[float]
     exact: bool
+    attributes: list[str] | None
     def set_sorted(self, dimension: int, cell_points: int) -> None: ...
 
 class TriangulateOptions:

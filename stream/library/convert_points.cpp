@@ -14,6 +14,7 @@
 #include "stream/library/points/program_points.h"
 #include "stream/library/points/public_points.h"
 #include "stream/library/sort_points.h"
+#include "stream/source/point_source.h"
 
 namespace spillway::detail {
 namespace {
@@ -82,7 +83,10 @@ PointConversion convert(PointSource& source, PointSink& sink, const Context& con
   auto* points = OwnParts::of(source);
   if (points == nullptr) points = &program_points.emplace(source, 0);
   auto* const file = OwnParts::of(sink);
-  if (file != nullptr) points->settle_crs(file->crs_need());
+  if (file != nullptr) {
+    points->settle_crs(file->crs_need());
+    points->carry(file->wanted_attributes());
+  }
   const RunPoints run = points->begin(watch, true);
   if (file != nullptr && file->sorted()) return sort_points(run, *file, context, watch);
   watch.begin(points->phase(), "points");
@@ -90,6 +94,7 @@ PointConversion convert(PointSource& source, PointSink& sink, const Context& con
                                          : to_program(run, sink, context.threads(), watch);
   watch.end(run.stream->points_read());
   done.points = run.stream->counts();
+  if (run.files != nullptr) done.skipped_files = run.files->skipped();
   return done;
 }
 

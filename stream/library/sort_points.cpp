@@ -10,6 +10,7 @@
 #include "src/parallel/parallel.h"
 #include "stream/library/context/context_state.h"
 #include "stream/plan/memory_plan.h"
+#include "stream/source/point_source.h"
 #include "stream/tiles/regions/region_plan.h"
 #include "stream/tiles/tile_tree.h"
 
@@ -85,6 +86,7 @@ class Sorting {
  public:
   Sorting(const RunPoints& points, PointFile& file, const Context& context, RunWatch& watch)
       : points_(*points.stream),
+        files_(points.files),
         file_(file),
         watch_(watch),
         memory_(context.memory()),
@@ -114,6 +116,7 @@ class Sorting {
     watch_.end(tree_.points());
     PointConversion done = file_.complete();
     done.points = points_.counts();
+    if (files_ != nullptr) done.skipped_files = files_->skipped();
     done.cells = cells_;
     done.spilled_points = tree_.points_written();
     done.spilled_bytes = tree_.bytes_written();
@@ -212,6 +215,7 @@ class Sorting {
   }
 
   PointStream& points_;
+  const detail::PointSource* files_;
   PointFile& file_;
   RunWatch& watch_;
   std::uint64_t memory_;

@@ -14,6 +14,7 @@
 #include "stream/library/run.h"
 #include "stream/pipeline.h"
 #include "stream/plan/run_trace.h"
+#include "stream/source/point_source.h"
 
 namespace spillway::detail {
 namespace {
@@ -73,6 +74,11 @@ void check(const RunPoints& points, int dimension) {
     throw InvalidArgument(fmt::format("the files were opened for {} dimensions, not for {}",
                                       points.dimension, dimension));
   }
+  const std::optional<Lattice>& lattice = points.stream->lattice();
+  if (points.files != nullptr && lattice && !lattice->isotropic(dimension)) {
+    throw InvalidArgument(fmt::format(
+        "the files were not opened to be triangulated: open them for {} dimensions", dimension));
+  }
   // Files without z are told of when they are opened.
   if (points.dimension == 0 && dimension == 3 && !points.has_heights) {
     throw Error("the points have no z", ErrorCode::kDegenerateInput, {.remedy = Remedy::kPlane});
@@ -95,6 +101,7 @@ Report triangulate_here(Run& run) {
   }
   report.dimension = run.options.dimension;
   report.points = points.counts();
+  if (run.points.files != nullptr) report.skipped_files = run.points.files->skipped();
   report.on_lattice = points.lattice().has_value();
   refuse_empty_mesh(report, run.options.max_edge);
   run.sink.complete(run.watch, report);

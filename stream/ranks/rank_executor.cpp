@@ -6,6 +6,7 @@
 
 #include "src/error.h"
 #include "src/geometry/simplex_name.h"
+#include "src/runtime/packing.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/meshes/mesh_file.h"
 #include "stream/library/run.h"
@@ -59,11 +60,28 @@ class RankExecutor final : public Executor {
                                                                   run.budget, run.stream, ranks_);
   }
 
+  /// The first rank tells what others found in the inputs.
+  void tell_notices(const Run& run, const detail::PointSource& source) const {
+    Packer own;
+    own.put(std::uint64_t{source.untold().size()});
+    for (const std::string& notice : source.untold()) own.put_list(notice);
+    const auto& warn = run.context.options().warning;
+    for (const auto& bytes : ranks_.gather(own.bytes(), 0)) {
+      Unpacker of_rank(bytes);
+      for (auto left = of_rank.take<std::uint64_t>(); left > 0; --left) {
+        const auto notice = of_rank.take_list<std::string>();
+        if (warn) warn(notice);
+      }
+    }
+  }
+
   Report report(const Run& run, const detail::PointSource& source, const RankMesh& mesh) const {
+    tell_notices(run, source);
     Report report = shared_report(mesh, source.counts(), ranks_);
     const RunSums sums = shared_sums(mesh, ranks_);
     if (run.stream.trace != nullptr) run.stream.trace->end(sums);
     report.dimension = run.options.dimension;
+    report.skipped_files = source.skipped();
     report.on_lattice = source.lattice().has_value();
     run_collective_step(ranks_, [&] { refuse_empty_mesh(report, run.options.max_edge); });
     return report;

@@ -354,8 +354,8 @@ std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<s
   Packer packer;
   if (ranks.rank() == 0) {
     source = std::make_unique<PointSource>(files, paths, options);
-    packer.put(std::uint64_t{paths.size()});
-    for (const std::string& path : paths) packer.put_list(path);
+    packer.put(std::uint64_t{source->paths().size()});
+    for (const std::string& path : source->paths()) packer.put_list(path);
     pack(packer, source->facts());
   }
   std::vector<std::byte> bytes = packer.take();
@@ -368,14 +368,15 @@ std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<s
 }
 
 PointCounts shared_counts(const PointCounts& own, const Ranks& ranks) {
-  std::vector<std::uint64_t> sums = {own.read,    own.invalid, own.withheld, own.skipped,
-                                     own.classes, own.returns, own.bounds,   own.thinned};
+  std::vector<std::uint64_t> sums = {own.read,    own.invalid, own.withheld,
+                                     own.skipped, own.classes, own.returns,
+                                     own.bounds,  own.thinned, own.lost};
   const std::size_t counts = sums.size();
   for (std::size_t c = 0; c < own.other_classes.size(); ++c) {
     sums.push_back(own.other_classes.test(c) ? 1 : 0);
   }
   ranks.reduce(sums, Reduction::kSum);
-  PointCounts all{sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7]};
+  PointCounts all{sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7], sums[8]};
   for (std::size_t c = 0; c < all.other_classes.size(); ++c) {
     all.other_classes.set(c, sums[counts + c] > 0);
   }

@@ -21,7 +21,7 @@ std::string difference(const PointHeader& before, const PointHeader& now) {
     return fmt::format("the format is {}, not {}", now.format, before.format);
   }
   if (before.version != now.version || before.point_format != now.point_format ||
-      before.extra_bytes != now.extra_bytes) {
+      before.attributes != now.attributes) {
     return "its records are of another kind";
   }
   if (before.lattice != now.lattice) return "its coordinates have another scale or offset";

@@ -108,6 +108,12 @@ std::optional<CommonLattice> find_common_lattice(std::span<const Lattice> lattic
   const std::span<const int> axes(kAxes);
   CommonLattice common;
   common.maps.resize(lattices.size());
+  if (dimension == 0) {
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      if (!join_axes(lattices, largest, axes.subspan(axis, 1), common)) return std::nullopt;
+    }
+    return common;
+  }
   if (!join_axes(lattices, largest, axes.first(dimension), common)) return std::nullopt;
   if (dimension == 2 && !join_axes(lattices, largest, axes.last(1), common)) {
     common.heights = false;

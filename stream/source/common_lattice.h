@@ -45,7 +45,7 @@ double largest_integer(const PointHeader& header);
 /// itself, if the largest integer carries that no further than 1e-6 of a step; an offset by 1e-6 of
 /// a step, or by one unit in its last place, if that is below 1e-3 of a step. The result does not
 /// depend on the order of `lattices`: the scale is theirs where all agree, and the offset is the
-/// least one.
+/// least one. With a `dimension` of 0 each axis may have a scale of its own.
 std::optional<CommonLattice> find_common_lattice(std::span<const Lattice> lattices, int dimension,
                                                  std::span<const double> largest = {});
 

@@ -23,33 +23,46 @@ void check_points_have(const SourceFacts::Input& input, const HeaderSurveyOption
     throw Error(header.name + ": the points have no z", ErrorCode::kDegenerateInput,
                 {.file = header.name, .remedy = Remedy::kPlane});
   }
-  if (options.filter.needs_attributes() && !input.has_attributes()) {
+  for (const std::string& name : options.filter.attributes()) {
+    if (header.attributes.find(name) != nullptr) continue;
     throw Error(
-        fmt::format("{}: {} has neither classes nor returns of points", header.name, header.format),
+        fmt::format("{}: the points have no {}, which a filter looks at", header.name, name),
         ErrorCode::kBadInput, {.file = header.name, .remedy = Remedy::kFilters});
   }
 }
 
-/// The texts of coordinate systems that have been met, so that equal ones are kept once.
-using KnownTexts = std::map<std::string_view, SharedText>;
+/// What has been met that many inputs tell alike, so that it is kept once.
+struct Known {
+  std::map<std::string_view, SharedText> texts;  ///< of coordinate systems
+  AttributeLayout attributes;                    ///< of the input before
+};
 
-void survey(FileSystem& files, const std::string& path, const HeaderSurveyOptions& options,
-            KnownTexts& known, HeaderSurvey& all) {
-  std::shared_ptr<PointReader> reader = open_point_reader(files, path, options.reader);
+/// What reading the header of an input gave.
+struct Surveyed {
+  std::shared_ptr<PointReader> reader;
   SourceFacts::Input input;
-  input.header = reader->header();
-  input.header.crs = known.emplace(input.header.crs, input.header.crs).first->second;
-  check_points_have(input, options);
+};
+
+Surveyed survey(FileSystem& files, const std::string& path, const HeaderSurveyOptions& options) {
+  Surveyed all;
+  all.reader = open_point_reader(files, path, options.reader);
+  all.input.header = all.reader->header();
   std::error_code unknown;
+  SourceFacts::Input& input = all.input;
   input.bytes = bytes_of_file(path);
   input.opens_once = path == "-" || !std::filesystem::is_regular_file(path, unknown);
   // The n-th records of an input can be told in its pieces only if these know what comes before.
   if (!input.opens_once && (options.filter.every == 1 || input.header.count)) {
-    input.pieces = reader->pieces();
+    input.pieces = all.reader->pieces();
   }
   if (options.digests && !input.opens_once) input.digest = digest_of(*files.open(path));
-  all.readers.push_back(input.opens_once ? std::move(reader) : nullptr);
-  all.facts.inputs.push_back(std::move(input));
+  if (!input.opens_once) all.reader.reset();
+  return all;
+}
+
+/// Whether an error is of the file, and not of how the library was called or of the run.
+bool is_of_file(const Error& error) {
+  return error.code() == ErrorCode::kBadInput || error.code() == ErrorCode::kInputOutput;
 }
 
 /// Says once what holds for many inputs.
@@ -79,27 +92,50 @@ void tell_notices(const SourceFacts& facts, const HeaderSurveyOptions& options) 
   for (const Notice& notice : notices) {
     const std::string more =
         notice.count > 1 ? fmt::format(" (and {} more)", notice.count - 1) : std::string();
-    options.warn(fmt::format("{}{}: {}", *notice.first == "-" ? "standard input" : *notice.first,
-                             more, *notice.text));
+    options.warn(notice_of_input(*notice.first, *notice.text, more));
   }
 }
 
 }  // namespace
 
+std::string notice_of_input(const std::string& name, std::string_view text, std::string_view more) {
+  return fmt::format("{}{}: {}", name == "-" ? "standard input" : name, more, text);
+}
+
 HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& paths,
                             const HeaderSurveyOptions& options) {
   HeaderSurvey all;
-  KnownTexts known;
+  Known known;
   std::vector<Error> faults;
+  std::vector<Error> broken;
   for (const std::string& path : paths) {
+    Surveyed one;
     try {
-      survey(files, path, options, known, all);
+      one = survey(files, path, options);
     } catch (const InvalidArgument&) {
       throw;
     } catch (const Error& error) {
-      faults.push_back(error);
+      const bool skipped = options.skip_broken && is_of_file(error);
+      (skipped ? broken : faults).push_back(error);
+      if (skipped) all.skipped.push_back({path, error.what()});
+      continue;
     }
+    try {
+      check_points_have(one.input, options);
+    } catch (const Error& error) {
+      faults.push_back(error);
+      continue;
+    }
+    SharedText& crs = one.input.header.crs;
+    crs = known.texts.emplace(crs, crs).first->second;
+    AttributeLayout& attributes = one.input.header.attributes;
+    if (attributes == known.attributes) attributes = known.attributes;
+    known.attributes = attributes;
+    all.readers.push_back(std::move(one.reader));
+    all.facts.inputs.push_back(std::move(one.input));
+    all.paths.push_back(path);
   }
+  if (all.paths.empty() && faults.empty()) faults = std::move(broken);
   if (faults.size() == 1) throw Error(faults.front());
   if (!faults.empty()) {
     const std::size_t count = faults.size();

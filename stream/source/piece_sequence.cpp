@@ -82,7 +82,15 @@ void PieceSequence::open_current() {
   const SourceFacts::Input& surveyed = facts_.inputs[current()];
   // A digest tells more, and what comes from another process has no regions.
   if (!surveyed.digest) refuse_changed_input(surveyed, input.path, *reader);
+  if (!attributes_.empty()) reader->carry(attributes_);
   input.reader = std::move(reader);
+}
+
+void PieceSequence::carry(const AttributeLayout& attributes) {
+  attributes_ = attributes;
+  for (const Input& input : inputs_) {
+    if (input.reader) input.reader->carry(attributes);
+  }
 }
 
 /// Looks at a file once; what has changed since is not seen.

@@ -40,6 +40,9 @@ class PieceSequence {
   PieceSequence(FileSystem& files, const std::vector<std::string>& paths, const SourceFacts& facts,
                 std::vector<std::shared_ptr<PointReader>> readers, PieceSequenceOptions options);
 
+  /// Blocks have attributes of this layout. To be called before anything is read.
+  void carry(const AttributeLayout& attributes);
+
   /// Takes what comes next; false at the end. Indices count through all inputs, dropped records
   /// too, but see begin_piece().
   bool fetch(SourcePiece& piece);
@@ -87,6 +90,7 @@ class PieceSequence {
   FileSystem& files_;
   const SourceFacts& facts_;
   PieceSequenceOptions options_;
+  AttributeLayout attributes_;
   std::optional<std::uint64_t> records_;  ///< in all inputs, where all headers tell
   std::vector<Input> inputs_;
   std::vector<ReadingTurn> turns_;

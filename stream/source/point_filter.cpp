@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 
+#include "formats/bytes/number_type.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -34,14 +37,51 @@ std::string other_classes_text(const PointCounts& counts) {
   return fmt::format("of other classes ({})", list_text(counts.other_classes));
 }
 
+constexpr const char* kClassification = "classification";
+constexpr const char* kReturnNumber = "return_number";
+constexpr const char* kNumberOfReturns = "number_of_returns";
+
+/// An attribute of small whole numbers; 0 where there is none.
+class ByteField {
+ public:
+  ByteField(const AttributeLayout& layout, std::string_view name) : size_(layout.record_size()) {
+    const AttributeField* const field = layout.find(name);
+    if (field == nullptr) return;
+    at_ = field->at;
+    type_ = field->attribute.type;
+    known_ = true;
+  }
+
+  [[nodiscard]] std::uint8_t of(const std::byte* records, std::size_t i) const {
+    if (!known_) return 0;
+    const std::byte* const number = records + i * size_ + at_;
+    if (type_ == NumberType::kUint8) return load<std::uint8_t>(number);
+    const double value = load_number(type_, number);
+    return static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0));
+  }
+
+ private:
+  std::size_t size_;
+  std::size_t at_ = 0;
+  NumberType type_ = NumberType::kUint8;
+  bool known_ = false;
+};
+
 }  // namespace
 
-bool ReturnFilter::keeps(const PointAttributes& point) const {
-  const bool known = point.return_number > 0 && point.return_count > 0;
-  const bool is_first = point.return_number <= 1;
-  const bool is_last = !known || point.return_number >= point.return_count;
+bool ReturnFilter::keeps(std::uint8_t number, std::uint8_t count_of_pulse) const {
+  const bool known = number > 0 && count_of_pulse > 0;
+  const bool is_first = number <= 1;
+  const bool is_last = !known || number >= count_of_pulse;
   return (first && is_first) || (last && is_last) || (single && is_first && is_last) ||
-         (point.return_number < numbers.size() && numbers[point.return_number]);
+         (number < numbers.size() && numbers[number]);
+}
+
+std::vector<std::string> PointFilter::attributes() const {
+  std::vector<std::string> names;
+  if (classes) names.emplace_back(kClassification);
+  if (returns) names.insert(names.end(), {kReturnNumber, kNumberOfReturns});
+  return names;
 }
 
 std::optional<Box<3>> PointFilter::loose_bounds() const {
@@ -56,34 +96,37 @@ std::optional<Box<3>> PointFilter::loose_bounds() const {
 }
 
 void refuse_empty_input(const PointCounts& counts) {
-  if (counts.read == 0) throw Error("the input has no points", ErrorCode::kDegenerateInput);
+  if (counts.read == 0) {
+    throw Error(counts.lost == 0 ? std::string("the input has no points")
+                                 : fmt::format("all {} points of the input are lost", counts.lost),
+                ErrorCode::kDegenerateInput);
+  }
   throw Error("the filters leave no points: " + describe(counts), ErrorCode::kDegenerateInput);
 }
 
 void apply_filter(const PointFilter& filter, const std::optional<Lattice>& lattice,
-                  PointBlock& block, PointCounts& counts) {
-  std::size_t kept = 0;
-  const bool attributes = !block.attributes.empty();
+                  const AttributeLayout& layout, PointBlock& block, PointCounts& counts) {
+  const ByteField classification(layout, kClassification);
+  const ByteField number(layout, kReturnNumber);
+  const ByteField count_of_pulse(layout, kNumberOfReturns);
+  const std::byte* const records = block.attributes.data();
+  std::vector<bool> kept(block.size());
   for (std::size_t i = 0; i < block.size(); ++i) {
     if (filter.every > 1 && block.index[i] % filter.every != 0) {
       ++counts.skipped;
-    } else if (filter.classes && !filter.classes->test(block.attributes[i].classification)) {
+    } else if (filter.classes && !filter.classes->test(classification.of(records, i))) {
       ++counts.classes;
-      counts.other_classes.set(block.attributes[i].classification);
-    } else if (filter.returns && !filter.returns->keeps(block.attributes[i])) {
+      counts.other_classes.set(classification.of(records, i));
+    } else if (filter.returns &&
+               !filter.returns->keeps(number.of(records, i), count_of_pulse.of(records, i))) {
       ++counts.returns;
     } else if (filter.bounds && !filter.bounds->contains(in_world(lattice, block.points[i]))) {
       ++counts.bounds;
     } else {
-      block.points[kept] = block.points[i];
-      block.index[kept] = block.index[i];
-      if (attributes) block.attributes[kept] = block.attributes[i];
-      ++kept;
+      kept[i] = true;
     }
   }
-  block.points.resize(kept);
-  block.index.resize(kept);
-  block.attributes.resize(attributes ? kept : 0);
+  block.keep([&](std::size_t i) { return kept[i]; });
 }
 
 }  // namespace spillway::detail
@@ -92,6 +135,9 @@ namespace spillway {
 
 std::string describe(const PointCounts& counts) {
   std::string text = fmt::format("{} points read", counts.read);
+  if (counts.lost > 0) {
+    text += fmt::format(" ({} {} lost)", counts.lost, counts.lost == 1 ? "is" : "are");
+  }
   const std::array<std::pair<std::uint64_t, std::string>, 7> dropped = {
       {{counts.invalid, "invalid"},
        {counts.withheld, "withheld"},

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
@@ -23,7 +24,8 @@ struct ReturnFilter {
 
   bool operator==(const ReturnFilter&) const = default;
 
-  [[nodiscard]] bool keeps(const PointAttributes& point) const;
+  /// Both counted from 1, 0: not known.
+  [[nodiscard]] bool keeps(std::uint8_t number, std::uint8_t count_of_pulse) const;
 };
 
 /// What is kept of the points that are read, each for itself. In the order of the members; a point
@@ -36,6 +38,8 @@ struct PointFilter {
 
   [[nodiscard]] bool active() const { return every > 1 || needs_attributes() || bounds; }
   [[nodiscard]] bool needs_attributes() const { return classes || returns; }
+  /// The names of the attributes that it looks at.
+  [[nodiscard]] std::vector<std::string> attributes() const;
   /// Slightly larger bounds, for whoever computes coordinates with another lattice than the common
   /// one: they leave out nothing that may be inside `bounds`.
   [[nodiscard]] std::optional<Box<3>> loose_bounds() const;
@@ -45,8 +49,8 @@ struct PointFilter {
 [[noreturn]] void refuse_empty_input(const PointCounts& counts);
 
 /// Takes out of `block` what the filter drops, and counts it. The points are integers of `lattice`,
-/// if there is one, and the index is still that of their own input.
+/// if there is one, have records of `layout`, and the index is still that of their own input.
 void apply_filter(const PointFilter& filter, const std::optional<Lattice>& lattice,
-                  PointBlock& block, PointCounts& counts);
+                  const AttributeLayout& layout, PointBlock& block, PointCounts& counts);
 
 }  // namespace spillway::detail

@@ -11,7 +11,6 @@ namespace {
 /// What readers have to give, so that the filter can look at it.
 PointReaderOptions reader_options(const PointSourceOptions& options) {
   PointReaderOptions reader = options.reader;
-  reader.attributes |= options.filter.needs_attributes();
   if (options.filter.bounds) reader.bounds = options.filter.loose_bounds();
   return reader;
 }
@@ -21,6 +20,7 @@ HeaderSurveyOptions survey_options(const PointSourceOptions& options) {
           .reader = reader_options(options),
           .filter = options.filter,
           .crs = options.crs,
+          .skip_broken = options.skip_broken,
           .digests = options.digests,
           .warn = options.warn,
           .detail = options.detail};
@@ -35,28 +35,34 @@ std::uint64_t first_record(const RawPoints& raw) {
 
 PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
                          const PointSourceOptions& options)
-    : PointSource(files, paths, options, survey_headers(files, paths, survey_options(options)),
-                  "") {}
+    : PointSource(files, options, survey_headers(files, paths, survey_options(options)), "") {
+  for (const SourceFacts::Input& input : facts_.inputs) lost_in_headers_ += input.header.lost;
+}
 
 PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
                          const PointSourceOptions& options, const SourceFacts& facts)
-    : PointSource(files, paths, options, HeaderSurvey{facts, {}}, options.viewer) {}
+    : PointSource(files, options, HeaderSurvey{facts, {}, paths, {}}, options.viewer) {
+  tells_ = false;
+}
 
-PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
-                         const PointSourceOptions& options, HeaderSurvey survey, std::string viewer)
+PointSource::PointSource(FileSystem& files, const PointSourceOptions& options, HeaderSurvey survey,
+                         std::string viewer)
     : options_(options),
       facts_(std::move(survey.facts)),
       coordinates_(facts_, options.dimension, options.filter, options.detail),
       regions_(facts_, coordinates_, options.filter),
-      pieces_(files, paths, facts_, std::move(survey.readers),
+      paths_(std::move(survey.paths)),
+      skipped_(std::move(survey.skipped)),
+      pieces_(files, paths_, facts_, std::move(survey.readers),
               {reader_options(options), std::move(viewer), options.detail}),
       world_extent_(find_world_extent()) {
+  carry({});
   if (const auto told = facts_.extent(options.filter.bounds))
     extent_ = coordinates_.of_world(*told);
   if (const auto& thinning = options.thinning) {
     thinning_.emplace(ThinningOptions{.cell = thinning->cell,
                                       .choice = thinning->choice,
-                                      .dimension = options.dimension,
+                                      .dimension = coordinates_.dimension(),
                                       .lattice = lattice(),
                                       .memory = thinning->memory,
                                       .progress = thinning->progress},
@@ -79,8 +85,8 @@ std::optional<Box<3>> PointSource::find_world_extent() const {
 }
 
 std::optional<std::uint64_t> PointSource::count() const {
-  const bool filtered =
-      options_.filter.active() || options_.thinning || options_.reader.resolution > 0;
+  const bool filtered = options_.filter.active() || options_.thinning ||
+                        options_.reader.resolution > 0 || options_.reader.salvage;
   return filtered ? std::nullopt : facts_.records();
 }
 
@@ -121,7 +127,7 @@ void PointSource::keep_to(const RegionPlan& plan) {
 /// Withheld points may be those at the edges: then it takes another look to know the extent.
 std::optional<Box<2>> PointSource::told_extent() const {
   const auto is_certain = [](const SourceFacts::Input& input) {
-    return !input.header.regions.empty() && !input.has_attributes();
+    return !input.header.regions.empty() && !input.may_withhold();
   };
   if (!count() || (!any_order() && !std::ranges::all_of(facts_.inputs, is_certain))) {
     return std::nullopt;
@@ -155,8 +161,13 @@ std::vector<PointHeader> PointSource::headers() const {
   return headers;
 }
 
-bool PointSource::has_attributes() const {
-  return reader_options(options_).attributes && facts_.has_attributes();
+/// With those that the filter looks at.
+void PointSource::carry(AttributeChoice choice) {
+  const std::vector<std::string> filtered = options_.filter.attributes();
+  choice.names.insert(choice.names.end(), filtered.begin(), filtered.end());
+  attributes_ = chosen(facts_.attributes(), choice);
+  pieces_.carry(attributes_);
+  if (thinning_) thinning_->carry(attributes_);
 }
 
 bool PointSource::fetch(SourcePiece& piece) {
@@ -190,12 +201,16 @@ bool PointSource::read(PointBlock& block) {
 
 void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   piece.reader->decode(piece.raw, block);
-  coordinates_.bring(piece.input, block);
+  if (block.attributes.empty()) block.attributes.resize(block.size() * attributes_.record_size());
+  coordinates_.bring(piece.input, attributes_, block);
   PointCounts counts;
   counts.invalid = block.invalid;
   counts.withheld = block.withheld;
+  counts.lost = block.lost;
   counts.read = block.size() + block.invalid + block.withheld;
-  if (options_.filter.active()) apply_filter(options_.filter, lattice(), block, counts);
+  if (options_.filter.active()) {
+    apply_filter(options_.filter, lattice(), attributes_, block, counts);
+  }
   if (!positions_.empty()) {
     regions_.check(block, regions_.number(piece.input, piece.raw.region));
   }
@@ -203,6 +218,14 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   if (!piece.counted) return;
   const std::lock_guard lock(counts_mutex_);
   counts_ += counts;
+  for (const std::string& text : block.notices) {
+    std::string notice = notice_of_input(facts_.inputs[piece.input].header.name, text);
+    if (tells_) {
+      options_.warn(notice);
+    } else {
+      untold_.push_back(std::move(notice));
+    }
+  }
 }
 
 /// The points of all inputs reach the cells in their order.
@@ -221,6 +244,7 @@ void PointSource::thin_inputs() {
 PointCounts PointSource::counts() const {
   const std::lock_guard lock(counts_mutex_);
   PointCounts counts = counts_;
+  counts.lost += lost_in_headers_;
   if (thinning_) counts.thinned = thinning_->dropped();
   return counts;
 }

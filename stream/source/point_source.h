@@ -38,14 +38,15 @@ struct ThinningRequest {
 };
 
 struct PointSourceOptions {
-  int dimension = 2;
+  int dimension = 2;            ///< in which they are triangulated; 0: they are not
   bool index = false;           ///< fill PointBlock::index
   PointReaderOptions reader{};  ///< bounds are set by the filter
   PointFilter filter{};
   std::optional<ThinningRequest> thinning{};
   CrsChoice crs{};
-  bool digests = false;  ///< facts() have digests, for other processes to compare files by
-  std::string viewer{};  ///< who reads files that another process has looked at, for messages
+  bool skip_broken = false;  ///< leave out files whose headers cannot be read
+  bool digests = false;      ///< facts() have digests, for other processes to compare files by
+  std::string viewer{};      ///< who reads files that another process has looked at, for messages
   /// Receives what is worth a warning, and what only -v shows.
   std::function<void(std::string_view)> warn = [](std::string_view) {};
   std::function<void(std::string_view)> detail = [](std::string_view) {};
@@ -70,7 +71,21 @@ class PointSource : public PointStream {
   /// Whether blocks come with the index of their points. To be called before they are read.
   void set_index(bool index) { options_.index = index; }
 
+  /// Which attributes blocks have, of those that facts() tells of; without it, those that the
+  /// filter looks at. To be called before points are read.
+  void carry(AttributeChoice choice);
+  /// The layout of their records: what was chosen, and what the filter looks at.
+  [[nodiscard]] const AttributeLayout& attributes() const { return attributes_; }
+
   [[nodiscard]] const SourceFacts& facts() const { return facts_; }
+  /// The files that are read, in their order.
+  [[nodiscard]] const std::vector<std::string>& paths() const { return paths_; }
+  /// Notices that came to light while points were read of files that another process looked at:
+  /// that one is to tell them.
+  [[nodiscard]] const std::vector<std::string>& untold() const { return untold_; }
+  /// Those that cannot be read and are left out (PointSourceOptions::skip_broken). What another
+  /// process looked at, that one tells.
+  [[nodiscard]] const std::vector<SkippedFile>& skipped() const { return skipped_; }
 
   /// From now on fetch() gives a piece of one input, or one whole input, and then false. Indices
   /// count through all inputs where all headers tell their counts, else from the piece's beginning.
@@ -113,10 +128,6 @@ class PointSource : public PointStream {
   [[nodiscard]] bool has_heights() const { return facts_.has_heights(); }
   /// Whether z is on lattice(), too: an integer, and not an output coordinate.
   [[nodiscard]] bool heights_on_lattice() const { return coordinates_.heights_on_lattice(); }
-  /// Whether blocks come with attributes: they were asked for, and an input has them. A block of an
-  /// input that has none comes without; a thinned one with zeros.
-  [[nodiscard]] bool has_attributes() const;
-
   /// None if the inputs are thinned: then all are read before a point comes.
   [[nodiscard]] std::span<const InputRegion> regions() const override;
   [[nodiscard]] std::uint64_t known_bytes() const override;
@@ -133,8 +144,8 @@ class PointSource : public PointStream {
   }
 
  private:
-  PointSource(FileSystem& files, const std::vector<std::string>& paths,
-              const PointSourceOptions& options, HeaderSurvey survey, std::string viewer);
+  PointSource(FileSystem& files, const PointSourceOptions& options, HeaderSurvey survey,
+              std::string viewer);
 
   [[nodiscard]] std::optional<Box<3>> find_world_extent() const;
   void decode_input(SourcePiece& piece, PointBlock& block);
@@ -144,14 +155,20 @@ class PointSource : public PointStream {
   SourceFacts facts_;
   SourceCoordinates coordinates_;
   InputRegions regions_;
+  std::vector<std::string> paths_;  ///< of the inputs that are read
+  std::vector<SkippedFile> skipped_;
+  std::uint64_t lost_in_headers_ = 0;   ///< points, told by headers that this process looked at
   std::vector<std::size_t> positions_;  ///< in the plan, by region; none if there is no plan
   PieceSequence pieces_;
   std::optional<Box<3>> world_extent_;
   std::optional<Box<3>> extent_;
+  AttributeLayout attributes_;
   std::optional<Thinning> thinning_;
   bool thinned_ = false;
-  mutable std::mutex counts_mutex_;  ///< guards the next one
+  bool tells_ = true;                ///< this process looked at the files first
+  mutable std::mutex counts_mutex_;  ///< guards the next two
   PointCounts counts_;
+  std::vector<std::string> untold_;
 };
 
 }  // namespace spillway::detail

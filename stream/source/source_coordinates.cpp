@@ -34,7 +34,11 @@ Box<3> mapped(const Box<3>& integers, const LatticeMap& map) {
 SourceCoordinates::SourceCoordinates(const SourceFacts& facts, int dimension,
                                      const PointFilter& filter,
                                      const std::function<void(std::string_view)>& detail)
-    : facts_(facts), dimension_(dimension), filter_(filter), inputs_(facts.inputs.size()) {
+    : facts_(facts),
+      is_triangulated_(dimension > 0),
+      dimension_(dimension > 0 ? dimension : 2),
+      filter_(filter),
+      inputs_(facts.inputs.size()) {
   filter_.bounds = filter.loose_bounds();
   check_own_lattices();
   find_lattice(detail);
@@ -70,7 +74,7 @@ std::optional<CommonLattice> SourceCoordinates::common_lattice() const {
     lattices.push_back(*input.header.lattice);
     largest.push_back(largest_integer(input.header));
   }
-  return find_common_lattice(lattices, dimension_, largest);
+  return find_common_lattice(lattices, joined_axes(), largest);
 }
 
 /// The first input whose points a common lattice does not keep apart; null if there is none.
@@ -126,7 +130,7 @@ void SourceCoordinates::explain_lattice(const std::function<void(std::string_vie
     const PointHeader& header = header_of(i);
     const bool fits =
         first.lattice && header.lattice &&
-        find_common_lattice(std::vector{*first.lattice, *header.lattice}, dimension_,
+        find_common_lattice(std::vector{*first.lattice, *header.lattice}, joined_axes(),
                             std::vector{largest_integer(first), largest_integer(header)});
     if (fits) continue;
     detail(fmt::format(
@@ -170,11 +174,12 @@ LatticePoint SourceCoordinates::placed(std::size_t input, const LatticePoint& po
           heights_on_lattice_ ? map.map(2, point[2]) : own.to_world(2, point[2])};
 }
 
-void SourceCoordinates::check_points(std::size_t input, PointBlock block) const {
+void SourceCoordinates::check_points(std::size_t input, const AttributeLayout& attributes,
+                                     PointBlock block) const {
   const PointHeader& header = header_of(input);
   if (filter_.active()) {
     PointCounts not_counted;
-    apply_filter(filter_, header.lattice, block, not_counted);
+    apply_filter(filter_, header.lattice, attributes, block, not_counted);
   }
   const Box<3> box = box_around(block.points);
   check_lattice({header.name}, *header.lattice, box, dimension_);
@@ -183,9 +188,10 @@ void SourceCoordinates::check_points(std::size_t input, PointBlock block) const 
   }
 }
 
-void SourceCoordinates::bring(std::size_t input, PointBlock& block) const {
+void SourceCoordinates::bring(std::size_t input, const AttributeLayout& attributes,
+                              PointBlock& block) const {
   const std::optional<double>& exact = inputs_[input].exact_up_to;
-  if (exact && any_beyond(block.points, *exact)) check_points(input, block);
+  if (exact && any_beyond(block.points, *exact)) check_points(input, attributes, block);
   if (inputs_[input].as_it_is) return;
   for (LatticePoint& point : block.points) point = placed(input, point);
 }

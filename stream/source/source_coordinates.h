@@ -45,7 +45,7 @@ class SourceCoordinates {
   /// Brings the points of a block, which are as the reader of an input gives them, into these
   /// coordinates. Throws Error if lattices do not keep those apart that the filter keeps. Safe for
   /// many threads at a time.
-  void bring(std::size_t input, PointBlock& block) const;
+  void bring(std::size_t input, const AttributeLayout& attributes, PointBlock& block) const;
 
  private:
   struct Input {
@@ -64,10 +64,14 @@ class SourceCoordinates {
   [[nodiscard]] std::optional<CommonLattice> common_lattice() const;
   [[nodiscard]] const PointHeader* first_not_apart(const CommonLattice& common) const;
   void explain_lattice(const std::function<void(std::string_view)>& detail) const;
-  void check_points(std::size_t input, PointBlock block) const;
+  void check_points(std::size_t input, const AttributeLayout& attributes, PointBlock block) const;
   [[nodiscard]] LatticePoint placed(std::size_t input, const LatticePoint& point) const;
 
   const SourceFacts& facts_;
+  /// Axes that are to have one scale.
+  [[nodiscard]] int joined_axes() const { return is_triangulated_ ? dimension_ : 0; }
+
+  bool is_triangulated_;
   int dimension_;
   PointFilter filter_;  ///< its bounds are loose
   std::vector<Input> inputs_;

@@ -19,8 +19,10 @@ bool SourceFacts::has_heights() const {
   return std::ranges::any_of(inputs, [](const Input& input) { return input.has_heights(); });
 }
 
-bool SourceFacts::has_attributes() const {
-  return std::ranges::any_of(inputs, [](const Input& input) { return input.has_attributes(); });
+AttributeLayout SourceFacts::attributes() const {
+  std::vector<AttributeLayout> layouts;
+  for (const Input& input : inputs) layouts.push_back(input.header.attributes);
+  return joined(layouts);
 }
 
 std::optional<std::uint64_t> SourceFacts::records() const {

@@ -22,16 +22,16 @@ struct SourceFacts {
     std::optional<std::uint64_t> bytes{};  ///< size of a file
 
     [[nodiscard]] bool has_heights() const { return header.coordinates != 2; }
-    /// Classes and returns, which are those of LAS.
-    [[nodiscard]] bool has_attributes() const { return header.point_format >= 0; }
+    /// Whether some of its points may be flagged as withheld.
+    [[nodiscard]] bool may_withhold() const { return header.point_format >= 0; }
   };
   std::vector<Input> inputs;
   std::string crs;  ///< of all inputs together: find_crs(), settled_crs()
 
   /// Whether the points of any input have z.
   [[nodiscard]] bool has_heights() const;
-  /// Whether the points of any input have classes and returns.
-  [[nodiscard]] bool has_attributes() const;
+  /// What points of any input have besides coordinates.
+  [[nodiscard]] AttributeLayout attributes() const;
   /// Records in all inputs; nothing unless all headers tell.
   [[nodiscard]] std::optional<std::uint64_t> records() const;
   /// About how many records a filter leaves, rather too many; nothing unless all headers tell.

@@ -1,6 +1,6 @@
 // laz_benchmark FILE...: reads each file to its end, on one thread and on several, and prints one
-// Markdown table; with --encoding, encodes the chunks of LAZ files again, with all attributes, on
-// one thread. Medians over the repetitions, after one run that warms the caches of the disk.
+// Markdown table; with --records, decodes the chunks of LAZ files to whole records and encodes them
+// again, on one thread. Medians over the repetitions, after one run that warms the caches.
 // Where other programs share the processor, processor time is the better measure of one thread.
 
 #include <fmt/format.h>
@@ -22,10 +22,11 @@
 #include "formats/inputs/open_points.h"
 #include "formats/points/common/point_reader.h"
 #include "formats/points/las/las_header.h"
+#include "formats/points/laz/chunk_decoder.h"
 #include "formats/points/laz/chunk_encoder.h"
 #include "formats/points/laz/chunk_table.h"
 #include "src/error.h"
-#include "tests/formats/points/laz/laz_encoder/record_decoder.h"
+#include "tests/formats/points/laz/laz_encoder/decoded_records.h"
 
 namespace spillway::detail {
 namespace {
@@ -36,7 +37,7 @@ struct Plan {
   unsigned threads = 2;
   bool attributes = false;
   bool keep_withheld = false;
-  bool encoding = false;
+  bool records = false;
 };
 
 /// Takes pieces in turns with other threads, and decodes them beside each other.
@@ -71,8 +72,11 @@ Speed read_file(const Plan& plan, const std::string& file, unsigned threads) {
   const double start_processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
   PointReaderOptions options;
   options.keep_withheld = plan.keep_withheld;
-  options.attributes = plan.attributes;
   const auto reader = open_point_reader(disk(), file, options);
+  if (plan.attributes) {
+    reader->carry(chosen(reader->header().attributes,
+                         {.names = {"classification", "return_number", "number_of_returns"}}));
+  }
   std::mutex fetching;
   std::vector<std::uint64_t> of_thread(threads);
   std::vector<std::thread> workers;
@@ -106,12 +110,16 @@ Speed median_speed(const Plan& plan, const std::string& file, unsigned threads) 
   return {median(by_clock), median(by_processor), speed.points};
 }
 
-/// The records of the chunks of a LAZ file.
+/// The chunks of a LAZ file.
 struct Chunks {
+  struct Chunk {
+    std::vector<std::byte> bytes;
+    std::uint64_t count;
+  };
+
   LazChunkFormat format;
-  std::vector<std::string> records;  ///< of each chunk
+  std::vector<Chunk> chunks;
   std::uint64_t points = 0;
-  std::uint64_t bytes = 0;  ///< compressed
 };
 
 Chunks chunks_of(const std::string& file) {
@@ -119,50 +127,72 @@ Chunks chunks_of(const std::string& file) {
   const LasHeader las = read_las_header(source);
   const std::optional<LazChunkTable> table = las.laz ? read_chunk_table(source, las) : std::nullopt;
   if (!table) throw Error(fmt::format("{} has no chunks of LAZ", file));
-  Chunks chunks{.format = las.laz->format, .records = {}};
+  Chunks chunks{.format = las.laz->format, .chunks = {}};
   for (const LazChunk& place : table->chunks) {
-    std::vector<std::byte> bytes(place.bytes);
+    Chunks::Chunk& chunk = chunks.chunks.emplace_back();
+    chunk.bytes.resize(place.bytes);
+    chunk.count = place.count;
     source.seek(place.offset);
-    source.read(bytes);
-    std::string& records = chunks.records.emplace_back();
-    for (const std::string& record :
-         testing::decode_laz_records(chunks.format, bytes, place.count)) {
-      records += record;
-    }
+    source.read(chunk.bytes);
     chunks.points += place.count;
-    chunks.bytes += place.bytes;
   }
   return chunks;
 }
 
-/// Encodes as a writer does; returns the bytes.
-std::uint64_t encode(const Chunks& chunks) {
+/// Decodes as a reader does, with one decoder for all chunks; gives the records of each chunk.
+std::vector<std::string> decode(const Chunks& chunks) {
+  LazChunkDecoder decoder(chunks.format, LazDetail::kRecords);
+  const std::size_t length = testing::record_length_of(chunks.format);
+  std::vector<std::string> records;
+  for (const Chunks::Chunk& chunk : chunks.chunks) {
+    records.push_back(testing::decode_laz_records(decoder, length, chunk.bytes, chunk.count));
+  }
+  return records;
+}
+
+/// Encodes as a writer does; returns how many bytes that takes.
+std::uint64_t encode(const LazChunkFormat& format, const std::vector<std::string>& records) {
   std::uint64_t bytes = 0;
   std::vector<std::byte> encoded;
-  for (const std::string& records : chunks.records) {
+  for (const std::string& of_chunk : records) {
     encoded.clear();
-    LazChunkEncoder(chunks.format).encode(as_bytes_of(records), encoded);
+    LazChunkEncoder(format).encode(as_bytes_of(of_chunk), encoded);
     bytes += encoded.size();
   }
   return bytes;
 }
 
-void print_encoding_table(const Plan& plan) {
-  fmt::print("| file | points | encoded by processor time, million points/s | size ratio |\n");
-  fmt::print("|---|---|---|---|\n");
+/// The median of million points a second of processor time.
+template <typename Work>
+double median_speed_of(const Plan& plan, std::uint64_t points, Work&& work) {
+  std::vector<double> speeds;
+  for (unsigned r = 0; r < plan.repetitions; ++r) {
+    const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    work();
+    const double seconds = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
+    speeds.push_back(static_cast<double>(points) * 1e-6 / seconds);
+  }
+  return median(speeds);
+}
+
+void print_records_table(const Plan& plan) {
+  fmt::print(
+      "| file | points | bytes a record | decoded by processor time, million records/s | encoded | "
+      "size ratio |\n");
+  fmt::print("|---|---|---|---|---|---|\n");
   for (const std::string& file : plan.files) {
     const Chunks chunks = chunks_of(file);
-    const std::uint64_t bytes = encode(chunks);
-    std::vector<double> speeds;
-    for (unsigned r = 0; r < plan.repetitions; ++r) {
-      const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
-      encode(chunks);
-      speeds.push_back(static_cast<double>(chunks.points) * 1e-6 /
-                       (seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start));
-    }
-    fmt::print("| {} | {} | {:.2f} | {:.3f} |\n", std::filesystem::path(file).filename().string(),
-               chunks.points, median(speeds),
-               static_cast<double>(bytes) / static_cast<double>(chunks.bytes));
+    const std::vector<std::string> records = decode(chunks);
+    const std::uint64_t bytes = encode(chunks.format, records);
+    std::uint64_t bytes_before = 0;
+    for (const Chunks::Chunk& chunk : chunks.chunks) bytes_before += chunk.bytes.size();
+    const double decoding = median_speed_of(plan, chunks.points, [&] { decode(chunks); });
+    const double encoding =
+        median_speed_of(plan, chunks.points, [&] { encode(chunks.format, records); });
+    fmt::print("| {} | {} | {} | {:.2f} | {:.2f} | {:.3f} |\n",
+               std::filesystem::path(file).filename().string(), chunks.points,
+               testing::record_length_of(chunks.format), decoding, encoding,
+               static_cast<double>(bytes) / static_cast<double>(bytes_before));
   }
 }
 
@@ -185,17 +215,18 @@ void print_table(const Plan& plan) {
 
 int main(int argc, char** argv) {
   spillway::detail::Plan plan;
-  CLI::App app("Times the reading of LAZ and other point files, and the encoding of LAZ");
+  CLI::App app("Times the reading of LAZ and other point files, and whole records of LAZ");
   app.add_option("files", plan.files)->required();
   app.add_option("-r,--repetitions", plan.repetitions)->check(CLI::Range(1, 1000));
   app.add_option("--threads", plan.threads, "in the second turn")->check(CLI::Range(1, 1024));
   app.add_flag("--attributes", plan.attributes, "also classes, returns and flags");
   app.add_flag("--keep-withheld", plan.keep_withheld, "flags are not needed, then");
-  app.add_flag("--encoding", plan.encoding, "encode chunks of LAZ instead of reading");
+  app.add_flag("--records", plan.records,
+               "decode chunks of LAZ to whole records, and encode them again, instead of reading");
   CLI11_PARSE(app, argc, argv);
   try {
-    if (plan.encoding) {
-      spillway::detail::print_encoding_table(plan);
+    if (plan.records) {
+      spillway::detail::print_records_table(plan);
     } else {
       spillway::detail::print_table(plan);
     }

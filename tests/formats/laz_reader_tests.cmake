@@ -1,5 +1,6 @@
 spillway_test(laz_reader_test unit
   SOURCES formats/points/copc/copc_test.cpp formats/points/laz/laz_reader_test.cpp
+          formats/points/laz/laz_salvage_test.cpp
   LIBS laz_encoder fmt::fmt)
 spillway_test(laz_shared_data_test unit
   SOURCES

@@ -2,13 +2,12 @@
 add_library(laz_encoder STATIC EXCLUDE_FROM_ALL
   formats/points/copc/encoded_files.cpp formats/points/copc/point_octree.cpp
   formats/points/laz/laz_encoder/chunk_encoder.cpp
+  formats/points/laz/laz_encoder/decoded_records.cpp
   formats/points/laz/laz_encoder/items_v1_encoder.cpp
   formats/points/laz/laz_encoder/laz_damage.cpp
   formats/points/laz/laz_encoder/laz_excerpt.cpp
   formats/points/laz/laz_encoder/laz_file.cpp
-  formats/points/laz/laz_encoder/random_records.cpp
-  formats/points/laz/laz_encoder/record_decoder.cpp
-  formats/points/laz/laz_encoder/record_items.cpp)
+  formats/points/laz/laz_encoder/random_records.cpp)
 target_link_libraries(laz_encoder PUBLIC spillway_formats GTest::gmock)
 
 spillway_test(laz_test unit
@@ -18,8 +17,16 @@ spillway_test(laz_test unit
     formats/points/laz/laz_round_trip_test.cpp
     formats/points/laz/laz_writer_test.cpp
   LIBS laz_encoder)
+spillway_test(attributes_test unit
+  SOURCES
+    formats/points/attributes/record_conversion_test.cpp
+    formats/points/las/records/las_attributes_test.cpp
+    formats/points/spp/spp_attributes_test.cpp
+  LIBS laz_encoder)
 spillway_test(laz_corruption_test fault
-  SOURCES formats/points/laz/laz_corruption_test.cpp
+  SOURCES
+    formats/points/laz/laz_corruption_test.cpp
+    formats/points/laz/laz_record_damage_test.cpp
   LIBS laz_encoder
   TIMEOUT 600)
 

@@ -13,6 +13,7 @@
 #include "formats/points/common/point_reader.h"
 #include "src/error.h"
 #include "tests/faulty_file_system.h"
+#include "tests/formats/points/las_flags_layout.h"
 
 namespace spillway::detail::testing {
 
@@ -21,13 +22,24 @@ struct AllPoints {
   PointHeader header;
   std::vector<LatticePoint> points;
   std::vector<std::uint64_t> index;
-  std::vector<PointAttributes> attributes;
+  std::vector<LasFlags> attributes;
   std::uint64_t withheld = 0;
+  std::uint64_t lost = 0;            ///< as blocks told
+  std::vector<std::string> notices;  ///< that came with blocks
 };
 
+/// Adds what a block tells besides its points.
+inline void add_counts(const PointBlock& block, AllPoints& all) {
+  all.withheld += block.withheld;
+  all.lost += block.lost;
+  all.notices.insert(all.notices.end(), block.notices.begin(), block.notices.end());
+}
+
+/// `flags`: with what LAS says of points in few bytes.
 inline AllPoints read_all_points(FileSystem& files, const std::string& path,
-                                 const PointReaderOptions& options = {}) {
+                                 const PointReaderOptions& options = {}, bool flags = false) {
   const auto reader = open_point_reader(files, path, options);
+  if (flags) reader->carry(flags_layout());
   AllPoints all;
   all.header = reader->header();
   PointBlock block;
@@ -36,20 +48,21 @@ inline AllPoints read_all_points(FileSystem& files, const std::string& path,
     EXPECT_EQ(block.points.size(), block.index.size());
     all.points.insert(all.points.end(), block.points.begin(), block.points.end());
     all.index.insert(all.index.end(), block.index.begin(), block.index.end());
-    all.attributes.insert(all.attributes.end(), block.attributes.begin(), block.attributes.end());
-    all.withheld += block.withheld;
+    const std::vector<LasFlags> some = flags_of(block.attributes);
+    all.attributes.insert(all.attributes.end(), some.begin(), some.end());
+    add_counts(block, all);
   }
   EXPECT_EQ(block.size(), 0U);
-  all.withheld += block.withheld;
+  add_counts(block, all);
   return all;
 }
 
 /// Reads `content` as a file of that name.
 inline AllPoints read_content(const std::string& path, const std::string& content,
-                              const PointReaderOptions& options = {}) {
+                              const PointReaderOptions& options = {}, bool flags = false) {
   FaultyFileSystem files;
   files.files[path] = content;
-  return read_all_points(files, path, options);
+  return read_all_points(files, path, options, flags);
 }
 
 /// The message of the Error that `action` throws; a failure of the test if it throws none. A

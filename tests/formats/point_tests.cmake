@@ -4,11 +4,13 @@ spillway_test(file_system_test unit
 spillway_test(points_test unit
   SOURCES
     formats/points/text/column_names_test.cpp
+    formats/points/text/text_attributes_test.cpp
     formats/compression/compressed_text_test.cpp
     formats/points/las/las_corruption_test.cpp
     formats/disk/file_digest_test.cpp
     formats/points/las/geotiff_keys_test.cpp
     formats/points/las/las_reader_test.cpp
+    formats/points/las/las_salvage_test.cpp
     formats/points/las/las_shared_data_test.cpp
     formats/points/npy/npy_reader_test.cpp
     formats/points/invalid_rows_test.cpp

@@ -64,6 +64,8 @@ class Triangulate(InFolder):
             "--kernel cgal": {"kernel": "cgal"},
             "--distrust-headers": {"distrust_headers": True},
             "--skip-invalid": {"skip_invalid": True},
+            "--skip-broken": {"skip_broken": True},
+            "--salvage": {"salvage": True},
             "--output-format ply": {"output_format": "ply"},
             "--max-tmp 1G --threads 2": {"max_tmp": "1G", "threads": 2},
         }
@@ -91,6 +93,18 @@ class Triangulate(InFolder):
                 self.assertEqual(bytes_of("b.spm"), bytes_of("a.spm"))
         with self.assertRaisesRegex(spillway.Error, "other classes"):
             spillway.triangulate("hills.las", "b.spm", keep_class=250)
+
+    def test_files_that_are_cut_off_are_salvaged_and_broken_ones_are_named(self):
+        command("generate", "terrain", "-n", 3000, "-o", "hills.las")
+        pathlib.Path("cut.las").write_bytes(bytes_of("hills.las")[:-1000])
+        with self.assertRaisesRegex(spillway.Error, "complete copy"):
+            spillway.triangulate("cut.las", "b.spm")
+        with self.assertWarnsRegex(Warning, "lost"):
+            report = spillway.triangulate("cut.las", "b.spm", salvage=True)
+        self.assertEqual(report.filters["read"] + report.filters["lost"], 3000)
+        report = spillway.convert(["hills.las", "cut.las"], "b.spp", skip_broken=True)
+        self.assertEqual([skipped["path"] for skipped in report.skipped_files], ["cut.las"])
+        self.assertEqual(report.written, 3000)
 
     def test_duplicates_choose_heights(self):
         points = np.array([[0, 0, 1], [4, 0, 1], [0, 4, 1], [0, 0, 5], [0, 0, 3.0]])

@@ -1,7 +1,8 @@
 # The command, run as a process, and its parts that need none.
 spillway_test(command_unit_tests unit
   SOURCES tools/command_unit_test.cpp tools/options/help_layout_test.cpp
-    tools/options/suggestion_test.cpp tools/report/advice_test.cpp
+    tools/options/suggestion_test.cpp tools/process/program_pages_test.cpp
+    tools/report/advice_test.cpp
     tools/simulate/core_simulation_test.cpp tools/simulate/machine_test.cpp
     tools/simulate/run_player_test.cpp tools/simulate/run_recorder_test.cpp
   LIBS spillway_command nlohmann_json::nlohmann_json)
@@ -37,7 +38,7 @@ spillway_command_test(cli_out_of_core_fault_tests fault
   tools/process/cli_out_of_core_fault_test.cpp)
 spillway_command_test(cli_input_tests cli
   tools/inputs/cli_crs_test.cpp tools/inputs/cli_filter_test.cpp tools/inputs/cli_inputs_test.cpp
-  tools/inputs/cli_lattice_test.cpp tools/inputs/cli_table_test.cpp tools/inputs/cli_survey_test.cpp)
+  tools/inputs/cli_lattice_test.cpp tools/inputs/cli_salvage_test.cpp tools/inputs/cli_table_test.cpp tools/inputs/cli_survey_test.cpp)
 
 spillway_command_test(cli_encoded_tests cli
   tools/inputs/cli_encoded_test.cpp)

@@ -5,6 +5,7 @@
 #include <spillway/points.h>
 
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include "src/error.h"
@@ -35,14 +36,22 @@ std::vector<InputPlace> places_of(const Job& job, PlaceSurvey how, const Context
   given.format = value_of(job, "input-format");
   given.columns = value_of(job, "columns");
   given.skip_invalid = job.options.contains("skip-invalid");
+  given.salvage = job.options.contains("salvage");
   const PointOptions options = point_options(given, 2);
   const bool distrusts = job.options.contains("distrust-headers");
+  const bool skips = job.options.contains("skip-broken");
   std::vector<InputPlace> places;
   for (const std::string& path : spillway::expand_inputs(job.inputs, context)) {
     refuse_what_opens_once(path);
-    const PointsHeader header = spillway::open_points({path}, options, context)->header();
-    if (header.extent && !(distrusts && how == PlaceSurvey::kPoints)) {
-      places.push_back({path, plane_of_extent(header.extent), header.count});
+    std::optional<PointsHeader> header;
+    try {
+      header = spillway::open_points({path}, options, context)->header();
+    } catch (const Error&) {
+      if (!skips) throw;
+      continue;  // the job itself names it
+    }
+    if (header->extent && !(distrusts && how == PlaceSurvey::kPoints)) {
+      places.push_back({path, plane_of_extent(header->extent), header->count});
     } else if (how == PlaceSurvey::kPoints) {
       const PointsInfo info = spillway::describe_points(path, options, context);
       places.push_back({path, plane_of_extent(info.extent), info.counts.kept()});

@@ -63,7 +63,7 @@ Outcome check_input(const CheckCommandOptions& options, Progress& progress) {
   Outcome outcome{check(*mesh, {.any_delaunay = options.any_delaunay}, context, points.get()),
                   dimension};
   const PointCounts& counts = outcome.report.points;
-  if (counts.dropped() > 0) progress.say(describe(counts));
+  if (!counts.all_kept()) progress.say(describe(counts));
   return outcome;
 }
 
@@ -175,7 +175,8 @@ Subcommand add_check(CommandLine& root) {
       .show_default();
   add_memory_options(app, options->memory);
   add_input_options(app, options->input);
-  app.remove_option("--crs");  // points and mesh are compared by their coordinates
+  app.remove_option("--skip-broken");  // a proof of some of the points would be none
+  app.remove_option("--crs");          // points and mesh are compared by their coordinates
   add_report_options(app, options->report);
   return {&app, [options] { return run(*options); }};
 }

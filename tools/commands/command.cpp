@@ -10,6 +10,7 @@
 #include "src/distributed/ranks.h"
 #include "tools/options/command_line.h"
 #include "tools/options/suggestion.h"
+#include "tools/process/program_pages.h"
 #include "tools/process/rank_job.h"
 #include "tools/report/standard_error.h"
 #include "tools/report/text_output.h"
@@ -169,6 +170,7 @@ int run_command(int argc, const char* const* argv, std::span<const AddSubcommand
       break;
   }
   refuse_empty_values(root);
+  let_go_of_program_pages();
   return tree.run();
 }
 

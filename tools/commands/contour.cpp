@@ -11,6 +11,7 @@
 #include "formats/vectors/vector_formats.h"
 #include "tools/commands/command.h"
 #include "tools/commands/run_statistics.h"
+#include "tools/commands/skipped_inputs.h"
 #include "tools/commands/terrain_input.h"
 #include "tools/options/command_options.h"
 #include "tools/process/rank_job.h"
@@ -80,7 +81,7 @@ int run(const ContourCommandOptions& options) {
                       {"points", contours->report().points},
                       {"spilled_bytes", contours->report().spilled_bytes}};
   write_statistics(options, report, facts, {{"contours", lines}});
-  return kExitDone;
+  return tell_skipped(report.skipped_files, progress);
 }
 
 }  // namespace

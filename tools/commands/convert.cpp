@@ -16,6 +16,7 @@
 #include "src/error.h"
 #include "src/runtime/process_memory.h"
 #include "tools/commands/command.h"
+#include "tools/commands/skipped_inputs.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 #include "tools/options/point_output.h"
@@ -30,6 +31,7 @@ constexpr const char* kExamples =
     "  spillway convert tile.laz -o tile.las\n"
     "  spillway convert 'tiles/*.laz' -o ground.spp --keep-class 2\n"
     "  spillway convert survey.xyz.gz -o survey.las --scale 0.01\n"
+    "  spillway convert tile.laz -o tile.csv --attributes class,intensity\n"
     "  spillway convert 'tiles/*.laz' --sorted -o - | spillway triangulate - -o tin.spm\n"
     "  spillway convert tin.spm -o tin.ply\n"
     "  spillway triangulate survey.las -o - | spillway convert - -o tin.obj\n"
@@ -44,6 +46,7 @@ struct ConvertCommandOptions {
   PointOutput output;
   std::vector<double> scale;   ///< none, one for all axes, or three
   std::vector<double> offset;  ///< likewise
+  std::string attributes;      ///< names and commas, "all", "none"; empty: as the format has them
   bool sorted = false;
   SortOptions sorting;
   MemoryOptions memory;
@@ -117,30 +120,46 @@ void tell_changes(const PointConversion& done, Progress& progress) {
   }
   if (done.adds_heights) progress.say("the points have no z: in LAS it is 0");
   if (!done.lost.empty()) progress.say(fmt::format("not kept: {}", fmt::join(done.lost, ", ")));
-  if (done.points.dropped() > 0) progress.say(describe(done.points));
+  if (!done.points.all_kept()) progress.say(describe(done.points));
 }
 
-void run_points(const ConvertCommandOptions& options, const Context& context, Progress& progress) {
+/// The words between the commas.
+std::vector<std::string> names_of(const std::string& list) {
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    names.push_back(list.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return names;
+}
+
+int run_points(const ConvertCommandOptions& options, const Context& context, Progress& progress) {
   check_points_output(options);
   const PointOutput& output = options.output;
   PointFileOptions written{.format = format_name_of(output),
                            .las_version = output.las_version,
                            .scale = options.scale,
                            .offset = options.offset};
+  if (options.attributes == "none") {
+    written.attributes.emplace();
+  } else if (!options.attributes.empty()) {
+    written.attributes = names_of(options.attributes);
+  }
   if (options.sorted) {
     written.sorted = options.sorting;
     reuse_freed_memory(std::size_t{4} << 20);
   }
   const auto file = create_points(output.path, written, context);
-  PointOptions how = point_options(options.input, 2);
-  how.attributes = true;
+  PointOptions how = point_options(options.input, options.sorted ? 2 : 0);
+  how.metadata = true;
   const auto points = open_points(options.inputs, how, context);
   const PointConversion done = convert(*points, *file, context);
   tell_changes(done, progress);
   progress.detail(fmt::format("peak memory {} bytes", peak_memory()));
   if (!options.sorted) {
     progress.say(fmt::format("{} points in {}", done.written, output.name()));
-    return;
+    return tell_skipped(done.skipped_files, progress);
   }
   if (done.spilled_points > 0) {
     progress.detail(fmt::format("{} points written to scratch files, {} bytes", done.spilled_points,
@@ -148,6 +167,7 @@ void run_points(const ConvertCommandOptions& options, const Context& context, Pr
   }
   progress.say(fmt::format("{} points in {}, sorted in {} cell{}", done.written, output.name(),
                            done.cells, done.cells == 1 ? "" : "s"));
+  return tell_skipped(done.skipped_files, progress);
 }
 
 /// Throws if the output is of a point format, and of no mesh format.
@@ -179,8 +199,8 @@ void run_mesh(const ConvertCommandOptions& options, const Context& context, Prog
   if (!options.input.crs.empty()) {
     std::erase_if(of_points, [](auto name) { return name == "--crs" || name == "--force-crs"; });
   }
-  of_points.insert(of_points.end(),
-                   {"--scale", "--offset", "--las-version", "--sorted", "--cell-points", "--dim"});
+  of_points.insert(of_points.end(), {"--scale", "--offset", "--attributes", "--las-version",
+                                     "--sorted", "--cell-points", "--dim"});
   refuse_given(*options.app, of_points, fmt::format("on {}, which is a mesh", input));
   check_mesh_output(options);
   const PointOutput& output = options.output;
@@ -214,10 +234,9 @@ int run(const ConvertCommandOptions& options) {
   Progress progress = make_progress(options.report, reads_pipe);
   const Context context(context_options(options.memory, 0, progress));
   if (kind_of(options, context) == InputKind::kPoints) {
-    run_points(options, context, progress);
-  } else {
-    run_mesh(options, context, progress);
+    return run_points(options, context, progress);
   }
+  run_mesh(options, context, progress);
   return kExitDone;
 }
 
@@ -245,6 +264,9 @@ Subcommand add_convert(CommandLine& root) {
       .value_name("N[,N,N]");
   add_number_list(app, "--offset", options->offset, "Count these multiples from here on; likewise")
       .value_name("N[,N,N]");
+  app.add_option("--attributes", options->attributes,
+                 "Write these attributes of points; usually all, in text but CSV none")
+      .value_name("all|none|NAME,...");
   app.add_flag("--sorted", options->sorted,
                "Write the points cell by cell, so that who reads them can begin at once");
   take_whole_number(app.add_option("--cell-points", options->sorting.cell_points,

@@ -10,6 +10,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/dem_options.h"
 #include "tools/commands/run_statistics.h"
+#include "tools/commands/skipped_inputs.h"
 #include "tools/process/rank_job.h"
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
@@ -84,7 +85,7 @@ int run(const DemCommandOptions& options) {
   const RunFacts facts = facts_of_run(options, options.output, context, start);
   say(options, report, dem->report(), facts, progress);
   write_statistics(options, report, facts, {{"raster", raster_json(dem->report())}});
-  return kExitDone;
+  return tell_skipped(report.skipped_files, progress);
 }
 
 }  // namespace

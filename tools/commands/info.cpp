@@ -77,6 +77,7 @@ Json points_json(const std::string& path, const PointsInfo& info, bool filtered)
   json["coordinates"] = info.coordinates;
   json["points"] = info.counts.kept();
   json["withheld"] = info.counts.withheld;
+  json["lost"] = info.counts.lost;
   json["filters"] = filtered ? to_json(info.counts) : Json(nullptr);
   json["extent"] = extent_json(info.extent, info.coordinates);
   json["header_box"] = extent_json(info.header_box, info.coordinates);
@@ -245,7 +246,8 @@ Subcommand add_info(CommandLine& root) {
   app.add_flag("--json", options->json, "One JSON object a line for each file");
   add_input_options(app, options->input);
   app.remove_option("--crs");
-  app.remove_option("--force-crs");  // each file is told of for itself
+  app.remove_option("--force-crs");    // each file is told of for itself,
+  app.remove_option("--skip-broken");  // and one that is broken does not end the run
   add_memory_options(app, options->memory);
   add_report_options(app, options->report);
   return {&app, [options] { return run(*options); }};

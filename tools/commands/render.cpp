@@ -13,6 +13,7 @@
 #include "src/geometry/simplex_name.h"
 #include "tools/commands/command.h"
 #include "tools/commands/run_statistics.h"
+#include "tools/commands/skipped_inputs.h"
 #include "tools/commands/terrain_input.h"
 #include "tools/options/command_options.h"
 #include "tools/report/text_output.h"
@@ -111,7 +112,7 @@ int run(const RenderCommandOptions& options) {
   say(options, report, picture->report(), facts, progress);
   const Json size = {{"columns", picture->report().columns}, {"rows", picture->report().rows}};
   write_statistics(options, report, facts, {{"picture", size}});
-  return kExitDone;
+  return tell_skipped(report.skipped_files, progress);
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ TracedReport send_terrain(const TerrainOptions& options, MeshSink& sink, const C
 }
 
 void say_what_is_left_out(const TerrainOptions& options, const Report& report, Progress& progress) {
-  if (report.points.dropped() > 0) progress.say(describe(report.points));
+  if (!report.points.all_kept()) progress.say(describe(report.points));
   if (report.left_out == 0) return;
   progress.say(fmt::format("{} {} with an edge longer than {} left out", report.left_out,
                            simplices_of(report.dimension), *max_edge(options)));

@@ -21,6 +21,7 @@
 #include "src/runtime/memory_budget.h"
 #include "tools/commands/command.h"
 #include "tools/commands/run_statistics.h"
+#include "tools/commands/skipped_inputs.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 #include "tools/options/triangulation_options.h"
@@ -113,7 +114,7 @@ void say_what_heights_are(const TriangulateCommandOptions& options, const Points
 
 void say(const TriangulateCommandOptions& options, const Report& report, const RunFacts& facts,
          Progress& progress) {
-  if (report.points.dropped() > 0) progress.say(describe(report.points));
+  if (!report.points.all_kept()) progress.say(describe(report.points));
   if (report.left_out > 0) {
     progress.say(
         fmt::format("{} simplices with an edge longer than {} left out: this is no longer the "
@@ -233,7 +234,7 @@ int run(const TriangulateCommandOptions& options) {
   }
   write_statistics(options, report, facts);
   say(options, report, facts, progress);
-  return kExitDone;
+  return tell_skipped(report.skipped_files, progress);
 }
 
 }  // namespace

@@ -96,6 +96,12 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   app.add_flag("--skip-invalid", options.skip_invalid,
                "Leave out rows of text and npy that are no points, and count them")
       .group(group);
+  app.add_flag("--salvage", options.salvage,
+               "Use what is whole of LAS and LAZ files that are cut off or damaged; count the rest")
+      .group(group);
+  app.add_flag("--skip-broken", options.skip_broken,
+               "Leave out files that cannot be read; name them at the end, with exit code 1")
+      .group(group);
 }
 
 std::vector<int> parse_columns(std::string_view text) {
@@ -245,6 +251,8 @@ PointOptions point_options(const InputOptions& options, int dimension) {
   points.format = options.format;
   if (!options.columns.empty()) points.columns = parse_columns(options.columns);
   points.skip_invalid = options.skip_invalid;
+  points.salvage = options.salvage;
+  points.skip_broken = options.skip_broken;
   points.keep_withheld = options.keep_withheld;
   points.every = options.every;
   if (!options.keep_class.empty()) points.classes = parse_classes(options.keep_class);

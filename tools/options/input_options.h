@@ -21,6 +21,8 @@ struct InputOptions {
   std::string crs;
   bool force_crs = false;
   bool skip_invalid = false;
+  bool salvage = false;
+  bool skip_broken = false;
   bool keep_withheld = false;
   std::uint64_t every = 1;
   std::string keep_class;
@@ -35,10 +37,10 @@ struct InputOptions {
 };
 
 /// The names of the options that add_input_options() adds.
-inline constexpr std::array<std::string_view, 13> kInputOptionNames = {
+inline constexpr std::array<std::string_view, 15> kInputOptionNames = {
     "--input-format",  "--columns", "--crs",        "--force-crs",  "--skip-invalid",
     "--keep-withheld", "--every",   "--keep-class", "--drop-class", "--returns",
-    "--bounds",        "--thin",    "--resolution"};
+    "--bounds",        "--thin",    "--resolution", "--salvage",    "--skip-broken"};
 
 /// The heading in help of the options that are filters.
 

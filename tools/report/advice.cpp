@@ -71,6 +71,8 @@ std::string advice(const ErrorFacts& facts) {
       return "; name the right coordinate system with --crs and --force-crs, or say with "
              "--z-factor "
              "what heights are to be multiplied by";
+    case Remedy::kSalvage:
+      return ", or take what is whole of it with --salvage";
     case Remedy::kPointLattice:
       return "; choose another --scale or --offset";
     case Remedy::kRanks:

@@ -81,6 +81,14 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+Json to_json(const std::vector<SkippedFile>& files) {
+  Json json = Json::array();
+  for (const SkippedFile& file : files) {
+    json.push_back({{"path", file.path}, {"message", file.message}});
+  }
+  return json;
+}
+
 /// "ranks": what all of them have sent, and what each has done.
 Json ranks(const TracedReport& report) {
   RankFigures sent;
@@ -106,7 +114,8 @@ Json ranks(const TracedReport& report) {
 Json to_json(const PointCounts& counts) {
   return {{"read", counts.read},     {"invalid", counts.invalid}, {"withheld", counts.withheld},
           {"every", counts.skipped}, {"class", counts.classes},   {"returns", counts.returns},
-          {"bounds", counts.bounds}, {"thinned", counts.thinned}, {"kept", counts.kept()}};
+          {"bounds", counts.bounds}, {"thinned", counts.thinned}, {"kept", counts.kept()},
+          {"lost", counts.lost}};
 }
 
 Json to_json(const TracedReport& report, const RunFacts& facts) {
@@ -122,6 +131,7 @@ Json to_json(const TracedReport& report, const RunFacts& facts) {
   json["on_lattice"] = report.on_lattice;
   json["points"] = mesh.points;
   json["withheld"] = report.points.withheld;
+  json["skipped_files"] = to_json(report.skipped_files);
   json["filters"] = to_json(report.points);
   json["duplicates"] = mesh.duplicates;
   json["vertices"] = mesh.vertices;

@@ -35,7 +35,7 @@ struct PointFormat {
   bool is_text = false;  ///< lines that people read; what looks so is this, compressed or not
   bool holds_crs = false;
   bool wants_wkt = false;         ///< of a coordinate system that is a code
-  bool holds_attributes = false;  ///< PointAttributes
+  bool holds_attributes = false;  ///< PointWriterOptions::attributes
   bool needs_heights = false;     ///< points without z get 0
   bool needs_lattice = false;
   bool holds_regions = false;  ///< PointWriterOptions::by_regions
@@ -56,6 +56,9 @@ struct PointFormat {
   std::unique_ptr<PointWriter> (*open_writer)(std::unique_ptr<OutputFile> file,
                                               const std::string& path,
                                               const PointWriterOptions& options) = nullptr;
+  /// Whether others expect attributes in a file of that path, so that they are written without
+  /// being asked for. Null: in all that the format holds.
+  bool (*writes_attributes)(std::string_view path) = nullptr;
   /// Whether the header is only right once all points are written. Null: there is none that tells
   /// their number.
   bool (*header_comes_last)(const PointWriterOptions& options) = nullptr;

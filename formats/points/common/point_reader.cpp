@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "src/error.h"
@@ -24,15 +26,21 @@ bool PointReader::read(PointBlock& block) {
   RawPoints raw;
   std::uint64_t withheld = 0;
   std::uint64_t invalid = 0;
+  std::uint64_t lost = 0;
+  std::vector<std::string> notices;
   block.clear();
   while (block.size() == 0 && fetch(raw)) {
     decode(raw, block);
     raw.clear();
     withheld += std::exchange(block.withheld, 0);
     invalid += std::exchange(block.invalid, 0);
+    lost += std::exchange(block.lost, 0);
+    std::ranges::move(std::exchange(block.notices, {}), std::back_inserter(notices));
   }
   block.withheld = withheld;
   block.invalid = invalid;
+  block.lost = lost;
+  block.notices = std::move(notices);
   return block.size() > 0;
 }
 

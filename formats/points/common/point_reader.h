@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,26 +13,14 @@
 #include "formats/bytes/shared_text.h"
 #include "formats/disk/file_system.h"
 #include "formats/gdal/geotiff_key_records.h"
+#include "formats/points/attributes/attribute_layout.h"
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 
 namespace spillway::detail {
 
-/// What LAS and LAZ say of a point besides its coordinates, and filters look at.
-struct PointAttributes {
-  std::uint8_t classification = 0;
-  std::uint8_t return_number = 0;  ///< counted from 1; 0: not known
-  std::uint8_t return_count = 0;   ///< of its pulse; 0: not known
-  std::uint8_t flags = 0;          ///< the k... flags below
-
-  static constexpr std::uint8_t kSynthetic = 1;
-  static constexpr std::uint8_t kKeyPoint = 2;
-  static constexpr std::uint8_t kWithheld = 4;
-  static constexpr std::uint8_t kOverlap = 8;
-
-  bool operator==(const PointAttributes&) const = default;
-};
+struct LasMetadata;
 
 /// Points in input order. z is 0 where the input has none.
 struct PointBlock {
@@ -39,21 +29,52 @@ struct PointBlock {
   /// Each point's number in its source, counted from 0 over all records, dropped ones included; but
   /// see PointReader::begin_piece().
   std::vector<std::uint64_t> index;
-  /// One a point if they were asked for and the source has them, else none.
-  std::vector<PointAttributes> attributes;
+  /// What points carry: a record each of the layout that the reader was told, or none.
+  std::vector<std::byte> attributes;
   /// Records left out of this block because they are flagged as withheld.
   std::uint64_t withheld = 0;
   /// Records left out of it because they are no points (PointReaderOptions::skip_invalid).
   std::uint64_t invalid = 0;
+  /// Records that should have come with these, and are lost (PointReaderOptions::salvage).
+  std::uint64_t lost = 0;
+  /// What came to light only when these were read, as PointHeader::notices.
+  std::vector<std::string> notices;
 
   [[nodiscard]] std::size_t size() const { return points.size(); }
+  /// Bytes of a point's record; 0 if there are none.
+  [[nodiscard]] std::size_t record_size() const {
+    return points.empty() ? 0 : attributes.size() / points.size();
+  }
+  /// Keeps the points of which kept(i) is true, in their order, and nothing of the others. It may
+  /// be asked twice of one point, and of none that has moved.
+  template <typename Kept>
+  void keep(Kept&& kept);
   void clear() {
     points.clear();
     index.clear();
     attributes.clear();
-    withheld = invalid = 0;
+    withheld = invalid = lost = 0;
+    notices.clear();
   }
 };
+
+template <typename Kept>
+void PointBlock::keep(Kept&& kept) {
+  const std::size_t size = record_size();
+  std::size_t first = 0;  // that is dropped
+  while (first < points.size() && kept(first)) ++first;
+  std::size_t count = first;
+  for (std::size_t i = first; i < points.size(); ++i) {
+    // Every point is stored, and the place moves on only past those that are kept: no branch.
+    points[count] = points[i];
+    index[count] = index[i];
+    if (size > 0) std::memmove(&attributes[count * size], &attributes[i * size], size);
+    count += kept(i) ? 1 : 0;
+  }
+  points.resize(count);
+  index.resize(count);
+  attributes.resize(count * size);
+}
 
 /// A part of a source, all of whose points lie in a box.
 struct PointRegion {
@@ -100,8 +121,10 @@ struct PointHeader {
   /// What LAS tells besides: of heights, or of a system in case that `crs` cannot be read. Empty if
   /// there is nothing of either.
   GeotiffKeys crs_keys;
-  std::string software;              ///< generating software, LAS only
-  std::size_t extra_bytes = 0;       ///< of each record, after what the LAS point format has
+  std::string software;        ///< generating software, LAS only
+  AttributeLayout attributes;  ///< what points have besides coordinates
+  /// What LAS tells besides, if it was asked for.
+  std::shared_ptr<const LasMetadata> las_metadata;
   std::vector<std::string> notices;  ///< what was taken where the source leaves some doubt
   /// What the source tells of where its points lie: parts that come one after the other, in this
   /// order. Empty where it does not tell.
@@ -109,12 +132,15 @@ struct PointHeader {
   bool regions_are_exact = false;  ///< not rounded: the reader proves that no point lies outside
   /// Of which the reader keeps a PointRegion each; a region has one or more.
   std::uint64_t cells = 0;
+  /// Records that the source should hold and does not (PointReaderOptions::salvage); `count` is
+  /// without them.
+  std::uint64_t lost = 0;
 };
 
 struct PointReaderOptions {
   std::string format;          ///< a name of point_format.h; empty: by extension, then first bytes
   bool keep_withheld = false;  ///< keep points flagged as withheld
-  bool attributes = false;     ///< fill PointBlock::attributes where the source has them
+  bool metadata = false;       ///< PointHeader::las_metadata is wanted
   /// Only points in this box (output coordinates, closed) are wanted: a reader that knows where its
   /// points lie leaves out parts that have none there, but may give others too.
   std::optional<Box<3>> bounds{};
@@ -124,6 +150,10 @@ struct PointReaderOptions {
   std::optional<std::array<int, 3>> columns{};
   /// Of text and npy: leave out and count rows that are no points.
   bool skip_invalid = false;
+  /// Of LAS and LAZ: give the points that are whole of a file that is cut off or damaged, and those
+  /// that its header does not count. Where lost ones are known of beforehand, PointHeader::lost has
+  /// them, else blocks.
+  bool salvage = false;
 };
 
 /// A stream of points from one source. fetch() takes the next batch of the input, in order;
@@ -135,6 +165,11 @@ class PointReader {
 
   [[nodiscard]] virtual const PointHeader& header() const = 0;
 
+  /// From now on blocks have attributes: records of this layout, which has attributes of header()
+  /// and maybe others, which are 0. To be called before anything is fetched. A reader whose header
+  /// has none of them may leave them out.
+  virtual void carry(const AttributeLayout& /*layout*/) {}
+
   /// Fills `raw`, which comes cleared, with the next batch (some tens of thousands of points);
   /// false at the end, of the piece if one was begun. Throws Error with the source's name and the
   /// byte, line or point index for anything that is not a finite point.
@@ -145,7 +180,7 @@ class PointReader {
   virtual void decode(RawPoints& raw, PointBlock& block) const;
 
   /// Both steps: replaces `block` by the next points, at least one; false at the end, where
-  /// `block.withheld` and `block.invalid` still count.
+  /// `block.withheld`, `block.invalid` and `block.lost` still count, and notices are told.
   bool read(PointBlock& block);
 
   /// Into how many pieces the source falls that can be read in any order, also by readers of it in

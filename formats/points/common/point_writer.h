@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -44,8 +45,12 @@ struct PointWriterOptions {
   /// Points come region by region, as set_regions() tells; for formats that hold regions. Count and
   /// extent follow from these.
   bool by_regions = false;
-  bool attributes = false;  ///< attributes will come too; LAS and LAZ hold them, others drop them
-  std::string version{};    ///< of LAS and LAZ, "1.2" or "1.4"; empty: 1.2 unless `count` needs 1.4
+  /// What comes with points besides coordinates, for formats that hold attributes.
+  AttributeLayout attributes{};
+  /// What LAS inputs tell of all their points, for LAS and LAZ; null: they are none.
+  std::shared_ptr<const LasMetadata> las{};
+  bool keeps_crs_records = false;  ///< `crs` is what the records of `las` tell
+  std::string version{};  ///< of LAS and LAZ, "1.2" or "1.4"; empty: as inputs and `count` need
   /// Where an output that cannot go back to its header waits until the header is known; the folder
   /// must outlive the writer.
   ScratchFolder* scratch = nullptr;
@@ -62,10 +67,10 @@ class PointWriter {
   /// in which points come. To be called once, before any point, where the options say `by_regions`.
   virtual void set_regions(std::span<const PointRegion> regions);
 
-  /// Appends points: integers if the options have a lattice, else output coordinates; with one
-  /// value of `attributes` each, or none at all: single returns of no class.
+  /// Appends points: integers if the options have a lattice, else output coordinates; with the
+  /// records of their attributes, or, if the options have none, without.
   virtual void write(std::span<const LatticePoint> points,
-                     std::span<const PointAttributes> attributes) = 0;
+                     std::span<const std::byte> attributes) = 0;
 
   /// Completes the file. Throws Error if a number of points was promised and another came.
   virtual void finish() = 0;

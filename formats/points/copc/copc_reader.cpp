@@ -40,6 +40,10 @@ std::unique_ptr<PointReader> open_copc_reader(std::unique_ptr<InputBytes> source
   if (!source->seekable() || las.count == 0) {
     return open_laz_reader(std::move(source), las, path, options);
   }
+  // The points in a box can also be found among all of them, where an octree is lost.
+  const bool in_need =
+      select && options.salvage && options.resolution <= 0 && all_nodes(*source, las).empty();
+  if (in_need) return open_laz_reader(std::move(source), las, path, options);
   const std::vector<CopcNode> nodes =
       select ? select_copc_nodes(*source, las, {options.bounds, options.resolution})
              : all_nodes(*source, las);

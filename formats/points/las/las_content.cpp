@@ -12,6 +12,7 @@
 
 #include "formats/bytes/bytes.h"
 #include "formats/points/las/las_header.h"
+#include "formats/points/las/records/vlr_bytes.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -22,25 +23,25 @@ constexpr double kMost = std::numeric_limits<std::int32_t>::max();
 constexpr std::uint64_t kMostLegacyPoints = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kLegacyReturns = 5;   // that a header counts
 constexpr std::uint8_t kCompressed = 0x80;  // in the byte of the point format
-constexpr PointAttributes kSingleReturn{.return_number = 1, .return_count = 1};
+constexpr std::size_t kReturnsByte = 14;
 
-/// Whether the file is LAS 1.4 with point format 6, not 1.2 with point format 0.
-bool is_version14(const std::string& file, const PointWriterOptions& options) {
-  const bool large = options.count && *options.count > kMostLegacyPoints;
-  if (options.version.empty()) return large;
-  if (options.version != "1.2" && options.version != "1.4") {
-    throw InvalidArgument(fmt::format("cannot write {}: LAS {} is not written; choose 1.2 or 1.4",
-                                      file, options.version),
-                          {.file = file});
-  }
-  if (options.version == "1.2" && large) {
-    throw InvalidArgument(
-        fmt::format("cannot write {}: {} points are more than LAS 1.2 counts; choose "
-                    "1.4",
-                    file, *options.count),
-        {.file = file});
-  }
-  return options.version == "1.4";
+/// Records that follow from what is written, and not from the inputs.
+bool is_made_anew(const LasVlr& record, bool keeps_crs) {
+  return record.tells_extra_bytes() || (record.tells_crs() && !keeps_crs);
+}
+
+/// Whether the coordinate system may stay in the records of the inputs: point formats from 6 on
+/// have WKT, and others mostly keys.
+bool keeps_crs(const PointWriterOptions& options, const LasTarget& target) {
+  return options.keeps_crs_records && options.las != nullptr && options.las->point_format >= 0 &&
+         (options.las->point_format >= 6) == target.extended();
+}
+
+/// The bytes that the input's record of extra bytes has.
+std::span<const std::byte> extra_bytes_of(const LasMetadata& las) {
+  const auto record = std::ranges::find_if(las.records, &LasVlr::tells_extra_bytes);
+  if (record == las.records.end()) return {};
+  return as_bytes_of(record->content);
 }
 
 }  // namespace
@@ -48,9 +49,11 @@ bool is_version14(const std::string& file, const PointWriterOptions& options) {
 LasContent::LasContent(std::string file_name, const PointWriterOptions& options)
     : file_name_(std::move(file_name)),
       promised_(options.count),
-      attributes_come_(options.attributes),
-      version14_(is_version14(file_name_, options)),
-      record_length_(kLasRecordLengths[version14_ ? 6 : 0]) {
+      target_(las_target(file_name_, options)),
+      record_length_(target_.record_length()),
+      attributes_(options.attributes),
+      packing_(attributes_.fields(), target_.fields()),
+      first_record_(record_length_) {
   if (!options.lattice) {
     throw CannotWrite(file_name_,
                       "LAS holds integers with a scale, and these points have none; write spp, "
@@ -60,28 +63,75 @@ LasContent::LasContent(std::string file_name, const PointWriterOptions& options)
     throw CannotWrite(file_name_, "LAS points have three coordinates; write text or npy");
   }
   lattice_ = *options.lattice;
-  try {
-    crs_ = las_crs(options.crs, options.crs_wkt, version14_);
-  } catch (const Error& error) {
-    throw CannotWrite(file_name_, error.what(), error.code());
+  if (attributes_.find("return_number") == nullptr) {  // then all are single returns
+    first_record_[kReturnsByte] = static_cast<std::byte>(target_.extended() ? 0x11 : 0x09);
+  }
+  if (options.las) las_ = *options.las;
+  const bool old_crs = keeps_crs(options, target_);
+  std::erase_if(las_.records, [&](const LasVlr& record) { return is_made_anew(record, old_crs); });
+  encoding_ = las_.encoding;
+  if (!old_crs) {
+    encoding_ &= ~kLasWktBit;
+    try {
+      const LasCrs crs = las_crs(options.crs, options.crs_wkt, target_.extended());
+      vlrs_ = crs.bytes;
+      vlr_count_ = crs.records;
+      if (crs.wkt_bit) encoding_ |= kLasWktBit;
+    } catch (const Error& error) {
+      throw CannotWrite(file_name_, error.what(), error.code());
+    }
+  }
+  keep_what_version_holds();
+  const auto add = [this](const LasVlr& record) {
+    append_vlr(record, vlrs_);
+    ++vlr_count_;
+  };
+  if (!target_.extra.empty()) {
+    const std::span<const std::byte> known =
+        options.las ? extra_bytes_of(*options.las) : std::span<const std::byte>();
+    add({.user = std::string(kLasSpecUser),
+         .id = kLasExtraBytesRecord,
+         .content = std::string(as_text(las_extra_descriptors(target_.extra, known)))});
+  }
+  for (const LasVlr& record : las_.records) {
+    if (!record.extended) add(record);
+  }
+  std::erase_if(las_.records, [](const LasVlr& record) { return !record.extended; });
+}
+
+/// Before LAS 1.4, waveforms are the one record behind the points, from 1.3 on.
+void LasContent::keep_what_version_holds() {
+  const auto holds_waveforms = [](const LasVlr& record) {
+    return record.user == kLasSpecUser && record.id == kLasWaveformRecord;
+  };
+  if (std::ranges::none_of(las_.records, holds_waveforms)) encoding_ &= ~kLasWaveformsInBit;
+  if (target_.minor_version >= 4) return;
+  for (LasVlr& record : las_.records) {
+    if (target_.minor_version == 3 && holds_waveforms(record)) continue;
+    const std::size_t size = record.content.text().size();
+    if (size > std::numeric_limits<std::uint16_t>::max()) {
+      throw CannotWrite(file_name_,
+                        fmt::format("{} takes {} bytes, which LAS holds from version 1.4 on",
+                                    record.name(), size),
+                        ErrorCode::kInvalidArgument, {}, Remedy::kLas14);
+    }
+    record.extended = false;
   }
 }
 
 void LasContent::compress(const LazRecord& laz) {
-  const std::vector<std::byte> content = laz_record_bytes(laz);
-  laz_.assign(kLasVlrHeaderSize, std::byte{0});
-  std::ranges::copy(as_bytes_of(kLazUser), laz_.begin() + 2);
-  store(&laz_[18], kLazRecordId);
-  store(&laz_[20], static_cast<std::uint16_t>(content.size()));
-  laz_.insert(laz_.end(), content.begin(), content.end());
+  append_vlr({.user = std::string(kLazUser),
+              .id = kLazRecordId,
+              .content = std::string(as_text(laz_record_bytes(laz)))},
+             laz_);
 }
 
 std::vector<std::byte> LasContent::head() const {
   ReturnCounts returns{};
-  if (!attributes_come_) returns[1] = promised_.value_or(0);
+  if (attributes_.empty()) returns[1] = promised_.value_or(0);
   std::vector<std::byte> head =
       header(promised_.value_or(0), {{kLeast, kLeast, kLeast}, {kMost, kMost, kMost}}, returns);
-  head.insert(head.end(), crs_.bytes.begin(), crs_.bytes.end());
+  head.insert(head.end(), vlrs_.begin(), vlrs_.end());
   head.insert(head.end(), laz_.begin(), laz_.end());
   return head;
 }
@@ -90,85 +140,94 @@ std::vector<std::byte> LasContent::final_header() const {
   return header(count_, count_ > 0 ? bounds_ : Box<3>{{0, 0, 0}, {0, 0, 0}}, returns_);
 }
 
+std::uint64_t LasContent::end_of_records() const { return head().size() + count_ * record_length_; }
+
+std::vector<std::vector<std::byte>> LasContent::extended_records(std::uint64_t begin) {
+  std::vector<std::vector<std::byte>> all;
+  if (target_.minor_version >= 4) extended_at_ = las_.records.empty() ? 0 : begin;
+  for (const LasVlr& record : las_.records) {
+    if (record.user == kLasSpecUser && record.id == kLasWaveformRecord) waveforms_at_ = begin;
+    std::vector<std::byte>& bytes = all.emplace_back();
+    append_vlr(record, bytes);
+    begin += bytes.size();
+  }
+  extended_count_ = static_cast<std::uint32_t>(all.size());
+  return all;
+}
+
 void LasContent::append_records(std::span<const LatticePoint> points,
-                                std::span<const PointAttributes> attributes,
+                                std::span<const std::byte> attributes,
                                 std::vector<std::byte>& out) {
-  if (!version14_ && count_ + points.size() > kMostLegacyPoints) {
-    throw CannotWrite(
-        file_name_,
-        fmt::format("more than {} points come, and LAS 1.2 counts no further", kMostLegacyPoints),
-        ErrorCode::kTooLarge, at_record(kMostLegacyPoints), Remedy::kLas14);
+  if (!counts_with_64_bits() && count_ + points.size() > kMostLegacyPoints) {
+    throw CannotWrite(file_name_,
+                      fmt::format("more than {} points come, and LAS 1.{} counts no further",
+                                  kMostLegacyPoints, target_.minor_version),
+                      ErrorCode::kTooLarge, at_record(kMostLegacyPoints), Remedy::kLas14);
   }
   const std::size_t before = out.size();
   out.resize(before + points.size() * record_length_);
-  std::byte* record = out.data() + before;
-  for (std::size_t i = 0; i < points.size(); ++i, record += record_length_) {
-    bounds_.expand(points[i]);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      store(record + 4 * axis, to_int32(points[i][axis]));
+  std::byte* const records = out.data() + before;
+  if (first_record_[kReturnsByte] != std::byte{}) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      records[i * record_length_ + kReturnsByte] = first_record_[kReturnsByte];
     }
-    put_attributes(record, attributes.empty() ? kSingleReturn : attributes[i]);
   }
-  if (invalid_) fail_at_first_invalid(points, attributes);
+  put_coordinates(points, records);
+  if (!attributes.empty()) put_attributes(attributes, points.size(), records);
+  count_returns(records, points.size());
   count_ += points.size();
 }
 
-/// Remembers in invalid_ if the value is no 32-bit integer.
-std::int32_t LasContent::to_int32(double value) {
-  const bool in_range = value >= kLeast && value <= kMost;
-  const auto integer = static_cast<std::int32_t>(in_range ? value : 0.0);
-  invalid_ |= static_cast<double>(integer) != value;
-  return integer;
-}
-
-/// Whether a record has the bits for them.
-bool LasContent::holds(const PointAttributes& a) const {
-  if (version14_) return a.return_number <= kReturns && a.return_count <= kReturns;
-  return a.return_number <= 7 && a.return_count <= 7 && a.classification <= 31 &&
-         (a.flags & PointAttributes::kOverlap) == 0;
-}
-
-/// Bytes 14 to 16 of a record: docs/formats-points.md ("LAS, written"). All others stay 0.
-void LasContent::put_attributes(std::byte* record, const PointAttributes& a) {
-  const unsigned number = a.return_number;
-  const unsigned count = a.return_count;
-  const unsigned flags = a.flags;
-  if (version14_) {
-    store(record + 14, static_cast<std::uint8_t>(number | (count << 4U)));
-    store(record + 15, a.flags);
-    store(record + 16, a.classification);
-  } else {
-    store(record + 14, static_cast<std::uint8_t>(number | (count << 3U)));
-    store(record + 15, static_cast<std::uint8_t>(a.classification | (flags << 5U)));
+void LasContent::put_coordinates(std::span<const LatticePoint> points, std::byte* records) {
+  bool valid = true;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    bounds_.expand(points[i]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double value = points[i][axis];
+      const bool in_range = value >= kLeast && value <= kMost;
+      const auto integer = static_cast<std::int32_t>(in_range ? value : 0.0);
+      valid &= static_cast<double>(integer) == value;
+      store(records + i * record_length_ + sizeof(integer) * axis, integer);
+    }
   }
-  ++returns_[number & kReturns];
-  invalid_ |= !holds(a);
+  if (!valid) fail_at_first_invalid(points);
 }
 
-void LasContent::fail_at_first_invalid(std::span<const LatticePoint> points,
-                                       std::span<const PointAttributes> attributes) const {
+void LasContent::put_attributes(std::span<const std::byte> attributes, std::size_t count,
+                                std::byte* records) const {
+  const auto misfit = packing_.convert(attributes.data(), attributes_.record_size(), records,
+                                       record_length_, count);
+  if (!misfit) return;
+  const bool more_in_14 = misfit->to.packed && !target_.extended();
+  throw CannotWrite(
+      file_name_,
+      fmt::format("point {} has {} {}, and records of LAS 1.{}, point format {}, hold {}{}",
+                  count_ + misfit->record, misfit->from.attribute.name, misfit->value,
+                  target_.minor_version, target_.point_format, range_text(misfit->to),
+                  more_in_14 ? "" : "; leave it out with --attributes, or write spp"),
+      ErrorCode::kInvalidArgument, at_record(count_ + misfit->record),
+      more_in_14 ? Remedy::kLas14 : Remedy::kNone);
+}
+
+void LasContent::count_returns(const std::byte* records, std::size_t count) {
+  const unsigned mask = target_.extended() ? kReturns : 7;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::byte returns = records[i * record_length_ + kReturnsByte];
+    ++returns_[std::to_integer<unsigned>(returns) & mask];
+  }
+}
+
+void LasContent::fail_at_first_invalid(std::span<const LatticePoint> points) const {
   const auto valid = [](double v) { return v >= kLeast && v <= kMost && v == std::floor(v); };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const LatticePoint& p = points[i];
-    if (!valid(p[0]) || !valid(p[1]) || !valid(p[2])) {
-      throw CannotWrite(
-          file_name_,
-          fmt::format("point {} ({}, {}, {}) is not on the 32-bit integers that LAS holds; choose "
-                      "another scale or offset, or write spp",
-                      count_ + i, p[0], p[1], p[2]),
-          ErrorCode::kInvalidArgument, at_record(count_ + i));
-    }
-    if (!attributes.empty() && !holds(attributes[i])) {
-      const PointAttributes& a = attributes[i];
-      throw CannotWrite(
-          file_name_,
-          fmt::format("point {} (class {}, return {} of {}{}) is more than a LAS {} record holds{}",
-                      count_ + i, a.classification, a.return_number, a.return_count,
-                      (a.flags & PointAttributes::kOverlap) != 0 ? ", overlap" : "",
-                      version14_ ? "1.4" : "1.2", version14_ ? "; the input is corrupt" : ""),
-          version14_ ? ErrorCode::kBadInput : ErrorCode::kInvalidArgument, at_record(count_ + i),
-          version14_ ? Remedy::kNone : Remedy::kLas14);
-    }
+    if (valid(p[0]) && valid(p[1]) && valid(p[2])) continue;
+    throw CannotWrite(
+        file_name_,
+        fmt::format("point {} ({}, {}, {}) is not on the 32-bit integers that LAS holds; choose "
+                    "another scale or offset, or write spp",
+                    count_ + i, p[0], p[1], p[2]),
+        ErrorCode::kInvalidArgument, at_record(count_ + i));
   }
   throw std::logic_error("a block without invalid points was called invalid");
 }
@@ -176,33 +235,44 @@ void LasContent::fail_at_first_invalid(std::span<const LatticePoint> points,
 /// The public header block. `bounds` is of integers.
 std::vector<std::byte> LasContent::header(std::uint64_t count, const Box<3>& bounds,
                                           const ReturnCounts& returns) const {
-  const std::size_t size = version14_ ? kLas14HeaderSize : kLasHeaderSize;
+  const int minor = target_.minor_version;
+  const std::size_t size = minor >= 4   ? kLas14HeaderSize
+                           : minor == 3 ? kLas13HeaderSize
+                                        : kLasHeaderSize;
   std::vector<std::byte> bytes(size);
   const auto put_text = [&](std::size_t at, std::string_view text) {
-    std::memcpy(&bytes[at], text.data(), text.size());
+    std::memcpy(&bytes[at], text.data(), std::min(text.size(), kLasTextField));
   };
   put_text(las_field::kSignature, "LASF");
-  store(&bytes[las_field::kGlobalEncoding], crs_.wkt_bit ? kLasWktBit : std::uint16_t{0});
+  store(&bytes[las_field::kFileSource], las_.file_source);
+  store(&bytes[las_field::kGlobalEncoding], encoding_);
+  store(&bytes[las_field::kProject], las_.project);
   store(&bytes[las_field::kVersionMajor], std::uint8_t{1});
-  store(&bytes[las_field::kVersionMinor], std::uint8_t(version14_ ? 4 : 2));
-  put_text(las_field::kSystemIdentifier, "generated");
+  store(&bytes[las_field::kVersionMinor], static_cast<std::uint8_t>(minor));
+  put_text(las_field::kSystemIdentifier, las_.system.empty() ? "generated" : las_.system);
   put_text(las_field::kSoftware, "Spillway");
+  store(&bytes[las_field::kCreationDay], las_.day);
+  store(&bytes[las_field::kCreationYear], las_.year);
   store(&bytes[las_field::kHeaderSize], static_cast<std::uint16_t>(size));
   store(&bytes[las_field::kOffsetToPoints],
-        static_cast<std::uint32_t>(size + crs_.bytes.size() + laz_.size()));
-  store(&bytes[las_field::kVlrCount], crs_.records + (laz_.empty() ? 0U : 1U));
+        static_cast<std::uint32_t>(size + vlrs_.size() + laz_.size()));
+  store(&bytes[las_field::kVlrCount], vlr_count_ + (laz_.empty() ? 0U : 1U));
   store(&bytes[las_field::kPointFormat],
-        static_cast<std::uint8_t>(point_format() | (laz_.empty() ? 0 : kCompressed)));
+        static_cast<std::uint8_t>(target_.point_format | (laz_.empty() ? 0 : kCompressed)));
   store(&bytes[las_field::kRecordLength], static_cast<std::uint16_t>(record_length_));
-  if (version14_) {
-    store(&bytes[las_field::kCount], count);
-    std::memcpy(&bytes[las_field::kByReturn], &returns[1], kReturns * sizeof(std::uint64_t));
-  } else {
+  if (!target_.extended() && count <= kMostLegacyPoints) {
     store(&bytes[las_field::kLegacyCount], static_cast<std::uint32_t>(count));
     for (std::size_t i = 0; i < kLegacyReturns; ++i) {
       store(&bytes[las_field::kLegacyByReturn + i * sizeof(std::uint32_t)],
             static_cast<std::uint32_t>(returns[i + 1]));
     }
+  }
+  if (minor >= 3) store(&bytes[las_field::kWaveformStart], waveforms_at_);
+  if (minor >= 4) {
+    store(&bytes[las_field::kEvlrStart], extended_at_);
+    store(&bytes[las_field::kEvlrCount], extended_count_);
+    store(&bytes[las_field::kCount], count);
+    std::memcpy(&bytes[las_field::kByReturn], &returns[1], kReturns * sizeof(std::uint64_t));
   }
   store(&bytes[las_field::kScale], lattice_.scale);
   store(&bytes[las_field::kOffset], lattice_.offset);

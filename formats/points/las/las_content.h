@@ -8,9 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "formats/points/attributes/record_conversion.h"
 #include "formats/points/common/point_writer.h"
 #include "formats/points/las/las_crs.h"
 #include "formats/points/las/laz_record.h"
+#include "formats/points/las/records/las_metadata.h"
+#include "formats/points/las/records/las_target.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 
@@ -23,8 +26,7 @@ class LasContent {
   /// `file_name` is for messages. Throws Error for what LAS cannot hold.
   LasContent(std::string file_name, const PointWriterOptions& options);
 
-  /// 0 or 6.
-  [[nodiscard]] int point_format() const { return version14_ ? 6 : 0; }
+  [[nodiscard]] const LasTarget& target() const { return target_; }
   [[nodiscard]] std::size_t record_length() const { return record_length_; }
 
   /// The file is LAZ: its header says so, and has this record behind those of LAS.
@@ -36,8 +38,13 @@ class LasContent {
 
   /// Appends the records of these points, which come in the order of the file; attributes as in
   /// PointWriter::write(). Throws Error for points that a record cannot hold.
-  void append_records(std::span<const LatticePoint> points,
-                      std::span<const PointAttributes> attributes, std::vector<std::byte>& out);
+  void append_records(std::span<const LatticePoint> points, std::span<const std::byte> attributes,
+                      std::vector<std::byte>& out);
+
+  /// The byte after the points, if they are not compressed.
+  [[nodiscard]] std::uint64_t end_of_records() const;
+  /// The records that follow the points, from byte `begin` on. final_header() tells of them then.
+  std::vector<std::vector<std::byte>> extended_records(std::uint64_t begin);
 
   /// The public header block when all points have come: what head() begins with.
   [[nodiscard]] std::vector<std::byte> final_header() const;
@@ -50,26 +57,35 @@ class LasContent {
   /// Number of points by return number, which 4 bits hold.
   using ReturnCounts = std::array<std::uint64_t, kReturns + 1>;
 
-  std::int32_t to_int32(double value);
-  [[nodiscard]] bool holds(const PointAttributes& attributes) const;
-  void put_attributes(std::byte* record, const PointAttributes& attributes);
-  [[noreturn]] void fail_at_first_invalid(std::span<const LatticePoint> points,
-                                          std::span<const PointAttributes> attributes) const;
+  [[nodiscard]] bool counts_with_64_bits() const { return target_.minor_version >= 4; }
+  void keep_what_version_holds();
+  void put_coordinates(std::span<const LatticePoint> points, std::byte* records);
+  void put_attributes(std::span<const std::byte> attributes, std::size_t count,
+                      std::byte* records) const;
+  void count_returns(const std::byte* records, std::size_t count);
+  [[noreturn]] void fail_at_first_invalid(std::span<const LatticePoint> points) const;
   [[nodiscard]] std::vector<std::byte> header(std::uint64_t count, const Box<3>& bounds,
                                               const ReturnCounts& returns) const;
 
   std::string file_name_;
   std::optional<std::uint64_t> promised_;
-  bool attributes_come_;
-  bool version14_;
+  LasTarget target_;
   std::size_t record_length_;
+  AttributeLayout attributes_;
+  RecordConversion packing_;
+  std::vector<std::byte> first_record_;  // what a record has before attributes are put into it
   Lattice lattice_;
-  LasCrs crs_;
+  LasMetadata las_;              // of the inputs, or nothing
+  std::uint16_t encoding_ = 0;   // the global encoding
+  std::vector<std::byte> vlrs_;  // all variable length records but that of LAZ
+  std::uint32_t vlr_count_ = 0;
   std::vector<std::byte> laz_;  // the record that tells of the compression
   std::uint64_t count_ = 0;
   Box<3> bounds_;           // of the integers so far
   ReturnCounts returns_{};  // of the points so far
-  bool invalid_ = false;    // the current points have one that LAS cannot hold
+  std::uint64_t extended_at_ = 0;
+  std::uint32_t extended_count_ = 0;
+  std::uint64_t waveforms_at_ = 0;
 };
 
 }  // namespace spillway::detail

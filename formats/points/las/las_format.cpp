@@ -32,7 +32,9 @@ constinit const PointFormat kLasPoints = {
         [](std::unique_ptr<OutputFile> file, const std::string& /*path*/,
            const PointWriterOptions& options) { return open_las_writer(std::move(file), options); },
     .header_comes_last =
-        [](const PointWriterOptions& options) { return !options.count || options.attributes; },
+        [](const PointWriterOptions& options) {
+          return !options.count || !options.attributes.empty();
+        },
 };
 
 }  // namespace spillway::detail

@@ -13,6 +13,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/gdal/crs_text.h"
 #include "formats/points/las/geotiff_keys.h"
+#include "formats/points/las/uncompressed_points.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -203,9 +204,28 @@ class CrsRecords {
   GeotiffKeys keys_;
 };
 
+/// A record by its header, which begins alike before the points and behind them.
+LasVlr vlr_of(std::span<const std::byte> header, std::span<const std::byte> content,
+              bool extended) {
+  const std::size_t description = extended ? 28 : 22;
+  return {.reserved = load<std::uint16_t>(header.data()),
+          .user = clean_text(as_text(header.subspan(2, 16))),
+          .id = load<std::uint16_t>(&header[18]),
+          .description = clean_text(as_text(header.subspan(description, 32))),
+          .content = std::string(as_text(content)),
+          .extended = extended};
+}
+
+/// Whether a record tells how the points of this file lie in it.
+bool tells_structure(const LasVlr& record) {
+  return (record.user == kLazUser && record.id == kLazRecordId) || record.user == kCopcUser;
+}
+
 /// Reads the variable length records before the points into `header`: those that the file counts,
-/// up to the first that does not end before the points. Returns how many these are.
-std::uint32_t read_vlrs(InputBytes& source, const Layout& layout, LasHeader& header) {
+/// up to the first that does not end before the points; all but those of the structure into
+/// `metadata`, too, if that is wanted. Returns how many these are.
+std::uint32_t read_vlrs(InputBytes& source, const Layout& layout, LasHeader& header,
+                        LasMetadata* metadata) {
   CrsRecords records;
   std::array<std::byte, kLasVlrHeaderSize> start_of_record;
   std::vector<std::byte> content;
@@ -222,6 +242,14 @@ std::uint32_t read_vlrs(InputBytes& source, const Layout& layout, LasHeader& hea
     content.resize(load<std::uint16_t>(&start_of_record[20]));
     if (!read_part(content)) break;
     if (CrsRecords::tells_crs(user, record)) records.take(record, content);
+    if (user == kLasSpecUser && record == kLasExtraBytesRecord) {
+      const std::size_t at = kLasRecordLengths.at(header.point_format);
+      header.extra_fields = las_extra_fields(content, at, header.record_length - at);
+    }
+    if (metadata != nullptr) {
+      LasVlr vlr = vlr_of(start_of_record, content, false);
+      if (!tells_structure(vlr)) metadata->records.push_back(std::move(vlr));
+    }
     if (count == 0 && user == kCopcUser && record == kCopcInfoId) {
       header.copc = parse_copc_info(content);
     }
@@ -248,12 +276,14 @@ void tell_of_missing_vlrs(const Layout& layout, std::uint32_t found, LasHeader& 
       layout.offset_to_points, las_field::kVlrCount));
 }
 
-/// Puts the coordinate system that the records after the points tell into the header. What is
-/// damaged there ends the search, as the points can be read without. Returns whether all records
-/// that were looked for lie within the file.
-bool read_crs_of_evlrs(InputBytes& source, const Layout& layout, LasHeader& las) {
+/// Puts the coordinate system that the records after the points tell into the header, if none was
+/// told before them, and all records into `metadata`, if that is wanted. What is damaged there ends
+/// the search, as the points can be read without. Returns whether all records that were looked for
+/// lie within the file.
+bool read_evlrs(InputBytes& source, const Layout& layout, LasHeader& las, LasMetadata* metadata) {
   constexpr std::uint32_t kMostRecords = 1000;
   constexpr std::uint64_t kLongest = std::uint64_t{1} << 20;
+  constexpr std::uint64_t kLongestKept = std::uint64_t{16} << 20;
   const std::optional<std::uint64_t> size = source.size();
   if (!size) return true;
   const std::uint64_t back = source.position();
@@ -269,17 +299,24 @@ bool read_crs_of_evlrs(InputBytes& source, const Layout& layout, LasHeader& las)
     at += header.size();
     const auto length = load<std::uint64_t>(&header[20]);
     if (length > *size - at) break;
-    const std::string user = clean_text(as_text(std::span(header).subspan(2, 16)));
-    const auto record = load<std::uint16_t>(&header[18]);
-    if (CrsRecords::tells_crs(user, record) && length <= kLongest) {
+    LasVlr vlr = vlr_of(header, {}, true);
+    const bool tells_crs = CrsRecords::tells_crs(vlr.user, vlr.id) && length <= kLongest;
+    const bool kept = metadata != nullptr && !tells_structure(vlr);
+    if (tells_crs || (kept && length <= kLongestKept)) {
       content.resize(length);
       if (source.read(content) < length) break;
-      records.take(record, content);
+    }
+    if (tells_crs) records.take(vlr.id, content);
+    if (kept && length > kLongestKept) {
+      metadata->left_out.push_back(vlr.name());
+    } else if (kept) {
+      vlr.content = std::string(as_text(content));
+      metadata->records.push_back(std::move(vlr));
     }
     at += length;
   }
   if (source.position() != back) source.seek(back);
-  records.tell(las);
+  if (las.crs.empty()) records.tell(las);
   return found == most;
 }
 
@@ -293,10 +330,16 @@ bool evlr_headers_fit(const InputBytes& source, const Layout& layout) {
 
 /// Looks at the records after the points, for the coordinate system if none was told before them,
 /// and says if they are not all there.
-void look_at_evlrs(InputBytes& source, const Layout& layout, LasHeader& header) {
+void look_at_evlrs(InputBytes& source, const Layout& layout, LasHeader& header,
+                   LasMetadata* metadata) {
   if (layout.evlr_count == 0) return;
+  if (metadata != nullptr && !source.size()) {
+    metadata->left_out.emplace_back("records behind the points, which a pipe tells too late");
+  }
   bool complete = evlr_headers_fit(source, layout);
-  if (header.crs.empty()) complete = read_crs_of_evlrs(source, layout, header) && complete;
+  if (header.crs.empty() || metadata != nullptr) {
+    complete = read_evlrs(source, layout, header, metadata) && complete;
+  }
   if (complete) return;
   header.notices.push_back(fmt::format(
       "the header counts {} extended variable length record{} from byte {} on, but not all of "
@@ -350,57 +393,50 @@ void check_compression(const InputBytes& source, const Layout& layout, LasHeader
   if (!header.laz || !header.laz->format.layered) header.copc.reset();
 }
 
-/// Goes to the first uncompressed point and checks that the file can hold all of them.
-/// `doubt`: what else speaks against the file.
-void find_points(InputBytes& source, LasHeader& header, const std::string& doubt) {
-  constexpr std::uint16_t kStart = 0xCCDD;
-  constexpr std::uint16_t kStartSwapped = 0xDDCC;
-  const std::optional<std::uint64_t> size = source.size();
-  const auto room = [&] { return (*size - header.offset_to_points) / header.record_length; };
-  if (header.version == "1.0") {
-    const std::span<const std::byte> begin = source.peek(sizeof(kStart));
-    const auto value = begin.size() < sizeof(kStart) ? 0 : load<std::uint16_t>(begin.data());
-    if (value == kStart || value == kStartSwapped) {
-      if (!size) {
-        fail(source, header.offset_to_points,
-             "without the size of the file it is not clear where the points of this LAS 1.0 "
-             "file begin; give it by its name instead of on a pipe");
-      }
-      header.offset_to_points += sizeof(kStart);
-      if (room() >= header.count) {
-        source.skip(sizeof(kStart));
-        return;
-      }
-      header.offset_to_points -= sizeof(kStart);
-    }
-  }
-  if (size && header.count > room()) {
-    fail(source, *size,
-         fmt::format("the header says {} points of {} bytes, but the file ends at byte {}, "
-                     "after {} of them{}; get a complete copy",
-                     header.count, header.record_length, *size, room(), doubt));
-  }
+/// What only a file that is made of this one asks for; the records are still to come.
+std::shared_ptr<LasMetadata> metadata_of(std::span<const std::byte> bytes,
+                                         const LasHeader& header) {
+  auto metadata = std::make_shared<LasMetadata>();
+  metadata->version = header.version;
+  metadata->point_format = header.point_format;
+  metadata->file_source = load<std::uint16_t>(&bytes[las_field::kFileSource]);
+  metadata->encoding = load<std::uint16_t>(&bytes[las_field::kGlobalEncoding]);
+  std::ranges::copy(bytes.subspan(las_field::kProject, metadata->project.size()),
+                    metadata->project.begin());
+  metadata->system =
+      clean_text(as_text(bytes.subspan(las_field::kSystemIdentifier, kLasTextField)));
+  metadata->day = load<std::uint16_t>(&bytes[las_field::kCreationDay]);
+  metadata->year = load<std::uint16_t>(&bytes[las_field::kCreationYear]);
+  return metadata;
 }
 
-/// Says what follows the points that the header counts, where there is room for more of them.
-void tell_of_more(const InputBytes& source, LasHeader& header) {
-  const std::optional<std::uint64_t> size = source.size();
-  if (!size) return;
-  const std::uint64_t begin = source.position();
-  const std::uint64_t end = std::min(*size, header.offset_behind_points.value_or(*size));
-  const std::uint64_t told = begin + header.count * header.record_length;
-  if (end < told + header.record_length) return;
-  header.notices.push_back(fmt::format(
-      "the header counts {} points, but {} bytes follow them, room for {} more, which are not "
-      "read; if they are points, correct the count in the header ({})",
-      header.count, end - told, (end - told) / header.record_length,
-      header.version == "1.4" || header.version == "1.5" ? "8 bytes from byte 247 on"
-                                                         : "4 bytes from byte 107 on"));
+/// LAS 1.3 has one record behind the points, which holds waveforms.
+void keep_waveforms_of_13(InputBytes& source, const Layout& layout, LasHeader& header,
+                          LasMetadata& metadata) {
+  if (header.version != "1.3" || layout.waveform_start <= layout.offset_to_points) return;
+  Layout waveforms = layout;
+  waveforms.evlr_start = layout.waveform_start;
+  waveforms.evlr_count = 1;
+  const bool found = source.size() && read_evlrs(source, waveforms, header, &metadata);
+  if (!found) metadata.left_out.emplace_back("waveforms");
+}
+
+/// Extra bytes that no record tells of are a field, too.
+void complete_extra_fields(LasHeader& header) {
+  const std::size_t at = kLasRecordLengths.at(header.point_format);
+  if (!header.extra_fields.empty() || header.record_length == at) return;
+  header.extra_fields = las_extra_fields({}, at, header.record_length - at);
 }
 
 }  // namespace
 
-LasHeader read_las_header(InputBytes& source) {
+std::vector<AttributeField> LasHeader::fields() const {
+  std::vector<AttributeField> all = las_fields(point_format);
+  all.insert(all.end(), extra_fields.begin(), extra_fields.end());
+  return all;
+}
+
+LasHeader read_las_header(InputBytes& source, const LasHeaderOptions& options) {
   constexpr unsigned kFormatBits = 0x3f;
   const std::vector<std::byte> bytes = read_public_header(source);
   const Layout layout = read_layout(bytes);
@@ -418,10 +454,14 @@ LasHeader read_las_header(InputBytes& source) {
   header.software =
       clean_text(as_text(std::span(bytes).subspan(las_field::kSoftware, kLasTextField)));
   check_layout(source, layout);
-  const std::uint32_t vlrs = read_vlrs(source, layout, header);
+  const std::shared_ptr<LasMetadata> kept = options.metadata ? metadata_of(bytes, header) : nullptr;
+  const std::uint32_t vlrs = read_vlrs(source, layout, header, kept.get());
+  complete_extra_fields(header);
   tell_of_missing_vlrs(layout, vlrs, header);
   check_compression(source, layout, header);
-  look_at_evlrs(source, layout, header);
+  look_at_evlrs(source, layout, header, kept.get());
+  if (kept) keep_waveforms_of_13(source, layout, header, *kept);
+  header.metadata = kept;
   if (!source.skip(layout.offset_to_points - source.position())) {
     fail(source, source.position(),
          fmt::format("the file ends at byte {}, before the points; get a complete copy",
@@ -430,11 +470,11 @@ LasHeader read_las_header(InputBytes& source) {
   if (!header.laz) {
     const bool all_vlrs = vlrs == layout.vlr_count;
     find_points(source, header,
-                all_vlrs ? ""
-                         : fmt::format(", and its {} variable length records do not fit before "
-                                       "them, either",
-                                       layout.vlr_count));
-    tell_of_more(source, header);
+                {.salvage = options.salvage,
+                 .doubt = all_vlrs ? ""
+                                   : fmt::format(", and its {} variable length records do not fit "
+                                                 "before them, either",
+                                                 layout.vlr_count)});
   }
   return header;
 }
@@ -446,6 +486,7 @@ PointHeader las_point_header(const LasHeader& las, const std::string& path) {
   header.version = las.version;
   header.point_format = las.point_format;
   header.count = las.count;
+  header.lost = las.lost;
   header.lattice = las.lattice;
   if (!las.extent.empty()) header.extent = las.extent;
   header.crs = las.crs;
@@ -453,7 +494,8 @@ PointHeader las_point_header(const LasHeader& las, const std::string& path) {
   header.crs_keys = las.crs_keys;
   header.software = las.software;
   header.notices = las.notices;
-  header.extra_bytes = las.record_length - kLasRecordLengths.at(las.point_format);
+  header.attributes = las_layout(las.point_format, las.extra_fields);
+  header.las_metadata = las.metadata;
   return header;
 }
 

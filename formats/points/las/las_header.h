@@ -5,14 +5,18 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "formats/bytes/input_bytes.h"
 #include "formats/points/common/point_reader.h"
 #include "formats/points/las/copc_info.h"
 #include "formats/points/las/laz_record.h"
+#include "formats/points/las/records/las_fields.h"
+#include "formats/points/las/records/las_metadata.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 
@@ -21,11 +25,15 @@ namespace spillway::detail {
 /// Where the fields of the public header block lie.
 namespace las_field {
 inline constexpr std::size_t kSignature = 0;
+inline constexpr std::size_t kFileSource = 4;
 inline constexpr std::size_t kGlobalEncoding = 6;
+inline constexpr std::size_t kProject = 8;
 inline constexpr std::size_t kVersionMajor = 24;
 inline constexpr std::size_t kVersionMinor = 25;
 inline constexpr std::size_t kSystemIdentifier = 26;
 inline constexpr std::size_t kSoftware = 58;
+inline constexpr std::size_t kCreationDay = 90;
+inline constexpr std::size_t kCreationYear = 92;
 inline constexpr std::size_t kHeaderSize = 94;
 inline constexpr std::size_t kOffsetToPoints = 96;
 inline constexpr std::size_t kVlrCount = 100;
@@ -44,6 +52,7 @@ inline constexpr std::size_t kByReturn = 255;
 }  // namespace las_field
 
 inline constexpr std::size_t kLasHeaderSize = 227;    ///< of LAS 1.0 to 1.2
+inline constexpr std::size_t kLas13HeaderSize = 235;  ///< of LAS 1.3
 inline constexpr std::size_t kLas14HeaderSize = 375;  ///< of LAS 1.4
 inline constexpr std::size_t kLasTextField = 32;      ///< bytes of an identifier in the header
 inline constexpr std::size_t kLasVlrHeaderSize = 54;
@@ -53,9 +62,15 @@ inline constexpr std::size_t kLasEvlrHeaderSize = 60;  ///< of the records after
 /// the numbers and the text that keys refer to.
 inline constexpr std::string_view kLasCrsUser = "LASF_Projection";
 inline constexpr std::uint16_t kLasWktRecord = 2112;
+inline constexpr std::uint16_t kLasWktMathRecord = 2111;
 inline constexpr std::uint16_t kLasGeotiffRecord = 34735;
 inline constexpr std::uint16_t kLasGeotiffNumberRecord = 34736;
 inline constexpr std::uint16_t kLasGeotiffTextRecord = 34737;
+
+/// Records that tell of extra bytes, and that hold waveforms.
+inline constexpr std::string_view kLasSpecUser = "LASF_Spec";
+inline constexpr std::uint16_t kLasExtraBytesRecord = 4;
+inline constexpr std::uint16_t kLasWaveformRecord = 65535;
 
 /// Shortest record of each point format, in bytes; longer ones carry extra bytes at their end.
 inline constexpr std::array<std::size_t, 11> kLasRecordLengths = {20, 28, 26, 34, 57, 63,
@@ -83,14 +98,26 @@ struct LasHeader {
   std::uint64_t offset_to_points = 0;  ///< compressed or not
   /// Where waveforms or extended records begin after the points, if there are any.
   std::optional<std::uint64_t> offset_behind_points;
-  std::optional<LazRecord> laz;  ///< set if the points are compressed
-  std::optional<CopcInfo> copc;  ///< set if they are and lie in an octree
+  std::optional<LazRecord> laz;                 ///< set if the points are compressed
+  std::optional<CopcInfo> copc;                 ///< set if they are and lie in an octree
+  std::vector<AttributeField> extra_fields;     ///< of extra bytes
+  std::shared_ptr<const LasMetadata> metadata;  ///< set if it was asked for
+  std::uint64_t lost = 0;                       ///< as PointHeader has it
+
+  /// What a record has besides coordinates.
+  [[nodiscard]] std::vector<AttributeField> fields() const;
+};
+
+struct LasHeaderOptions {
+  bool salvage =
+      false;  ///< `count` is what a file of uncompressed points holds, not what it should
+  bool metadata = false;  ///< set LasHeader::metadata
 };
 
 /// Reads everything before the first point, and after the points where the coordinate system is
-/// not told before and the source can go there. Throws Error, before anything is allocated, if a
-/// field contradicts another one or the size of the file.
-LasHeader read_las_header(InputBytes& source);
+/// not told before, or metadata is wanted, and the source can go there. Throws Error, before
+/// anything is allocated, if a field contradicts another one or the size of the file.
+LasHeader read_las_header(InputBytes& source, const LasHeaderOptions& options = {});
 
 /// The same as any point source has it, for a source of that name.
 PointHeader las_point_header(const LasHeader& las, const std::string& path);

@@ -19,22 +19,22 @@ class LasWriter : public PointWriter {
     file_->write(content_.head());
   }
 
-  void write(std::span<const LatticePoint> points,
-             std::span<const PointAttributes> attributes) override {
+  void write(std::span<const LatticePoint> points, std::span<const std::byte> attributes) override {
+    const std::size_t record = points.empty() ? 0 : attributes.size() / points.size();
     while (!points.empty()) {
       const std::size_t size = std::min(points.size(), kBlockPoints);
-      const std::span<const PointAttributes> block =
-          attributes.first(std::min(attributes.size(), size));
       records_.clear();
-      content_.append_records(points.first(size), block, records_);
+      content_.append_records(points.first(size), attributes.first(size * record), records_);
       file_->write(records_);
       points = points.subspan(size);
-      attributes = attributes.subspan(block.size());
+      attributes = attributes.subspan(size * record);
     }
   }
 
   void finish() override {
     check_written(*file_, count_, content_.count());
+    const auto records = content_.extended_records(content_.end_of_records());
+    for (const std::vector<std::byte>& record : records) file_->write(record);
     file_->rewrite(0, content_.final_header());
     file_->commit();
   }

@@ -160,12 +160,14 @@ std::vector<std::byte> laz_record_bytes(const LazRecord& record) {
   return bytes;
 }
 
+std::size_t laz_layers(const LazItem& item) {
+  const std::uint16_t fixed = kind_of(item.type).layers;
+  return fixed > 0 ? fixed : item.size;
+}
+
 std::size_t laz_layers(const LazChunkFormat& format) {
   std::size_t layers = 0;
-  for (const LazItem& item : format.items) {
-    const std::uint16_t fixed = kind_of(item.type).layers;
-    layers += fixed > 0 ? fixed : item.size;
-  }
+  for (const LazItem& item : format.items) layers += laz_layers(item);
   return layers;
 }
 

@@ -64,6 +64,9 @@ LazChunkFormat laz_format_to_write(int point_format, std::size_t extra_bytes);
 /// The content of such a record; compressed.
 std::vector<std::byte> laz_record_bytes(const LazRecord& record);
 
+/// Layers of an item of layered chunks.
+std::size_t laz_layers(const LazItem& item);
+
 /// Layers of a chunk of that format.
 std::size_t laz_layers(const LazChunkFormat& format);
 

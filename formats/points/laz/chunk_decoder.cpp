@@ -12,15 +12,15 @@ class LazChunkDecoder::Impl {
  public:
   using Chunk = std::variant<laz::PointwiseChunk, laz::LayeredChunk>;
 
-  Impl(const LazChunkFormat& format, bool attributes)
-      : chunk(format.layered ? Chunk(std::in_place_type<laz::LayeredChunk>, format, attributes)
-                             : Chunk(std::in_place_type<laz::PointwiseChunk>, format)) {}
+  Impl(const LazChunkFormat& format, LazDetail detail)
+      : chunk(format.layered ? Chunk(std::in_place_type<laz::LayeredChunk>, format, detail)
+                             : Chunk(std::in_place_type<laz::PointwiseChunk>, format, detail)) {}
 
   Chunk chunk;
 };
 
-LazChunkDecoder::LazChunkDecoder(const LazChunkFormat& format, bool attributes)
-    : impl_(std::make_unique<Impl>(format, attributes)) {}
+LazChunkDecoder::LazChunkDecoder(const LazChunkFormat& format, LazDetail detail)
+    : impl_(std::make_unique<Impl>(format, detail)) {}
 LazChunkDecoder::~LazChunkDecoder() = default;
 LazChunkDecoder::LazChunkDecoder(LazChunkDecoder&&) noexcept = default;
 LazChunkDecoder& LazChunkDecoder::operator=(LazChunkDecoder&&) noexcept = default;
@@ -29,9 +29,12 @@ void LazChunkDecoder::begin(LazBytes& bytes, std::uint64_t count) {
   std::visit([&](auto& chunk) { chunk.begin(bytes, count); }, impl_->chunk);
 }
 
-void LazChunkDecoder::decode(std::span<LatticePoint> points,
-                             std::span<PointAttributes> attributes) {
+void LazChunkDecoder::decode(std::span<LatticePoint> points, std::span<LasFlags> attributes) {
   std::visit([&](auto& chunk) { chunk.decode(points, attributes); }, impl_->chunk);
+}
+
+void LazChunkDecoder::decode_records(std::span<std::byte> records) {
+  std::visit([&](auto& chunk) { chunk.decode_records(records); }, impl_->chunk);
 }
 
 std::size_t LazChunkDecoder::end() {

@@ -23,7 +23,7 @@ struct TableRange {
 };
 
 [[noreturn]] void fail(const InputBytes& source, std::uint64_t byte, const std::string& what) {
-  throw BadInput(source.name(), what, at_byte(byte));
+  throw BadInput(source.name(), what, at_byte(byte), Remedy::kSalvage);
 }
 
 [[noreturn]] void fail_before_chunks(const InputBytes& source, std::uint64_t size) {
@@ -106,7 +106,9 @@ std::size_t shortest_chunk(const LasHeader& las) {
   return las.record_length + sizeof(std::uint32_t) * (las.laz->format.layered ? 1 + layers : 1);
 }
 
-std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeader& las) {
+std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeader& las,
+                                              LazChunksTaken taken) {
+  const bool all = taken == LazChunksTaken::kAll;
   const std::optional<TableRange> range = find_table(source, las);
   if (!range) return std::nullopt;
   const std::uint64_t head = load_at(source, range->offset);
@@ -116,7 +118,7 @@ std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeade
   const std::size_t least = shortest_chunk(las);
   const std::optional<std::uint32_t> chunk_points = las.laz->chunk_points;
   if (version != 0 || chunks > (range->offset - first_chunk) / least ||
-      (chunk_points && chunks < las.count / *chunk_points)) {
+      (!all && chunk_points && chunks < las.count / *chunk_points)) {
     fail(source, range->offset,
          fmt::format("the chunk table at byte {} has version {} and {} chunks, which {} "
                      "points in {} bytes cannot have; the file is corrupt",
@@ -131,13 +133,17 @@ std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeade
   std::uint64_t points = 0;
   try {
     EntryDecoder entries(bytes, !chunk_points);
-    while (points < las.count && table.size() < chunks) {
+    while ((all || points < las.count) && table.size() < chunks) {
       const LazChunk entry = entries.next();
       chunk.bytes = entry.bytes;
-      chunk.count =
-          chunk_points ? std::min<std::uint64_t>(*chunk_points, las.count - points) : entry.count;
+      chunk.count = entry.count;
+      if (chunk_points) {
+        const bool is_cut = points < las.count && (!all || table.size() + 1 == chunks);
+        chunk.count = is_cut ? std::min<std::uint64_t>(*chunk_points, las.count - points)
+                             : std::uint64_t{*chunk_points};
+      }
       if (chunk.bytes < least || chunk.bytes > range->offset - chunk.offset || chunk.count == 0 ||
-          chunk.count > las.count - points) {
+          (!all && chunk.count > las.count - points)) {
         throw Error(fmt::format("there can be no {} points in {} bytes from byte {} on",
                                 chunk.count, chunk.bytes, chunk.offset));
       }
@@ -152,7 +158,7 @@ std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeade
                      "copy",
                      range->offset, table.size(), error.what()));
   }
-  if (points < las.count) {
+  if (!all && points < las.count) {
     fail(source, range->offset,
          fmt::format("the header says {} points, but the chunk table at byte {} lists {}; "
                      "get a complete copy",

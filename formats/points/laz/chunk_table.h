@@ -28,10 +28,18 @@ inline constexpr std::size_t kChunkTablePointer = 8;
 /// What it says where the last bytes of the file are the pointer.
 inline constexpr std::uint64_t kChunkTableAtTheEnd = ~std::uint64_t{0};
 
+/// Which chunks of a table are taken.
+enum class LazChunksTaken {
+  kCounted,  ///< as many as hold the header's number of points
+  kAll,      ///< all. Where only the header could tell of how many points the last one is, and does
+             ///< not, it counts as a full one
+};
+
 /// What the table lists, in a file that can be read from any byte on (`source` is left somewhere).
 /// Nothing if the table was never written.
-/// Throws Error for a table that is not that of a complete file.
-std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeader& las);
+/// Throws Error for a table that is not that of a complete file, or, of all chunks, is damaged.
+std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeader& las,
+                                              LazChunksTaken taken = LazChunksTaken::kCounted);
 
 /// Reads the pointer at the beginning of the points of a source that cannot go back, and returns
 /// what it says of where the chunks end; nothing where the table tells that or is missing.

@@ -19,4 +19,13 @@ std::span<const std::byte> FileBytes::more() {
   return buffer_;
 }
 
+bool FileBytes::at_end() {
+  if (put_back_ > 0) return false;
+  if (left_ == 0) return true;
+  reading_ = true;
+  const bool none = source_.peek(1).empty();
+  reading_ = false;
+  return none;
+}
+
 }  // namespace spillway::detail

@@ -31,6 +31,8 @@ class FileBytes : public LazBytes {
   [[nodiscard]] std::uint64_t left() const { return left_; }
   /// Number of the next byte in the file.
   [[nodiscard]] std::uint64_t position() const { return source_.position() - put_back_; }
+  /// Whether all bytes have been taken that there are, or may be.
+  [[nodiscard]] bool at_end();
   /// Whether an Error came from the source and not from what the bytes say.
   [[nodiscard]] bool read_failed() const { return reading_; }
 

@@ -36,7 +36,9 @@ constinit const PointFormat kLazPoints = {
         [](std::unique_ptr<OutputFile> file, const std::string& /*path*/,
            const PointWriterOptions& options) { return open_laz_writer(std::move(file), options); },
     .header_comes_last =
-        [](const PointWriterOptions& options) { return !options.count || options.attributes; },
+        [](const PointWriterOptions& options) {
+          return !options.count || !options.attributes.empty();
+        },
 };
 
 }  // namespace spillway::detail

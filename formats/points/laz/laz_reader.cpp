@@ -3,15 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <mutex>
+#include <numeric>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "formats/bytes/bytes.h"
+#include "formats/points/las/records/record_unpacking.h"
+#include "formats/points/las/uncompressed_points.h"
 #include "formats/points/laz/chunk_decoder.h"
 #include "formats/points/laz/chunk_table.h"
-#include "formats/points/laz/coding/point14_layers.h"
 #include "formats/points/laz/file_bytes.h"
+#include "formats/points/laz/laz_detail.h"
+#include "formats/points/laz/salvaged_chunks.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -45,36 +51,45 @@ class LazReader : public PointReader {
       : source_(std::move(source)),
         las_(las),
         header_(las_point_header(las, path)),
-        attributes_(options.attributes),
-        withheld_flag_(options.keep_withheld ? 0U : PointAttributes::kWithheld),
+        withheld_flag_(options.keep_withheld ? 0U : LasFlags::kWithheld),
+        salvage_(options.salvage),
         count_(las.count),
         stream_(*source_) {
     if (chosen) {
-      chunks_ = std::move(chosen->chunks);
+      count_chunks(std::move(chosen->chunks));
       header_.regions = std::move(chosen->regions);
-      count_chosen(options);
+      keep_to_bounds(options);
     } else {
       find_chunks();
     }
-    count_ = end_ = header_.count.value();
+    count_ = end_ = header_.count.value_or(las_.count);
     number_chunks();
   }
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
+  void carry(const AttributeLayout& layout) override {
+    whole_records_ = needs_records(layout);
+    unpacking_ = LasRecordUnpacking(whole_records_ ? las_.fields() : las_flag_fields(), layout);
+    idle_.clear();
+  }
+
   bool fetch(RawPoints& raw) override {
     raw.decoded.clear();
     raw.count = 0;
-    if (left_ == 0) {
-      if (next_ == end_) return false;
-      if (las_.laz->format.layered) {
-        fetch_layered(raw);
-      } else {
-        fetch_pointwise(raw);
-      }
+    if (left_ == 0 && is_done()) return tell_of_more(raw);
+    try {
+      fetch_next(raw);
+    } catch (const BadInput& error) {
+      if (!salvage_) throw;
+      lose(raw, error);
     }
-    if (raw.count == 0) decode_in_order(raw.decoded);
     if (!header_.regions.empty()) raw.region = next_chunk_ - 1;
+    if (next_ > count_ && !std::exchange(told_of_more_, true)) {
+      raw.decoded.notices.push_back(fmt::format(
+          "the header counts {} points, but more chunks of them follow, which are read, too",
+          las_.count));
+    }
     return true;
   }
 
@@ -90,9 +105,15 @@ class LazReader : public PointReader {
       decode_points(*decoder, raw.first, raw.count, block);
       check_end(decoder->end() == 0);
     } catch (const Error& error) {
-      fail_at(raw.offset, error);
+      if (!salvage_) fail_at(raw.offset, error);
+      block.clear();
+      block.lost = raw.count;
+      block.notices.push_back(text_of_loss(raw.count, fault_at(raw.offset, error)));
+      return;
     }
     give_back(std::move(decoder));
+    block.lost = 0;
+    block.notices = std::move(raw.decoded.notices);
   }
 
   /// A piece is a chunk of the list.
@@ -114,12 +135,15 @@ class LazReader : public PointReader {
   }
 
   [[noreturn]] void fail(const std::string& what, FilePlace place = {}) const {
-    throw BadInput(source_->name(), what, place);
+    throw BadInput(source_->name(), what, place, Remedy::kSalvage);
+  }
+
+  static std::string fault_at(std::uint64_t offset, const Error& error) {
+    return fmt::format("the chunk at byte {}: {}", offset, error.what());
   }
 
   [[noreturn]] void fail_at(std::uint64_t offset, const Error& error) const {
-    fail(fmt::format("the chunk at byte {}: {}; get a complete copy", offset, error.what()),
-         at_byte(offset));
+    fail(fault_at(offset, error) + "; get a complete copy", at_byte(offset));
   }
 
   [[noreturn]] void fail_truncated() const {
@@ -128,13 +152,36 @@ class LazReader : public PointReader {
          at_byte(source_->position()));
   }
 
+  static std::string text_of_loss(std::uint64_t lost, std::string_view why) {
+    return fmt::format("{} point{} lost: {}", lost, lost == 1 ? " is" : "s are", why);
+  }
+
+  /// Leaves out what is left of a chunk that is not as it should be. Without a list nobody knows
+  /// where the next one begins: then all others are lost, too.
+  void lose(RawPoints& raw, const BadInput& error) {
+    raw.bytes.clear();
+    raw.count = 0;
+    left_ = 0;
+    PointBlock& block = raw.decoded;
+    if (chunks_) {
+      const LazChunk& chunk = (*chunks_)[next_chunk_ - 1];
+      block.lost = first_of_chunk_[next_chunk_ - 1] + chunk.count - next_;
+      next_ += block.lost;
+    } else {
+      block.lost = count_ - std::min(count_, next_);
+      end_ = next_;
+      chunks_end_ = kUnlimited;
+    }
+    std::string_view why = error.what();
+    if (why.starts_with(source_->name() + ": ")) why.remove_prefix(source_->name().size() + 2);
+    if (block.lost > 0) block.notices.push_back(text_of_loss(block.lost, why));
+  }
+
   static void check_end(bool at_end) {
     if (!at_end) throw Error("its points end before it does");
   }
 
-  void count_chosen(const PointReaderOptions& options) {
-    header_.count = 0;
-    for (const LazChunk& chunk : *chunks_) *header_.count += chunk.count;
+  void keep_to_bounds(const PointReaderOptions& options) {
     if (options.bounds && header_.extent) intersect(*options.bounds);
   }
 
@@ -149,9 +196,71 @@ class LazReader : public PointReader {
         table->more == 1 ? "is" : "are"));
   }
 
+  /// Where there is no list, says at the end that chunks follow the last point that the header
+  /// counts.
+  bool tell_of_more(RawPoints& raw) {
+    if (chunks_ || is_unchunked() || chunks_end_ == kUnlimited) return false;
+    const std::uint64_t begin = stream_.position();
+    if (std::exchange(chunks_end_, kUnlimited) < begin + shortest_chunk(las_)) return false;
+    raw.decoded.notices.push_back(fmt::format(
+        "the header counts {} points, but more chunks of them follow, which are not read; write "
+        "the file again, or correct the count in the header ({})",
+        las_.count, place_of_count(las_)));
+    return true;
+  }
+
+  /// A file without points needs no table, but may have chunks that its header does not count.
+  void look_for_uncounted_chunks(bool seekable) {
+    if (is_unchunked()) return;
+    try {
+      if (seekable) {
+        take_table(read_chunk_table(*source_, las_));
+      } else {
+        chunks_end_ = read_end_of_chunks(*source_, las_).value_or(kUnlimited);
+      }
+    } catch (const BadInput&) {
+      chunks_end_ = kUnlimited;
+    }
+  }
+
+  /// Finds what there is of the chunks, whatever the header counts.
+  void salvage_what_is_there(bool seekable) {
+    std::optional<SalvagedChunks> found;
+    if (seekable && !is_unchunked()) found = salvage_chunks(*source_, las_);
+    if (found) {
+      header_.lost = found->lost;
+      if (found->more) header_.extent.reset();  // may be of those that the header counts
+      std::ranges::move(found->notices, std::back_inserter(header_.notices));
+      count_chunks(std::move(found->chunks));
+      return;
+    }
+    header_.count.reset();
+    if (is_unchunked()) {
+      chunks_end_ = las_.offset_behind_points.value_or(kUnlimited);
+      source_->seek(las_.offset_to_points);
+    } else if (seekable) {
+      chunks_end_ = plausible_end_of_chunks(*source_, las_).value_or(kUnlimited);
+    } else {
+      chunks_end_ = read_end_of_chunks(*source_, las_).value_or(kUnlimited);
+    }
+    refuse_unlisted(seekable);
+  }
+
+  /// Takes a list, and the number of points in it.
+  void count_chunks(std::vector<LazChunk> chunks) {
+    header_.count = 0;
+    for (const LazChunk& chunk : chunks) *header_.count += chunk.count;
+    chunks_ = std::move(chunks);
+  }
+
   void find_chunks() {
     const bool seekable = source_->seekable();
+    if (salvage_) {
+      salvage_what_is_there(seekable);
+      return;
+    }
     if (las_.count == 0) {
+      look_for_uncounted_chunks(seekable);
       if (seekable) chunks_.emplace();
       return;
     }
@@ -165,14 +274,18 @@ class LazReader : public PointReader {
     } else {
       chunks_end_ = read_end_of_chunks(*source_, las_).value_or(kUnlimited);
     }
-    if (!chunks_ && !las_.laz->chunk_points && !las_.laz->format.layered) {
-      fail(seekable
-               ? "the table of the compressed chunks is missing, and they have different "
-                 "sizes; write the file again"
-               : "its compressed chunks have different sizes, which are in a table at its end; "
-                 "give the file by its name instead of on a pipe",
-           at_byte(las_.offset_to_points));
-    }
+    if (!chunks_) refuse_unlisted(seekable);
+  }
+
+  /// Throws for chunks that can only be found by their table.
+  void refuse_unlisted(bool seekable) const {
+    if (is_unchunked() || las_.laz->chunk_points || las_.laz->format.layered) return;
+    throw BadInput(source_->name(),
+                   seekable ? "the table of the compressed chunks is missing, and they have "
+                              "different sizes; write the file again"
+                            : "its compressed chunks have different sizes, which are in a table at "
+                              "its end; give the file by its name instead of on a pipe",
+                   at_byte(las_.offset_to_points));
   }
 
   void number_chunks() {
@@ -201,6 +314,17 @@ class LazReader : public PointReader {
     return las_.laz->compressor == LazCompressor::kPointwise;
   }
 
+  /// Whether chunks of a pipe are taken as they come, whatever the header counts: they tell their
+  /// numbers of points.
+  [[nodiscard]] bool takes_all() const { return salvage_ && !chunks_ && las_.laz->format.layered; }
+
+  /// Whether there are no more chunks.
+  [[nodiscard]] bool is_done() const {
+    if (next_ < end_) return false;
+    return !takes_all() || chunks_end_ == kUnlimited ||
+           stream_.position() + shortest_chunk(las_) > chunks_end_;
+  }
+
   /// The next chunk of the list, with the source at its begin; or what is known of the chunk that
   /// begins where the last one ended: most points and bytes that it may have.
   LazChunk next_chunk() {
@@ -208,7 +332,8 @@ class LazReader : public PointReader {
       const std::uint64_t most =
           is_unchunked() ? kUnlimited : las_.laz->chunk_points.value_or(kUnlimited);
       const std::uint64_t begin = stream_.position();
-      return {begin, chunks_end_ - std::min(begin, chunks_end_), std::min(most, count_ - next_)};
+      return {begin, chunks_end_ - std::min(begin, chunks_end_),
+              takes_all() ? most : std::min(most, count_ - next_)};
     }
     const LazChunk& chunk = (*chunks_)[next_chunk_++];
     if (source_->position() != chunk.offset) source_->seek(chunk.offset);
@@ -221,6 +346,7 @@ class LazReader : public PointReader {
   [[nodiscard]] bool may_leave(std::uint64_t bytes, std::uint64_t points) const {
     if (bytes == 0) return true;
     if (chunks_) return false;
+    if (takes_all()) return true;
     if (points < count_ || chunks_end_ == kUnlimited) return true;
     const std::uint32_t of_each = las_.laz->chunk_points.value_or(1);
     return points % of_each == 0 && bytes >= shortest_chunk(las_);
@@ -233,6 +359,17 @@ class LazReader : public PointReader {
     next_ += chunk.count;
   }
 
+  void fetch_next(RawPoints& raw) {
+    if (left_ == 0) {
+      if (las_.laz->format.layered) {
+        fetch_layered(raw);
+      } else {
+        fetch_pointwise(raw);
+      }
+    }
+    if (raw.count == 0) decode_in_order(raw.decoded);
+  }
+
   void fetch_pointwise(RawPoints& raw) {
     const LazChunk chunk = next_chunk();
     const bool listed = chunks_.has_value();
@@ -243,7 +380,26 @@ class LazReader : public PointReader {
       return;
     }
     stream_.limit(chunk.bytes);
+    if (salvage_ && listed) {
+      prove(chunk, stream_);
+      source_->seek(chunk.offset);
+      stream_.limit(chunk.bytes);
+    }
     begin_in_order(chunk, stream_);
+  }
+
+  /// Decodes a large chunk without giving out its points, which in blocks could not be taken back.
+  void prove(const LazChunk& chunk, LazBytes& bytes) {
+    const std::uint64_t first = next_;
+    PointBlock dropped;
+    try {
+      begin_in_order(chunk, bytes);
+      while (left_ > 0) decode_in_order(dropped);
+    } catch (const Error&) {
+      next_ = first;
+      throw;
+    }
+    next_ = first;
   }
 
   /// Reads the layers that are wanted, which are the first, and marks the others as empty.
@@ -258,7 +414,7 @@ class LazReader : public PointReader {
     if (head > chunk.bytes) fail_layers(chunk, head);
     append(raw.bytes, head);
     const auto count = load<std::uint32_t>(&raw.bytes[count_at]);
-    const bool exact = chunks_ || las_.laz->chunk_points;
+    const bool exact = chunks_ || (las_.laz->chunk_points && !takes_all());
     if (exact ? count != chunk.count : count == 0 || count > chunk.count) {
       fail(fmt::format(
                "the chunk at byte {} says it has {} points, but {} are expected; the file is "
@@ -269,8 +425,7 @@ class LazReader : public PointReader {
     chunk.count = count;
     std::uint64_t wanted = 0;
     std::uint64_t others = 0;
-    const std::size_t wanted_layers =
-        needs_attributes() ? laz::Point14Layers::kLayers : laz::Point14Layers::kCoordinateLayers;
+    const std::size_t wanted_layers = laz_wanted_layers(format, detail());
     for (std::size_t i = 0; i < layers; ++i) {
       std::byte* const size = &raw.bytes[sizes_at + i * sizeof(std::uint32_t)];
       (i < wanted_layers ? wanted : others) += load<std::uint32_t>(size);
@@ -285,6 +440,10 @@ class LazReader : public PointReader {
     if (raw.bytes.size() <= kLargestPieceBytes && chunk.count <= kLargestPiecePoints) {
       hand_out(raw, chunk);
       return;
+    }
+    if (salvage_ && chunks_) {
+      MemoryBytes bytes_to_prove(raw.bytes);
+      prove(chunk, bytes_to_prove);
     }
     held_ = std::move(raw.bytes);
     raw.bytes = {};
@@ -319,12 +478,41 @@ class LazReader : public PointReader {
 
   void decode_in_order(PointBlock& block) {
     const std::uint64_t count = std::min<std::uint64_t>(left_, kBlockPoints);
+    if (salvage_ && !chunks_ && !las_.laz->format.layered) {
+      decode_while_whole(count, block);
+      return;
+    }
     checked([&] {
       decode_points(*in_order_, next_, count, block);
       next_ += count;
       left_ -= count;
       if (left_ == 0) end_in_order();
     });
+  }
+
+  /// The same point by point, of a stream that may be cut off: then the block has the points of
+  /// which all bytes are there when it throws, and none if something else is wrong.
+  void decode_while_whole(std::uint64_t count, PointBlock& block) {
+    Details details = details_of(count, block);
+    const std::uint64_t first = next_;
+    std::uint64_t whole = 0;
+    try {
+      for (std::uint64_t i = 0; i < count; ++i) {
+        decode_part(*in_order_, i, 1, block, details);
+        // From here on the decoder could go on with what it has read ahead.
+        if (in_order_->end() > 0 || !stream_.at_end()) whole = i + 1;
+      }
+      next_ += count;
+      left_ -= count;
+      if (left_ == 0) end_in_order();
+      complete(first, count, details, block);
+    } catch (const Error& error) {
+      if (stream_.read_failed()) throw;
+      if (!stream_.at_end()) whole = 0;
+      next_ = first + whole;
+      complete(first, whole, details, block);
+      fail_at(in_order_at_, error);
+    }
   }
 
   void end_in_order() {
@@ -350,39 +538,109 @@ class LazReader : public PointReader {
     }
   }
 
+  /// What is decoded of points besides coordinates, as it is needed.
+  struct Details {
+    std::vector<LasFlags> flags;
+    std::vector<std::byte> records;
+  };
+
   /// Decodes `count` points, the first of which has that number, and leaves out withheld ones.
   void decode_points(LazChunkDecoder& decoder, std::uint64_t first, std::uint64_t count,
                      PointBlock& block) const {
+    Details details = details_of(count, block);
+    decode_part(decoder, 0, count, block, details);
+    complete(first, count, details, block);
+  }
+
+  /// Makes room for so many points, in the block, too.
+  [[nodiscard]] Details details_of(std::uint64_t count, PointBlock& block) const {
+    block.points.resize(count);
+    Details details;
+    if (whole_records_) {
+      details.records.resize(count * las_.record_length);
+    } else if (needs_flags()) {
+      details.flags.resize(count);
+    }
+    return details;
+  }
+
+  /// Decodes the points from the `begin`-th one on.
+  void decode_part(LazChunkDecoder& decoder, std::size_t begin, std::size_t count,
+                   PointBlock& block, Details& details) const {
+    if (whole_records_) {
+      const std::size_t length = las_.record_length;
+      decoder.decode_records(std::span(details.records).subspan(begin * length, count * length));
+    } else {
+      decoder.decode(std::span(block.points).subspan(begin, count),
+                     details.flags.empty() ? std::span<LasFlags>()
+                                           : std::span(details.flags).subspan(begin, count));
+    }
+  }
+
+  /// Makes a block of the first `count` points that were decoded.
+  void complete(std::uint64_t first, std::uint64_t count, Details& details,
+                PointBlock& block) const {
     block.points.resize(count);
     block.index.resize(count);
-    block.attributes.resize(needs_attributes() ? count : 0);
-    decoder.decode(block.points, block.attributes);
-    for (std::size_t i = 0; i < count; ++i) block.index[i] = first + i;
-    if (withheld_flag_ != 0) drop_withheld(block);
-    if (!attributes_) block.attributes.clear();
-  }
-
-  void drop_withheld(PointBlock& block) const {
-    const std::size_t count = block.size();
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      block.points[kept] = block.points[i];
-      block.index[kept] = block.index[i];
-      block.attributes[kept] = block.attributes[i];
-      kept += (block.attributes[i].flags & withheld_flag_) == 0 ? 1 : 0;
+    std::iota(block.index.begin(), block.index.end(), first);
+    block.withheld = 0;
+    if (whole_records_) {
+      details.records.resize(count * las_.record_length);
+      complete_with_records(details.records, block);
+    } else if (!details.flags.empty()) {
+      details.flags.resize(count);
+      complete_with_flags(details.flags, block);
     }
-    block.points.resize(kept);
-    block.index.resize(kept);
-    block.attributes.resize(kept);
-    block.withheld = count - kept;
+    block.withheld = count - block.size();
   }
 
-  [[nodiscard]] bool needs_attributes() const { return attributes_ || withheld_flag_ != 0; }
+  void complete_with_flags(const std::vector<LasFlags>& flags, PointBlock& block) const {
+    if (!unpacking_.empty()) {
+      unpacking_.unpack(std::as_bytes(std::span(flags)), sizeof(LasFlags), block.attributes);
+    }
+    if (withheld_flag_ == 0) return;
+    block.keep([&](std::size_t i) { return (flags[i].flags & withheld_flag_) == 0; });
+  }
+
+  void complete_with_records(const std::vector<std::byte>& records, PointBlock& block) const {
+    const std::size_t length = las_.record_length;
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      const std::byte* const record = &records[i * length];
+      block.points[i] = {static_cast<double>(load<std::int32_t>(record)),
+                         static_cast<double>(load<std::int32_t>(record + 4)),
+                         static_cast<double>(load<std::int32_t>(record + 8))};
+    }
+    unpacking_.unpack(records, length, block.attributes);
+    if (withheld_flag_ == 0) return;
+    const auto flag = static_cast<std::byte>(las_withheld_mask(las_.point_format));
+    block.keep(
+        [&](std::size_t i) { return (records[i * length + kLasFlagByte] & flag) == std::byte{}; });
+  }
+
+  /// Whether the layout has something that the layers of flags do not tell.
+  [[nodiscard]] bool needs_records(const AttributeLayout& layout) const {
+    const std::vector<AttributeField> flags = las_flag_fields();
+    const auto has = [](const std::vector<AttributeField>& fields, const std::string& name) {
+      return std::ranges::any_of(
+          fields, [&](const AttributeField& field) { return field.attribute.name == name; });
+    };
+    const std::vector<AttributeField> all = las_.fields();
+    return std::ranges::any_of(layout.fields(), [&](const AttributeField& field) {
+      return has(all, field.attribute.name) && !has(flags, field.attribute.name);
+    });
+  }
+
+  [[nodiscard]] bool needs_flags() const { return !unpacking_.empty() || withheld_flag_ != 0; }
+
+  [[nodiscard]] LazDetail detail() const {
+    if (whole_records_) return LazDetail::kRecords;
+    return needs_flags() ? LazDetail::kFlags : LazDetail::kCoordinates;
+  }
 
   std::unique_ptr<LazChunkDecoder> take_decoder() const {
     const std::lock_guard lock(idle_mutex_);
     if (idle_.empty()) {
-      return std::make_unique<LazChunkDecoder>(las_.laz->format, needs_attributes());
+      return std::make_unique<LazChunkDecoder>(las_.laz->format, detail());
     }
     std::unique_ptr<LazChunkDecoder> decoder = std::move(idle_.back());
     idle_.pop_back();
@@ -397,8 +655,11 @@ class LazReader : public PointReader {
   std::unique_ptr<InputBytes> source_;
   LasHeader las_;
   PointHeader header_;
-  bool attributes_;
+  LasRecordUnpacking unpacking_;  // of attributes that are wanted
+  bool whole_records_ = false;    // for these
   unsigned withheld_flag_;
+  bool salvage_;
+  bool told_of_more_ = false;
   std::uint64_t count_ = 0;  // of all records that come
   std::uint64_t next_ = 0;   // number of the next record
   std::uint64_t end_ = 0;    // number of the first record that is not to be read

@@ -18,9 +18,10 @@ namespace {
 /// As in nearly all files.
 constexpr std::uint32_t kChunkPoints = 50'000;
 
-LazRecord laz_record_for(int point_format) {
+LazRecord laz_record_for(const LasTarget& target) {
   LazRecord record;
-  record.format = laz_format_to_write(point_format, 0);
+  const std::size_t extra = target.record_length() - kLasRecordLengths.at(target.point_format);
+  record.format = laz_format_to_write(target.point_format, extra);
   record.compressor =
       record.format.layered ? LazCompressor::kLayeredChunked : LazCompressor::kPointwiseChunked;
   record.chunk_points = kChunkPoints;
@@ -40,7 +41,7 @@ class LazWriter : public PointWriter {
         count_(options.count),
         sharing_(options.sharing),
         content_(file_->name(), options),
-        laz_(laz_record_for(content_.point_format())),
+        laz_(laz_record_for(content_.target())),
         chunk_bytes_(kChunkPoints * content_.record_length()),
         encoded_(std::max<std::size_t>(1, sharing_.at_once)) {
     records_.reserve(encoded_.size() * chunk_bytes_);
@@ -54,24 +55,25 @@ class LazWriter : public PointWriter {
     end_ = head.size();
   }
 
-  void write(std::span<const LatticePoint> points,
-             std::span<const PointAttributes> attributes) override {
+  void write(std::span<const LatticePoint> points, std::span<const std::byte> attributes) override {
+    const std::size_t record = points.empty() ? 0 : attributes.size() / points.size();
     while (!points.empty()) {
       const std::size_t room = encoded_.size() * kChunkPoints - waiting();
       const std::size_t size = std::min(points.size(), room);
-      const std::span<const PointAttributes> block =
-          attributes.first(std::min(attributes.size(), size));
-      content_.append_records(points.first(size), block, records_);
+      content_.append_records(points.first(size), attributes.first(size * record), records_);
       if (size == room) write_chunks();
       points = points.subspan(size);
-      attributes = attributes.subspan(block.size());
+      attributes = attributes.subspan(size * record);
     }
   }
 
   void finish() override {
     check_written(*file_, count_, content_.count());
     write_chunks();
-    file_->write(chunk_table_bytes(chunks_, false));
+    const std::vector<std::byte> table = chunk_table_bytes(chunks_, false);
+    file_->write(table);
+    const auto records = content_.extended_records(end_ + table.size());
+    for (const std::vector<std::byte>& record : records) file_->write(record);
     const auto pointer = pointer_to(end_);
     if (!file_->rewrite(pointer_at_, pointer)) file_->write(pointer);
     file_->rewrite(0, content_.final_header());

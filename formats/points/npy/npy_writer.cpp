@@ -22,7 +22,7 @@ class NpyWriter : public PointWriter {
   }
 
   void write(std::span<const LatticePoint> points,
-             std::span<const PointAttributes> /*attributes*/) override {
+             std::span<const std::byte> /*attributes*/) override {
     constexpr std::size_t kBlockPoints = 8192;
     while (!points.empty()) {
       const std::span<const LatticePoint> block =

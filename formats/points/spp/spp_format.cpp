@@ -17,6 +17,7 @@ constinit const PointFormat kSppPoints = {
     .title = "spp",
     .extensions = kExtensions,
     .holds_crs = true,
+    .holds_attributes = true,
     .holds_regions = true,
     .largest_integer = 0x1p53,
     .recognises = [](std::string_view text) { return text.starts_with(kSppMagic); },

@@ -28,6 +28,7 @@ inline constexpr std::uint32_t kSppLastOfCell = 6;  ///< no more points in this 
 inline constexpr std::uint32_t kSppHasLattice = 1;
 inline constexpr std::uint32_t kSppHasCount = 2;
 inline constexpr std::uint32_t kSppHasExtent = 4;
+inline constexpr std::uint32_t kSppHasAttributes = 8;
 
 /// The most points in a block, and bytes in one of any kind; what claims more is corrupt.
 inline constexpr std::size_t kSppBlockPoints = 65536;

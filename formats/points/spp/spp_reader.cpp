@@ -10,6 +10,8 @@
 
 #include "formats/blocks/block_stream.h"
 #include "formats/blocks/columns.h"
+#include "formats/points/attributes/record_conversion.h"
+#include "formats/points/spp/spp_attributes.h"
 #include "formats/points/spp/spp_cells.h"
 #include "formats/points/spp/spp_coordinates.h"
 #include "formats/points/spp/spp_format.h"
@@ -44,6 +46,11 @@ class SppReader : public PointReader {
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
+  void carry(const AttributeLayout& layout) override {
+    carried_ = layout;
+    conversion_ = RecordConversion(header_.attributes.fields(), layout.fields());
+  }
+
   bool fetch(RawPoints& raw) override {
     raw.decoded.clear();
     if (ended_) return false;
@@ -76,9 +83,10 @@ class SppReader : public PointReader {
     header_.coordinates = static_cast<int>(coordinates);
     const auto flags = stream_.take<std::uint32_t>();
     const bool is_sorted = version == kSppSortedVersion;
-    if (flags > (is_sorted ? kSppHasLattice : kSppHasLattice | kSppHasCount | kSppHasExtent)) {
-      stream_.fail("unknown flags are set");
-    }
+    const std::uint32_t known =
+        is_sorted ? kSppHasLattice
+                  : kSppHasLattice | kSppHasCount | kSppHasExtent | kSppHasAttributes;
+    if ((flags & ~known) != 0) stream_.fail("unknown flags are set");
     if ((flags & kSppHasLattice) != 0) {
       Lattice& lattice = header_.lattice.emplace();
       lattice.scale = stream_.take<std::array<double, 3>>();
@@ -91,6 +99,7 @@ class SppReader : public PointReader {
     if ((flags & kSppHasCount) != 0) header_.count = stream_.take<std::uint64_t>();
     if ((flags & kSppHasExtent) != 0) header_.extent = stream_.take_extent();
     const auto cells = is_sorted ? stream_.take<std::uint64_t>() : 0;
+    if ((flags & kSppHasAttributes) != 0) header_.attributes = take_attribute_list(stream_);
     header_.crs = std::string(as_text(stream_.left()));
     if (is_sorted) parse_cells(cells);
   }
@@ -152,10 +161,26 @@ class SppReader : public PointReader {
       if (cells_) cells_->check_inside(column_, axis, points_);
       for (std::size_t i = 0; i < size; ++i) block.points[before + i][axis] = column_[i];
     }
+    if (!header_.attributes.empty()) read_attributes(columns, size, block);
     columns.expect_end();
     block.index.resize(before + size);
     for (std::size_t i = 0; i < size; ++i) block.index[before + i] = points_ + i;
     points_ += size;
+  }
+
+  /// Those that are carried, of points that are added to the block.
+  void read_attributes(ColumnReader& columns, std::size_t count, PointBlock& block) {
+    records_.clear();
+    if (!read_attribute_columns(columns, header_.attributes, count, records_)) {
+      stream_.fail("an attribute has a number that its type does not hold");
+    }
+    if (carried_.empty()) return;
+    const std::size_t before = block.attributes.size();
+    block.attributes.resize(before + count * carried_.record_size());
+    const auto misfit =
+        conversion_.convert(records_.data(), header_.attributes.record_size(),
+                            &block.attributes[before], carried_.record_size(), count);
+    if (misfit) stream_.fail("an attribute has a number that other inputs do not hold");
   }
 
   void parse_trailer() {
@@ -170,6 +195,9 @@ class SppReader : public PointReader {
 
   BlockStream stream_;
   PointHeader header_;
+  AttributeLayout carried_;
+  RecordConversion conversion_;      // to what is carried
+  std::vector<std::byte> records_;   // of the block
   std::optional<SppCells> cells_;    // if the stream is sorted
   std::size_t cells_of_region_ = 1;  // the last region may have fewer
   std::vector<double> column_;

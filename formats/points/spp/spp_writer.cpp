@@ -10,6 +10,7 @@
 #include "formats/blocks/block.h"
 #include "formats/blocks/columns.h"
 #include "formats/bytes/bytes.h"
+#include "formats/points/spp/spp_attributes.h"
 #include "formats/points/spp/spp_cells.h"
 #include "formats/points/spp/spp_coordinates.h"
 #include "formats/points/spp/spp_format.h"
@@ -27,8 +28,11 @@ void append_value(std::vector<std::byte>& out, const T& value) {
 class SppWriter : public PointWriter {
  public:
   SppWriter(std::unique_ptr<OutputFile> file, const PointWriterOptions& options)
-      : file_(std::move(file)), options_(options), columns_(options.coordinates) {
-    for (std::vector<double>& column : columns_) column.reserve(kSppBlockPoints);
+      : file_(std::move(file)),
+        options_(options),
+        most_points_(spp_block_points(options.attributes)),
+        columns_(options.coordinates) {
+    for (std::vector<double>& column : columns_) column.reserve(most_points_);
     if (!options.by_regions) write_header(kSppVersion);
   }
 
@@ -52,8 +56,8 @@ class SppWriter : public PointWriter {
     }
   }
 
-  void write(std::span<const LatticePoint> points,
-             std::span<const PointAttributes> /*attributes*/) override {
+  void write(std::span<const LatticePoint> points, std::span<const std::byte> attributes) override {
+    const std::size_t record = options_.attributes.record_size();
     while (!points.empty()) {
       const std::size_t room = block_points() - columns_[0].size();
       if (room == 0) throw CannotWrite(file_->name(), "more points come than cells have");
@@ -61,8 +65,11 @@ class SppWriter : public PointWriter {
       for (std::size_t axis = 0; axis < columns_.size(); ++axis) {
         for (const LatticePoint& p : block) columns_[axis].push_back(p[axis]);
       }
+      const std::span<const std::byte> some = attributes.first(block.size() * record);
+      attributes_.insert(attributes_.end(), some.begin(), some.end());
       if (block.size() == room) flush();
       points = points.subspan(block.size());
+      attributes = attributes.subspan(some.size());
     }
   }
 
@@ -84,7 +91,8 @@ class SppWriter : public PointWriter {
     append_value(content_, version);
     append_value(content_, static_cast<std::uint32_t>(options_.coordinates));
     append_value(content_, (options_.lattice ? kSppHasLattice : 0) |
-                               (has_count ? kSppHasCount : 0) | (has_extent ? kSppHasExtent : 0));
+                               (has_count ? kSppHasCount : 0) | (has_extent ? kSppHasExtent : 0) |
+                               (options_.attributes.empty() ? 0 : kSppHasAttributes));
     if (options_.lattice) {
       append_value(content_, options_.lattice->scale);
       append_value(content_, options_.lattice->offset);
@@ -95,6 +103,7 @@ class SppWriter : public PointWriter {
       append_value(content_, options_.extent->hi);
     }
     if (is_sorted) append_value(content_, std::uint64_t{cells_.size()});
+    if (!options_.attributes.empty()) append_attribute_list(content_, options_.attributes);
     const std::span<const std::byte> crs = as_bytes_of(options_.crs);
     content_.insert(content_.end(), crs.begin(), crs.end());
     write_block(kSppHeader);
@@ -102,7 +111,7 @@ class SppWriter : public PointWriter {
 
   /// How many points the block that is collected will have.
   [[nodiscard]] std::size_t block_points() const {
-    if (!options_.by_regions) return kSppBlockPoints;
+    if (!options_.by_regions) return most_points_;
     if (cell_ == cells_.size()) return 0;
     return static_cast<std::size_t>(
         std::min<std::uint64_t>(kSppBlockPoints, cells_[cell_] - in_cell_));
@@ -125,6 +134,10 @@ class SppWriter : public PointWriter {
       }
       append_column(content_, column);
     }
+    if (!attributes_.empty()) {
+      append_attribute_columns(content_, options_.attributes, attributes_);
+      attributes_.clear();
+    }
     write_block(kind_of_block(size));
     written_ += size;
     for (std::vector<double>& column : columns_) column.clear();
@@ -144,8 +157,8 @@ class SppWriter : public PointWriter {
   void write_block(std::uint32_t kind) {
     if (content_.size() > kSppLargestBlock) {
       throw CannotWrite(file_->name(),
-                        fmt::format("the description of the coordinate system takes more than {} "
-                                    "bytes; shorten it",
+                        fmt::format("the description of the coordinate system, or of the "
+                                    "attributes of a point, takes more than {} bytes; shorten it",
                                     kSppLargestBlock));
     }
     append_block(block_, kind, content_);
@@ -159,6 +172,8 @@ class SppWriter : public PointWriter {
   std::vector<std::uint64_t> cells_;          // of a sorted stream: how many points each has
   std::size_t cell_ = 0;                      // that is being written
   std::uint64_t in_cell_ = 0;                 // points in its blocks so far
+  std::size_t most_points_;                   // of a block
+  std::vector<std::byte> attributes_;         // of points collected for the next block
   std::vector<std::vector<double>> columns_;  // by axis: points collected for the next block
   std::uint64_t written_ = 0;                 // points in the blocks so far
   std::vector<std::byte> content_;

@@ -47,6 +47,12 @@ class TextColumns {
 
   /// 2 or 3.
   [[nodiscard]] int coordinates() const { return coordinates_; }
+  [[nodiscard]] Separator separator() const { return separator_; }
+  [[nodiscard]] bool decimal_commas() const { return decimal_commas_; }
+  /// Whether that column, counted from 0, is x, y or z.
+  [[nodiscard]] bool has_coordinate(std::size_t column) const {
+    return column < axes_.size() && axes_[column] >= 0;
+  }
 
   /// Reads the coordinates; false if one of the columns is missing or no number, and if what
   /// follows does not go with the file's separator and decimal sign.

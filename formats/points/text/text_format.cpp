@@ -18,6 +18,7 @@ constinit const PointFormat kTextPoints = {
     .title = "text",
     .extensions = kExtensions,
     .is_text = true,
+    .holds_attributes = true,
     .open_reader =
         [](PointInput input, const PointReaderOptions& options) {
           return open_text_reader(std::move(input.source), input.path, std::move(input.content),
@@ -29,6 +30,8 @@ constinit const PointFormat kTextPoints = {
           return open_text_writer(std::move(file), options,
                                   extension_of(path) == "csv" ? ',' : ' ');
         },
+    .writes_attributes =
+        [](std::string_view path) { return extension_of(std::string(path)) == "csv"; },
 };
 
 }  // namespace spillway::detail

@@ -116,6 +116,7 @@ class Opening {
              resembles_number(fields[column]);
     });
     if (is_header) {
+      names_.assign(fields.begin(), fields.end());
       if (!next_data_line()) return without_rows(first_columns(layout));
       layout = layout_of_first_point();
     }
@@ -198,6 +199,7 @@ class Opening {
   /// The columns that names tell, for the rows that follow.
   TextColumns named_columns(const NamesLine& names, Separator separator, bool decimal_commas) {
     const std::array<int, 3>& column = names.choice.column;
+    names_.assign(names.names.begin(), names.names.end());
     TextColumns columns(separator, decimal_commas, column, names.names.size(), true);
     if (!names.choice.is_depth) return columns;
     const auto name = quoted(names.names[static_cast<std::size_t>(column[2])]);
@@ -413,8 +415,8 @@ class Opening {
   }
 
   TextOpening without_rows(TextColumns columns) {
-    return {std::move(columns), std::nullopt, scan_points_,
-            scan_line_,         invalid_,     std::move(notices_)};
+    return {std::move(columns), std::nullopt,      scan_points_,       scan_line_,
+            invalid_,           std::move(names_), std::move(notices_)};
   }
 
   [[noreturn]] void fail(const std::string& what, Remedy remedy = Remedy::kNone) const {
@@ -431,6 +433,7 @@ class Opening {
   std::vector<CommentHeader> comments_;
   std::optional<std::uint64_t> scan_points_;
   std::uint64_t scan_line_ = 0;
+  std::vector<std::string> names_;  // of columns
   std::vector<std::string> notices_;
 };
 

@@ -22,6 +22,7 @@ struct TextOpening {
   std::optional<std::uint64_t> scan_points;
   std::uint64_t scan_line = 0;
   std::uint64_t invalid = 0;         ///< rows that were left out before the first point
+  std::vector<std::string> names;    ///< of all columns; none if they have no names
   std::vector<std::string> notices;  ///< of what was taken where the file leaves some doubt
 };
 

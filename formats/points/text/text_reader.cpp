@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "formats/bytes/line_reader.h"
+#include "formats/points/text/text_attributes.h"
 #include "formats/points/text/text_columns.h"
 #include "formats/points/text/text_opening.h"
 #include "src/error.h"
@@ -31,7 +32,10 @@ class TextReader : public PointReader {
         invalid_before_(opening_.invalid),
         piece_bytes_(piece_bytes) {
     has_first_ = opening_.first_row.has_value();
-    if (has_first_) line_ = *opening_.first_row;
+    if (has_first_) {
+      line_ = *opening_.first_row;
+      attributes_ = TextAttributes(columns_, line_, opening_.names);
+    }
     begin_ = has_first_ ? lines_.line_begin() : lines_.position();
     // Where one scan of a PTS ends and the next one's count stands only what is before tells.
     in_pieces_ = path != "-" && !content_ && !opening_.scan_points && source_->seekable();
@@ -39,7 +43,10 @@ class TextReader : public PointReader {
     header_.name = path;
     header_.format = "text";
     header_.coordinates = columns_.coordinates();
+    header_.attributes = attributes_.layout();
   }
+
+  void carry(const AttributeLayout& layout) override { attributes_.carry(layout); }
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
@@ -127,6 +134,10 @@ class TextReader : public PointReader {
                        lines_.line_name(), quoted(line_)),
            lines_.place());
     }
+    if (attributes_.carries() && !attributes_.append(line_, block.attributes)) {
+      if (skips_invalid_) return leave_out(block);
+      fail(fmt::format("{}, {}", lines_.line_name(), attributes_.fault(line_)), lines_.place());
+    }
     block.points.push_back(point);
     block.index.push_back(next_++);
   }
@@ -144,6 +155,7 @@ class TextReader : public PointReader {
   LineReader lines_;
   TextOpening opening_;  // of a PTS: what the last count line says
   TextColumns columns_;
+  TextAttributes attributes_;
   std::string_view line_;
   bool has_first_ = false;  // line_ is the first row, still to be given out
   PointHeader header_;

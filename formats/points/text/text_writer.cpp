@@ -3,8 +3,10 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "formats/bytes/bytes.h"
@@ -49,14 +51,19 @@ class TextWriter : public PointWriter {
     for (int axis = 0; lattice_ && axis < 3; ++axis) {
       decimal_[axis] = exact_decimal(lattice_->scale[axis], lattice_->offset[axis]);
     }
+    attributes_ = options.attributes;
+    if (!attributes_.empty()) append_names();
   }
 
-  void write(std::span<const LatticePoint> points,
-             std::span<const PointAttributes> /*attributes*/) override {
+  void write(std::span<const LatticePoint> points, std::span<const std::byte> attributes) override {
     for (const LatticePoint& p : points) {
       for (int axis = 0; axis < coordinates_; ++axis) {
         if (axis > 0) text_.push_back(separator_);
         append(axis, p[axis]);
+      }
+      if (!attributes.empty()) {
+        append_attributes(attributes.data());
+        attributes = attributes.subspan(attributes_.record_size());
       }
       text_.push_back('\n');
       if (text_.size() >= kFlushAt) flush();
@@ -71,6 +78,59 @@ class TextWriter : public PointWriter {
   }
 
  private:
+  /// Names of arrays have the number of the element.
+  void append_names() {
+    constexpr std::array<char, 3> kAxes = {'x', 'y', 'z'};
+    for (int axis = 0; axis < coordinates_; ++axis) {
+      if (axis > 0) text_.push_back(separator_);
+      text_.push_back(kAxes[axis]);
+    }
+    const auto out = std::back_inserter(text_);
+    for (const AttributeField& field : attributes_.fields()) {
+      const Attribute& attribute = field.attribute;
+      for (std::size_t e = 0; e < attribute.elements; ++e) {
+        text_.push_back(separator_);
+        fmt::format_to(out, "{}", name_of_column(attribute.name));
+        if (attribute.elements > 1) fmt::format_to(out, "_{}", e + 1);
+      }
+    }
+    text_.push_back('\n');
+  }
+
+  /// Without what separates columns.
+  [[nodiscard]] std::string name_of_column(std::string name) const {
+    std::ranges::replace_if(
+        name, [](char c) { return c == ' ' || c == ',' || c == ';' || c == '"' || c == '\t'; },
+        '_');
+    return name;
+  }
+
+  void append_attributes(const std::byte* record) {
+    for (const AttributeField& field : attributes_.fields()) {
+      const Attribute& attribute = field.attribute;
+      const std::byte* number = record + field.at;
+      for (std::size_t e = 0; e < attribute.elements; ++e, number += size_of(attribute.type)) {
+        text_.push_back(separator_);
+        append_number(attribute, number);
+      }
+    }
+  }
+
+  /// The shortest text that is the number again; of scaled ones 15 digits, as the scale is a
+  /// decimal number, too.
+  void append_number(const Attribute& attribute, const std::byte* bytes) {
+    const auto out = std::back_inserter(text_);
+    if (attribute.scale != 1 || attribute.offset != 0) {
+      const double value = load_number(attribute.type, bytes) * attribute.scale + attribute.offset;
+      fmt::format_to(out, FMT_COMPILE("{:.15g}"), value);
+      return;
+    }
+    with_number_type(attribute.type, [&](auto number) {
+      const auto value = load<decltype(number)>(bytes);
+      fmt::format_to(out, FMT_COMPILE("{}"), +value);
+    });
+  }
+
   void append(int axis, double value) {
     constexpr double kLargestExact = 9007199254740992.0;
     const std::optional<Decimal>& decimal = decimal_[axis];
@@ -109,6 +169,7 @@ class TextWriter : public PointWriter {
   std::uint64_t written_ = 0;
   int coordinates_;
   char separator_;
+  AttributeLayout attributes_;
   fmt::memory_buffer text_;
 };
 

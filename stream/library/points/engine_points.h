@@ -22,7 +22,7 @@ struct RunPoints {
   int dimension = 0;                       ///< that they were opened for; 0: any
   bool has_heights = true;                 ///< there is z
   bool heights_on_lattice = true;          ///< if the stream has a lattice, z is on it, too
-  bool has_attributes = false;             ///< blocks may come with attributes
+  AttributeLayout attributes{};            ///< that blocks have
   std::optional<std::uint64_t> records{};  ///< exactly how many there are
   std::optional<Box<3>> extent{};          ///< in output coordinates
   std::string crs{};
@@ -37,6 +37,9 @@ class EnginePoints {
 
   /// To be called before begin(): makes RunPoints::crs what an output needs.
   virtual void settle_crs(CrsNeed /*need*/) {}
+
+  /// To be called before begin(): which attributes blocks are to have, where there are any.
+  virtual void carry(const AttributeChoice& /*choice*/) {}
 
   /// To be called once, and not beside the program's own reading. What follows is told to `watch`,
   /// which must live as long as points are read, and each point has its index if `index`.

@@ -142,7 +142,7 @@ FilePoints::FilePoints(const std::vector<std::string>& paths, const PointOptions
       name_(paths.empty() ? "" : paths.front()),
       scratch_(context.state().scratch(context)),
       context_(context) {
-  if (options.dimension != 2 && options.dimension != 3) {
+  if (options.dimension != 0 && options.dimension != 2 && options.dimension != 3) {
     throw InvalidArgument(fmt::format("there are 2 or 3 dimensions, not {}", options.dimension));
   }
   if (!(options.resolution >= 0) || std::isinf(options.resolution)) {
@@ -169,8 +169,10 @@ PointSourceOptions FilePoints::source_options(const PointOptions& options, const
   how.reader.format = options.format;
   how.reader.columns = columns_of(options.columns);
   how.reader.skip_invalid = options.skip_invalid;
+  how.reader.salvage = options.salvage;
+  how.skip_broken = options.skip_broken;
   how.reader.keep_withheld = options.keep_withheld;
-  how.reader.attributes = options.attributes;
+  how.reader.metadata = options.metadata;
   how.reader.resolution = options.resolution;
   how.filter = filter_of(options);
   how.crs = {checked_crs(options.crs), options.foreign_crs};
@@ -240,7 +242,7 @@ RunPoints FilePoints::begin(RunWatch& watch, bool index) {
           .dimension = dimension_,
           .has_heights = input_->has_heights(),
           .heights_on_lattice = input_->heights_on_lattice(),
-          .has_attributes = input_->has_attributes(),
+          .attributes = input_->attributes(),
           .records = input_->count(),
           .extent = input_->world_extent(),
           .crs = input_->crs(),

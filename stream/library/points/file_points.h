@@ -22,6 +22,7 @@ class FilePoints final : public spillway::PointSource, public EnginePoints {
   bool read(std::vector<spillway::Point<3>>& points) override;
 
   void settle_crs(CrsNeed need) override;
+  void carry(const AttributeChoice& choice) override { input_->carry(choice); }
   RunPoints begin(RunWatch& watch, bool index) override;
 
   [[nodiscard]] detail::PointSource& input() { return *input_; }

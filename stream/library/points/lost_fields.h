@@ -8,11 +8,9 @@
 
 namespace spillway::detail {
 
-/// What files with these headers have and another file does not keep, in words: "intensity", "GPS
-/// time". Classes, returns and flags are kept if `keeps_attributes`; `has_crs` says whether there
-/// is a coordinate system.
+/// What files with these headers have and a file that is written so does not keep, by name:
+/// "intensity", "coordinate system".
 std::vector<std::string> lost_fields(const std::vector<PointHeader>& headers,
-                                     const PointFormat& format, bool keeps_attributes,
-                                     bool has_crs);
+                                     const PointFormat& format, const PointWriterOptions& written);
 
 }  // namespace spillway::detail

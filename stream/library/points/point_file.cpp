@@ -8,7 +8,9 @@
 #include <string_view>
 
 #include "formats/gdal/gdal.h"
+#include "formats/points/attributes/attribute_names.h"
 #include "formats/points/create_points.h"
+#include "formats/points/las/records/las_metadata.h"
 #include "formats/points/point_formats.h"
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
@@ -34,14 +36,38 @@ void check_axes(std::string_view what, const std::vector<double>& values) {
 
 bool is_las(const PointHeader& header) { return header.point_format >= 0; }
 
-/// LAS 1.4 for what comes from its point formats, or may be too many points for 1.2.
-std::string las_version_for(const RunPoints& points) {
+/// LAS 1.4 where more points may come than others count, or from its point formats; empty where the
+/// writer knows better, by what LAS inputs tell or by attributes.
+std::string las_version_for(const RunPoints& points, bool has_metadata) {
   constexpr std::uint64_t kMostOfVersion12 = 4294967295;
-  const bool extended = std::ranges::any_of(
-      points.headers, [](const PointHeader& header) { return header.point_format >= 6; });
   const bool many =
       points.stream != nullptr && points.stream->expected().value_or(0) > kMostOfVersion12;
-  return extended || many ? "1.4" : "1.2";
+  const bool extended = std::ranges::any_of(
+      points.headers, [](const PointHeader& header) { return header.point_format >= 6; });
+  if (many || (extended && !has_metadata)) return "1.4";
+  return has_metadata || std::ranges::none_of(points.headers, is_las) ? "" : "1.2";
+}
+
+/// The names of attributes as points have them.
+std::vector<std::string> own_names(const std::vector<std::string>& names) {
+  std::vector<std::string> own;
+  for (const std::string& name : names) own.push_back(attribute_name(name));
+  return own;
+}
+
+/// What all inputs that are LAS tell, if all are.
+std::shared_ptr<const LasMetadata> las_metadata_of(const std::vector<PointHeader>& headers) {
+  std::vector<std::shared_ptr<const LasMetadata>> all;
+  for (const PointHeader& header : headers) {
+    if (!header.las_metadata) return nullptr;
+    all.push_back(header.las_metadata);
+  }
+  return joined(all);
+}
+
+/// Whether `crs` is what the header of each input tells.
+bool is_crs_of_all(const std::vector<PointHeader>& headers, const std::string& crs) {
+  return std::ranges::all_of(headers, [&](const PointHeader& header) { return header.crs == crs; });
 }
 
 /// `crs` as WKT if it is a code and GDAL is there to tell; else empty.
@@ -86,6 +112,9 @@ void PointFile::check(const PointFileOptions& options) const {
     throw InvalidArgument(
         fmt::format("only spp can be sorted, and {} is {}", path_, format_.title));
   }
+  if (options.sorted && options.attributes && !options.attributes->empty()) {
+    throw InvalidArgument("sorted points carry no attributes: leave these out, or do not sort");
+  }
   if (options.sorted && options.sorted->dimension != 2 && options.sorted->dimension != 3) {
     throw InvalidArgument(
         fmt::format("points are sorted in 2 or 3 dimensions, not {}", options.sorted->dimension));
@@ -104,6 +133,36 @@ void PointFile::check(const PointFileOptions& options) const {
   }
 }
 
+AttributeChoice PointFile::wanted_attributes() const {
+  if (!format_.holds_attributes || options_.sorted) return {};
+  if (options_.attributes) {
+    const std::vector<std::string>& names = *options_.attributes;
+    return {.all = std::ranges::find(names, "all") != names.end(), .names = own_names(names)};
+  }
+  return {.all = format_.writes_attributes == nullptr || format_.writes_attributes(path_)};
+}
+
+/// Throws Error for a name that is asked for and that no point has.
+void PointFile::check_attributes(const RunPoints& points) const {
+  if (!options_.attributes) return;
+  if (!format_.holds_attributes && !options_.attributes->empty()) {
+    throw InvalidArgument(fmt::format("{} holds no attributes of points, and {} is {}",
+                                      format_.title, path_, format_.title));
+  }
+  std::vector<AttributeLayout> layouts = {points.attributes};
+  for (const PointHeader& header : points.headers) layouts.push_back(header.attributes);
+  const AttributeLayout attributes = joined(layouts);
+  for (const std::string& name : own_names(*options_.attributes)) {
+    if (name == "all" || attributes.find(name) != nullptr) continue;
+    std::vector<std::string> names;
+    for (const AttributeField& field : attributes.fields()) names.push_back(field.attribute.name);
+    throw InvalidArgument(fmt::format("the points have no attribute \"{}\": {}", name,
+                                      names.empty()
+                                          ? std::string("they have none")
+                                          : fmt::format("choose of {}", fmt::join(names, ", "))));
+  }
+}
+
 void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
   if (begun_ || finished_) throw InvalidArgument("a file of points begins once");
   begun_ = true;
@@ -118,12 +177,16 @@ void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
   if (std::ranges::none_of(points.headers, is_las)) how_.count = points.records;
   if (points.stream != nullptr) source_ = points.stream->lattice();
   if (points.heights_on_lattice) how_.lattice = source_;
-  if (format_.has_versions) {
-    how_.version = options_.las_version.empty() ? las_version_for(points) : options_.las_version;
-  }
   if (format_.wants_wkt) how_.crs_wkt = wkt_of_code(how_.crs);
-  how_.attributes = format_.holds_attributes && points.has_attributes;
-  lost_ = lost_fields(points.headers, format_, how_.attributes, !points.crs.empty());
+  if (format_.holds_attributes) how_.attributes = chosen(points.attributes, wanted_attributes());
+  check_attributes(points);
+  if (format_.has_versions) {
+    how_.las = las_metadata_of(points.headers);
+    how_.keeps_crs_records = is_crs_of_all(points.headers, points.crs);
+    how_.version = options_.las_version.empty() ? las_version_for(points, how_.las != nullptr)
+                                                : options_.las_version;
+  }
+  lost_ = lost_fields(points.headers, format_, how_);
   rounds_ = !options_.scale.empty() || !options_.offset.empty() ||
             (format_.needs_lattice && !how_.lattice && !options_.exact);
   if (!rounds_) how_.extent = points.extent;

@@ -40,6 +40,9 @@ class PointFile final : public spillway::PointSink {
     return format_.wants_wkt ? CrsNeed::kCodes : CrsNeed::kNone;
   }
 
+  /// Which attributes are to come with points.
+  [[nodiscard]] AttributeChoice wanted_attributes() const;
+
   /// Decides how these points are written. Where a lattice is to be chosen and no extent is known,
   /// the first block decides, and the file is created then. Compression in append() is shared out
   /// by `sharing`.
@@ -68,6 +71,7 @@ class PointFile final : public spillway::PointSink {
  private:
   PointFile* point_file() override { return this; }
   void check(const PointFileOptions& options) const;
+  void check_attributes(const RunPoints& points) const;
   void open(const Box<3>& extent);
   [[nodiscard]] Box<3> world_box(const PointBlock& block) const;
 

@@ -17,6 +17,34 @@ std::optional<T> unpack_optional(Unpacker& message) {
   return message.take<bool>() ? std::optional(message.take<T>()) : std::nullopt;
 }
 
+void pack_attributes(Packer& message, const AttributeLayout& layout) {
+  message.put(std::uint64_t{layout.fields().size()});
+  for (const AttributeField& field : layout.fields()) {
+    const Attribute& attribute = field.attribute;
+    message.put_list(attribute.name);
+    message.put(attribute.type);
+    message.put(std::uint64_t{attribute.elements});
+    message.put(attribute.scale);
+    message.put(attribute.offset);
+    message.put_list(attribute.unit);
+    message.put_list(attribute.description);
+  }
+}
+
+AttributeLayout unpack_attributes(Unpacker& message) {
+  std::vector<Attribute> attributes(message.take<std::uint64_t>());
+  for (Attribute& attribute : attributes) {
+    attribute.name = message.take_list<std::string>();
+    attribute.type = message.take<NumberType>();
+    attribute.elements = message.take<std::uint64_t>();
+    attribute.scale = message.take<double>();
+    attribute.offset = message.take<double>();
+    attribute.unit = message.take_list<std::string>();
+    attribute.description = message.take_list<std::string>();
+  }
+  return AttributeLayout(std::move(attributes));
+}
+
 void pack_header(Packer& message, const PointHeader& header) {
   message.put_list(header.name);
   message.put_list(header.format);
@@ -32,7 +60,7 @@ void pack_header(Packer& message, const PointHeader& header) {
   message.put_list(header.crs_keys.numbers);
   message.put_list(header.crs_keys.text);
   message.put_list(header.software);
-  message.put(static_cast<std::uint64_t>(header.extra_bytes));
+  pack_attributes(message, header.attributes);
 }
 
 PointHeader unpack_header(Unpacker& message) {
@@ -51,7 +79,7 @@ PointHeader unpack_header(Unpacker& message) {
   header.crs_keys.numbers = message.take_list<std::vector<std::byte>>();
   header.crs_keys.text = message.take_list<std::string>();
   header.software = message.take_list<std::string>();
-  header.extra_bytes = message.take<std::uint64_t>();
+  header.attributes = unpack_attributes(message);
   return header;
 }
 

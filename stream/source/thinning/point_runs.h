@@ -18,7 +18,8 @@ namespace spillway::detail {
 /// A point, what belongs to it, and its place among others.
 struct RunPoint {
   std::uint64_t order;
-  std::uint64_t key;
+  std::uint64_t index;
+  std::uint64_t number;  ///< by which its attributes are found
   LatticePoint point;
 };
 

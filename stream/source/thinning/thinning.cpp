@@ -25,26 +25,12 @@ constexpr std::size_t kFewestSlots = 1024;
 constexpr std::size_t kBlockPoints = 65536;
 constexpr double kLargestCell = 4503599627370496.0;  // 2^52: numbers of cells are exact
 
-/// Bits of a key below the index: class, return number, return count, flags.
-constexpr int kAttributeBits = 20;
-
-std::uint64_t key_of(std::uint64_t index, const PointAttributes& attributes) {
-  if (index >> (64 - kAttributeBits) != 0) {
-    throw Error(fmt::format("thinning: {} records are too many; thin parts of them", index),
-                ErrorCode::kTooLarge);
-  }
-  return index << kAttributeBits | static_cast<std::uint64_t>(attributes.classification) << 12 |
-         (attributes.return_number & 15U) << 8 | (attributes.return_count & 15U) << 4 |
-         (attributes.flags & 15U);
-}
-
-PointAttributes attributes_of(std::uint64_t key) {
-  PointAttributes attributes;
-  attributes.classification = static_cast<std::uint8_t>(key >> 12);
-  attributes.return_number = key >> 8 & 15U;
-  attributes.return_count = key >> 4 & 15U;
-  attributes.flags = key & 15U;
-  return attributes;
+/// How many cells a memory has room for.
+std::size_t cells_in(std::uint64_t memory, std::size_t record_size) {
+  const std::uint64_t buffers = kBuffers + kBuckets * PointBuffer::kChunk * record_size;
+  return std::clamp<std::size_t>(
+      (memory - std::min<std::uint64_t>(memory, buffers)) / (kBytesPerCell + record_size),
+      kFewestCells, kMostCells);
 }
 
 std::uint64_t hash_of(const std::array<double, 3>& cell) {
@@ -60,15 +46,19 @@ std::uint64_t hash_of(const std::array<double, 3>& cell) {
 Thinning::Thinning(const ThinningOptions& options, ScratchFolder& scratch)
     : options_(options),
       scratch_(scratch),
-      capacity_(std::clamp<std::size_t>(
-          (options.memory - std::min<std::uint64_t>(options.memory, kBuffers)) / kBytesPerCell,
-          kFewestCells, kMostCells)),
+      capacity_(cells_in(options.memory, 0)),
       slots_(kFewestSlots),
       buckets_(kBuckets) {
   const bool columns =
       options.choice == ThinChoice::kLowest || options.choice == ThinChoice::kHighest;
   if (columns) options_.dimension = 2;
   candidates_.reserve(capacity_);
+}
+
+void Thinning::carry(const AttributeLayout& attributes) {
+  record_size_ = attributes.record_size();
+  capacity_ = cells_in(options_.memory, record_size_);
+  attributes_.reserve(capacity_ * record_size_);
 }
 
 WorldPoint Thinning::world(const LatticePoint& point) const {
@@ -107,37 +97,40 @@ bool Thinning::better(const Candidate& a, const Candidate& b) const {
   };
   const double rank_a = rank(a);
   const double rank_b = rank(b);
-  return rank_a != rank_b ? rank_a < rank_b : a.key < b.key;
+  return rank_a != rank_b ? rank_a < rank_b : a.index < b.index;
 }
 
 void Thinning::add(const PointBlock& block) {
-  attributes_ |= !block.attributes.empty();
+  const std::byte* const attributes = block.attributes.data();
   for (std::size_t i = 0; i < block.size(); ++i) {
-    const PointAttributes attributes =
-        block.attributes.empty() ? PointAttributes{} : block.attributes[i];
-    offer({block.points[i], key_of(block.index[i], attributes)});
+    offer({block.points[i], block.index[i]}, attributes + i * record_size_);
   }
 }
 
-void Thinning::offer(const Candidate& candidate) {
+void Thinning::offer(const Candidate& candidate, const std::byte* attributes) {
   const Cell cell = cell_of(world(candidate.point));
   const std::uint64_t hash = hash_of(cell);
   const auto short_hash = static_cast<std::uint32_t>(hash);
   std::size_t place = short_hash & (slots_.size() - 1);
   for (; slots_[place].number != 0; place = (place + 1) & (slots_.size() - 1)) {
     if (slots_[place].hash != short_hash) continue;
-    Candidate& other = candidates_[slots_[place].number - 1];
+    const std::size_t number = slots_[place].number - 1;
+    Candidate& other = candidates_[number];
     if (cell_of(world(other.point)) != cell) continue;
-    if (better(candidate, other)) other = candidate;
+    if (better(candidate, other)) {
+      other = candidate;
+      std::copy_n(attributes, record_size_, attributes_.begin() + number * record_size_);
+    }
     ++dropped_;
     return;
   }
   if (candidates_.size() == capacity_) {
-    put_aside(candidate, hash);
+    put_aside(candidate, attributes, hash);
     return;
   }
   candidates_.push_back(candidate);
-  if (level_ > 0) met_.push_back(candidate.key);
+  attributes_.insert(attributes_.end(), attributes, attributes + record_size_);
+  if (level_ > 0) met_.push_back(candidate.index);
   slots_[place] = {short_hash, static_cast<std::uint32_t>(candidates_.size())};
   if (2 * candidates_.size() > slots_.size()) grow();
 }
@@ -153,14 +146,16 @@ void Thinning::grow() {
 }
 
 /// Cells that share a file in one pass are spread over all files in the next.
-void Thinning::put_aside(const Candidate& candidate, std::uint64_t hash) {
+void Thinning::put_aside(const Candidate& candidate, const std::byte* attributes,
+                         std::uint64_t hash) {
   if (level_ == 0) {
     ++put_aside_;
   } else {
     --done_;
   }
   Bucket& bucket = buckets_[mix64(hash + level_) % buckets_.size()];
-  bucket.buffer.append(std::span(&candidate.point, 1), std::span(&candidate.key, 1));
+  bucket.buffer.append(std::span(&candidate.point, 1), std::span(&candidate.index, 1));
+  bucket.attributes.insert(bucket.attributes.end(), attributes, attributes + record_size_);
   if (bucket.buffer.size() == PointBuffer::kChunk) write(bucket);
 }
 
@@ -171,6 +166,8 @@ void Thinning::write(Bucket& bucket) {
     block.offset += bucket.file->size();
     bucket.blocks.push_back(block);
   }
+  bytes.insert(bytes.end(), bucket.attributes.begin(), bucket.attributes.end());
+  bucket.attributes.clear();
   bucket.file->append(bytes);
 }
 
@@ -188,6 +185,7 @@ void Thinning::end_pass() {
 
 void Thinning::run_pass(Bucket bucket) {
   candidates_.clear();
+  attributes_.clear();
   met_.clear();
   slots_.assign(kFewestSlots, {});
   std::size_t count = 0;
@@ -198,11 +196,14 @@ void Thinning::run_pass(Bucket bucket) {
   PointBlock points;
   std::vector<std::byte> bytes;
   for (const TileBlock& block : bucket.blocks) {
-    bytes.resize(block.size);
+    bytes.resize(block.size + block.points * record_size_);
     bucket.file->read(block.offset, bytes);
-    decode_points(bytes, {bucket.file->name(), at_byte(block.offset)}, points);
+    const std::span<const std::byte> coordinates = std::span(bytes).first(block.size);
+    decode_points(coordinates, {bucket.file->name(), at_byte(block.offset)}, points);
     done_ += points.size();  // but for those that are put aside again
-    for (std::size_t i = 0; i < points.size(); ++i) offer({points.points[i], points.index[i]});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      offer({points.points[i], points.index[i]}, &bytes[block.size] + i * record_size_);
+    }
     options_.progress.update(done_, put_aside_);
   }
 }
@@ -216,18 +217,39 @@ void Thinning::work_off_files() {
     waiting_.pop_back();
     run_pass(std::move(bucket));
     end_pass();
-    kept_->begin_run();
-    for (std::size_t begin = 0; begin < candidates_.size(); begin += PointBuffer::kChunk) {
-      sorted_.clear();
-      for (std::size_t i = begin; i < std::min(candidates_.size(), begin + PointBuffer::kChunk);
-           ++i) {
-        sorted_.push_back({met_[i], candidates_[i].key, candidates_[i].point});
-      }
-      kept_->append(sorted_);
-    }
+    keep_candidates();
   }
   std::vector<Candidate>().swap(candidates_);
+  std::vector<std::byte>().swap(attributes_);
   std::vector<std::uint64_t>().swap(met_);
+}
+
+/// Puts the candidates of a pass to those that are kept of the files.
+void Thinning::keep_candidates() {
+  kept_->begin_run();
+  for (std::size_t begin = 0; begin < candidates_.size(); begin += PointBuffer::kChunk) {
+    sorted_.clear();
+    const std::size_t end = std::min(candidates_.size(), begin + PointBuffer::kChunk);
+    for (std::size_t i = begin; i < end; ++i) {
+      sorted_.push_back({met_[i], candidates_[i].index, kept_count_++, candidates_[i].point});
+    }
+    kept_->append(sorted_);
+  }
+  if (record_size_ == 0) return;
+  if (!kept_attributes_) kept_attributes_ = scratch_.create("thinning");
+  kept_attributes_->append(attributes_);
+}
+
+/// Makes candidates of what was sorted last.
+void Thinning::take_kept() {
+  attributes_.resize(sorted_.size() * record_size_);
+  std::span<std::byte> attributes = attributes_;
+  for (const RunPoint& p : sorted_) {
+    candidates_.push_back({p.point, p.index});
+    if (record_size_ == 0) continue;
+    kept_attributes_->read(p.number * record_size_, attributes.first(record_size_));
+    attributes = attributes.subspan(record_size_);
+  }
 }
 
 /// Whether there are candidates to give, after new ones have taken the place of those given.
@@ -235,6 +257,7 @@ bool Thinning::has_more() {
   if (given_ < candidates_.size()) return true;
   given_ = 0;
   candidates_.clear();
+  attributes_.clear();
   const bool has_files = !waiting_.empty();
   if (has_files) {
     options_.progress.begin();
@@ -243,7 +266,7 @@ bool Thinning::has_more() {
   const bool more = kept_ && kept_->next(sorted_, PointBuffer::kChunk);
   if (has_files) options_.progress.end(put_aside_);
   if (more) {
-    for (const RunPoint& p : sorted_) candidates_.push_back({p.point, p.key});
+    take_kept();
     return true;
   }
   std::vector<Candidate>().swap(candidates_);
@@ -258,8 +281,9 @@ bool Thinning::next(PointBlock& block) {
     for (; given_ < end; ++given_) {
       const Candidate& candidate = candidates_[given_];
       block.points.push_back(candidate.point);
-      block.index.push_back(candidate.key >> kAttributeBits);
-      if (attributes_) block.attributes.push_back(attributes_of(candidate.key));
+      block.index.push_back(candidate.index);
+      const auto attributes = attributes_.begin() + given_ * record_size_;
+      block.attributes.insert(block.attributes.end(), attributes, attributes + record_size_);
     }
   }
   return block.size() > 0;

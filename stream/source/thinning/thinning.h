@@ -53,8 +53,11 @@ class Thinning {
   /// `scratch` must outlive it.
   Thinning(const ThinningOptions& options, ScratchFolder& scratch);
 
-  /// Takes points, each with its index; indices ascend. Attributes are kept if any block has some.
-  /// Throws Error if cells are too small to be counted.
+  /// Points come with attributes of this layout. To be called before any comes.
+  void carry(const AttributeLayout& attributes);
+
+  /// Takes points, each with its index; indices ascend. Throws Error if cells are too small to be
+  /// counted.
   void add(const PointBlock& block);
 
   /// After the last add(): replaces `block` by the next kept points, in the order in which their
@@ -70,16 +73,18 @@ class Thinning {
 
   struct Candidate {
     LatticePoint point;
-    std::uint64_t key;  ///< index and attributes, the index in the upper bits
+    std::uint64_t index;
   };
   /// Where a candidate is found by its cell.
   struct Slot {
     std::uint32_t hash = 0;    ///< lower half of that of its cell
     std::uint32_t number = 0;  ///< of the candidate + 1; 0: free
   };
-  /// Points of cells for which there was no room.
+  /// Points of cells for which there was no room. In the file the attributes of a block's points
+  /// follow it.
   struct Bucket {
     PointBuffer buffer;
+    std::vector<std::byte> attributes;  ///< of those in the buffer
     std::unique_ptr<ScratchFile> file;
     std::vector<TileBlock> blocks;
     unsigned level = 0;  ///< passes that its points have been through
@@ -88,29 +93,34 @@ class Thinning {
   [[nodiscard]] WorldPoint world(const LatticePoint& point) const;
   [[nodiscard]] Cell cell_of(const WorldPoint& world) const;
   [[nodiscard]] bool better(const Candidate& a, const Candidate& b) const;
-  void offer(const Candidate& candidate);
+  void offer(const Candidate& candidate, const std::byte* attributes);
   void grow();
-  void put_aside(const Candidate& candidate, std::uint64_t hash);
+  void put_aside(const Candidate& candidate, const std::byte* attributes, std::uint64_t hash);
   void write(Bucket& bucket);
   void end_pass();
   void run_pass(Bucket bucket);
   void work_off_files();
+  void keep_candidates();
+  void take_kept();
   bool has_more();
 
   ThinningOptions options_;
   ScratchFolder& scratch_;
+  std::size_t record_size_ = 0;        ///< bytes of a point's attributes
   std::size_t capacity_;               ///< cells in memory
   std::vector<Candidate> candidates_;  ///< in the order in which their cells were met
-  std::vector<std::uint64_t> met_;     ///< of points from files: the first key of each cell
+  std::vector<std::byte> attributes_;  ///< of these
+  std::vector<std::uint64_t> met_;     ///< of points from files: the first index of each cell
   std::vector<Slot> slots_;            ///< as many as a power of 2, half full at most
   std::vector<Bucket> buckets_;        ///< of the pass that is going on
   std::vector<Bucket> waiting_;
   std::optional<PointRuns> kept_;  ///< of the points from files
-  std::vector<RunPoint> sorted_;   ///< that go into it or come out of it
+  std::unique_ptr<ScratchFile> kept_attributes_;
+  std::uint64_t kept_count_ = 0;  ///< points that these are of
+  std::vector<RunPoint> sorted_;  ///< that go into it or come out of it
   unsigned level_ = 0;
-  bool attributes_ = false;  ///< points have them
-  bool passing_ = true;      ///< candidates_ may still get better
-  std::size_t given_ = 0;    ///< of candidates_
+  bool passing_ = true;    ///< candidates_ may still get better
+  std::size_t given_ = 0;  ///< of candidates_
   std::uint64_t dropped_ = 0;
   std::uint64_t put_aside_ = 0;  ///< points, in the first pass
   std::uint64_t done_ = 0;       ///< of these

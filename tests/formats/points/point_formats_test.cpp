@@ -86,7 +86,7 @@ class ToyWriter : public PointWriter {
   explicit ToyWriter(std::unique_ptr<OutputFile> file) : file_(std::move(file)) { put("TOY\n"); }
 
   void write(std::span<const LatticePoint> points,
-             std::span<const PointAttributes> /*attributes*/) override {
+             std::span<const std::byte> /*attributes*/) override {
     for (const LatticePoint& p : points) put(fmt::format("{} {} {}\n", p[0], p[1], p[2]));
   }
   void finish() override { file_->commit(); }

@@ -33,7 +33,8 @@ AllPoints rest_of(PointReader& reader) {
     more = reader.read(block);
     all.points.insert(all.points.end(), block.points.begin(), block.points.end());
     all.index.insert(all.index.end(), block.index.begin(), block.index.end());
-    all.attributes.insert(all.attributes.end(), block.attributes.begin(), block.attributes.end());
+    const std::vector<LasFlags> flags = flags_of(block.attributes);
+    all.attributes.insert(all.attributes.end(), flags.begin(), flags.end());
     all.withheld += block.withheld;
   }
   return all;
@@ -62,7 +63,12 @@ void expect_same(const AllPoints& got, const AllPoints& expected) {
 
 /// Reads all pieces in random order, by one reader and by one of its own for each, and compares
 /// them with the whole; returns how many there are.
-std::uint64_t expect_pieces_are_the_whole(const Open& open) {
+std::uint64_t expect_pieces_are_the_whole(const Open& open_it) {
+  const auto open = [&] {
+    auto opened = open_it();
+    if (opened->header().point_format >= 0) opened->carry(flags_layout());
+    return opened;
+  };
   const auto reader = open();
   const AllPoints whole = rest_of(*open());
   const std::optional<std::uint64_t> count = reader->pieces();
@@ -97,9 +103,8 @@ std::uint64_t expect_pieces_of_file(const std::string& name, const std::string& 
   return expect_pieces_are_the_whole([&] { return open_point_reader(files, name, options); });
 }
 
-PointReaderOptions with_attributes(bool keep_withheld) {
+PointReaderOptions keeping_withheld(bool keep_withheld) {
   PointReaderOptions options;
-  options.attributes = true;
   options.keep_withheld = keep_withheld;
   return options;
 }
@@ -143,7 +148,7 @@ LazFile laz_file(const LazFormat& format, std::size_t count) {
 TEST(PointPieces, LasRecords) {
   const std::string bytes = las_file(300).bytes();
   for (const bool keep_withheld : {true, false}) {
-    EXPECT_EQ(expect_pieces_of_file("a.las", bytes, with_attributes(keep_withheld)), 5U);
+    EXPECT_EQ(expect_pieces_of_file("a.las", bytes, keeping_withheld(keep_withheld)), 5U);
   }
   LasFile las;
   las.records.assign(70000, {1, 2, 3});
@@ -154,7 +159,7 @@ TEST(PointPieces, LazChunks) {
   for (const int compressor : {2, 3}) {
     const std::string bytes = laz_file(laz_format(compressor, 100), 950).bytes();
     for (const bool keep_withheld : {true, false}) {
-      EXPECT_EQ(expect_pieces_of_file("a.laz", bytes, with_attributes(keep_withheld)), 10U);
+      EXPECT_EQ(expect_pieces_of_file("a.laz", bytes, keeping_withheld(keep_withheld)), 10U);
     }
   }
 }
@@ -193,7 +198,7 @@ TEST(PointPieces, CopcNodesThatAreWanted) {
                 {{2, 2, 1, 2}, 8},  {{1, 1, 1, 1}, 70}, {{2, 3, 3, 3}, 9}};
   file.build();
   const std::string bytes = file.bytes();
-  PointReaderOptions options = with_attributes(false);
+  PointReaderOptions options = keeping_withheld(false);
   EXPECT_EQ(expect_pieces_of_file("a.laz", bytes, options), 5U);
   options.resolution = 2;
   EXPECT_EQ(expect_pieces_of_file("a.laz", bytes, options), 3U);
@@ -214,7 +219,7 @@ TEST(PointPieces, SharedFiles) {
     const std::filesystem::path path = shared_file(name);
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     SCOPED_TRACE(name);
-    EXPECT_GT(expect_pieces_of_file(name, content_of(path), with_attributes(false)), 0U);
+    EXPECT_GT(expect_pieces_of_file(name, content_of(path), keeping_withheld(false)), 0U);
   }
 }
 
@@ -388,7 +393,7 @@ TEST(PointPieceErrors, LazNamesTheChunkAndOtherPiecesAreRead) {
     chunk.replace(100, 200, 200, '\xff');  // of the coordinates
     FaultyFileSystem files;
     files.files["a.laz"] = file.bytes();
-    const Open open = [&] { return open_point_reader(files, "a.laz", with_attributes(true)); };
+    const Open open = [&] { return open_point_reader(files, "a.laz", keeping_withheld(true)); };
     EXPECT_THAT(error_of_piece(open, 1),
                 HasSubstr(fmt::format("the chunk at byte {}: ", file.offset_to_chunk(1))));
     const auto reader = open();

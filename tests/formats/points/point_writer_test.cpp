@@ -23,15 +23,15 @@ constexpr Lattice kCentimetres{{0.01, 0.01, 0.01}, {500000, 4000000, -10}};
 
 /// What a writer makes of the points, written in two pieces, with attributes if there are any.
 std::string written_as_is(const std::string& path, const std::vector<LatticePoint>& points,
-                          const std::vector<PointAttributes>& attributes,
+                          const std::vector<LasFlags>& attributes,
                           const PointWriterOptions& options, bool seekable = true) {
   FaultyFileSystem files;
   files.seekable = seekable;
   const auto writer = open_point_writer(files, path, options);
   const std::span<const LatticePoint> all = points;
-  const std::span<const PointAttributes> all_attributes = attributes;
-  writer->write(all.first(all.size() / 3), all_attributes.first(attributes.size() / 3));
-  writer->write(all.subspan(all.size() / 3), all_attributes.subspan(attributes.size() / 3));
+  const std::span<const LasFlags> flags = attributes;
+  writer->write(all.first(all.size() / 3), records_of(flags.first(flags.size() / 3)));
+  writer->write(all.subspan(all.size() / 3), records_of(flags.subspan(flags.size() / 3)));
   EXPECT_TRUE(files.files.empty());
   writer->finish();
   EXPECT_TRUE(files.parts.empty());
@@ -47,16 +47,16 @@ std::string written(const std::string& path, const std::vector<LatticePoint>& po
 
 /// The same with attributes and without a promise.
 std::string written(const std::vector<LatticePoint>& points,
-                    const std::vector<PointAttributes>& attributes, PointWriterOptions options) {
-  options.attributes = true;
+                    const std::vector<LasFlags>& attributes, PointWriterOptions options) {
+  if (options.version.empty()) options.version = "1.2";
+  options.attributes = flags_layout();
   return written_as_is("a.las", points, attributes, options);
 }
 
 AllPoints read_with_attributes(const std::string& las) {
   PointReaderOptions options;
-  options.attributes = true;
   options.keep_withheld = true;
-  return read_content("a.las", las, options);
+  return read_content("a.las", las, options, true);
 }
 
 template <typename T>
@@ -180,7 +180,7 @@ TEST(LasWriter, GivesVersion12AttributesToVersion14AndBack) {
 }
 
 TEST(LasWriter, PutsAttributesWhereTheSpecificationHasThem) {
-  const std::vector<PointAttributes> one = {
+  const std::vector<LasFlags> one = {
       {.classification = 2, .return_number = 3, .return_count = 5, .flags = 5}};
   PointWriterOptions options = with_lattice({});
   const std::string old = written({{1, 2, 3}}, one, options);
@@ -195,13 +195,12 @@ TEST(LasWriter, TakesPointsWithoutAttributesForSingleReturns) {
     PointWriterOptions options = with_lattice({});
     options.version = version;
     const AllPoints back = read_with_attributes(written("a.las", {{1, 2, 3}, {4, 5, 6}}, options));
-    EXPECT_EQ(back.attributes,
-              std::vector(2, PointAttributes{.return_number = 1, .return_count = 1}));
+    EXPECT_EQ(back.attributes, std::vector(2, LasFlags{.return_number = 1, .return_count = 1}));
   }
 }
 
 TEST(LasWriter, CountsReturnsInTheHeader) {
-  std::vector<PointAttributes> attributes(10);
+  std::vector<LasFlags> attributes(10);
   for (std::size_t i = 0; i < attributes.size(); ++i) {
     attributes[i].return_number = static_cast<std::uint8_t>(i < 5 ? 1 : i < 8 ? 4 : i < 9 ? 7 : 0);
   }
@@ -221,11 +220,11 @@ TEST(LasWriter, CountsReturnsInTheHeader) {
 
 TEST(LasWriter, RefusesAttributesThatTheRecordCannotHold) {
   const std::vector<LatticePoint> points(3);
-  for (const PointAttributes& bad :
-       {PointAttributes{.classification = 32}, PointAttributes{.return_number = 8},
-        PointAttributes{.return_count = 8}, PointAttributes{.flags = PointAttributes::kOverlap}}) {
+  for (const LasFlags& bad : {LasFlags{.classification = 32}, LasFlags{.return_number = 8},
+                              LasFlags{.return_count = 8}, LasFlags{.flags = LasFlags::kOverlap}}) {
     const auto write = [&] { written(points, {{}, {}, bad}, with_lattice({})); };
-    EXPECT_THAT(error_of(write), HasSubstr("a.las: point 2 (class "));
+    EXPECT_THAT(error_of(write), AllOf(HasSubstr("a.las: point 2 has "),
+                                       HasSubstr("records of LAS 1.2, point format 0, hold 0")));
     EXPECT_EQ(facts_of(write).remedy, Remedy::kLas14);
   }
 }
@@ -349,7 +348,7 @@ TEST(LasCoordinateSystem, RefusesWhatLasCannotHold) {
 
 /// What reaches a pipe through a scratch folder.
 std::string piped(const std::string& path, const std::vector<LatticePoint>& points,
-                  const std::vector<PointAttributes>& attributes, PointWriterOptions options) {
+                  const std::vector<LasFlags>& attributes, PointWriterOptions options) {
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   options.scratch = scratch.get();
   return written_as_is(path, points, attributes, options, false);
@@ -360,7 +359,7 @@ TEST(SpooledOutput, GivesAPipeWhatAFileWouldHold) {
   const auto attributes = random_attributes(points.size(), false, 3);
   PointWriterOptions options = with_lattice(kCentimetres);
   EXPECT_EQ(piped("a.npy", points, {}, options), written_as_is("a.npy", points, {}, options));
-  options.attributes = true;
+  options.attributes = flags_layout();
   EXPECT_EQ(piped("a.las", points, attributes, options),
             written_as_is("a.las", points, attributes, options));
   EXPECT_EQ(piped("a.las", {}, {}, options), written_as_is("a.las", {}, {}, options));

@@ -72,9 +72,10 @@ std::bitset<256> classes_of(int rank) { return std::bitset<256>().set(255 - rank
 
 Report report_of_all() {
   const auto n = static_cast<std::uint64_t>(world().rank() + 1);
-  return shared_report(mesh_of(world().rank()),
-                       {.read = 100 * n, .bounds = n, .other_classes = classes_of(world().rank())},
-                       world());
+  return shared_report(
+      mesh_of(world().rank()),
+      {.read = 100 * n, .bounds = n, .lost = 2 * n, .other_classes = classes_of(world().rank())},
+      world());
 }
 
 TEST(SharedReport, HasTheTotalsOfTheWholeMesh) {
@@ -102,8 +103,9 @@ TEST(SharedReport, SumsWhatIsCountedOverAllRanks) {
   EXPECT_EQ(report.tile_shapes.longer, 40 * sum);
   std::bitset<256> classes;
   for (int rank = 0; rank < world().size(); ++rank) classes |= classes_of(rank);
-  EXPECT_EQ(report.points,
-            (PointCounts{.read = 100 * sum, .bounds = sum, .other_classes = classes}));
+  EXPECT_EQ(
+      report.points,
+      (PointCounts{.read = 100 * sum, .bounds = sum, .lost = 2 * sum, .other_classes = classes}));
 }
 
 TEST(SharedReport, SumsLevelsThatNotAllRanksHave) {

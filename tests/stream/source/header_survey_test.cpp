@@ -63,11 +63,27 @@ TEST_F(HeaderSurveyTest, AllInputsThatCannotBeReadAreNamedAtOnce) {
   EXPECT_THAT(error_of({"a.las", "gone.las"}), Not(HasSubstr("\n")));
 }
 
+TEST_F(HeaderSurveyTest, BrokenFilesAreLeftOutIfAskedForAndThereAreOthers) {
+  files_.files["broken.las"] = "LASF nothing more";
+  options_.skip_broken = true;
+  const HeaderSurvey all = survey({"broken.las", "a.las", "gone.las", "b.txt"});
+  EXPECT_THAT(all.paths, ::testing::ElementsAre("a.las", "b.txt"));
+  EXPECT_EQ(all.facts.inputs.size(), 2U);
+  EXPECT_EQ(all.readers.size(), 2U);
+  ASSERT_EQ(all.skipped.size(), 2U);
+  EXPECT_EQ(all.skipped[0].path, "broken.las");
+  EXPECT_THAT(all.skipped[0].message, HasSubstr("broken.las: the file ends at byte 17"));
+  EXPECT_THAT(all.skipped[1].message, HasSubstr("cannot open gone.las"));
+  EXPECT_THAT(error_of({"broken.las", "gone.las"}), HasSubstr("2 of 2 inputs cannot be read"));
+  options_.dimension = 3;
+  EXPECT_EQ(error_of({"a.las", "flat.txt", "gone.las"}), "flat.txt: the points have no z");
+}
+
 TEST_F(HeaderSurveyTest, InputsWithoutWhatTheFilterLooksAtAreRefused) {
   options_.filter.classes = std::bitset<256>().set();
-  options_.reader.attributes = true;
   EXPECT_THAT(error_of({"a.las", "b.txt"}),
-              AllOf(HasSubstr("b.txt: text has neither classes"), Not(HasSubstr("a.las"))));
+              AllOf(HasSubstr("b.txt: the points have no classification, which a filter looks at"),
+                    Not(HasSubstr("a.las"))));
 }
 
 TEST_F(HeaderSurveyTest, InputsWithoutHeightsAreRefusedInSpaceAndToldInThePlane) {

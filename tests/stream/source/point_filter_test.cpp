@@ -11,54 +11,55 @@
 #include <vector>
 
 #include "src/error.h"
+#include "tests/formats/points/las_flags_layout.h"
 
 namespace spillway::detail {
 namespace {
 
-PointAttributes return_of(std::uint8_t number, std::uint8_t count) {
-  PointAttributes attributes;
-  attributes.return_number = number;
-  attributes.return_count = count;
-  return attributes;
-}
+using testing::flags_layout;
+using testing::flags_of;
+using testing::records_of;
 
 TEST(ReturnFilter, FirstLastAndSingle) {
   const ReturnFilter first{.first = true};
   const ReturnFilter last{.last = true};
   const ReturnFilter single{.single = true};
-  EXPECT_TRUE(first.keeps(return_of(1, 3)));
-  EXPECT_FALSE(first.keeps(return_of(2, 3)));
-  EXPECT_TRUE(last.keeps(return_of(3, 3)));
-  EXPECT_FALSE(last.keeps(return_of(2, 3)));
-  EXPECT_TRUE(single.keeps(return_of(1, 1)));
-  EXPECT_FALSE(single.keeps(return_of(1, 2)));
-  EXPECT_FALSE(single.keeps(return_of(2, 2)));
+  EXPECT_TRUE(first.keeps(1, 3));
+  EXPECT_FALSE(first.keeps(2, 3));
+  EXPECT_TRUE(last.keeps(3, 3));
+  EXPECT_FALSE(last.keeps(2, 3));
+  EXPECT_TRUE(single.keeps(1, 1));
+  EXPECT_FALSE(single.keeps(1, 2));
+  EXPECT_FALSE(single.keeps(2, 2));
 }
 
 TEST(ReturnFilter, AnUnknownReturnIsFirstAndLast) {
   for (const ReturnFilter& filter :
        {ReturnFilter{.first = true}, ReturnFilter{.last = true}, ReturnFilter{.single = true}}) {
-    EXPECT_TRUE(filter.keeps(return_of(0, 0)));
+    EXPECT_TRUE(filter.keeps(0, 0));
   }
-  EXPECT_FALSE(ReturnFilter{.numbers = 1 << 1}.keeps(return_of(0, 0)));
+  EXPECT_FALSE(ReturnFilter{.numbers = 1 << 1}.keeps(0, 0));
 }
 
 TEST(ReturnFilter, NumbersAreAnyOfTheList) {
   const ReturnFilter filter{.numbers = 1 << 2 | 1 << 15};
-  EXPECT_TRUE(filter.keeps(return_of(2, 2)));
-  EXPECT_TRUE(filter.keeps(return_of(15, 15)));
-  EXPECT_FALSE(filter.keeps(return_of(1, 2)));
+  EXPECT_TRUE(filter.keeps(2, 2));
+  EXPECT_TRUE(filter.keeps(15, 15));
+  EXPECT_FALSE(filter.keeps(1, 2));
 }
 
 /// Points (i, 0, 10 i) of class i and of return 1 + i % 2 of 2.
 PointBlock twelve_points() {
   PointBlock block;
+  std::vector<LasFlags> flags;
   for (std::uint8_t i = 0; i < 12; ++i) {
     block.points.push_back({1.0 * i, 0, 10.0 * i});
     block.index.push_back(100 + i);
-    block.attributes.push_back(return_of(1 + i % 2, 2));
-    block.attributes.back().classification = i;
+    flags.push_back({.classification = i,
+                     .return_number = static_cast<std::uint8_t>(1 + i % 2),
+                     .return_count = 2});
   }
+  block.attributes = records_of(flags);
   return block;
 }
 
@@ -66,7 +67,7 @@ PointCounts apply(const PointFilter& filter, PointBlock& block,
                   const std::optional<Lattice>& lattice = std::nullopt) {
   PointCounts counts;
   counts.read = block.size();
-  apply_filter(filter, lattice, block, counts);
+  apply_filter(filter, lattice, flags_layout(), block, counts);
   EXPECT_EQ(counts.kept(), block.size());
   EXPECT_EQ(block.index.size(), block.size());
   return counts;
@@ -86,7 +87,7 @@ TEST(PointFilter, EachPointIsCountedWhereItIsDroppedFirst) {
                                  .bounds = 2,
                                  .other_classes = std::bitset<256>("1")}));
   EXPECT_EQ(block.index, (std::vector<std::uint64_t>{104, 106, 108}));
-  EXPECT_EQ(block.attributes[1].classification, 6);
+  EXPECT_EQ(flags_of(block.attributes)[1].classification, 6);
   EXPECT_EQ(describe(counts),
             "12 points read, 6 skipped, 1 of other classes, 2 outside the bounds, 3 "
             "kept");
@@ -112,13 +113,15 @@ TEST(PointFilter, BoundsAreClosedAndInOutputCoordinates) {
 TEST(PointFilter, AFilterThatLeavesNoPointsNamesTheClassesThatThereAre) {
   const auto message = [](const std::vector<int>& classes) {
     PointBlock block;
+    std::vector<LasFlags> flags;
     PointFilter filter;
     filter.classes.emplace().set(2);
     for (const int c : classes) {
       block.points.push_back({0, 0, 0});
       block.index.push_back(block.index.size());
-      block.attributes.push_back({.classification = static_cast<std::uint8_t>(c)});
+      flags.push_back({.classification = static_cast<std::uint8_t>(c)});
     }
+    block.attributes = records_of(flags);
     const PointCounts counts = apply(filter, block);
     try {
       refuse_empty_input(counts);
@@ -129,8 +132,8 @@ TEST(PointFilter, AFilterThatLeavesNoPointsNamesTheClassesThatThereAre) {
   EXPECT_EQ(message({9, 3, 0, 4, 255, 5, 3}),
             "the filters leave no points: 7 points read, 7 of other classes (0, 3-5, 9, 255), 0 "
             "kept");
-  EXPECT_THAT(message({1}), testing::EndsWith("1 of other classes (1), 0 kept"));
-  EXPECT_THAT(message({}), testing::EndsWith("the input has no points"));
+  EXPECT_THAT(message({1}), ::testing::EndsWith("1 of other classes (1), 0 kept"));
+  EXPECT_THAT(message({}), ::testing::EndsWith("the input has no points"));
 }
 
 TEST(PointCounts, AddUp) {

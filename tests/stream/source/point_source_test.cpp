@@ -71,7 +71,7 @@ class PointSourceTest : public ::testing::Test {
     LasFile las;
     las.records.clear();
     for (int i = 0; i < n; ++i) {
-      PointAttributes attributes;
+      LasFlags attributes;
       attributes.classification = static_cast<std::uint8_t>(i % 4);
       attributes.return_number = static_cast<std::uint8_t>(1 + i % 3);
       attributes.return_count = 3;
@@ -231,13 +231,44 @@ TEST_F(PointSourceTest, ExpectsNoMoreThanFiltersLeave) {
   EXPECT_EQ(PointSource(files_, {"a.las"}, options).count(), std::nullopt);
 }
 
+TEST_F(PointSourceTest, WarnsByNameOfWhatComesToLightWhilePointsAreRead) {
+  files_.seekable = false;
+  files_.files["a.las"] = diagonal(10).bytes();
+  files_.files["b.las"] = diagonal(10).bytes() + std::string(40, 'E');
+  EXPECT_EQ(read({"a.las", "b.las"}).points.size(), 18U);
+  EXPECT_THAT(warnings_, ::testing::StartsWith("b.las: the header counts 10 points, but more"));
+}
+
+TEST_F(PointSourceTest, CountsLostPointsOnceAndPromisesNoNumberOfPoints) {
+  files_.files["a.las"] = diagonal(100).bytes();
+  files_.files["b.las"] = diagonal(100).bytes();
+  files_.truncate("a.las", 227 + 20 * 60 + 7);
+  PointSourceOptions options;
+  options.reader.keep_withheld = options.reader.salvage = true;
+  EXPECT_EQ(PointSource(files_, {"a.las", "b.las"}, options).count(), std::nullopt);
+  EXPECT_EQ(PointSource(files_, {"a.las", "b.las"}, options).expected(), 160U);
+  for (const bool seekable : {true, false}) {
+    files_.seekable = seekable;
+    warnings_.clear();
+    const Everything all = read({"a.las", "b.las"}, options);
+    EXPECT_EQ(all.points.size(), 160U);
+    EXPECT_EQ(all.index.back(), 159U);
+    EXPECT_EQ(all.counts.read, 160U);
+    EXPECT_EQ(all.counts.lost, 40U);
+    EXPECT_EQ(describe(all.counts), "160 points read (40 are lost), 160 kept");
+    EXPECT_THAT(warnings_, ::testing::StartsWith("a.las: the file ends at byte 1434, "));
+    EXPECT_EQ(std::ranges::count(warnings_, '\n'), 1);
+  }
+}
+
 TEST_F(PointSourceTest, TextHasNoClassesAndIsNamed) {
   files_.files["a.las"] = diagonal(10).bytes();
   files_.files["b.txt"] = "0 0 0\n1 0 0\n";
   PointSourceOptions options;
   options.filter.classes = std::bitset<256>().set();
-  EXPECT_THAT(error_of({"a.las", "b.txt"}, options),
-              AllOf(HasSubstr("b.txt: text has neither classes"), Not(HasSubstr("a.las"))));
+  EXPECT_THAT(
+      error_of({"a.las", "b.txt"}, options),
+      AllOf(HasSubstr("b.txt: the points have no classification"), Not(HasSubstr("a.las"))));
   options.filter = {};
   options.filter.every = 2;
   EXPECT_EQ(read({"b.txt"}, options).points.size(), 1U);
@@ -310,8 +341,8 @@ TEST_F(PointSourceTest, PiecesThatAreUsedAgainKeepNothingOfTheInputBefore) {
   files_.files["d.las"] = diagonal(2).bytes();
   PointSourceOptions options;
   options.index = true;
-  options.reader.attributes = true;
   PointSource source(files_, {"a.las", "b.xyz", "c.npy", "d.las"}, options);
+  source.carry({.names = {"classification"}});
   std::vector<std::uint64_t> index;
   std::vector<std::size_t> attributes;
   SourcePiece piece;
@@ -321,7 +352,7 @@ TEST_F(PointSourceTest, PiecesThatAreUsedAgainKeepNothingOfTheInputBefore) {
     attributes.push_back(block.attributes.size());
   }
   EXPECT_THAT(index, ::testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9));
-  EXPECT_THAT(attributes, ::testing::ElementsAre(5, 0, 0, 2));
+  EXPECT_THAT(attributes, ::testing::ElementsAre(5, 2, 1, 2));
 }
 
 TEST_F(PointSourceTest, IntegersThatALatticeDoesNotKeepApartAreFoundInTheirBlock) {

@@ -41,7 +41,7 @@ class SourceCoordinatesTest : public ::testing::Test {
                               const LatticePoint& point) {
     PointBlock block;
     block.points = {point};
-    coordinates.bring(input, block);
+    coordinates.bring(input, {}, block);
     return block.points.front();
   }
 
@@ -109,7 +109,7 @@ TEST_F(SourceCoordinatesTest, PointsThatAreDroppedMayFallTogether) {
   block.index = {0, 1};
   const SourceCoordinates all =
       coordinates(facts, {.bounds = Box<3>{{-100, -100, -100}, {100, 100, 100}}});
-  EXPECT_NO_THROW(all.bring(0, block));
+  EXPECT_NO_THROW(all.bring(0, {}, block));
   EXPECT_EQ(block.size(), 2U);  // to drop them is the filter's work
 }
 

@@ -50,11 +50,11 @@ TEST(SourceFacts, OneInputIsEnoughToHaveHeightsOrAttributes) {
   facts.inputs[0].header.coordinates = 2;
   facts.inputs[1].header.coordinates = 2;
   EXPECT_FALSE(facts.has_heights());
-  EXPECT_FALSE(facts.has_attributes());
+  EXPECT_TRUE(facts.attributes().empty());
   facts.inputs[1].header.coordinates = 3;
-  facts.inputs[1].header.point_format = 0;
+  facts.inputs[1].header.attributes = AttributeLayout({{.name = "intensity"}});
   EXPECT_TRUE(facts.has_heights());
-  EXPECT_TRUE(facts.has_attributes());
+  EXPECT_NE(facts.attributes().find("intensity"), nullptr);
 }
 
 }  // namespace

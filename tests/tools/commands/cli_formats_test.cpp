@@ -144,7 +144,8 @@ TEST(TextColumns, WhatIsNotPlainIsTold) {
   EXPECT_THAT(result.err,
               HasSubstr("a.csv (and 1 more): column 2 (\"X_UTM\") is taken for x, column 3 "
                         "(\"Y_UTM\") is taken for y, column 4 (\"Elev_m\") is taken for z\n"));
-  EXPECT_THAT(work.read("out.csv"), ::testing::StartsWith("10,20,30\n11,20,31\n10,21,32\n10,20,"));
+  EXPECT_THAT(work.read("out.csv"),
+              ::testing::StartsWith("x,y,z,pid\n10,20,30,1\n11,20,31,2\n10,21,32,3\n10,20,"));
   EXPECT_EQ(work.run("spillway convert -q a.csv -o out.csv").err, "");
 }
 

@@ -192,7 +192,7 @@ TEST_F(Filters, ClassesOfAFileThatHasNoneAreAnError) {
   work_.succeed("spillway generate -q uniform -n 100 -o in.npy");
   const Result result = work_.run("spillway triangulate in.las in.npy -o mesh.ply --keep-class 2");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, StartsWith("spillway: error: in.npy: npy has neither classes"));
+  EXPECT_THAT(result.err, StartsWith("spillway: error: in.npy: the points have no classification"));
   EXPECT_FALSE(work_.has("mesh.ply"));
 }
 

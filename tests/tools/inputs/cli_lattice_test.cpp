@@ -135,7 +135,7 @@ TEST(Lattices, OfPointsThatAFilterDropsDoNotMatter) {
     record.y %= 1000;
   }
   las.offset = {0x1p46 - 1e6, 0, 0};
-  PointAttributes corrupt;
+  LasFlags corrupt;
   corrupt.classification = 7;
   las.records.push_back({2'000'000'000, 5, 5, false, corrupt});
   work.write("told.las", bytes_with_bounds(las));

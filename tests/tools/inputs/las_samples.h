@@ -16,7 +16,7 @@ inline testing::LasFile scattered_las(int first, int count) {
   las.records.clear();
   for (int i = 0; i < count; ++i) {
     const std::uint32_t n = static_cast<std::uint32_t>(first + i);
-    PointAttributes attributes;
+    LasFlags attributes;
     attributes.classification = static_cast<std::uint8_t>(n % 5);
     attributes.return_number = static_cast<std::uint8_t>(1 + i % 3);
     attributes.return_count = 3;

@@ -71,6 +71,39 @@ class RanksOfTheCommand : public testing::Test {
   Workspace work_;
 };
 
+TEST_F(RanksOfTheCommand, SalvageAsOneProcessDoesAndNameTheFiles) {
+  work_.succeed(
+      "spillway generate -q terrain -n 200000 -o in.las\n"
+      "spillway convert -q in.las -o in.laz\n"
+      "head -c 1000000 in.las > cut.las\n"
+      "head -c 300000 in.laz > cut.laz");
+  std::string bytes = work_.read("in.laz");
+  bytes.replace(bytes.size() / 2, 2000, 2000, '\xff');
+  work_.write("bad.laz", bytes);
+  const std::string files = "cut.las cut.laz bad.laz --salvage";
+  expect_same_mesh(3, files);
+  const Result together = work_.run(ranks(3, "triangulate --stats run.json -o b.spm " + files));
+  EXPECT_EQ(together.exit_code, 0);
+  for (const char* name : {"cut.las: ", "cut.laz: ", "bad.laz: "}) {
+    EXPECT_THAT(together.err, HasSubstr(name));
+  }
+  const auto filters = nlohmann::json::parse(work_.read("run.json"))["filters"];
+  EXPECT_EQ(filters["read"].get<int>() + filters["lost"].get<int>(), 600000);
+}
+
+TEST_F(RanksOfTheCommand, LeaveOutBrokenFilesWithExitCode1) {
+  work_.succeed(
+      "spillway generate -q terrain -n 20000 -o in.las\n"
+      "head -c 9000 in.las > cut.las");
+  work_.succeed("spillway triangulate -q in.las -o a.spm");
+  const Result result =
+      work_.run(ranks(2, "triangulate cut.las in.las missing.las -o b.spm --skip-broken"));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("cut.las: "), HasSubstr("missing.las: "),
+                                HasSubstr("these 2 inputs are left out")));
+  EXPECT_EQ(work_.info("b.spm")["canonical_hash"], work_.info("a.spm")["canonical_hash"]);
+}
+
 TEST_F(RanksOfTheCommand, EndEachPhaseOfTheProgressWithTheTotalsOfAll) {
   work_.succeed(
       "spillway generate -q terrain -n 200000 -o in.las\n"

@@ -40,11 +40,13 @@ TEST(Advice, OfFoldersDependsOnTheSystemsReason) {
 TEST(Advice, IsAnotherForEachRemedy) {
   std::set<std::string> texts;
   for (const Remedy remedy :
-       {Remedy::kNone, Remedy::kMemory, Remedy::kScratchFolder, Remedy::kScratchLimit,
-        Remedy::kRasterSize, Remedy::kRasterMemory, Remedy::kPlane, Remedy::kFilters,
-        Remedy::kForeignCrs, Remedy::kOneFile, Remedy::kLas14, Remedy::kRanks,
-        Remedy::kRasterExtent, Remedy::kPointLattice, Remedy::kDistrustHeaders, Remedy::kUnknownCrs,
-        Remedy::kWrongCrs, Remedy::kGroundScale, Remedy::kColumns}) {
+       {Remedy::kNone,         Remedy::kMemory,       Remedy::kScratchFolder,
+        Remedy::kScratchLimit, Remedy::kRasterSize,   Remedy::kRasterMemory,
+        Remedy::kPlane,        Remedy::kFilters,      Remedy::kForeignCrs,
+        Remedy::kOneFile,      Remedy::kLas14,        Remedy::kRanks,
+        Remedy::kRasterExtent, Remedy::kPointLattice, Remedy::kDistrustHeaders,
+        Remedy::kUnknownCrs,   Remedy::kWrongCrs,     Remedy::kGroundScale,
+        Remedy::kColumns,      Remedy::kSalvage}) {
     EXPECT_TRUE(texts.insert(advice({.remedy = remedy})).second);
   }
 }

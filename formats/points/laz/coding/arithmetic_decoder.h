@@ -59,6 +59,15 @@ class ArithmeticDecoder {
     return few_raw(bits);
   }
 
+  /// A number of 64 bits that has no model.
+  [[gnu::always_inline]] std::uint64_t raw64() {
+    std::uint64_t number = 0;
+    for (unsigned shift = 0; shift < 64; shift += 16) {
+      number |= std::uint64_t{few_raw(16)} << shift;
+    }
+    return number;
+  }
+
   /// What has been given and not been read.
   [[nodiscard]] std::span<const std::byte> rest() const { return {next_, end_}; }
 

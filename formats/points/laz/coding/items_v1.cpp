@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "formats/points/laz/coding/record_fields.h"
+
 namespace spillway::detail::laz {
 namespace {
 
@@ -15,7 +17,9 @@ std::int32_t sum(std::int32_t value, std::uint32_t difference) {
 
 }  // namespace
 
-void Point10V1::reset() {
+template <Keep kKeep>
+void Point10V1<kKeep>::reset(const std::byte* first) {
+  point_ = Point10::of_record(first);
   changed_.reset();
   returns_.reset();
   classification_.reset();
@@ -30,8 +34,11 @@ void Point10V1::reset() {
   last_dy_.fill(0);
 }
 
-void Point10V1::decode(ArithmeticDecoder& stream) {
+template <Keep kKeep>
+void Point10V1<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
+  const KeptPart<kKeep> kept(part);
   ArithmeticDecoder local = stream;
+  Point10& point = point_;
   const auto dx = static_cast<std::int32_t>(dx_.decode(local, median(last_dx_), 0));
   const std::size_t dy_context = std::min(dx_.width(), 19U);
   const auto dy = static_cast<std::int32_t>(dy_.decode(local, median(last_dy_), dy_context));
@@ -44,31 +51,46 @@ void Point10V1::decode(ArithmeticDecoder& stream) {
   oldest_ = oldest_ == 2 ? 0 : oldest_ + 1;
 
   const unsigned changed = local.symbol(changed_.at(0));
-  if ((changed & 32U) != 0) intensity_.decode(local, 0, 0);
+  if ((changed & 32U) != 0) {
+    kept.put_short(kIntensity, intensity_.decode(local, kept.short_at(kIntensity), 0));
+  }
   if ((changed & 16U) != 0) point.returns = local.symbol(returns_.at(point.returns));
   if ((changed & 8U) != 0) {
     point.classification = local.symbol(classification_.at(point.classification));
   }
-  if ((changed & 4U) != 0) angle_.decode(local, 0, width < 3 ? 1 : 0);
+  if ((changed & 4U) != 0) {
+    const unsigned last = kept.byte_at(core10::kAngle);
+    kept.put_byte(core10::kAngle, angle_.decode(local, last, width < 3 ? 1 : 0));
+  }
   if ((changed & 2U) != 0) point.user = local.symbol(user_.at(point.user));
-  if ((changed & 1U) != 0) source_.decode(local, 0, 0);
+  if ((changed & 1U) != 0) {
+    kept.put_short(core10::kSource, source_.decode(local, kept.short_at(core10::kSource), 0));
+  }
   stream = local;
+  if constexpr (kKeep == Keep::kWhole) point.store_in(part);
 }
 
-void GpsTime11V1::reset() {
+template <Keep kKeep>
+void GpsTime11V1<kKeep>::reset(const std::byte* first) {
   multiple_.reset();
   zero_.reset();
   difference_.reset();
+  time_ = load<std::uint64_t>(first);
   last_difference_ = 0;
   extreme_ = 0;
 }
 
-void GpsTime11V1::decode(ArithmeticDecoder& stream) {
+template <Keep kKeep>
+void GpsTime11V1<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
   ArithmeticDecoder local = stream;
   bool is_raw = false;
   if (last_difference_ == 0) {
     const unsigned kind = local.symbol(zero_.at(0));
-    if (kind == 1) last_difference_ = static_cast<std::int32_t>(difference_.decode(local, 0, 0));
+    if (kind == 1) {
+      const std::uint32_t difference = difference_.decode(local, 0, 0);
+      time_ = sum64(time_, difference);
+      last_difference_ = static_cast<std::int32_t>(difference);
+    }
     is_raw = kind == 2;
   } else {
     constexpr unsigned kRaw = 510;
@@ -84,63 +106,92 @@ void GpsTime11V1::decode(ArithmeticDecoder& stream) {
                                   : multiple < 10 ? 3
                                   : multiple < 50 ? 4
                                                   : 5;
-      const auto difference =
-          static_cast<std::int32_t>(difference_.decode(local, prediction, context));
+      const std::uint32_t difference = difference_.decode(local, prediction, context);
+      time_ = sum64(time_, difference);
       if (multiple == 0 || multiple == kLargest) ++extreme_;
       if (multiple == 1 || extreme_ > 3) {
-        last_difference_ = difference;
+        last_difference_ = static_cast<std::int32_t>(difference);
         extreme_ = 0;
       }
     }
   }
-  if (is_raw) {
-    for (int i = 0; i < 4; ++i) local.raw(16);
-  }
+  if (is_raw) time_ = local.raw64();
   stream = local;
+  KeptPart<kKeep>(part).put(0, time_);
 }
 
-void Rgb12V1::reset() {
+template <Keep kKeep>
+void Rgb12V1<kKeep>::reset(const std::byte* /*first*/) {
   used_.reset();
   bytes_.reset();
 }
 
-void Rgb12V1::decode(ArithmeticDecoder& stream) {
+template <Keep kKeep>
+void Rgb12V1<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
+  const KeptPart<kKeep> kept(part);
   ArithmeticDecoder local = stream;
   const unsigned used = local.symbol(used_.at(0));
   for (unsigned i = 0; i < 6; ++i) {
-    if ((used >> i & 1U) != 0) bytes_.decode(local, 0, i);
+    if ((used >> i & 1U) != 0) kept.put_byte(i, bytes_.decode(local, kept.byte_at(i), i));
   }
   stream = local;
 }
 
-void WavePacket13::reset() {
+template <Keep kKeep>
+void WavePacket13<kKeep>::reset(const std::byte* /*first*/) {
   index_.reset();
   offset_kind_.reset();
   offset_.reset();
   size_.reset();
   return_point_.reset();
   direction_.reset();
+  last_step_ = 0;
   last_kind_ = 0;
 }
 
-void WavePacket13::decode(ArithmeticDecoder& stream) {
+template <Keep kKeep>
+void WavePacket13<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
+  const KeptPart<kKeep> kept(part);
   ArithmeticDecoder local = stream;
-  local.symbol(index_.at(0));
+  kept.put_byte(wave_packet::kIndex, local.symbol(index_.at(0)));
+  auto offset = kept.template get<std::uint64_t>(wave_packet::kOffset);
   last_kind_ = local.symbol(offset_kind_.at(last_kind_));
-  if (last_kind_ == 2) offset_.decode(local, 0, 0);
-  if (last_kind_ == 3) {
-    for (int i = 0; i < 4; ++i) local.raw(16);
+  if (last_kind_ == 1) offset += kept.word_at(wave_packet::kSize);
+  if (last_kind_ == 2) {
+    last_step_ = offset_.decode(local, last_step_, 0);
+    offset = sum64(offset, last_step_);
   }
-  size_.decode(local, 0, 0);
-  return_point_.decode(local, 0, 0);
-  for (std::size_t axis = 0; axis < 3; ++axis) direction_.decode(local, 0, axis);
+  if (last_kind_ == 3) offset = local.raw64();
+  kept.put(wave_packet::kOffset, offset);
+  kept.put(wave_packet::kSize, size_.decode(local, kept.word_at(wave_packet::kSize), 0));
+  kept.put(wave_packet::kReturnPoint,
+           return_point_.decode(local, kept.word_at(wave_packet::kReturnPoint), 0));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t at = wave_packet::kDirection + 4 * axis;
+    kept.put(at, direction_.decode(local, kept.word_at(at), axis));
+  }
   stream = local;
 }
 
-void ByteV1::decode(ArithmeticDecoder& stream) {
+template <Keep kKeep>
+void ByteV1<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
+  const KeptPart<kKeep> kept(part);
   ArithmeticDecoder local = stream;
-  for (std::size_t i = 0; i < bytes_; ++i) decoder_.decode(local, 0, i);
+  for (std::size_t i = 0; i < bytes_; ++i) {
+    kept.put_byte(i, decoder_.decode(local, kept.byte_at(i), i));
+  }
   stream = local;
 }
+
+template class Point10V1<Keep::kNeeded>;
+template class Point10V1<Keep::kWhole>;
+template class GpsTime11V1<Keep::kNeeded>;
+template class GpsTime11V1<Keep::kWhole>;
+template class Rgb12V1<Keep::kNeeded>;
+template class Rgb12V1<Keep::kWhole>;
+template class WavePacket13<Keep::kNeeded>;
+template class WavePacket13<Keep::kWhole>;
+template class ByteV1<Keep::kNeeded>;
+template class ByteV1<Keep::kWhole>;
 
 }  // namespace spillway::detail::laz

@@ -1,7 +1,8 @@
 #pragma once
-// Pointwise items, version 1: docs/formats-laz.md.
+// Pointwise items, version 1: docs/formats-laz.md. Instantiated for both ways to keep values.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "formats/points/laz/coding/integer_decoder.h"
@@ -10,10 +11,11 @@
 namespace spillway::detail::laz {
 
 /// Differences of x and y are predicted by the median of the last three.
-class Point10V1 : public Point10Item {
+template <Keep kKeep>
+class Point10V1 final : public Point10Item {
  public:
-  void reset() override;
-  void decode(ArithmeticDecoder& stream) override;
+  void reset(const std::byte* first) override;
+  void decode(ArithmeticDecoder& stream, std::byte* part) override;
 
  private:
   using LastThree = std::array<std::int32_t, 3>;
@@ -33,23 +35,26 @@ class Point10V1 : public Point10Item {
   unsigned oldest_ = 0;  // of the last three
 };
 
-class GpsTime11V1 : public PointwiseItem {
+template <Keep kKeep>
+class GpsTime11V1 final : public PointwiseItem {
  public:
-  void reset() override;
-  void decode(ArithmeticDecoder& stream) override;
+  void reset(const std::byte* first) override;
+  void decode(ArithmeticDecoder& stream, std::byte* part) override;
 
  private:
   SymbolModels<512> multiple_{1};
   SymbolModels<3> zero_{1};
   IntegerDecoder<32> difference_{6};
+  std::uint64_t time_ = 0;
   std::int32_t last_difference_ = 0;
   unsigned extreme_ = 0;
 };
 
-class Rgb12V1 : public PointwiseItem {
+template <Keep kKeep>
+class Rgb12V1 final : public PointwiseItem {
  public:
-  void reset() override;
-  void decode(ArithmeticDecoder& stream) override;
+  void reset(const std::byte* first) override;
+  void decode(ArithmeticDecoder& stream, std::byte* part) override;
 
  private:
   SymbolModels<64> used_{1};
@@ -57,10 +62,11 @@ class Rgb12V1 : public PointwiseItem {
 };
 
 /// The only version of this item.
-class WavePacket13 : public PointwiseItem {
+template <Keep kKeep>
+class WavePacket13 final : public PointwiseItem {
  public:
-  void reset() override;
-  void decode(ArithmeticDecoder& stream) override;
+  void reset(const std::byte* first) override;
+  void decode(ArithmeticDecoder& stream, std::byte* part) override;
 
  private:
   SymbolModels<256> index_{1};
@@ -69,14 +75,16 @@ class WavePacket13 : public PointwiseItem {
   IntegerDecoder<32> size_{1};
   IntegerDecoder<32> return_point_{1};
   IntegerDecoder<32> direction_{3};
+  std::uint32_t last_step_ = 0;
   unsigned last_kind_ = 0;
 };
 
-class ByteV1 : public PointwiseItem {
+template <Keep kKeep>
+class ByteV1 final : public PointwiseItem {
  public:
   explicit ByteV1(std::size_t bytes) : bytes_(bytes), decoder_(bytes) {}
-  void reset() override { decoder_.reset(); }
-  void decode(ArithmeticDecoder& stream) override;
+  void reset(const std::byte* /*first*/) override { decoder_.reset(); }
+  void decode(ArithmeticDecoder& stream, std::byte* part) override;
 
  private:
   std::size_t bytes_;

@@ -2,12 +2,47 @@
 
 #include <algorithm>
 
+#include "formats/points/laz/coding/record_fields.h"
 #include "formats/points/laz/coding/return_tables.h"
-#include "src/error.h"
 
 namespace spillway::detail::laz {
+namespace {
 
-void Point10V2::reset() {
+/// The six bytes of the last colour, which become those of the next one.
+template <Keep kKeep>
+class Colour {
+ public:
+  explicit Colour(std::byte* part) : kept_(part) {}
+
+  /// Adds a difference to the prediction of a byte: green moves as red did, and blue as the two did
+  /// on average.
+  void move(unsigned i, unsigned difference) {
+    if constexpr (kKeep == Keep::kWhole) {
+      const int last = static_cast<int>(kept_.byte_at(i));
+      const int step = i < 2 ? 0 : i < 4 ? steps_[i - 2] : (steps_[i - 4] + steps_[i - 2]) / 2;
+      const auto predicted = static_cast<unsigned>(std::clamp(last + step, 0, 255));
+      const unsigned byte = (predicted + difference) & 0xFFU;
+      steps_[i] = static_cast<int>(byte) - last;
+      kept_.put_byte(i, byte);
+    }
+  }
+
+  void make_grey() {
+    const auto red = kept_.template get<std::uint16_t>(0);
+    kept_.put(2, red);
+    kept_.put(4, red);
+  }
+
+ private:
+  KeptPart<kKeep> kept_;
+  std::array<int, 6> steps_{};
+};
+
+}  // namespace
+
+template <Keep kKeep>
+void Point10V2<kKeep>::reset(const std::byte* first) {
+  point_ = Point10::of_record(first);
   changed_.reset();
   returns_.reset();
   classification_.reset();
@@ -20,24 +55,39 @@ void Point10V2::reset() {
   z_.reset();
   dx_median_.fill({});
   dy_median_.fill({});
+  last_intensity_.fill(0);
   last_z_.fill(0);
 }
 
-void Point10V2::decode(ArithmeticDecoder& stream) {
+template <Keep kKeep>
+void Point10V2<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
+  constexpr bool kWhole = kKeep == Keep::kWhole;
+  const KeptPart<kKeep> kept(part);
   ArithmeticDecoder local = stream;
+  Point10& point = point_;
   const unsigned changed = local.symbol(changed_.at(0));
   if ((changed & 32U) != 0) point.returns = local.symbol(returns_.at(point.returns));
   const unsigned number = point.returns & 7U;
   const unsigned returns = point.returns >> 3U & 7U;
   const unsigned map = kReturnMap8[returns][number];
   const unsigned single = returns == 1 ? 1 : 0;
-  if ((changed & 16U) != 0) intensity_.decode(local, 0, std::min(map, 3U));
+  if ((changed & 16U) != 0) {
+    const std::uint32_t last = kWhole ? last_intensity_[map] : 0;
+    const std::uint32_t intensity = intensity_.decode(local, last, std::min(map, 3U));
+    if constexpr (kWhole) last_intensity_[map] = static_cast<std::uint16_t>(intensity);
+  }
+  kept.put_short(kIntensity, kWhole ? last_intensity_[map] : 0);
   if ((changed & 8U) != 0) {
     point.classification = local.symbol(classification_.at(point.classification));
   }
-  if ((changed & 4U) != 0) local.symbol(angle_.at(point.returns >> 6U & 1U));
+  if ((changed & 4U) != 0) {
+    const unsigned step = local.symbol(angle_.at(point.returns >> 6U & 1U));
+    kept.put_byte(core10::kAngle, kept.byte_at(core10::kAngle) + step);
+  }
   if ((changed & 2U) != 0) point.user = local.symbol(user_.at(point.user));
-  if ((changed & 1U) != 0) source_.decode(local, 0, 0);
+  if ((changed & 1U) != 0) {
+    kept.put_short(core10::kSource, source_.decode(local, kept.short_at(core10::kSource), 0));
+  }
 
   const std::uint32_t dx = dx_.decode(local, dx_median_[map].get(), single);
   point.x = static_cast<std::int32_t>(point.x + dx);
@@ -51,106 +101,49 @@ void Point10V2::decode(ArithmeticDecoder& stream) {
   last_z = static_cast<std::int32_t>(z_.decode(local, last_z, z_context));
   point.z = last_z;
   stream = local;
+  if constexpr (kWhole) point.store_in(part);
 }
 
-void GpsTime11V2::reset() {
-  multiple_.reset();
-  zero_.reset();
-  difference_.reset();
-  sequences_.fill({});
-  current_ = 0;
-  newest_ = 0;
-}
-
-void GpsTime11V2::decode(ArithmeticDecoder& stream) {
-  constexpr unsigned kUnchanged = 511;
-  constexpr unsigned kNewSequence = 512;
-  constexpr unsigned kLargest = 500;   // multiple; above follow -1, -2, ...
-  constexpr unsigned kSmallest = 510;  // that is, -10
-  constexpr int kMostSwitches = 4;
-  ArithmeticDecoder local = stream;
-  for (int switches = 0;; ++switches) {
-    if (switches > kMostSwitches) throw Error("the compressed times are corrupt");
-    Sequence& sequence = sequences_[current_];
-    if (sequence.difference == 0) {
-      const unsigned kind = local.symbol(zero_.at(0));
-      if (kind > 2) {
-        current_ = (current_ + kind - 2) & 3U;
-        continue;
-      }
-      if (kind == 1) {
-        sequence.difference = static_cast<std::int32_t>(difference_.decode(local, 0, 0));
-        sequence.extreme = 0;
-      } else if (kind == 2) {
-        begin_sequence(local);
-      }
-      break;
-    }
-    const unsigned multiple = local.symbol(multiple_.at(0));
-    if (multiple == kUnchanged) break;
-    if (multiple > kNewSequence) {
-      current_ = (current_ + multiple - kNewSequence) & 3U;
-      continue;
-    }
-    if (multiple == kNewSequence) {
-      begin_sequence(local);
-      break;
-    }
-    const std::uint32_t factor = multiple <= kLargest ? multiple : kLargest - multiple;
-    const std::size_t context = multiple == 1          ? 1
-                                : multiple == 0        ? 7
-                                : multiple < 10        ? 2
-                                : multiple < kLargest  ? 3
-                                : multiple == kLargest ? 4
-                                : multiple < kSmallest ? 5
-                                                       : 6;
-    const std::uint32_t difference = difference_.decode(
-        local, factor * static_cast<std::uint32_t>(sequence.difference), context);
-    if (multiple == 1) {
-      sequence.extreme = 0;
-    } else if (multiple == 0 || multiple == kLargest || multiple == kSmallest) {
-      if (++sequence.extreme > 3) {
-        sequence.difference = static_cast<std::int32_t>(difference);
-        sequence.extreme = 0;
-      }
-    }
-    break;
-  }
-  stream = local;
-}
-
-void GpsTime11V2::begin_sequence(ArithmeticDecoder& stream) {
-  difference_.decode(stream, 0, 8);
-  stream.raw(32);
-  newest_ = (newest_ + 1) & 3U;
-  current_ = newest_;
-  sequences_[current_] = {};
-}
-
-void Rgb12V2::reset() {
+template <Keep kKeep>
+void Rgb12V2<kKeep>::reset(const std::byte* /*first*/) {
   used_.reset();
   differences_.reset();
 }
 
-void Rgb12V2::decode(ArithmeticDecoder& stream) {
+template <Keep kKeep>
+void Rgb12V2<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
   constexpr unsigned kColoured = 64;
   ArithmeticDecoder local = stream;
   const unsigned used = local.symbol(used_.at(0));
-  if ((used & 1U) != 0) local.symbol(differences_.at(0));
-  if ((used & 2U) != 0) local.symbol(differences_.at(1));
+  Colour<kKeep> colour(part);
+  if ((used & 1U) != 0) colour.move(0, local.symbol(differences_.at(0)));
+  if ((used & 2U) != 0) colour.move(1, local.symbol(differences_.at(1)));
   if ((used & kColoured) != 0) {
     // Low bytes of green and blue, then the high ones.
     for (const unsigned i : {2U, 4U, 3U, 5U}) {
-      if ((used >> i & 1U) != 0) local.symbol(differences_.at(i));
+      if ((used >> i & 1U) != 0) colour.move(i, local.symbol(differences_.at(i)));
     }
+  } else {
+    colour.make_grey();
   }
   stream = local;
 }
 
-void ByteV2::decode(ArithmeticDecoder& stream) {
+template <Keep kKeep>
+void ByteV2<kKeep>::decode(ArithmeticDecoder& stream, std::byte* part) {
+  const KeptPart<kKeep> kept(part);
   ArithmeticDecoder local = stream;
-  for (std::size_t i = 0; i < bytes_; ++i) local.symbol(differences_.at(i));
+  for (std::size_t i = 0; i < bytes_; ++i) {
+    kept.put_byte(i, kept.byte_at(i) + local.symbol(differences_.at(i)));
+  }
   stream = local;
 }
+
+template class Point10V2<Keep::kNeeded>;
+template class Point10V2<Keep::kWhole>;
+template class Rgb12V2<Keep::kNeeded>;
+template class Rgb12V2<Keep::kWhole>;
+template class ByteV2<Keep::kNeeded>;
+template class ByteV2<Keep::kWhole>;
 
 }  // namespace spillway::detail::laz

@@ -1,7 +1,8 @@
 #pragma once
-// Pointwise items, version 2: docs/formats-laz.md.
+// Pointwise items, version 2: docs/formats-laz.md. Instantiated for both ways to keep values.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "formats/points/laz/coding/integer_decoder.h"
@@ -11,10 +12,11 @@
 namespace spillway::detail::laz {
 
 /// The attributes come first, so that returns of a kind predict each other's coordinates.
-class Point10V2 : public Point10Item {
+template <Keep kKeep>
+class Point10V2 final : public Point10Item {
  public:
-  void reset() override;
-  void decode(ArithmeticDecoder& stream) override;
+  void reset(const std::byte* first) override;
+  void decode(ArithmeticDecoder& stream, std::byte* part) override;
 
  private:
   SymbolModels<64> changed_{1};
@@ -29,46 +31,27 @@ class Point10V2 : public Point10Item {
   IntegerDecoder<32> z_{20};
   std::array<StreamingMedian, 16> dx_median_{};
   std::array<StreamingMedian, 16> dy_median_{};
+  std::array<std::uint16_t, 16> last_intensity_{};
   std::array<std::int32_t, 8> last_z_{};
 };
 
-/// Four sequences of times, as pulses of several scanners alternate.
-class GpsTime11V2 : public PointwiseItem {
+template <Keep kKeep>
+class Rgb12V2 final : public PointwiseItem {
  public:
-  void reset() override;
-  void decode(ArithmeticDecoder& stream) override;
-
- private:
-  struct Sequence {
-    std::int32_t difference = 0;
-    unsigned extreme = 0;
-  };
-
-  void begin_sequence(ArithmeticDecoder& stream);
-
-  SymbolModels<516> multiple_{1};
-  SymbolModels<6> zero_{1};
-  IntegerDecoder<32> difference_{9};
-  std::array<Sequence, 4> sequences_{};
-  unsigned current_ = 0;
-  unsigned newest_ = 0;
-};
-
-class Rgb12V2 : public PointwiseItem {
- public:
-  void reset() override;
-  void decode(ArithmeticDecoder& stream) override;
+  void reset(const std::byte* first) override;
+  void decode(ArithmeticDecoder& stream, std::byte* part) override;
 
  private:
   SymbolModels<128> used_{1};
   SymbolModels<256> differences_{6};
 };
 
-class ByteV2 : public PointwiseItem {
+template <Keep kKeep>
+class ByteV2 final : public PointwiseItem {
  public:
   explicit ByteV2(std::size_t bytes) : bytes_(bytes), differences_(bytes) {}
-  void reset() override { differences_.reset(); }
-  void decode(ArithmeticDecoder& stream) override;
+  void reset(const std::byte* /*first*/) override { differences_.reset(); }
+  void decode(ArithmeticDecoder& stream, std::byte* part) override;
 
  private:
   std::size_t bytes_;

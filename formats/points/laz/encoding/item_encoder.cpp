@@ -1,7 +1,7 @@
 #include "formats/points/laz/encoding/item_encoder.h"
 
+#include "formats/points/laz/coding/record_fields.h"
 #include "formats/points/laz/encoding/integer_encoder.h"
-#include "formats/points/laz/encoding/record_fields.h"
 #include "src/error.h"
 
 namespace spillway::detail::laz {
@@ -21,31 +21,28 @@ class WavePacketEncoder final : public ItemEncoder {
   }
 
   void encode(ArithmeticEncoder& stream, const std::byte* part, const std::byte* last) override {
-    stream.symbol(byte_at(part, 0), index_.at(0));
+    stream.symbol(byte_at(part, wave_packet::kIndex), index_.at(0));
     encode_offset(stream, part, last);
-    size_.encode(stream, word_at(last, kSize), word_at(part, kSize), 0);
-    return_point_.encode(stream, word_at(last, kReturnPoint), word_at(part, kReturnPoint), 0);
+    size_.encode(stream, word_at(last, wave_packet::kSize), word_at(part, wave_packet::kSize), 0);
+    return_point_.encode(stream, word_at(last, wave_packet::kReturnPoint),
+                         word_at(part, wave_packet::kReturnPoint), 0);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t at = kDirection + 4 * axis;
+      const std::size_t at = wave_packet::kDirection + 4 * axis;
       direction_.encode(stream, word_at(last, at), word_at(part, at), axis);
     }
   }
 
  private:
-  static constexpr std::size_t kOffset = 1;
-  static constexpr std::size_t kSize = 9;
-  static constexpr std::size_t kReturnPoint = 13;
-  static constexpr std::size_t kDirection = 17;
   enum Kind : unsigned { kSame, kNextPacket, kStep, kAny };
 
   void encode_offset(ArithmeticEncoder& stream, const std::byte* part, const std::byte* last) {
-    const auto offset = load<std::uint64_t>(part + kOffset);
-    const auto last_offset = load<std::uint64_t>(last + kOffset);
+    const auto offset = load<std::uint64_t>(part + wave_packet::kOffset);
+    const auto last_offset = load<std::uint64_t>(last + wave_packet::kOffset);
     const std::int64_t step = difference64(offset, last_offset);
-    const unsigned kind = step == 0                                      ? kSame
-                          : offset == last_offset + word_at(last, kSize) ? kNextPacket
-                          : fits_32_bits(step)                           ? kStep
-                                                                         : kAny;
+    const unsigned kind = step == 0                                                   ? kSame
+                          : offset == last_offset + word_at(last, wave_packet::kSize) ? kNextPacket
+                          : fits_32_bits(step)                                        ? kStep
+                                                                                      : kAny;
     stream.symbol(kind, kinds_.at(last_kind_));
     last_kind_ = kind;
     if (kind == kStep) {

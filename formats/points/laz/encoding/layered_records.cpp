@@ -1,16 +1,12 @@
 #include "formats/points/laz/encoding/layered_records.h"
 
-#include <algorithm>
 #include <cstring>
 
-#include "formats/points/laz/encoding/record_fields.h"
+#include "formats/points/laz/coding/record_fields.h"
 #include "src/error.h"
 
 namespace spillway::detail::laz {
 namespace {
-
-/// From this version on, items behind POINT14 know the channel of every point.
-constexpr int kKnowsChannel = 4;
 
 std::unique_ptr<ItemEncoder> make_byte_encoder() { return make_bytes_encoder(1); }
 
@@ -42,35 +38,14 @@ void add_layers(std::vector<LayerEncoder>& layers, const LazItem& item, std::siz
 
 void LayerEncoder::reset(const std::byte* first, unsigned channel) {
   layer_.reset();
-  for (Context& context : contexts_) context.used = false;
-  own_ = channel;
-  begin(contexts_[own_], first + at_);
+  contexts_.begin(first + at_, channel);
 }
 
-void LayerEncoder::begin(Context& context, const std::byte* last) {
-  if (!context.models) context.models = make_();
-  context.models->reset(last);
-  context.last.assign(last, last + size_);
-  context.used = true;
-}
-
-// Versions below 4 predict from the context before a switch, and store the value there, if the one
-// after it has been used before.
 void LayerEncoder::encode(const std::byte* record, unsigned channel) {
   const std::byte* part = record + at_;
-  unsigned source = own_;
-  if (channel != own_) {
-    own_ = channel;
-    if (!contexts_[own_].used) {
-      begin(contexts_[own_], contexts_[source].last.data());
-      source = own_;
-    } else if (version_ >= kKnowsChannel) {
-      source = own_;
-    }
-  }
-  std::byte* last = contexts_[source].last.data();
+  const auto [models, last] = contexts_.go_to(channel);
   layer_.changes |= std::memcmp(part, last, size_) != 0;
-  contexts_[own_].models->encode(layer_.stream, part, last);
+  models.encode(layer_.stream, part, last);
   std::memcpy(last, part, size_);
 }
 

@@ -1,12 +1,12 @@
 #pragma once
 // The layers of chunks of compressor 3: POINT14, and whatever follows it in a record.
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
 
 #include "formats/points/las/laz_record.h"
+#include "formats/points/laz/coding/channel_contexts.h"
 #include "formats/points/laz/encoding/item_encoder.h"
 #include "formats/points/laz/encoding/layer_stream.h"
 #include "formats/points/laz/encoding/point14_encoder.h"
@@ -20,7 +20,7 @@ class LayerEncoder {
 
   /// Of the bytes of a record from `at` on.
   LayerEncoder(int version, std::size_t at, std::size_t size, Make make)
-      : version_(version), at_(at), size_(size), make_(make) {}
+      : at_(at), size_(size), contexts_(version, size, make) {}
 
   void reset(const std::byte* first, unsigned channel);
   void encode(const std::byte* record, unsigned channel);
@@ -28,20 +28,9 @@ class LayerEncoder {
   [[nodiscard]] LayerStream& layer() { return layer_; }
 
  private:
-  struct Context {
-    std::unique_ptr<ItemEncoder> models;
-    std::vector<std::byte> last;
-    bool used = false;  // in this chunk
-  };
-
-  void begin(Context& context, const std::byte* last);
-
-  int version_;
   std::size_t at_;
   std::size_t size_;
-  Make make_;
-  unsigned own_ = 0;
-  std::array<Context, 4> contexts_;
+  ChannelContexts<ItemEncoder> contexts_;
   LayerStream layer_;
 };
 

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <array>
 
+#include "formats/points/laz/coding/record_fields.h"
 #include "formats/points/laz/coding/return_tables.h"
 #include "formats/points/laz/coding/streaming_median.h"
 #include "formats/points/laz/encoding/integer_encoder.h"
 #include "formats/points/laz/encoding/item_encoder.h"
-#include "formats/points/laz/encoding/record_fields.h"
 
 namespace spillway::detail::laz {
 namespace {

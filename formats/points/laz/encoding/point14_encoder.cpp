@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstring>
 
+#include "formats/points/laz/coding/record_fields.h"
 #include "formats/points/laz/coding/return_tables.h"
 #include "formats/points/laz/coding/streaming_median.h"
 #include "formats/points/laz/encoding/gps_time_encoder.h"
 #include "formats/points/laz/encoding/integer_encoder.h"
-#include "formats/points/laz/encoding/record_fields.h"
 
 namespace spillway::detail::laz {
 namespace {
@@ -47,7 +47,6 @@ struct Point14Encoder::Context {
     last_intensity.fill(short_at(point, kIntensity));
     std::memcpy(last.data(), point, core14::kSize);
     time_changed = false;
-    used = true;
   }
 
   SymbolModels<128> masks{8};
@@ -71,7 +70,6 @@ struct Point14Encoder::Context {
   std::array<std::uint16_t, 8> last_intensity{};
   std::array<std::byte, core14::kSize> last{};
   bool time_changed = false;  // at the last point
-  bool used = false;          // in this chunk
 };
 
 /// What the first layer says of a point, and the others depend on.
@@ -97,18 +95,9 @@ void Point14Encoder::reset(const std::byte* first) {
   for (LayerStream& layer : layers_) layer.reset();
   layers_[kXyLayer].changes = true;  // both are always written
   layers_[kZLayer].changes = true;
-  for (const auto& context : contexts_) {
-    if (context) context->used = false;
-  }
+  contexts_.reset();
   channel_ = channel_of(first);
-  current_ = &use(channel_, first);
-}
-
-Point14Encoder::Context& Point14Encoder::use(unsigned channel, const std::byte* last) {
-  std::unique_ptr<Context>& context = contexts_[channel];
-  if (!context) context = std::make_unique<Context>();
-  if (!context->used) context->begin(last);
-  return *context;
+  current_ = &contexts_.use(channel_, first);
 }
 
 ChannelStep Point14Encoder::encode(const std::byte* point) {
@@ -128,7 +117,7 @@ Point14Encoder::Pulse Point14Encoder::encode_xy(const std::byte* point) {
                                 (before.time_changed ? 4U : 0U);
   Pulse pulse;
   pulse.step = {.channel = channel_of(point), .switched = channel_of(point) != channel_};
-  if (pulse.step.switched) current_ = &use(pulse.step.channel, before.last.data());
+  if (pulse.step.switched) current_ = &contexts_.use(pulse.step.channel, before.last.data());
   Context& context = *current_;
   const std::byte* last = context.last.data();
 

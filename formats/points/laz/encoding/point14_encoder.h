@@ -3,8 +3,8 @@
 
 #include <array>
 #include <cstddef>
-#include <memory>
 
+#include "formats/points/laz/coding/by_channel.h"
 #include "formats/points/laz/encoding/layer_stream.h"
 
 namespace spillway::detail::laz {
@@ -44,15 +44,13 @@ class Point14Encoder {
   struct Context;
   struct Pulse;
 
-  /// Begins the channel's context, if this chunk has not used it, after `last`.
-  Context& use(unsigned channel, const std::byte* last);
   /// Encodes the layer of channel, returns, x and y; leaves `current_` at the point's.
   Pulse encode_xy(const std::byte* point);
   void encode_returns(const Pulse& pulse);
   void encode_rest(const std::byte* point, const Pulse& pulse);
 
   std::array<LayerStream, kLayers> layers_;
-  std::array<std::unique_ptr<Context>, 4> contexts_;
+  ByChannel<Context> contexts_;
   Context* current_ = nullptr;
   unsigned channel_ = 0;
 };

@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "formats/points/laz/coding/record_fields.h"
 #include "formats/points/laz/encoding/item_encoder.h"
-#include "formats/points/laz/encoding/record_fields.h"
 
 namespace spillway::detail::laz {
 namespace {

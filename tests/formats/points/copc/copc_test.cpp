@@ -55,7 +55,6 @@ std::vector<NodeInFile> nodes_of(const std::string& file) {
 PointReaderOptions selection(std::optional<Box<3>> bounds, double resolution) {
   PointReaderOptions options;
   options.keep_withheld = true;
-  options.attributes = true;
   options.bounds = bounds;
   options.resolution = resolution;
   return options;
@@ -64,13 +63,13 @@ PointReaderOptions selection(std::optional<Box<3>> bounds, double resolution) {
 /// Compares what the reader selects with a walk over all nodes; returns the number of points.
 std::size_t expect_selection(const std::string& file, const std::optional<Box<3>>& bounds,
                              double resolution) {
-  const AllPoints all = read_content("a.laz", file, selection({}, 0));
-  const AllPoints got = read_content("a.laz", file, selection(bounds, resolution));
+  const AllPoints all = read_content("a.laz", file, selection({}, 0), true);
+  const AllPoints got = read_content("a.laz", file, selection(bounds, resolution), true);
   const auto centre = value_at<std::array<double, 3>>(file, 429);
   const auto halfsize = value_at<double>(file, 453);
   const auto spacing = value_at<double>(file, 461);
   std::vector<LatticePoint> points;
-  std::vector<PointAttributes> attributes;
+  std::vector<LasFlags> attributes;
   for (const NodeInFile& node : nodes_of(file)) {
     int coarser = 0;  // levels above the node that are fine enough
     for (double s = spacing; resolution > 0 && s > resolution && coarser < 40; s /= 2) ++coarser;
@@ -184,7 +183,7 @@ TEST(Copc, IsReadWholeWithoutSelection) {
   ASSERT_GT(file.pages.size(), 20U);
   std::size_t count = 0;
   for (const CopcFile::Node& node : file.nodes) count += node.count;
-  const AllPoints all = read_content("a.copc.laz", file.bytes(), selection({}, 0));
+  const AllPoints all = read_content("a.copc.laz", file.bytes(), selection({}, 0), true);
   EXPECT_EQ(all.header.format, "copc");
   EXPECT_EQ(all.header.count, count);
   EXPECT_EQ(all.points.size(), count);
@@ -199,9 +198,20 @@ TEST(Copc, AnOctreeThatHasNotAllPointsTellsNoRegions) {
                                           [](const CopcFile::Entry& e) { return e.count > 1; });
   ASSERT_NE(entry, file.pages.front().entries.end());
   entry->count = 0;
-  const AllPoints all = read_content("a.copc.laz", file.bytes(), selection({}, 0));
+  const AllPoints all = read_content("a.copc.laz", file.bytes(), selection({}, 0), true);
   EXPECT_TRUE(all.header.regions.empty());
   EXPECT_EQ(all.header.count, all.points.size());
+}
+
+TEST(Copc, NodesThatTheHeaderDoesNotCountAreSaidWhereTheyAreNotRead) {
+  CopcFile file = deep_file();
+  file.laz.count -= file.laz.chunks.back().count;
+  const AllPoints all = read_content("a.copc.laz", file.bytes(), selection({}, 0));
+  EXPECT_EQ(all.points.size(), file.laz.count);
+  EXPECT_THAT(all.header.notices,
+              ::testing::ElementsAre(HasSubstr("but 1 more chunk of them follows")));
+  EXPECT_THAT(error_of_content("a.copc.laz", file.bytes(), selection({}, 1e-300)),
+              HasSubstr("but the file has"));
 }
 
 TEST(Copc, BoundsAndResolutionSelectNodes) {

@@ -1,4 +1,5 @@
 #include "tests/formats/points/copc/encoded_files.h"
+#include "tests/formats/points/las_flags_layout.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@ constexpr std::size_t kBoundsField = 179;
 constexpr std::int32_t kPageLevel = 2;
 
 /// A record of point format 0, or of 6 if `extended`.
-std::string record_of(const Place& place, const PointAttributes& attributes, bool extended) {
+std::string record_of(const Place& place, const LasFlags& attributes, bool extended) {
   std::string record(extended ? 30 : 20, '\0');
   const unsigned number = attributes.return_number;
   const unsigned count = attributes.return_count;
@@ -80,8 +81,8 @@ void share_out_pages(const PointOctree& tree, CopcFile& file) {
 EncodedPoints read_points_to_encode(const std::string& path) {
   PointReaderOptions options;
   options.keep_withheld = true;
-  options.attributes = true;
   const auto reader = open_point_reader(disk(), path, options);
+  reader->carry(flags_layout());
   if (!reader->header().lattice) {
     throw InvalidArgument(fmt::format("{} has no lattice: choose LAS", path));
   }
@@ -93,8 +94,8 @@ EncodedPoints read_points_to_encode(const std::string& path) {
                                static_cast<std::int32_t>(point[1]),
                                static_cast<std::int32_t>(point[2])});
     }
-    points.attributes.insert(points.attributes.end(), block.attributes.begin(),
-                             block.attributes.end());
+    const std::vector<LasFlags> flags = flags_of(block.attributes);
+    points.attributes.insert(points.attributes.end(), flags.begin(), flags.end());
   }
   if (points.places.empty()) throw InvalidArgument(fmt::format("{} has no points", path));
   points.attributes.resize(points.places.size());

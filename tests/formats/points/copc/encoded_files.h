@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/points/common/point_reader.h"
+#include "formats/points/las/records/las_flags.h"
 #include "tests/formats/points/copc/point_octree.h"
 
 namespace spillway::detail::testing {
@@ -14,7 +15,7 @@ namespace spillway::detail::testing {
 struct EncodedPoints {
   Lattice lattice;
   std::vector<PointOctree::Place> places;
-  std::vector<PointAttributes> attributes;  ///< as many
+  std::vector<LasFlags> attributes;  ///< as many
 };
 
 /// All points of a file that has some, on a lattice. Throws Error for others.

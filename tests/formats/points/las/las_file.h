@@ -19,7 +19,7 @@ struct LasFile {
     std::int32_t y;
     std::int32_t z;
     bool withheld = false;
-    std::optional<PointAttributes> attributes{};  ///< flags not counted; else all bits are set
+    std::optional<LasFlags> attributes{};  ///< flags not counted; else all bits are set
   };
   struct Vlr {
     std::string user;
@@ -92,7 +92,7 @@ struct LasFile {
     return bytes;
   }
 
-  void put_attributes(std::string& bytes, const PointAttributes& attributes) const {
+  void put_attributes(std::string& bytes, const LasFlags& attributes) const {
     const bool extended = point_format >= 6;
     const int returns = attributes.return_number | attributes.return_count << (extended ? 4 : 3);
     put(bytes, 14, static_cast<std::uint8_t>(returns));

@@ -91,8 +91,42 @@ TEST(LasReader, LeavesOutWhatFollowsThePointsAndSaysSo) {
               ElementsAre(fmt::format(
                   "the header counts 3 points, but 1000 bytes follow them, room for {} more, which "
                   "are not read; if they are points, correct the count in the header (4 bytes from "
-                  "byte 107 on)",
+                  "byte 107 on), or salvage them",
                   1000 / file.record_length())));
+}
+
+TEST(LasReader, TakesZerosBehindThePointsForPadding) {
+  const std::string padded = LasFile().bytes() + std::string(4096, '\0');
+  EXPECT_THAT(read_content("a.las", padded).header.notices, IsEmpty());
+  EXPECT_THAT(read_content("a.las", padded + "E").header.notices,
+              ElementsAre(HasSubstr("4097 bytes follow them")));
+}
+
+TEST(LasReader, SaysAtTheEndOfAPipeThatMoreFollowsThePoints) {
+  LasFile file;
+  file.records = std::vector<LasFile::Record>(70000, {1, 2, 3});
+  const auto notices = [](const std::string& bytes) {
+    FaultyFileSystem pipe;
+    pipe.seekable = false;
+    pipe.files["a.las"] = bytes;
+    return read_all_points(pipe, "a.las").notices;
+  };
+  EXPECT_THAT(notices(file.bytes()), IsEmpty());
+  EXPECT_THAT(notices(file.bytes() + std::string(file.record_length() - 1, 'E')), IsEmpty());
+  EXPECT_THAT(notices(file.bytes() + std::string(4096, '\0')), IsEmpty());
+  for (const std::uint32_t told : {0, 65536, 69999}) {
+    std::string bytes = file.bytes();
+    put(bytes, 107, told);
+    EXPECT_THAT(notices(bytes),
+                ElementsAre(HasSubstr(
+                    fmt::format("the header counts {} points, but more bytes follow them", told))));
+  }
+  file.minor = 4;
+  file.point_format = 6;
+  std::string bytes = file.bytes();
+  put(bytes, 235, std::uint64_t{bytes.size()});
+  put(bytes, 243, std::uint32_t{1});
+  EXPECT_THAT(notices(bytes + std::string(1000, 'E')), IsEmpty());
 }
 
 TEST(LasReader, SaysWhatFollowsAHeaderThatCountsNoPoints) {

@@ -312,12 +312,11 @@ std::vector<ChunkCase> reference_chunks() {
   return cases;
 }
 
-PointAttributes attributes_of(const Bytes& record, bool layered) {
+LasFlags attributes_of(const Bytes& record, bool layered) {
   const auto byte = [&](std::size_t i) { return std::to_integer<unsigned>(record[i]); };
   const auto make = [](unsigned classification, unsigned number, unsigned count, unsigned flags) {
-    return PointAttributes{static_cast<std::uint8_t>(classification),
-                           static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(count),
-                           static_cast<std::uint8_t>(flags)};
+    return LasFlags{static_cast<std::uint8_t>(classification), static_cast<std::uint8_t>(number),
+                    static_cast<std::uint8_t>(count), static_cast<std::uint8_t>(flags)};
   };
   if (layered) return make(byte(16), byte(14) % 16, byte(14) / 16, byte(15) % 16);
   return make(byte(15) % 32, byte(14) % 8, byte(14) / 8 % 8, byte(15) / 32);
@@ -325,12 +324,12 @@ PointAttributes attributes_of(const Bytes& record, bool layered) {
 
 /// Decodes the chunk in calls for two points at a time.
 void decode_chunk(LazChunkDecoder& decoder, std::vector<LatticePoint>& points,
-                  std::vector<PointAttributes>& attributes) {
+                  std::vector<LasFlags>& attributes) {
   for (std::size_t done = 0; done < points.size(); done += 2) {
     const std::size_t count = std::min<std::size_t>(2, points.size() - done);
-    decoder.decode(std::span(points).subspan(done, count),
-                   attributes.empty() ? std::span<PointAttributes>()
-                                      : std::span(attributes).subspan(done, count));
+    decoder.decode(
+        std::span(points).subspan(done, count),
+        attributes.empty() ? std::span<LasFlags>() : std::span(attributes).subspan(done, count));
   }
 }
 
@@ -338,13 +337,14 @@ TEST(LazChunk, ReferenceChunksGiveTheirRecordsFromSpansOfAnySize) {
   for (const ChunkCase& c : reference_chunks()) {
     const Bytes chunk = bytes_of(c.chunk);
     for (const bool wants_attributes : {false, true}) {
-      LazChunkDecoder decoder(c.format, wants_attributes);
+      LazChunkDecoder decoder(c.format,
+                              wants_attributes ? LazDetail::kFlags : LazDetail::kCoordinates);
       for (const std::size_t span_size :
            {std::size_t{1}, std::size_t{3}, std::size_t{40}, SIZE_MAX}) {
         SCOPED_TRACE(c.name + ", pieces of " + std::to_string(span_size));
         SplitBytes split(chunk, span_size);
         std::vector<LatticePoint> points(c.records.size());
-        std::vector<PointAttributes> attributes(wants_attributes ? c.records.size() : 0);
+        std::vector<LasFlags> attributes(wants_attributes ? c.records.size() : 0);
         decoder.begin(split, c.records.size());
         decode_chunk(decoder, points, attributes);
         EXPECT_EQ(decoder.end(), 0);
@@ -363,15 +363,48 @@ TEST(LazChunk, ReferenceChunksGiveTheirRecordsFromSpansOfAnySize) {
   }
 }
 
+TEST(LazChunk, ReferenceChunksGiveTheirWholeRecordsFromSpansOfAnySize) {
+  for (const ChunkCase& c : reference_chunks()) {
+    const Bytes chunk = bytes_of(c.chunk);
+    Bytes sound;
+    for (const std::string_view record : c.records) {
+      const Bytes bytes = bytes_of(record);
+      sound.insert(sound.end(), bytes.begin(), bytes.end());
+    }
+    LazChunkDecoder decoder(c.format, LazDetail::kRecords);
+    for (const std::size_t span_size :
+         {std::size_t{1}, std::size_t{3}, std::size_t{40}, SIZE_MAX}) {
+      SCOPED_TRACE(c.name + ", pieces of " + std::to_string(span_size));
+      SplitBytes split(chunk, span_size);
+      Bytes records(sound.size());
+      decoder.begin(split, c.records.size());
+      decoder.decode_records(records);
+      EXPECT_EQ(decoder.end(), 0);
+      EXPECT_EQ(split.left(), 0);
+      EXPECT_EQ(records, sound);
+    }
+  }
+}
+
+TEST(LazDetail, TellsWhichLayersAreWanted) {
+  const LazChunkFormat layered{.items = {{LazItemType::kPoint14, 30, 3},
+                                         {LazItemType::kRgbNir14, 8, 3},
+                                         {LazItemType::kByte14, 5, 3}},
+                               .layered = true};
+  EXPECT_EQ(laz_wanted_layers(layered, LazDetail::kCoordinates), 2U);
+  EXPECT_EQ(laz_wanted_layers(layered, LazDetail::kFlags), 4U);
+  EXPECT_EQ(laz_wanted_layers(layered, LazDetail::kRecords), 9U + 2 + 5);
+}
+
 TEST(LazChunk, TellsHowManyBytesLieBehindIt) {
   for (const ChunkCase& c : reference_chunks()) {
     SCOPED_TRACE(c.name);
     Bytes chunk = bytes_of(c.chunk);
     chunk.resize(chunk.size() + 5);
     SplitBytes split(chunk);
-    LazChunkDecoder decoder(c.format, true);
+    LazChunkDecoder decoder(c.format, LazDetail::kFlags);
     std::vector<LatticePoint> points(c.records.size());
-    std::vector<PointAttributes> attributes(points.size());
+    std::vector<LasFlags> attributes(points.size());
     decoder.begin(split, points.size());
     decode_chunk(decoder, points, attributes);
     EXPECT_EQ(decoder.end(), 5);
@@ -382,7 +415,7 @@ TEST(LazChunk, TellsHowManyBytesLieBehindIt) {
 std::string outcome(LazChunkDecoder& decoder, std::span<const std::byte> chunk, std::size_t count) {
   SplitBytes split(chunk, 16);
   std::vector<LatticePoint> points(count);
-  std::vector<PointAttributes> attributes(count);
+  std::vector<LasFlags> attributes(count);
   try {
     decoder.begin(split, count);
     decode_chunk(decoder, points, attributes);
@@ -396,7 +429,7 @@ std::string outcome(LazChunkDecoder& decoder, std::span<const std::byte> chunk, 
 TEST(LazChunk, TruncatedAnywhereIsAnError) {
   for (const ChunkCase& c : reference_chunks()) {
     const Bytes chunk = bytes_of(c.chunk);
-    LazChunkDecoder decoder(c.format, true);
+    LazChunkDecoder decoder(c.format, LazDetail::kFlags);
     for (std::size_t size = 0; size < chunk.size(); ++size) {
       EXPECT_THAT(outcome(decoder, std::span(chunk).first(size), c.records.size()),
                   HasSubstr("ends too early"))
@@ -408,14 +441,14 @@ TEST(LazChunk, TruncatedAnywhereIsAnError) {
 
 TEST(LazChunk, WrongCountInALayeredChunkIsAnError) {
   const ChunkCase c = reference_chunks().back();
-  LazChunkDecoder decoder(c.format, true);
+  LazChunkDecoder decoder(c.format, LazDetail::kFlags);
   EXPECT_THAT(outcome(decoder, bytes_of(c.chunk), c.records.size() + 1),
               HasSubstr("another number of points"));
 }
 
 TEST(LazChunk, HugeLayerIsAnErrorAndTakesNoMemory) {
   const ChunkCase c = reference_chunks().back();
-  LazChunkDecoder decoder(c.format, true);
+  LazChunkDecoder decoder(c.format, LazDetail::kFlags);
   Bytes chunk = bytes_of(c.chunk);
   store(chunk.data() + 37 + 4, std::uint32_t{0xFFFFFFFF});
   EXPECT_THAT(outcome(decoder, chunk, c.records.size()), HasSubstr("ends too early"));
@@ -424,7 +457,7 @@ TEST(LazChunk, HugeLayerIsAnErrorAndTakesNoMemory) {
 TEST(LazChunk, FlippedBitsGivePointsOrAnError) {
   for (const ChunkCase& c : reference_chunks()) {
     const Bytes sound = bytes_of(c.chunk);
-    LazChunkDecoder decoder(c.format, true);
+    LazChunkDecoder decoder(c.format, LazDetail::kFlags);
     for (std::size_t bit = 0; bit < 8 * sound.size(); ++bit) {
       Bytes chunk = sound;
       chunk[bit / 8] ^= std::byte{1} << bit % 8;
@@ -448,7 +481,7 @@ TEST(LazChunk, RandomBytesGivePointsOrAnError) {
                               version, {}, {}));
   }
   for (const ChunkCase& c : cases) {
-    LazChunkDecoder decoder(c.format, true);
+    LazChunkDecoder decoder(c.format, LazDetail::kFlags);
     for (int round = 0; round < 20; ++round) {
       Bytes chunk(c.format.layered ? 37 + 4 + 12 * 4 + 4 * kLayerSize : 50000);
       std::generate(chunk.begin(), chunk.end(), noise);

@@ -12,7 +12,7 @@
 #include "formats/points/las/las_header.h"
 #include "formats/points/laz/chunk_encoder.h"
 #include "formats/points/laz/chunk_table.h"
-#include "tests/formats/points/laz/laz_encoder/record_decoder.h"
+#include "tests/formats/points/laz/laz_encoder/decoded_records.h"
 #include "tests/formats/shared_data.h"
 
 // The chunks of real files, decoded to whole records and encoded again.
@@ -34,10 +34,7 @@ TEST_P(ReencodedLaz, HasTheBytesOfTheEncoderThatMadeIt) {
   LazChunkEncoder encoder(las.laz->format);
   for (const LazChunk& place : table->chunks) {
     const std::span<const std::byte> chunk = as_bytes_of(bytes).subspan(place.offset, place.bytes);
-    std::string records;
-    for (const std::string& record : decode_laz_records(las.laz->format, chunk, place.count)) {
-      records += record;
-    }
+    const std::string records = decode_laz_records(las.laz->format, chunk, place.count);
     std::vector<std::byte> again;
     encoder.encode(as_bytes_of(records), again);
     EXPECT_TRUE(std::ranges::equal(chunk, again))

@@ -72,6 +72,35 @@ TEST(LazReader, ChunksThatTheHeaderDoesNotCountAreLeftOutAndSaid) {
   }
 }
 
+TEST(LazReader, ChunksOfAHeaderThatCountsNoPointsAreSaid) {
+  for (const int compressor : {2, 3}) {
+    std::string bytes = file_of(format_of(compressor), 950);
+    put(bytes, 107, std::uint32_t{0});
+    if (compressor == 3) put(bytes, 247, std::uint64_t{0});
+    const AllPoints all = read_content("a.laz", bytes, all_points());
+    EXPECT_EQ(all.points.size(), 0U);
+    EXPECT_THAT(all.header.notices, ElementsAre(HasSubstr("counts 0 points, but 10 more chunks")));
+    bytes.resize(make_laz_file(format_of(compressor), {}).offset_to_points());
+    EXPECT_THAT(read_content("a.laz", bytes).header.notices, IsEmpty());
+  }
+}
+
+TEST(LazReader, ChunksThatTheHeaderDoesNotCountAreSaidAtTheEndOfAPipe) {
+  for (const int compressor : {2, 3}) {
+    std::string bytes = file_of(format_of(compressor), 950);
+    OneFile whole(bytes, false);
+    EXPECT_THAT(read_all_points(whole.files, "a.laz").notices, IsEmpty());
+    for (const std::uint32_t told : {0, 700}) {
+      put(bytes, 107, told);
+      if (compressor == 3) put(bytes, 247, std::uint64_t{told});
+      OneFile pipe(bytes, false);
+      const AllPoints all = read_all_points(pipe.files, "a.laz", all_points());
+      EXPECT_EQ(all.points.size(), told);
+      EXPECT_THAT(all.notices, ElementsAre(HasSubstr("but more chunks of them follow")));
+    }
+  }
+}
+
 TEST(LazReader, ReadsWholePointsThoughTheHeaderCountsRecordsThatAreNotThere) {
   for (const int compressor : {2, 3}) {
     const std::string good = file_of(format_of(compressor), 250);

@@ -55,12 +55,12 @@ using Classes = std::map<int, std::uint64_t>;
 
 Classes classes_of(const AllPoints& all) {
   Classes classes;
-  for (const PointAttributes& attributes : all.attributes) ++classes[attributes.classification];
+  for (const LasFlags& attributes : all.attributes) ++classes[attributes.classification];
   return classes;
 }
 
 AllPoints with_attributes(const char* name) {
-  return read_all_points(disk(), shared_file(name), {"", true, true});
+  return read_all_points(disk(), shared_file(name), {"", true}, true);
 }
 
 TEST(SharedLazAttributes, ClassesOfPointwiseChunks) {

@@ -47,16 +47,20 @@ PointWriterOptions options_of(const std::string& version) {
 
 /// The file of these points, which come in blocks of all sizes.
 std::string written(const std::string& name, std::span<const LatticePoint> points,
-                    std::span<const PointAttributes> attributes, PointWriterOptions options,
+                    std::span<const LasFlags> attributes, PointWriterOptions options,
                     bool seekable = true) {
   FaultyFileSystem files;
   files.seekable = seekable;
-  options.attributes = !attributes.empty();
-  if (!options.attributes) options.count = points.size();
+  if (attributes.empty()) {
+    options.count = points.size();
+  } else {
+    options.attributes = flags_layout();
+  }
   const auto writer = open_point_writer(files, name, options);
   for (std::size_t size = 1; !points.empty(); size = 3 * size + 1) {
     const std::size_t some = std::min(size, points.size());
-    writer->write(points.first(some), attributes.first(std::min(some, attributes.size())));
+    writer->write(points.first(some),
+                  records_of(attributes.first(std::min(some, attributes.size()))));
     points = points.subspan(some);
     attributes = attributes.subspan(std::min(some, attributes.size()));
   }
@@ -71,9 +75,8 @@ AllPoints read_back(const std::string& laz, bool seekable) {
   files.seekable = seekable;
   files.files["a.laz"] = laz;
   PointReaderOptions options;
-  options.attributes = true;
   options.keep_withheld = true;
-  return read_all_points(files, "a.laz", options);
+  return read_all_points(files, "a.laz", options, true);
 }
 
 class LazWriter : public ::testing::TestWithParam<std::string> {

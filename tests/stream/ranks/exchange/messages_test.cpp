@@ -31,7 +31,9 @@ SourceFacts some_facts() {
   full.header.crs_note = "a note";
   full.header.crs_keys = {{std::byte{1}}, {std::byte{2}, std::byte{3}}, "text"};
   full.header.software = "a program";
-  full.header.extra_bytes = 5;
+  full.header.attributes =
+      AttributeLayout({{.name = "intensity", .type = NumberType::kUint16},
+                       {"height", NumberType::kInt32, 3, 0.01, 7, "metre", "above ground"}});
   full.pieces = 77;
   full.digest = FileDigest{.size = 10, .hash = 20};
   SourceFacts::Input& plain = facts.inputs.emplace_back();
@@ -64,7 +66,7 @@ TEST(Messages, HoldWhatIsKnownOfTheInputs) {
     EXPECT_EQ(is.header.crs_note, was.header.crs_note);
     EXPECT_EQ(is.header.crs_keys, was.header.crs_keys);
     EXPECT_EQ(is.header.software, was.header.software);
-    EXPECT_EQ(is.header.extra_bytes, was.header.extra_bytes);
+    EXPECT_TRUE(is.header.attributes == was.header.attributes);
     EXPECT_EQ(is.pieces, was.pieces);
     EXPECT_EQ(is.opens_once, was.opens_once);
     EXPECT_EQ(is.digest, was.digest);

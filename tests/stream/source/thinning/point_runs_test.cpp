@@ -20,7 +20,7 @@ std::vector<std::uint64_t> order_of_all(PointRuns& runs, std::size_t most) {
     EXPECT_LE(points.size(), most);
     for (const RunPoint& p : points) {
       EXPECT_EQ(p.point, (LatticePoint{1.0 * static_cast<double>(p.order), 2, 3}));
-      EXPECT_EQ(p.key, p.order + 5);
+      EXPECT_EQ(p.index, p.order + 5);
       keys.push_back(p.order);
     }
   }
@@ -43,7 +43,7 @@ TEST(PointRuns, ComeMergedFromAnyNumberOfRunsWithAnyMemory) {
             keys.size() - begin, random() % 4 == 0 ? random() % 2 : random() % 9000);
         std::vector<RunPoint> run;
         for (std::size_t i = begin; i < begin + size; ++i) {
-          run.push_back({keys[i], keys[i] + 5, {1.0 * static_cast<double>(keys[i]), 2, 3}});
+          run.push_back({keys[i], keys[i] + 5, 0, {1.0 * static_cast<double>(keys[i]), 2, 3}});
         }
         std::ranges::sort(run, {}, &RunPoint::order);
         runs.begin_run();
@@ -64,7 +64,7 @@ TEST(PointRuns, TakeTheDiskOnceMoreAtMostWhileTheyAreMerged) {
   for (std::uint64_t r = 0; r < 64; ++r) {
     runs.begin_run();
     for (std::uint64_t i = 0; i < 500; ++i) {
-      runs.append(std::vector<RunPoint>{{i * 64 + r, random(), {}}});
+      runs.append(std::vector<RunPoint>{{i * 64 + r, random(), 0, {}}});
     }
   }
   const std::uint64_t written = scratch->bytes_written();

@@ -206,22 +206,22 @@ TEST(Thinning, AttributesComeThrough) {
   for (const std::uint64_t memory : {std::uint64_t{64} << 20, std::uint64_t{0}}) {
     const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
     Thinning thinning({.cell = 1, .memory = memory}, *scratch);
+    thinning.carry(AttributeLayout({{.name = "a", .type = NumberType::kUint32}}));
     PointBlock block;
+    block.attributes.resize(5000 * sizeof(std::uint32_t));
     for (std::uint64_t i = 0; i < 5000; ++i) {
       block.points.push_back({1.0 * static_cast<double>(i), 0, 0});
       block.index.push_back(i);
-      block.attributes.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i % 16),
-                                  static_cast<std::uint8_t>(i / 16 % 16),
-                                  static_cast<std::uint8_t>(i / 256 % 16)});
+      store(&block.attributes[i * sizeof(std::uint32_t)], static_cast<std::uint32_t>(7 * i));
     }
-    const PointBlock all = block;
     thinning.add(block);
     std::size_t kept = 0;
     while (thinning.next(block)) {
-      ASSERT_EQ(block.attributes.size(), block.size());
+      ASSERT_EQ(block.attributes.size(), block.size() * sizeof(std::uint32_t));
       kept += block.size();
       for (std::size_t i = 0; i < block.size(); ++i) {
-        ASSERT_EQ(block.attributes[i], all.attributes[block.index[i]]);
+        ASSERT_EQ(load<std::uint32_t>(&block.attributes[i * sizeof(std::uint32_t)]),
+                  7 * block.index[i]);
       }
     }
     EXPECT_EQ(kept, 5000U);

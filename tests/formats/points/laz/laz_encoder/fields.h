@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "formats/points/laz/encoding/record_fields.h"
+#include "formats/points/laz/coding/record_fields.h"
 
 namespace spillway::detail::testing {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "formats/points/laz/coding/record_fields.h"
 #include "formats/points/laz/encoding/integer_encoder.h"
-#include "formats/points/laz/encoding/record_fields.h"
 
 namespace spillway::detail::testing {
 namespace {

@@ -6,6 +6,7 @@
 #include "formats/inputs/open_points.h"
 #include "src/error.h"
 #include "tests/faulty_file_system.h"
+#include "tests/formats/points/las_flags_layout.h"
 
 namespace spillway::detail::testing {
 namespace {
@@ -20,8 +21,8 @@ void for_each_block(const std::string& content, bool seekable, F&& take) {
   files.files[kName] = content;
   PointReaderOptions options;
   options.keep_withheld = true;
-  options.attributes = true;
   const auto reader = open_point_reader(files, kName, options);
+  reader->carry(flags_layout());
   PointBlock block;
   while (reader->read(block)) take(block);
 }
@@ -51,7 +52,7 @@ DamageOutcome read_damaged_laz(const std::string& content, bool seekable, const 
   try {
     for_each_block(content, seekable, [&](const PointBlock& block) {
       same = same && continues(block.points, sound.points, count) &&
-             continues(block.attributes, sound.attributes, count);
+             continues(block.attributes, sound.attributes, count * block.record_size());
       count += block.size();
       if (count > endless) throw std::logic_error("points without end");
     });

@@ -49,7 +49,9 @@ PointBlock LazExcerpts::points(const PointBlock& whole, std::size_t i) const {
   PointBlock part;
   part.points = part_of(whole.points);
   part.index = part_of(whole.index);
-  part.attributes = part_of(whole.attributes);
+  const std::size_t record = whole.record_size();
+  const std::byte* const attributes = whole.attributes.data() + first * record;
+  part.attributes.assign(attributes, attributes + chunks_[i].count * record);
   return part;
 }
 

@@ -19,6 +19,8 @@ class LazExcerpts {
   /// How many excerpts there are; none of files that are not in chunks or have no table.
   [[nodiscard]] std::size_t size() const { return chunks_.size(); }
 
+  [[nodiscard]] const LazChunkFormat& format() const { return las_.laz->format; }
+
   /// Where the i-th chunk lies in the whole file.
   [[nodiscard]] const LazChunk& chunk(std::size_t i) const { return chunks_[i]; }
 

@@ -223,9 +223,9 @@ LatticePoint point_of_record(const std::string& record) {
           static_cast<double>(field<std::int32_t>(record, kZ))};
 }
 
-PointAttributes attributes_of_record(int point_format, const std::string& record) {
+LasFlags attributes_of_record(int point_format, const std::string& record) {
   const unsigned returns = byte_at(record, kReturns);
-  PointAttributes attributes;
+  LasFlags attributes;
   if (point_format < 6) {
     const unsigned byte = byte_at(record, core10::kClass);
     attributes.classification = byte & 31;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "formats/points/common/point_reader.h"
+#include "formats/points/las/records/las_flags.h"
 
 namespace spillway::detail::testing {
 
@@ -23,6 +24,6 @@ struct RandomRecords {
 
 /// The coordinates and attributes that a record means, from the specification of LAS.
 LatticePoint point_of_record(const std::string& record);
-PointAttributes attributes_of_record(int point_format, const std::string& record);
+LasFlags attributes_of_record(int point_format, const std::string& record);
 
 }  // namespace spillway::detail::testing

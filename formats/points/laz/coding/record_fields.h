@@ -32,6 +32,14 @@ inline constexpr std::size_t kSource = 20;
 inline constexpr std::size_t kGpsTime = 22;
 }  // namespace core14
 
+namespace wave_packet {
+inline constexpr std::size_t kIndex = 0;
+inline constexpr std::size_t kOffset = 1;
+inline constexpr std::size_t kSize = 9;
+inline constexpr std::size_t kReturnPoint = 13;
+inline constexpr std::size_t kDirection = 17;
+}  // namespace wave_packet
+
 /// The byte at a place in a record.
 inline unsigned byte_at(const std::byte* record, std::size_t at) {
   return std::to_integer<unsigned>(record[at]);
@@ -44,6 +52,16 @@ inline std::uint32_t word_at(const std::byte* record, std::size_t at) {
 
 inline std::uint16_t short_at(const std::byte* record, std::size_t at) {
   return load<std::uint16_t>(record + at);
+}
+
+/// Puts the lowest byte of a value at a place in a record.
+inline void put_byte(std::byte* record, std::size_t at, unsigned value) {
+  record[at] = static_cast<std::byte>(value);
+}
+
+/// A 64-bit pattern plus a difference of 32 bits, one of which is its sign.
+inline std::uint64_t sum64(std::uint64_t value, std::uint32_t difference) {
+  return value + static_cast<std::uint64_t>(std::int64_t{static_cast<std::int32_t>(difference)});
 }
 
 /// a - b as 64-bit patterns.

@@ -1,0 +1,90 @@
+#include "formats/points/attributes/attribute_layout.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace spillway::detail {
+namespace {
+
+bool same_numbers(const Attribute& a, const Attribute& b) {
+  return a.type == b.type && a.scale == b.scale && a.offset == b.offset;
+}
+
+/// What holds the numbers of both: doubles of what is meant, unless both are the same.
+Attribute common_attribute(Attribute a, const Attribute& b) {
+  a.elements = std::max(a.elements, b.elements);
+  if (a.unit != b.unit) a.unit.clear();
+  if (a.description != b.description) a.description.clear();
+  if (same_numbers(a, b)) return a;
+  a.type = NumberType::kFloat64;
+  a.scale = 1;
+  a.offset = 0;
+  return a;
+}
+
+}  // namespace
+
+AttributeLayout::AttributeLayout(std::vector<Attribute> attributes) {
+  if (attributes.empty()) return;
+  auto shared = std::make_shared<Shared>();
+  for (Attribute& attribute : attributes) {
+    const std::size_t size = size_of(attribute);
+    shared->fields.push_back({std::move(attribute), shared->record_size});
+    shared->record_size += size;
+  }
+  shared_ = std::move(shared);
+}
+
+std::span<const AttributeField> AttributeLayout::fields() const {
+  return shared_ ? std::span<const AttributeField>(shared_->fields)
+                 : std::span<const AttributeField>();
+}
+
+const AttributeField* AttributeLayout::find(std::string_view name) const {
+  const auto field = std::ranges::find_if(
+      fields(), [name](const AttributeField& f) { return f.attribute.name == name; });
+  return field == fields().end() ? nullptr : &*field;
+}
+
+std::vector<Attribute> AttributeLayout::attributes() const {
+  std::vector<Attribute> all;
+  for (const AttributeField& field : fields()) all.push_back(field.attribute);
+  return all;
+}
+
+bool AttributeLayout::operator==(const AttributeLayout& other) const {
+  return shared_ == other.shared_ ||
+         std::ranges::equal(fields(), other.fields(), {}, &AttributeField::attribute,
+                            &AttributeField::attribute);
+}
+
+AttributeLayout joined(std::span<const AttributeLayout> layouts) {
+  if (layouts.empty()) return {};
+  const auto differs = [&](const AttributeLayout& layout) { return !(layout == layouts[0]); };
+  if (std::ranges::none_of(layouts, differs)) return layouts[0];
+  std::vector<Attribute> all;
+  for (const AttributeLayout& layout : layouts) {
+    for (const AttributeField& field : layout.fields()) {
+      const auto known = std::ranges::find(all, field.attribute.name, &Attribute::name);
+      if (known == all.end()) {
+        all.push_back(field.attribute);
+      } else {
+        *known = common_attribute(std::move(*known), field.attribute);
+      }
+    }
+  }
+  return AttributeLayout(std::move(all));
+}
+
+AttributeLayout chosen(const AttributeLayout& layout, const AttributeChoice& choice) {
+  if (choice.all) return layout;
+  std::vector<Attribute> wanted;
+  for (const AttributeField& field : layout.fields()) {
+    if (std::ranges::find(choice.names, field.attribute.name) != choice.names.end()) {
+      wanted.push_back(field.attribute);
+    }
+  }
+  return AttributeLayout(std::move(wanted));
+}
+
+}  // namespace spillway::detail
