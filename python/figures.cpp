@@ -79,7 +79,7 @@ py::dict figures_of(const PointCounts& counts) {
                   "withheld"_a = counts.withheld, "lost"_a = counts.lost,
                   "every"_a = counts.skipped, "class"_a = counts.classes,
                   "returns"_a = counts.returns, "bounds"_a = counts.bounds,
-                  "thinned"_a = counts.thinned, "kept"_a = counts.kept());
+                  "where"_a = counts.where, "thinned"_a = counts.thinned, "kept"_a = counts.kept());
 }
 
 py::list figures_of(const std::vector<SkippedFile>& files) {

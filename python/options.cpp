@@ -75,6 +75,7 @@ void bind_point_options(py::module_& module) {
       .def_readwrite("keep_withheld", &PointOptions::keep_withheld)
       .def_readwrite("every", &PointOptions::every)
       .def_readwrite("classes", &PointOptions::classes)
+      .def_readwrite("where", &PointOptions::where)
       .def_readwrite("other_classes", &PointOptions::other_classes)
       .def_readwrite("resolution", &PointOptions::resolution)
       .def_readwrite("crs", &PointOptions::crs)
@@ -106,6 +107,7 @@ void bind_point_options(py::module_& module) {
       .def_readwrite("offset", &PointFileOptions::offset)
       .def_readwrite("exact", &PointFileOptions::exact)
       .def_readwrite("attributes", &PointFileOptions::attributes)
+      .def_readwrite("force", &PointFileOptions::force)
       .def("set_sorted", [](PointFileOptions& options, int dimension, std::uint64_t cell_points) {
         options.sorted = SortOptions{dimension, cell_points};
       });

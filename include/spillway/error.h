@@ -45,6 +45,7 @@ enum class Remedy {
   kWrongCrs,         ///< naming another coordinate system than that which an input names
   kGroundScale,      ///< saying how heights relate to x and y, or which system these are in
   kSalvage,          ///< taking the points that are whole of a file that is cut off or damaged
+  kForce,            ///< replacing an input by what holds less, if that is meant
 };
 
 /// What a place in a file is counted in.

@@ -20,6 +20,7 @@ struct PointCounts {
   std::uint64_t thinned = 0;   ///< another one stands for their cell
   /// Not read, though the files should hold them: what PointOptions::salvage could not save.
   std::uint64_t lost = 0;
+  std::uint64_t where = 0;  ///< dropped, as PointOptions::where does not hold
   /// Bit n: points of class n are among those that `classes` counts.
   std::bitset<256> other_classes{};
 
@@ -33,13 +34,14 @@ struct PointCounts {
     bounds += other.bounds;
     thinned += other.thinned;
     lost += other.lost;
+    where += other.where;
     other_classes |= other.other_classes;
     return *this;
   }
   bool operator==(const PointCounts&) const = default;
 
   [[nodiscard]] std::uint64_t dropped() const {
-    return invalid + withheld + skipped + classes + returns + bounds + thinned;
+    return invalid + withheld + skipped + classes + returns + where + bounds + thinned;
   }
   /// Whether every point of the files is used.
   [[nodiscard]] bool all_kept() const { return dropped() == 0 && lost == 0; }

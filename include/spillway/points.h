@@ -83,7 +83,10 @@ struct PointOptions {
   std::vector<int> classes{};        ///< use points of these classes, 0 to 255; empty: all
   std::vector<int> other_classes{};  ///< of these the points of these classes are not used
   std::optional<Returns> returns{};  ///< use these returns of a pulse
-  std::optional<Extent> bounds{};    ///< use points in this closed box; sides may be infinite
+  /// Use points of which this holds: "intensity > 200 and class in (2, 9)". Of attributes, x, y and
+  /// z, and the words first, last and single (docs/attributes.md). Empty: all.
+  std::string where{};
+  std::optional<Extent> bounds{};  ///< use points in this closed box; sides may be infinite
   std::optional<Thin> thin{};
   /// Of COPC files, read the levels that are needed for points so far apart; 0: all.
   double resolution = 0;
@@ -153,6 +156,9 @@ struct PointFileOptions {
   std::vector<double> scale{};
   std::vector<double> offset{};  ///< likewise
   bool exact = false;            ///< refuse to round by a choice of its own
+  /// Replace a file that is one of the inputs also by one that holds less than it. Without it
+  /// convert() throws Error(kInvalidArgument) then.
+  bool force = false;
   /// Names of the attributes that are written, of those that points carry, "all" for all of them;
   /// nothing: all that the format holds, but none in text, unless it is CSV. convert() throws
   /// Error(kInvalidArgument) for one that no point has.

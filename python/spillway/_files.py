@@ -112,6 +112,7 @@ def convert(
     scale: float | Sequence[float] | None = None,
     offset: float | Sequence[float] | None = None,
     attributes: str | Sequence[str] | None = None,
+    force: bool = False,
     sorted: bool = False,
     cell_points: int | None = None,
     dim: int | None = None,
@@ -140,6 +141,8 @@ def convert(
     attributes : str or sequence of str, optional
         Names of the attributes of points that are written, or "all". By default all that the format
         holds, but none in text, unless it is CSV.
+    force : bool, optional
+        Replace a file that is an input also by one that holds less than it.
     sorted : bool, optional
         Write points cell by cell; spp only.
     cell_points : int, optional
@@ -166,6 +169,7 @@ def convert(
         "scale": scale,
         "offset": offset,
         "attributes": attributes,
+        "force": force,
         "sorted": sorted,
     }
     run = make_run(options)
@@ -184,6 +188,7 @@ def convert(
     if attributes is not None:
         names = [attributes] if isinstance(attributes, str) else list(attributes)
         how.attributes = [as_word(name, "attributes") for name in names]
+    how.force = bool(force)
     if sorted:
         dimension = as_dimension(2 if dim is None else dim, source)
         put(how, "cell_points", cell_points or 0, functools.partial(_put_sorted, dimension))

@@ -50,6 +50,7 @@ class FilterOptions(TypedDict, total=False):
     keep_class: int | Iterable[int] | None
     drop_class: int | Iterable[int] | None
     returns: int | str | Iterable[int | str] | None
+    where: str | None
     thin: float | tuple[float, str] | None
 
 
@@ -284,6 +285,12 @@ _OPTIONS = {
         'Use these returns of a pulse: ``"first"``, ``"last"``, ``"single"`` and numbers.',
         "points",
         _put_returns,
+    ),
+    "where": _Option(
+        "str, optional",
+        'Use points of which this holds: ``"intensity > 200 and class in (2, 9)"``.',
+        "points",
+        attribute("where"),
     ),
     "thin": _Option(
         "float or (float, str), optional",

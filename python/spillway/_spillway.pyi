@@ -84,6 +84,7 @@ class PointFileOptions:
     offset: list[float]
     exact: bool
     attributes: list[str] | None
+    force: bool
     def set_sorted(self, dimension: int, cell_points: int) -> None: ...
 
 class TriangulateOptions:

@@ -25,9 +25,13 @@ void check_points_have(const SourceFacts::Input& input, const HeaderSurveyOption
   }
   for (const std::string& name : options.filter.attributes()) {
     if (header.attributes.find(name) != nullptr) continue;
-    throw Error(
-        fmt::format("{}: the points have no {}, which a filter looks at", header.name, name),
-        ErrorCode::kBadInput, {.file = header.name, .remedy = Remedy::kFilters});
+    std::string others;
+    for (const AttributeField& field : header.attributes.fields()) {
+      others += (others.empty() ? "; they have " : ", ") + field.attribute.name;
+    }
+    throw Error(fmt::format("{}: the points have no {}, which a filter looks at{}", header.name,
+                            name, others),
+                ErrorCode::kBadInput, {.file = header.name, .remedy = Remedy::kFilters});
   }
 }
 

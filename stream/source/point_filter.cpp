@@ -7,6 +7,7 @@
 #include <bitset>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -67,6 +68,39 @@ class ByteField {
   bool known_ = false;
 };
 
+/// 0 to 2 for a coordinate, -1 for other names.
+int axis_of(std::string_view name) {
+  constexpr std::string_view kAxes = "xyz";
+  return name.size() == 1 ? static_cast<int>(kAxes.find(name[0]) + 1) - 1 : -1;
+}
+
+/// The numbers of that name of all points: output coordinates, or what attributes mean.
+std::vector<double> column_of(const std::string& name, const std::optional<Lattice>& lattice,
+                              const AttributeLayout& layout, const PointBlock& block) {
+  std::vector<double> column(block.size());
+  const int axis = axis_of(name);
+  const AttributeField* const field = layout.find(name);
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    if (axis >= 0) {
+      column[i] = in_world(lattice, block.points[i])[axis];
+    } else if (field != nullptr) {
+      const Attribute& attribute = field->attribute;
+      const std::byte* const number = &block.attributes[i * layout.record_size() + field->at];
+      column[i] = load_number(attribute.type, number) * attribute.scale + attribute.offset;
+    }
+  }
+  return column;
+}
+
+std::vector<bool> where_holds(const Condition& where, const std::optional<Lattice>& lattice,
+                              const AttributeLayout& layout, const PointBlock& block) {
+  std::vector<std::vector<double>> columns;
+  for (const std::string& name : where.names()) {
+    columns.push_back(column_of(name, lattice, layout, block));
+  }
+  return where.holds(columns, block.size());
+}
+
 }  // namespace
 
 bool ReturnFilter::keeps(std::uint8_t number, std::uint8_t count_of_pulse) const {
@@ -81,6 +115,10 @@ std::vector<std::string> PointFilter::attributes() const {
   std::vector<std::string> names;
   if (classes) names.emplace_back(kClassification);
   if (returns) names.insert(names.end(), {kReturnNumber, kNumberOfReturns});
+  if (where) {
+    std::ranges::copy_if(where->names(), std::back_inserter(names),
+                         [](const std::string& name) { return axis_of(name) < 0; });
+  }
   return names;
 }
 
@@ -110,6 +148,8 @@ void apply_filter(const PointFilter& filter, const std::optional<Lattice>& latti
   const ByteField number(layout, kReturnNumber);
   const ByteField count_of_pulse(layout, kNumberOfReturns);
   const std::byte* const records = block.attributes.data();
+  std::vector<bool> wanted;
+  if (filter.where) wanted = where_holds(*filter.where, lattice, layout, block);
   std::vector<bool> kept(block.size());
   for (std::size_t i = 0; i < block.size(); ++i) {
     if (filter.every > 1 && block.index[i] % filter.every != 0) {
@@ -120,6 +160,8 @@ void apply_filter(const PointFilter& filter, const std::optional<Lattice>& latti
     } else if (filter.returns &&
                !filter.returns->keeps(number.of(records, i), count_of_pulse.of(records, i))) {
       ++counts.returns;
+    } else if (filter.where && !wanted[i]) {
+      ++counts.where;
     } else if (filter.bounds && !filter.bounds->contains(in_world(lattice, block.points[i]))) {
       ++counts.bounds;
     } else {
@@ -138,12 +180,13 @@ std::string describe(const PointCounts& counts) {
   if (counts.lost > 0) {
     text += fmt::format(" ({} {} lost)", counts.lost, counts.lost == 1 ? "is" : "are");
   }
-  const std::array<std::pair<std::uint64_t, std::string>, 7> dropped = {
+  const std::array<std::pair<std::uint64_t, std::string>, 8> dropped = {
       {{counts.invalid, "invalid"},
        {counts.withheld, "withheld"},
        {counts.skipped, "skipped"},
        {counts.classes, detail::other_classes_text(counts)},
        {counts.returns, "of other returns"},
+       {counts.where, "for which the condition does not hold"},
        {counts.bounds, "outside the bounds"},
        {counts.thinned, "thinned"}}};
   for (const auto& [count, why] : dropped) {

@@ -11,6 +11,7 @@
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
+#include "stream/source/condition/condition.h"
 
 namespace spillway::detail {
 
@@ -34,10 +35,11 @@ struct PointFilter {
   std::uint64_t every = 1;  ///< records 0, n, 2n, ... of each input
   std::optional<std::bitset<256>> classes{};
   std::optional<ReturnFilter> returns{};
+  std::optional<Condition> where{};
   std::optional<Box<3>> bounds{};  ///< in output coordinates, closed
 
   [[nodiscard]] bool active() const { return every > 1 || needs_attributes() || bounds; }
-  [[nodiscard]] bool needs_attributes() const { return classes || returns; }
+  [[nodiscard]] bool needs_attributes() const { return classes || returns || where; }
   /// The names of the attributes that it looks at.
   [[nodiscard]] std::vector<std::string> attributes() const;
   /// Slightly larger bounds, for whoever computes coordinates with another lattice than the common

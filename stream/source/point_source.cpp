@@ -84,10 +84,13 @@ std::optional<Box<3>> PointSource::find_world_extent() const {
   return bounds ? common_part(extent, *bounds) : extent;
 }
 
+bool PointSource::leaves_out() const {
+  return options_.filter.active() || options_.thinning || options_.reader.resolution > 0 ||
+         options_.reader.salvage;
+}
+
 std::optional<std::uint64_t> PointSource::count() const {
-  const bool filtered = options_.filter.active() || options_.thinning ||
-                        options_.reader.resolution > 0 || options_.reader.salvage;
-  return filtered ? std::nullopt : facts_.records();
+  return leaves_out() ? std::nullopt : facts_.records();
 }
 
 std::optional<std::uint64_t> PointSource::expected() const {

@@ -95,6 +95,8 @@ class PointSource : public PointStream {
 
   /// Whether indices count through all inputs also in pieces.
   [[nodiscard]] bool numbers_pieces() const { return pieces_.numbers_pieces(); }
+  /// Whether a filter, thinning or a choice of levels leaves out points.
+  [[nodiscard]] bool leaves_out() const;
   /// Whether the inputs are thinned, for which fetch() has to read all of them.
   [[nodiscard]] bool thins() const { return thinning_.has_value(); }
 

@@ -48,6 +48,7 @@ struct ConvertCommandOptions {
   std::vector<double> offset;  ///< likewise
   std::string attributes;      ///< names and commas, "all", "none"; empty: as the format has them
   bool sorted = false;
+  bool force = false;
   SortOptions sorting;
   MemoryOptions memory;
   ReportOptions report;
@@ -140,7 +141,8 @@ int run_points(const ConvertCommandOptions& options, const Context& context, Pro
   PointFileOptions written{.format = format_name_of(output),
                            .las_version = output.las_version,
                            .scale = options.scale,
-                           .offset = options.offset};
+                           .offset = options.offset,
+                           .force = options.force};
   if (options.attributes == "none") {
     written.attributes.emplace();
   } else if (!options.attributes.empty()) {
@@ -199,8 +201,8 @@ void run_mesh(const ConvertCommandOptions& options, const Context& context, Prog
   if (!options.input.crs.empty()) {
     std::erase_if(of_points, [](auto name) { return name == "--crs" || name == "--force-crs"; });
   }
-  of_points.insert(of_points.end(), {"--scale", "--offset", "--attributes", "--las-version",
-                                     "--sorted", "--cell-points", "--dim"});
+  of_points.insert(of_points.end(), {"--scale", "--offset", "--attributes", "--force",
+                                     "--las-version", "--sorted", "--cell-points", "--dim"});
   refuse_given(*options.app, of_points, fmt::format("on {}, which is a mesh", input));
   check_mesh_output(options);
   const PointOutput& output = options.output;
@@ -267,6 +269,7 @@ Subcommand add_convert(CommandLine& root) {
   app.add_option("--attributes", options->attributes,
                  "Write these attributes of points; usually all, in text but CSV none")
       .value_name("all|none|NAME,...");
+  app.add_flag("--force", options->force, "Replace an input, though the output holds less than it");
   app.add_flag("--sorted", options->sorted,
                "Write the points cell by cell, so that who reads them can begin at once");
   take_whole_number(app.add_option("--cell-points", options->sorting.cell_points,

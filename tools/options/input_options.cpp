@@ -44,8 +44,8 @@ std::optional<T> number_of(std::string_view text) {
 }  // namespace
 
 bool InputOptions::filters() const {
-  return every > 1 || resolution > 0 || !keep_class.empty() || !drop_class.empty() ||
-         !returns.empty() || !bounds.empty() || !thin.empty();
+  return every > 1 || resolution > 0 || !keep_class.empty() || !where.empty() ||
+         !drop_class.empty() || !returns.empty() || !bounds.empty() || !thin.empty();
 }
 
 void add_input_options(CommandLine& app, InputOptions& options) {
@@ -74,6 +74,8 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   take_parsed(add("--returns", options.returns, "LIST",
                   "Use these returns of a pulse: first, last, single, numbers"),
               parse_returns);
+  add("--where", options.where, "CONDITION",
+      "Use points of which this holds, as 'intensity > 200 and class in (2, 9)'");
   take_parsed(add("--bounds", options.bounds, "BOX",
                   "Use points in xmin,ymin,xmax,ymax or xmin,ymin,zmin,xmax,ymax,zmax"),
               parse_bounds);
@@ -257,6 +259,7 @@ PointOptions point_options(const InputOptions& options, int dimension) {
   points.every = options.every;
   if (!options.keep_class.empty()) points.classes = parse_classes(options.keep_class);
   if (!options.drop_class.empty()) points.other_classes = parse_classes(options.drop_class);
+  points.where = options.where;
   if (!options.returns.empty()) points.returns = parse_returns(options.returns);
   if (!options.bounds.empty()) points.bounds = parse_bounds(options.bounds);
   if (!options.thin.empty()) points.thin = parse_thinning(options.thin);

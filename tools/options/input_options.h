@@ -26,6 +26,7 @@ struct InputOptions {
   bool keep_withheld = false;
   std::uint64_t every = 1;
   std::string keep_class;
+  std::string where;
   std::string drop_class;
   std::string returns;
   std::string bounds;
@@ -37,10 +38,11 @@ struct InputOptions {
 };
 
 /// The names of the options that add_input_options() adds.
-inline constexpr std::array<std::string_view, 15> kInputOptionNames = {
-    "--input-format",  "--columns", "--crs",        "--force-crs",  "--skip-invalid",
-    "--keep-withheld", "--every",   "--keep-class", "--drop-class", "--returns",
-    "--bounds",        "--thin",    "--resolution", "--salvage",    "--skip-broken"};
+inline constexpr std::array<std::string_view, 16> kInputOptionNames = {
+    "--input-format", "--columns",       "--crs",         "--force-crs",
+    "--skip-invalid", "--keep-withheld", "--every",       "--keep-class",
+    "--drop-class",   "--returns",       "--bounds",      "--thin",
+    "--resolution",   "--salvage",       "--skip-broken", "--where"};
 
 /// The heading in help of the options that are filters.
 

@@ -50,7 +50,7 @@ std::string advice(const ErrorFacts& facts) {
     case Remedy::kPlane:
       return " (--dim 2 makes triangles)";
     case Remedy::kFilters:
-      return ", so --keep-class, --drop-class and --returns cannot be used with it";
+      return "; leave out that filter, or that input";
     case Remedy::kForeignCrs:
       return " with --force-crs";
     case Remedy::kOneFile:
@@ -71,6 +71,8 @@ std::string advice(const ErrorFacts& facts) {
       return "; name the right coordinate system with --crs and --force-crs, or say with "
              "--z-factor "
              "what heights are to be multiplied by";
+    case Remedy::kForce:
+      return ", or add --force";
     case Remedy::kSalvage:
       return ", or take what is whole of it with --salvage";
     case Remedy::kPointLattice:

@@ -115,7 +115,7 @@ Json to_json(const PointCounts& counts) {
   return {{"read", counts.read},     {"invalid", counts.invalid}, {"withheld", counts.withheld},
           {"every", counts.skipped}, {"class", counts.classes},   {"returns", counts.returns},
           {"bounds", counts.bounds}, {"thinned", counts.thinned}, {"kept", counts.kept()},
-          {"lost", counts.lost}};
+          {"lost", counts.lost},     {"where", counts.where}};
 }
 
 Json to_json(const TracedReport& report, const RunFacts& facts) {

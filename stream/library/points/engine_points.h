@@ -24,6 +24,7 @@ struct RunPoints {
   bool heights_on_lattice = true;          ///< if the stream has a lattice, z is on it, too
   AttributeLayout attributes{};            ///< that blocks have
   std::optional<std::uint64_t> records{};  ///< exactly how many there are
+  bool leaves_out = false;                 ///< not all points of the inputs come
   std::optional<Box<3>> extent{};          ///< in output coordinates
   std::string crs{};
   std::string name{};                  ///< of the first input, for messages

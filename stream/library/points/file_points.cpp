@@ -51,6 +51,7 @@ PointFilter filter_of(const PointOptions& options) {
   if (options.every == 0)
     throw InvalidArgument("one of every 0 records cannot be taken; give 1 or more");
   filter.every = options.every;
+  if (!options.where.empty()) filter.where.emplace(options.where);
   if (!options.classes.empty() || !options.other_classes.empty()) {
     filter.classes.emplace();
     if (options.classes.empty()) filter.classes->set();
@@ -244,6 +245,7 @@ RunPoints FilePoints::begin(RunWatch& watch, bool index) {
           .heights_on_lattice = input_->heights_on_lattice(),
           .attributes = input_->attributes(),
           .records = input_->count(),
+          .leaves_out = input_->leaves_out(),
           .extent = input_->world_extent(),
           .crs = input_->crs(),
           .name = name_,

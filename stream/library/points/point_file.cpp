@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <string_view>
+#include <system_error>
 
 #include "formats/gdal/gdal.h"
 #include "formats/points/attributes/attribute_names.h"
@@ -142,6 +144,23 @@ AttributeChoice PointFile::wanted_attributes() const {
   return {.all = format_.writes_attributes == nullptr || format_.writes_attributes(path_)};
 }
 
+/// Throws Error if the file is an input that would lose something.
+void PointFile::check_overwriting(const RunPoints& points) const {
+  if (options_.force || path_ == "-") return;
+  const bool is_input = std::ranges::any_of(points.headers, [&](const PointHeader& header) {
+    std::error_code unknown;
+    return std::filesystem::equivalent(header.name, path_, unknown);
+  });
+  const bool holds_less = !lost_.empty() || rounds_ || points.leaves_out;
+  if (!is_input || !holds_less) return;
+  const std::string what = !lost_.empty()      ? fmt::format("{}", fmt::join(lost_, ", "))
+                           : points.leaves_out ? std::string("points that are left out")
+                                               : std::string("digits that are rounded away");
+  throw InvalidArgument(
+      fmt::format("{} is an input, and would lose {}; choose another name", path_, what),
+      {.file = path_, .remedy = Remedy::kForce});
+}
+
 /// Throws Error for a name that is asked for and that no point has.
 void PointFile::check_attributes(const RunPoints& points) const {
   if (!options_.attributes) return;
@@ -189,6 +208,7 @@ void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
   lost_ = lost_fields(points.headers, format_, how_);
   rounds_ = !options_.scale.empty() || !options_.offset.empty() ||
             (format_.needs_lattice && !how_.lattice && !options_.exact);
+  check_overwriting(points);
   if (!rounds_) how_.extent = points.extent;
   if (!rounds_ || points.extent) open(points.extent.value_or(Box<3>{}));
 }

@@ -71,6 +71,7 @@ class PointFile final : public spillway::PointSink {
  private:
   PointFile* point_file() override { return this; }
   void check(const PointFileOptions& options) const;
+  void check_overwriting(const RunPoints& points) const;
   void check_attributes(const RunPoints& points) const;
   void open(const Box<3>& extent);
   [[nodiscard]] Box<3> world_box(const PointBlock& block) const;
