@@ -29,13 +29,6 @@ std::string written_extensions(bool all, std::string_view last, PointFormats for
   return word_list(extensions, last);
 }
 
-/// Whether others would take it for COPC, which has the extension of LAZ.
-bool is_copc_name(const std::string& path) {
-  const std::size_t last = path.rfind('.');
-  return last != std::string::npos && extension_of(path) == "laz" &&
-         extension_of(path.substr(0, last)) == "copc";
-}
-
 /// The format by its name, or by the path's; it need not be one that is written.
 const PointFormat& chosen_format(const std::string& path, const std::string& format_name,
                                  PointFormats formats) {
@@ -45,11 +38,6 @@ const PointFormat& chosen_format(const std::string& path, const std::string& for
         fmt::format("cannot write {}: compressed points are not written; write them "
                     "to {} and compress that",
                     path, written_extensions(false, "or", formats)),
-        {.file = path});
-  }
-  if (is_copc_name(path)) {
-    throw InvalidArgument(
-        fmt::format("cannot write {}: COPC is read, not written; end the name in .laz alone", path),
         {.file = path});
   }
   if (const PointFormat* const format = point_format_of_path(path, formats)) return *format;

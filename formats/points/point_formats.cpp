@@ -77,10 +77,16 @@ const PointFormat* point_format_of_bytes(std::string_view first_bytes, PointForm
 
 const PointFormat* point_format_of_path(std::string_view path, PointFormats formats) {
   const std::string extension = extension_of(path);
+  const std::string_view stem = path.substr(0, path.size() - extension.size());
+  const std::string both = extension_of(stem.substr(0, stem.rfind('.'))) + "." + extension;
+  const auto has = [](const PointFormat& format, std::string_view wanted) {
+    return std::ranges::find(format.extensions, wanted) != format.extensions.end();
+  };
+  const PointFormat* const of_both = find(formats, [&](const auto& f) { return has(f, both); });
+  if (of_both != nullptr) return of_both;
   const bool compressed = compression_of_name("." + extension) != Compression::kNone;
   return find(formats, [&](const PointFormat& format) {
-    return (format.is_text && compressed) ||
-           std::ranges::find(format.extensions, extension) != format.extensions.end();
+    return (format.is_text && compressed) || has(format, extension);
   });
 }
 

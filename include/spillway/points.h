@@ -149,10 +149,11 @@ struct SortOptions {
 
 /// How a point file is written.
 struct PointFileOptions {
-  std::string format{};       ///< "las", "laz", "text", "npy", "spp"; empty: by the extension
+  std::string format{};       ///< a name such as "laz" or "copc"; empty: by the extension
   std::string las_version{};  ///< of LAS and LAZ, "1.2" or "1.4"; empty: as points need
   /// Round coordinates to multiples of this, counted from `offset`: no number, one for all axes, or
-  /// three. LAS and LAZ, which hold integers, are rounded to a lattice of their own choice without.
+  /// three. LAS, LAZ and COPC hold integers: they are rounded to a lattice of their own choice
+  /// without.
   std::vector<double> scale{};
   std::vector<double> offset{};  ///< likewise
   bool exact = false;            ///< refuse to round by a choice of its own

@@ -17,6 +17,14 @@ spillway_test(laz_test unit
     formats/points/laz/laz_round_trip_test.cpp
     formats/points/laz/laz_writer_test.cpp
   LIBS laz_encoder)
+spillway_test(copc_writer_test unit
+  SOURCES
+    formats/points/copc/copc_faults.cpp
+    formats/points/copc/copc_faults_test.cpp
+    formats/points/copc/copc_writer_test.cpp
+    formats/points/copc/hierarchy_pages_test.cpp
+    formats/points/copc/record_lists_test.cpp
+  LIBS laz_encoder fmt::fmt)
 spillway_test(attributes_test unit
   SOURCES
     formats/points/attributes/record_conversion_test.cpp

@@ -29,13 +29,15 @@ struct PointInput {
 struct PointFormat {
   std::string_view name;   ///< in options of the command, and PointHeader::format
   std::string_view title;  ///< in messages
-  /// Of its files, in lower case; the first is the usual one.
+  /// Of its files, in lower case; the first is the usual one. One of two parts, such as "copc.laz",
+  /// comes before the other format that has the last part.
   std::span<const std::string_view> extensions;
 
   bool is_text = false;  ///< lines that people read; what looks so is this, compressed or not
   bool holds_crs = false;
   bool wants_wkt = false;         ///< of a coordinate system that is a code
   bool holds_attributes = false;  ///< PointWriterOptions::attributes
+  bool drops_waveforms = false;   ///< attributes, too, that are of wave packets
   bool needs_heights = false;     ///< points without z get 0
   bool needs_lattice = false;
   bool holds_regions = false;  ///< PointWriterOptions::by_regions

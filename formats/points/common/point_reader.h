@@ -138,7 +138,7 @@ struct PointHeader {
 };
 
 struct PointReaderOptions {
-  std::string format;          ///< a name of point_format.h; empty: by extension, then first bytes
+  std::string format{};        ///< a name of point_format.h; empty: by extension, then first bytes
   bool keep_withheld = false;  ///< keep points flagged as withheld
   bool metadata = false;       ///< PointHeader::las_metadata is wanted
   /// Only points in this box (output coordinates, closed) are wanted: a reader that knows where its

@@ -7,39 +7,16 @@
 #include <string>
 #include <utility>
 
-#include "formats/bytes/bytes.h"
+#include "formats/points/copc/node_key.h"
 #include "src/error.h"
 
 namespace spillway::detail {
 namespace {
 
-constexpr std::size_t kEntrySize = 32;
+constexpr std::size_t kEntrySize = HierarchyEntry::kSize;
 constexpr std::size_t kEntriesAtOnce = 2048;
 constexpr std::int32_t kDeepestLevel = 30;
-constexpr std::int32_t kInOtherPage = -1;
-
-/// A node's place in the octree.
-struct NodeKey {
-  std::int32_t level = 0;
-  std::array<std::int32_t, 3> cell{};
-
-  // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
-  auto operator<=>(const NodeKey&) const = default;
-};
-
-struct Entry {
-  NodeKey key;
-  std::uint64_t offset;
-  std::int32_t bytes;
-  std::int32_t count;
-};
-
-Entry load_entry(const std::byte* bytes) {
-  return {{load<std::int32_t>(bytes), load<std::array<std::int32_t, 3>>(bytes + 4)},
-          load<std::uint64_t>(bytes + 16),
-          load<std::int32_t>(bytes + 24),
-          load<std::int32_t>(bytes + 28)};
-}
+constexpr std::int32_t kInOtherPage = HierarchyEntry::kInOtherPage;
 
 /// A part of the hierarchy that is still to be read.
 struct Page {
@@ -152,7 +129,7 @@ class Hierarchy {
     }
   }
 
-  void take(const Entry& entry, const Page& page) {
+  void take(const HierarchyEntry& entry, const Page& page) {
     check(entry, page);
     if (!is_wanted(entry.key)) return;
     const auto bytes = static_cast<std::uint64_t>(entry.bytes);
@@ -167,7 +144,7 @@ class Hierarchy {
     }
   }
 
-  void check(const Entry& entry, const Page& page) const {
+  void check(const HierarchyEntry& entry, const Page& page) const {
     const std::int32_t level = entry.key.level;
     const std::array<std::int32_t, 3>& cell = entry.key.cell;
     const bool exists = level >= 0 && level <= kDeepestLevel &&

@@ -46,10 +46,10 @@ std::span<const std::byte> extra_bytes_of(const LasMetadata& las) {
 
 }  // namespace
 
-LasContent::LasContent(std::string file_name, const PointWriterOptions& options)
+LasContent::LasContent(std::string file_name, const PointWriterOptions& options, LasProfile profile)
     : file_name_(std::move(file_name)),
       promised_(options.count),
-      target_(las_target(file_name_, options)),
+      target_(las_target(file_name_, options, profile)),
       record_length_(target_.record_length()),
       attributes_(options.attributes),
       packing_(attributes_.fields(), target_.fields()),
@@ -80,6 +80,10 @@ LasContent::LasContent(std::string file_name, const PointWriterOptions& options)
     } catch (const Error& error) {
       throw CannotWrite(file_name_, error.what(), error.code());
     }
+  }
+  if (profile == LasProfile::kCopc) {
+    leave_out_waveforms();
+    encoding_ |= kLasWktBit;
   }
   keep_what_version_holds();
   const auto add = [this](const LasVlr& record) {
@@ -119,6 +123,21 @@ void LasContent::keep_what_version_holds() {
   }
 }
 
+void LasContent::leave_out_waveforms() {
+  std::erase_if(las_.records, &LasVlr::tells_waveforms);
+  encoding_ &= ~(kLasWaveformsInBit | kLasWaveformsOutBit);
+}
+
+void LasContent::put_first(const LasVlr& record) {
+  append_vlr(record, first_);
+  ++vlr_count_;
+}
+
+void LasContent::put_behind_points(LasVlr record) {
+  record.extended = true;
+  las_.records.insert(las_.records.begin(), std::move(record));
+}
+
 void LasContent::compress(const LazRecord& laz) {
   append_vlr({.user = std::string(kLazUser),
               .id = kLazRecordId,
@@ -131,6 +150,7 @@ std::vector<std::byte> LasContent::head() const {
   if (attributes_.empty()) returns[1] = promised_.value_or(0);
   std::vector<std::byte> head =
       header(promised_.value_or(0), {{kLeast, kLeast, kLeast}, {kMost, kMost, kMost}}, returns);
+  head.insert(head.end(), first_.begin(), first_.end());
   head.insert(head.end(), vlrs_.begin(), vlrs_.end());
   head.insert(head.end(), laz_.begin(), laz_.end());
   return head;
@@ -255,7 +275,7 @@ std::vector<std::byte> LasContent::header(std::uint64_t count, const Box<3>& bou
   store(&bytes[las_field::kCreationYear], las_.year);
   store(&bytes[las_field::kHeaderSize], static_cast<std::uint16_t>(size));
   store(&bytes[las_field::kOffsetToPoints],
-        static_cast<std::uint32_t>(size + vlrs_.size() + laz_.size()));
+        static_cast<std::uint32_t>(size + first_.size() + vlrs_.size() + laz_.size()));
   store(&bytes[las_field::kVlrCount], vlr_count_ + (laz_.empty() ? 0U : 1U));
   store(&bytes[las_field::kPointFormat],
         static_cast<std::uint8_t>(target_.point_format | (laz_.empty() ? 0 : kCompressed)));

@@ -24,13 +24,19 @@ namespace spillway::detail {
 class LasContent {
  public:
   /// `file_name` is for messages. Throws Error for what LAS cannot hold.
-  LasContent(std::string file_name, const PointWriterOptions& options);
+  LasContent(std::string file_name, const PointWriterOptions& options,
+             LasProfile profile = LasProfile::kAny);
 
   [[nodiscard]] const LasTarget& target() const { return target_; }
   [[nodiscard]] std::size_t record_length() const { return record_length_; }
 
   /// The file is LAZ: its header says so, and has this record behind those of LAS.
   void compress(const LazRecord& laz);
+
+  /// The file has this record before all others.
+  void put_first(const LasVlr& record);
+  /// The file has this record behind the points, before others that are there.
+  void put_behind_points(LasVlr record);
 
   /// All that is before the points, while none has come: right, if wide, wherever nobody can come
   /// back to write the final header.
@@ -59,6 +65,7 @@ class LasContent {
 
   [[nodiscard]] bool counts_with_64_bits() const { return target_.minor_version >= 4; }
   void keep_what_version_holds();
+  void leave_out_waveforms();
   void put_coordinates(std::span<const LatticePoint> points, std::byte* records);
   void put_attributes(std::span<const std::byte> attributes, std::size_t count,
                       std::byte* records) const;
@@ -75,9 +82,10 @@ class LasContent {
   RecordConversion packing_;
   std::vector<std::byte> first_record_;  // what a record has before attributes are put into it
   Lattice lattice_;
-  LasMetadata las_;              // of the inputs, or nothing
-  std::uint16_t encoding_ = 0;   // the global encoding
-  std::vector<std::byte> vlrs_;  // all variable length records but that of LAZ
+  LasMetadata las_;               // of the inputs, or nothing
+  std::uint16_t encoding_ = 0;    // the global encoding
+  std::vector<std::byte> first_;  // a variable length record
+  std::vector<std::byte> vlrs_;   // all others but that of LAZ
   std::uint32_t vlr_count_ = 0;
   std::vector<std::byte> laz_;  // the record that tells of the compression
   std::uint64_t count_ = 0;

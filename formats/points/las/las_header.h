@@ -67,9 +67,11 @@ inline constexpr std::uint16_t kLasGeotiffRecord = 34735;
 inline constexpr std::uint16_t kLasGeotiffNumberRecord = 34736;
 inline constexpr std::uint16_t kLasGeotiffTextRecord = 34737;
 
-/// Records that tell of extra bytes, and that hold waveforms.
+/// Records that tell of extra bytes, that describe and that hold waveforms.
 inline constexpr std::string_view kLasSpecUser = "LASF_Spec";
 inline constexpr std::uint16_t kLasExtraBytesRecord = 4;
+inline constexpr std::uint16_t kLasFirstWaveformDescriptor = 100;
+inline constexpr std::uint16_t kLasLastWaveformDescriptor = 354;
 inline constexpr std::uint16_t kLasWaveformRecord = 65535;
 
 /// Shortest record of each point format, in bytes; longer ones carry extra bytes at their end.

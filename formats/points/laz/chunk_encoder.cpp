@@ -1,6 +1,7 @@
 #include "formats/points/laz/chunk_encoder.h"
 
 #include <cstdint>
+#include <cstring>
 #include <utility>
 #include <variant>
 
@@ -29,16 +30,28 @@ class PointwiseChunkEncoder {
     }
   }
 
-  void encode(std::span<const std::byte> records, std::vector<std::byte>& out) {
-    out.insert(out.end(), records.begin(), records.begin() + record_length_);
-    for (const Item& item : items_) item.models->reset(records.data() + item.at);
-    for (std::size_t i = record_length_; i < records.size(); i += record_length_) {
-      const std::byte* record = records.data() + i;
-      for (const Item& item : items_) {
-        item.models->encode(stream_, record + item.at, record + item.at - record_length_);
-      }
+  void add(std::span<const std::byte> records) {
+    if (records.empty()) return;
+    if (last_.empty()) {
+      first_.assign(records.begin(), records.begin() + record_length_);
+      for (const Item& item : items_) item.models->reset(first_.data() + item.at);
+      last_ = first_;
+      records = records.subspan(record_length_);
     }
+    const std::byte* last = last_.data();
+    for (; !records.empty(); records = records.subspan(record_length_)) {
+      for (const Item& item : items_) {
+        item.models->encode(stream_, records.data() + item.at, last + item.at);
+      }
+      last = records.data();
+    }
+    std::memmove(last_.data(), last, record_length_);
+  }
+
+  void finish(std::vector<std::byte>& out) {
+    out.insert(out.end(), first_.begin(), first_.end());
     stream_.finish(out);
+    last_.clear();
   }
 
  private:
@@ -48,6 +61,8 @@ class PointwiseChunkEncoder {
   };
 
   std::size_t record_length_;
+  std::vector<std::byte> first_;  // record of the chunk
+  std::vector<std::byte> last_;   // record so far; empty before the first one
   std::vector<Item> items_;
   laz::ArithmeticEncoder stream_;
 };
@@ -58,27 +73,38 @@ class LayeredChunkEncoder {
   explicit LayeredChunkEncoder(const LazChunkFormat& format)
       : record_length_(record_length_of(format)), layers_(format) {}
 
-  void encode(std::span<const std::byte> records, std::vector<std::byte>& out) {
-    layers_.reset(records.data());
-    for (std::size_t i = record_length_; i < records.size(); i += record_length_) {
+  void add(std::span<const std::byte> records) {
+    if (records.empty()) return;
+    if (count_ == 0) {
+      layers_.reset(records.data());
+      first_.assign(records.begin(), records.begin() + record_length_);
+    }
+    const std::size_t encoded = count_ == 0 ? record_length_ : 0;
+    for (std::size_t i = encoded; i < records.size(); i += record_length_) {
       layers_.encode(records.data() + i);
     }
-    out.insert(out.end(), records.begin(), records.begin() + record_length_);
+    count_ += records.size() / record_length_;
+  }
+
+  void finish(std::vector<std::byte>& out) {
+    out.insert(out.end(), first_.begin(), first_.end());
     const std::vector<laz::LayerStream*> layers = layers_.layers();
     std::size_t size_at = out.size() + sizeof(std::uint32_t);
     out.resize(size_at + layers.size() * sizeof(std::uint32_t));
-    const std::size_t count = records.size() / record_length_;
-    store(&out[size_at - sizeof(std::uint32_t)], static_cast<std::uint32_t>(count));
+    store(&out[size_at - sizeof(std::uint32_t)], static_cast<std::uint32_t>(count_));
     for (laz::LayerStream* layer : layers) {
       const std::size_t before = out.size();
       layer->finish(out, false);
       store(&out[size_at], static_cast<std::uint32_t>(out.size() - before));
       size_at += sizeof(std::uint32_t);
     }
+    count_ = 0;
   }
 
  private:
   std::size_t record_length_;
+  std::size_t count_ = 0;         // records so far
+  std::vector<std::byte> first_;  // record of the chunk
   laz::LayeredRecords layers_;
 };
 
@@ -102,7 +128,16 @@ LazChunkEncoder::LazChunkEncoder(LazChunkEncoder&&) noexcept = default;
 LazChunkEncoder& LazChunkEncoder::operator=(LazChunkEncoder&&) noexcept = default;
 
 void LazChunkEncoder::encode(std::span<const std::byte> records, std::vector<std::byte>& out) {
-  std::visit([&](auto& chunk) { chunk.encode(records, out); }, impl_->chunk);
+  add(records);
+  finish(out);
+}
+
+void LazChunkEncoder::add(std::span<const std::byte> records) {
+  std::visit([&](auto& chunk) { chunk.add(records); }, impl_->chunk);
+}
+
+void LazChunkEncoder::finish(std::vector<std::byte>& out) {
+  std::visit([&](auto& chunk) { chunk.finish(out); }, impl_->chunk);
 }
 
 }  // namespace spillway::detail

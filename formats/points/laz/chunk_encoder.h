@@ -22,6 +22,11 @@ class LazChunkEncoder {
   /// Appends the chunk of these records, which are LAS records one after the other: one at least.
   void encode(std::span<const std::byte> records, std::vector<std::byte>& out);
 
+  /// The same for a chunk whose records come in parts: add() takes some, as often as there are any,
+  /// and finish() appends the chunk.
+  void add(std::span<const std::byte> records);
+  void finish(std::vector<std::byte>& out);
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "formats/points/las/records/las_metadata.h"
+#include "formats/points/las/records/las_target.h"
 
 namespace spillway::detail {
 namespace {
@@ -33,12 +34,16 @@ std::vector<std::string> lost_fields(const std::vector<PointHeader>& headers,
   for (const PointHeader& header : headers) {
     for (const AttributeField& field : header.attributes.fields()) {
       const std::string& name = field.attribute.name;
-      if (written.attributes.find(name) == nullptr) lost.add(name);
+      const bool dropped = format.drops_waveforms && tells_waveform(name);
+      if (dropped || written.attributes.find(name) == nullptr) lost.add(name);
     }
     if (header.las_metadata && !written.las) add_records(header, lost);
   }
   if (written.las) {
     for (const std::string& name : written.las->left_out) lost.add(name);
+    for (const LasVlr& record : written.las->records) {
+      if (format.drops_waveforms && record.tells_waveforms()) lost.add(record.name());
+    }
   }
   if (!written.crs.empty() && !format.holds_crs) lost.add("coordinate system");
   return lost.take();

@@ -95,7 +95,8 @@ PointFile::PointFile(const std::string& path, const PointFileOptions& options,
       options_(options),
       format_(format_to_write(path, options.format)),
       scratch_(context.state().scratch(context)),
-      threads_(context.threads()) {
+      threads_(context.threads()),
+      memory_(context.memory()) {
   check(options);
 }
 
@@ -191,6 +192,7 @@ void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
   how_.crs = points.crs;
   how_.scratch = scratch_.get();
   how_.sharing = sharing;
+  how_.memory = memory_;
   how_.by_regions = options_.sorted.has_value();
   // Points may be left out of LAS, since they are flagged as withheld.
   if (std::ranges::none_of(points.headers, is_las)) how_.count = points.records;

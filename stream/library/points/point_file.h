@@ -82,6 +82,7 @@ class PointFile final : public spillway::PointSink {
   const PointFormat& format_;
   std::shared_ptr<ScratchFolder> scratch_;
   unsigned threads_;  ///< of a program that writes
+  std::uint64_t memory_;
   PointWriterOptions how_;
   bool adds_heights_ = false;
   bool rounds_ = false;

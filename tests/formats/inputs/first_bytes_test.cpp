@@ -77,8 +77,9 @@ TEST(FirstBytes, TellTheFormatThatWroteThemAndNoOther) {
     }
     for (const PointFormat* const format : point_formats()) {
       if (format->recognises == nullptr) continue;
-      // The arrays of a mesh are arrays, and LAZ begins as LAS.
-      const std::string begins_as = name == "points laz" ? "las" : name.substr(name.find(' ') + 1);
+      // The arrays of a mesh are arrays, and LAZ and COPC begin as LAS.
+      const bool is_las = name == "points laz" || name == "points copc";
+      const std::string begins_as = is_las ? "las" : name.substr(name.find(' ') + 1);
       const bool own = begins_as == format->name;
       EXPECT_EQ(format->recognises(bytes), own) << format->name;
     }

@@ -2,6 +2,7 @@
 #include "formats/points/point_formats.h"
 
 #include "formats/points/common/point_writer.h"
+#include "formats/points/copc/copc_format.h"
 #include "formats/points/las/las_format.h"
 #include "formats/points/laz/laz_format.h"
 #include "formats/points/npy/npy_format.h"
@@ -20,7 +21,9 @@ using ::testing::Not;
 
 TEST(PointFormatChoice, ExtensionInAnyCase) {
   EXPECT_EQ(point_format_of_path("dir.txt/A.LAS"), &kLasPoints);
-  EXPECT_EQ(point_format_of_path("a.copc.laz"), &kLazPoints);
+  EXPECT_EQ(point_format_of_path("a.COPC.laz"), &kCopcPoints);
+  EXPECT_EQ(point_format_of_path("copc.laz"), &kLazPoints);
+  EXPECT_EQ(point_format_of_path("a.copc"), nullptr);
   EXPECT_EQ(point_format_of_path("a.npy"), &kNpyPoints);
   EXPECT_EQ(point_format_of_path("a.Spp"), &kSppPoints);
   for (const char* name :
@@ -115,13 +118,7 @@ TEST(PointFormatChoice, OutputWithoutKnownFormat) {
   FaultyFileSystem files;
   EXPECT_THROW(open_point_writer(files, "-", {}), InvalidArgument);
   EXPECT_THROW(open_point_writer(files, "a.dat", {}), InvalidArgument);
-  EXPECT_THAT(error_of([&] { open_point_writer(files, "a.COPC.laz", {}); }),
-              HasSubstr("COPC is read, not written; end the name in .laz alone"));
   EXPECT_THROW(open_point_writer(files, "a.xyz.gz", {}), InvalidArgument);
-  PointWriterOptions copc;
-  copc.format = "copc";
-  EXPECT_THAT(error_of([&] { open_point_writer(files, "-", copc); }),
-              HasSubstr("standard output: COPC is read, not written; write .laz"));
   EXPECT_EQ(files.count(Call::kCreate), 0);
 }
 
@@ -130,7 +127,7 @@ TEST(PointFormatChoice, PipeThatNeedsTheCountBeforehand) {
   files.seekable = false;
   PointWriterOptions options;
   options.lattice = Lattice{};
-  for (const char* name : {"a.las", "a.laz", "a.npy"}) {
+  for (const char* name : {"a.las", "a.laz", "a.copc.laz", "a.npy"}) {
     EXPECT_THAT(error_of([&] { open_point_writer(files, name, options); }),
                 HasSubstr("not known beforehand; write text or spp"));
     EXPECT_TRUE(files.parts.empty());

@@ -40,6 +40,11 @@ bool LasVlr::tells_extra_bytes() const {
   return user == kLasSpecUser && id == kLasExtraBytesRecord;
 }
 
+bool LasVlr::tells_waveforms() const {
+  const bool describes = id >= kLasFirstWaveformDescriptor && id <= kLasLastWaveformDescriptor;
+  return user == kLasSpecUser && (describes || id == kLasWaveformRecord);
+}
+
 std::string LasVlr::name() const { return fmt::format("record {} of {}", id, user); }
 
 std::shared_ptr<const LasMetadata> joined(std::span<const std::shared_ptr<const LasMetadata>> all) {

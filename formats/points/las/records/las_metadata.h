@@ -27,6 +27,8 @@ struct LasVlr {
   [[nodiscard]] bool tells_crs() const;
   /// Whether it tells of extra bytes.
   [[nodiscard]] bool tells_extra_bytes() const;
+  /// Whether it describes or holds waveforms.
+  [[nodiscard]] bool tells_waveforms() const;
   /// "user 2112", for messages.
   [[nodiscard]] std::string name() const;
 };

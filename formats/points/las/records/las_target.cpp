@@ -28,11 +28,11 @@ void check_version(const std::string& file, const PointWriterOptions& options) {
   }
 }
 
-/// The least point format with what these attributes are.
-int least_format(const AttributeLayout& attributes, bool extended) {
+/// The least point format with what these attributes are, waveforms only if they are wanted.
+int least_format(const AttributeLayout& attributes, bool extended, bool waveforms) {
   const auto has = [&](const char* name) { return attributes.find(name) != nullptr; };
   const bool colour = has("red") || has("green") || has("blue");
-  const bool waves = has("wave_packet_descriptor");
+  const bool waves = waveforms && has("wave_packet_descriptor");
   if (extended) {
     if (waves) return colour || has("nir") ? 10 : 9;
     if (has("nir")) return 8;
@@ -70,16 +70,27 @@ std::vector<AttributeField> LasTarget::fields() const {
   return all;
 }
 
-LasTarget las_target(const std::string& file, const PointWriterOptions& options) {
+bool tells_waveform(std::string_view attribute) { return attribute.starts_with("wave_packet_"); }
+
+LasTarget las_target(const std::string& file, const PointWriterOptions& options,
+                     LasProfile profile) {
   check_version(file, options);
+  const bool copc = profile == LasProfile::kCopc;
+  if (copc && options.version == "1.2") {
+    throw InvalidArgument(
+        fmt::format("cannot write {}: COPC is LAS 1.4; leave the version out, or write LAZ", file),
+        {.file = file});
+  }
   const bool large = options.count.value_or(0) > kMostLegacyPoints;
   const LasMetadata* const las = options.las.get();
   LasTarget target;
-  const bool extended =
-      options.version.empty() ? large || wants_extended(options) : options.version == "1.4";
-  target.point_format = least_format(options.attributes, extended);
+  const bool extended = copc || (options.version.empty() ? large || wants_extended(options)
+                                                         : options.version == "1.4");
+  target.point_format = least_format(options.attributes, extended, !copc);
+  const bool free = options.version.empty() && !copc;
   const bool same_kind = las != nullptr && las->point_format >= 0 &&
-                         (options.version.empty() || (las->point_format >= 6) == extended);
+                         (free || (las->point_format >= 6) == extended) &&
+                         !(copc && las->point_format > 8);
   if (same_kind && fits(las->point_format, options.attributes)) {
     target.point_format = las->point_format;
   }
@@ -93,6 +104,7 @@ LasTarget las_target(const std::string& file, const PointWriterOptions& options)
     const auto same_name = [&](const AttributeField& own) {
       return own.attribute.name == field.attribute.name;
     };
+    if (copc && tells_waveform(field.attribute.name)) continue;
     if (std::ranges::none_of(fields, same_name)) others.push_back(field.attribute);
   }
   try {

@@ -2,12 +2,22 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/points/common/point_writer.h"
 #include "formats/points/las/records/las_fields.h"
 
 namespace spillway::detail {
+
+/// Which LAS may be written.
+enum class LasProfile {
+  kAny,
+  kCopc,  ///< LAS 1.4, point formats 6 to 8, no waveforms, WKT
+};
+
+/// Whether the attribute is one of a wave packet, of which COPC holds none.
+bool tells_waveform(std::string_view attribute);
 
 /// Which LAS is written.
 struct LasTarget {
@@ -26,6 +36,7 @@ struct LasTarget {
 /// and the version allows it, else the least with all attributes; version 1.2 or 1.3, and 1.4 where
 /// inputs or the number of points need it, or the version is given. Without attributes, point
 /// format 0 or 6. Throws Error, which names `file`, if there is none.
-LasTarget las_target(const std::string& file, const PointWriterOptions& options);
+LasTarget las_target(const std::string& file, const PointWriterOptions& options,
+                     LasProfile profile = LasProfile::kAny);
 
 }  // namespace spillway::detail

@@ -156,6 +156,24 @@ TEST_P(WrittenLazRecords, AreTheSameBytesFromAnEncoderThatIsUsedAgain) {
   EXPECT_EQ(encoded(1000, 1), first);
 }
 
+TEST_P(WrittenLazRecords, AreTheSameBytesFromParts) {
+  const LazChunkFormat format = laz_format_to_write(GetParam(), 2);
+  const std::string all = joined(RandomRecords{GetParam(), 2, 5000, 3}.make());
+  const std::size_t length = all.size() / 5000;
+  LazChunkEncoder encoder(format);
+  std::vector<std::byte> whole;
+  encoder.encode(as_bytes_of(all), whole);
+  for (const std::size_t part : {1, 7, 4999}) {
+    std::vector<std::byte> chunk;
+    encoder.add({});
+    for (std::size_t at = 0; at < all.size(); at += part * length) {
+      encoder.add(as_bytes_of(all).subspan(at, std::min(part * length, all.size() - at)));
+    }
+    encoder.finish(chunk);
+    EXPECT_TRUE(chunk == whole) << part;
+  }
+}
+
 TEST(LazChunkEncoderVersions, AreThoseThatItWrites) {
   for (const int version : {1, 3}) {
     const LazChunkFormat format{.items = laz_items(0, 0, version), .layered = false};

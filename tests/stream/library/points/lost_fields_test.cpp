@@ -74,5 +74,23 @@ TEST(LostFields, AreTheRecordsOfLasWhereTheOutputIsNoLasAndThoseThatWereLeftOut)
   EXPECT_THAT(lost_in("las", {header}, written), ElementsAre("waveforms"));
 }
 
+TEST(LostFields, AreWaveformsInCopc) {
+  LasMetadata metadata;
+  metadata.records = {{.user = "LASF_Spec", .id = 100},
+                      {.user = "LASF_Spec", .id = 65535, .extended = true},
+                      {.user = "mine", .id = 100}};
+  PointHeader header = las(10);
+  header.las_metadata = std::make_shared<LasMetadata>(metadata);
+  PointWriterOptions written;
+  written.attributes = header.attributes;
+  written.las = header.las_metadata;
+  EXPECT_THAT(lost_in("laz", {header}, written), IsEmpty());
+  EXPECT_THAT(
+      lost_in("copc", {header}, written),
+      ElementsAre("wave_packet_descriptor", "wave_packet_offset", "wave_packet_size",
+                  "wave_packet_location", "wave_packet_dx", "wave_packet_dy", "wave_packet_dz",
+                  "record 100 of LASF_Spec", "record 65535 of LASF_Spec"));
+}
+
 }  // namespace
 }  // namespace spillway::detail
