@@ -75,7 +75,7 @@ struct PointOptions {
   /// Of text: the columns of x, y and, if there is a third one, z, counted from 1; empty: by their
   /// names, or, where these are missing, the first ones.
   std::vector<int> columns{};
-  /// Leave out and count rows of text and npy that are no points: what is no number, or not
+  /// Leave out and count rows of text, npy and PLY that are no points: what is no number, or not
   /// finite, or lacks a column. Without it they are an error.
   bool skip_invalid = false;
   bool keep_withheld = false;        ///< use points that LAS flags as withheld
@@ -146,7 +146,7 @@ struct SortOptions {
 
 /// How a point file is written.
 struct PointFileOptions {
-  std::string format{};       ///< "las", "laz", "text", "npy", "spp"; empty: by the extension
+  std::string format{};  ///< "las", "laz", "text", "npy", "ply", "spp"; empty: by the extension
   std::string las_version{};  ///< of LAS and LAZ, "1.2" or "1.4"; empty: as points need
   /// Round coordinates to multiples of this, counted from `offset`: no number, one for all axes, or
   /// three. LAS and LAZ, which hold integers, are rounded to a lattice of their own choice without.

@@ -25,33 +25,51 @@ LazFormat format_of(int point_format) {
   return format;
 }
 
-/// Points of a LAZ file with that point format, its attributes included.
-Carried random_points(int point_format) {
-  FaultyFileSystem files;
-  files.files["a.laz"] =
-      make_laz_file(format_of(point_format), RandomRecords{point_format, 5, kPoints, 11}.make())
-          .bytes();
-  return read_carried(files, "a.laz", {.keep_withheld = true});
+/// A LAZ file with that point format and extra bytes.
+std::string random_laz(int point_format) {
+  return make_laz_file(format_of(point_format), RandomRecords{point_format, 5, kPoints, 11}.make())
+      .bytes();
 }
 
-class LasAttributes : public ::testing::TestWithParam<int> {};
+/// The attributes that a format of single numbers below 2^53 gives back.
+AttributeLayout of_plain_numbers(const AttributeLayout& layout) {
+  std::vector<Attribute> attributes;
+  for (const Attribute& attribute : layout.attributes()) {
+    const bool has_64_bits = is_integer(attribute.type) && size_of(attribute.type) == 8;
+    if (attribute.elements == 1 && !has_64_bits) attributes.push_back(attribute);
+  }
+  return AttributeLayout(std::move(attributes));
+}
 
-TEST_P(LasAttributes, ComeBackFromNpy) {
-  const Carried las = random_points(GetParam());
-  ASSERT_EQ(las.points.size(), kPoints);
-  ASSERT_FALSE(las.layout.empty());
+/// Writes the points with attributes of `layout` to a file of that name, and reads them back.
+void expect_round_trip(const std::string& name, int point_format,
+                       AttributeLayout (*kept)(const AttributeLayout&)) {
   FaultyFileSystem files;
+  files.files["a.laz"] = random_laz(point_format);
+  const PointReaderOptions options{.keep_withheld = true};
+  const AttributeLayout layout = kept(read_carried(files, "a.laz", options).layout);
+  const Carried las = read_carried(files, "a.laz", options, layout);
+  ASSERT_EQ(las.points.size(), kPoints);
+  ASSERT_FALSE(layout.empty());
   const auto writer =
-      open_point_writer(files, "a.npy", {.lattice = las.header.lattice, .attributes = las.layout});
+      open_point_writer(files, name, {.lattice = las.header.lattice, .attributes = layout});
   writer->write(las.points, las.records);
   writer->finish();
-  const Carried back = read_carried(files, "a.npy", {}, las.layout);
+  const Carried back = read_carried(files, name, {}, layout);
   EXPECT_EQ(back.records, las.records);
   ASSERT_EQ(back.points.size(), kPoints);
   for (std::size_t i = 0; i < kPoints; ++i) {
     EXPECT_EQ(back.points[i], LatticePoint(in_world(las.header.lattice, las.points[i]).numbers()));
   }
 }
+
+class LasAttributes : public ::testing::TestWithParam<int> {};
+
+TEST_P(LasAttributes, ComeBackFromNpy) {
+  expect_round_trip("a.npy", GetParam(), [](const AttributeLayout& layout) { return layout; });
+}
+
+TEST_P(LasAttributes, ComeBackFromPly) { expect_round_trip("a.ply", GetParam(), of_plain_numbers); }
 
 INSTANTIATE_TEST_SUITE_P(EveryPointFormat, LasAttributes, ::testing::Range(0, 11));
 
