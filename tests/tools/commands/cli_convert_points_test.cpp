@@ -21,13 +21,13 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::vector<std::string> kFormats = {"las", "xyz", "csv", "npy", "spp"};
+const std::vector<std::string> kFormats = {"las", "xyz", "csv", "npy", "ply", "spp"};
 
 TEST(ConvertPoints, KeepsLatticePointsWhateverTheFormats) {
   const Workspace work;
   work.succeed(
       "spillway generate -q terrain -n 3000 -o in.las\n"
-      "spillway convert -q in.las -o in.npy");
+      "spillway convert -q in.las -o in.npy --attributes none");
   for (const std::string& there : kFormats) {
     work.succeed(fmt::format("spillway convert -q in.las -o there.{}", there));
     for (const std::string& back : kFormats) {
@@ -35,7 +35,7 @@ TEST(ConvertPoints, KeepsLatticePointsWhateverTheFormats) {
       work.succeed(fmt::format(
           "spillway convert -q there.{} -o back.{} --scale 0.01 --offset 500000,4100000,0\n"
           "spillway convert -q back.{} -o back.las --scale 0.01 --offset 500000,4100000,0\n"
-          "spillway convert -q back.las -o back.npy\n"
+          "spillway convert -q back.las -o back.npy --attributes none\n"
           "cmp in.npy back.npy",
           there, back, back));
     }
@@ -45,7 +45,7 @@ TEST(ConvertPoints, KeepsLatticePointsWhateverTheFormats) {
 TEST(ConvertPoints, KeepsEveryBitOfDoubles) {
   const Workspace work;
   work.succeed("spillway generate -q uniform --dim 3 -n 3000 -o in.npy");
-  for (const std::string format : {"xyz", "csv", "npy", "spp"}) {
+  for (const std::string format : {"xyz", "csv", "npy", "ply", "spp"}) {
     work.succeed(
         fmt::format("spillway convert -q in.npy -o there.{0}\n"
                     "spillway convert -q there.{0} -o back.npy\n"
@@ -57,7 +57,7 @@ TEST(ConvertPoints, KeepsEveryBitOfDoubles) {
 TEST(ConvertPoints, KeepsTwoColumns) {
   const Workspace work;
   work.write("in.txt", "1 2.5\n-3 4\n");
-  for (const std::string format : {"npy", "spp", "csv"}) {
+  for (const std::string format : {"npy", "spp", "csv", "ply"}) {
     work.succeed(
         fmt::format("spillway convert -q in.txt -o there.{0}\n"
                     "spillway convert -q there.{0} -o back.txt\n"
@@ -215,11 +215,12 @@ TEST(ConvertPoints, GivesAPipeWhatAFileWouldHold) {
   const Workspace work;
   work.succeed(
       "spillway generate -q terrain -n 100000 -o in.las\n"
-      "spillway convert -q in.las -o out.npy\n"
-      "spillway convert -q in.las -o out.las");
+      "spillway convert -q in.las -o out.npy --attributes none\n"
+      "spillway convert -q in.las -o out.las --attributes none");
   for (const std::string format : {"npy", "las"}) {
     work.succeed(
-        fmt::format("spillway convert -q - -o - --output-format {0} < in.las > piped.{0}\n"
+        fmt::format("spillway convert -q - -o - --output-format {0} --attributes none < in.las > "
+                    "piped.{0}\n"
                     "cmp out.{0} piped.{0}\n"
                     "cat in.las | spillway convert -q - -o - --tmpdir . | "
                     "spillway convert -q - -o - --output-format {0} --tmpdir . | cat > piped.{0}",
@@ -227,7 +228,7 @@ TEST(ConvertPoints, GivesAPipeWhatAFileWouldHold) {
   }
   work.succeed(
       "cmp out.npy piped.npy\n"
-      "spillway convert -q piped.las -o again.npy\n"
+      "spillway convert -q piped.las -o again.npy --attributes none\n"
       "cmp out.npy again.npy");
   EXPECT_EQ(work.info("piped.las")["extent"], work.info("in.las")["extent"]);
   EXPECT_EQ(work.names(), (std::vector<std::string>{"again.npy", "in.las", "out.las", "out.npy",
@@ -385,7 +386,7 @@ TEST(ConvertPoints, RefusesWhatItCannotDoAndLeavesNothing) {
   EXPECT_THAT(copc.err, HasSubstr("COPC is read, not written"));
   EXPECT_EQ(copc.exit_code, 2);
   EXPECT_EQ(work.run("spillway generate terrain -n 9 -o out.copc.laz").exit_code, 2);
-  EXPECT_THAT(work.run("spillway convert in.txt -o out.ply").err, HasSubstr("these are points"));
+  EXPECT_THAT(work.run("spillway convert in.txt -o out.obj").err, HasSubstr("these are points"));
   EXPECT_EQ(work.run("spillway convert in.txt -o out.dat").exit_code, 2);
   work.succeed("spillway generate -q uniform -n 9 | spillway triangulate -q - -o mesh.spm");
   EXPECT_EQ(work.run("spillway convert mesh.spm -o out.ply --every 2").exit_code, 2);
