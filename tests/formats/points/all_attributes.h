@@ -69,4 +69,30 @@ inline Carried read_carried(const std::string& path, const std::string& content,
   return read_carried(files, path, options, layout);
 }
 
+/// Makes sure that a file falls into several pieces, and that these, the last one first, hold what
+/// it holds from front to back.
+inline void expect_equal_pieces(const std::string& path, const std::string& content) {
+  FaultyFileSystem files;
+  files.files[path] = content;
+  const Carried all = read_carried(files, path);
+  const auto reader = open_point_reader(files, path, {});
+  reader->carry(all.layout);
+  ASSERT_GT(reader->pieces().value_or(0), 1U);
+  std::vector<LatticePoint> points;
+  std::vector<std::uint64_t> index;
+  std::vector<std::byte> records;
+  PointBlock block;
+  for (std::uint64_t piece = *reader->pieces(); piece-- > 0;) {
+    reader->begin_piece(piece);
+    ASSERT_TRUE(reader->read(block));
+    points.insert(points.begin(), block.points.begin(), block.points.end());
+    index.insert(index.begin(), block.index.begin(), block.index.end());
+    records.insert(records.begin(), block.attributes.begin(), block.attributes.end());
+    EXPECT_FALSE(reader->read(block));
+  }
+  EXPECT_TRUE(points == all.points);
+  EXPECT_TRUE(index == all.index);
+  EXPECT_TRUE(records == all.records);
+}
+
 }  // namespace spillway::detail::testing

@@ -223,6 +223,23 @@ TEST(PointsWithAttributes, HaveTheTriangulationOfTheirCoordinates) {
   }
 }
 
+TEST(PointsWithAttributes, OfLasComeBackByteByByte) {
+  const Workspace work;
+  std::string table = "x,y,z,class,intensity,gps_time,red,green,blue,scan_angle,mine\n";
+  for (int i = 0; i < 500; ++i) {
+    table +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", i * 0.25, i * i % 97, i % 7, i % 256,
+                    i * 131 % 65536, 1e9 + i * 0.001, i, 65535 - i, i * 7, i % 3 * 0.006, -i * 0.1);
+  }
+  work.write("in.csv", table);
+  const std::string lattice = " --scale 0.25,1,1 --offset 0,0,0\n";
+  work.succeed("spillway convert -q in.csv -o in.las" + lattice);
+  for (const std::string format : {"npy", "ply"}) {
+    work.succeed("spillway convert -q in.las -o there." + format + "\nspillway convert -q there." +
+                 format + " -o back.las" + lattice + "cmp in.las back.las");
+  }
+}
+
 bool has_numpy(const Workspace& work) {
   return work.run("/usr/bin/python3 -c 'import numpy'").exit_code == 0;
 }

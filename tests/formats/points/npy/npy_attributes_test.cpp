@@ -112,6 +112,23 @@ TEST(NpyAttributes, GoWithInvalidRowsThatAreSkipped) {
   EXPECT_THAT(all.values("column_4"), ElementsAre(4, ::testing::IsNan()));
 }
 
+TEST(NpyAttributes, ComeInPiecesAsFromFrontToBack) {
+  std::string rows;
+  for (int i = 0; i < 600; ++i) {
+    rows += bytes_of_all(std::int32_t{i}, std::int32_t{-i}) + std::string(15999, '\0') +
+            static_cast<char>(i % 100);
+  }
+  expect_equal_pieces(
+      "a.npy", structured("('x', '<i4'), ('y', '<i4'), ('a', '|u1', (16000,))", "(600,)", rows));
+}
+
+TEST(NpyAttributes, OfColumnsInFortranOrderComeInPieces) {
+  std::vector<std::int8_t> values(2500UL * 4000);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::int8_t>(i % 101);
+  expect_equal_pieces(
+      "a.npy", npy("{'descr': '|i1', 'fortran_order': True, 'shape': (2500, 4000), }", values));
+}
+
 std::string error_of_fields(const std::string& fields, const std::string& shape = "(1,)") {
   return error_of_content("a.npy", structured(fields, shape, std::string(64, '\1')));
 }

@@ -33,7 +33,8 @@ std::string number(double value, bool swap) {
 /// One point with a property of each type, in the given encoding.
 std::string point_of_all_types(const std::string& head) {
   const std::string properties =
-      "element vertex 1\nproperty char aa\nproperty double x\nproperty uchar red\nproperty short bb\n"
+      "element vertex 1\nproperty char aa\nproperty double x\nproperty uchar red\nproperty short "
+      "bb\n"
       "property float y\nproperty ushort Intensity\nproperty int z\nproperty uint cc\nproperty "
       "float64 GpsTime\nproperty uint8 dd\nend_header\n";
   if (head == kAscii) return head + properties + "-5 0.1 200 -300 0.5 65535 -70000 4e9 1e10 7\n";
@@ -132,6 +133,18 @@ TEST(PlyPoints, AmongOtherElementsAndListsWhichNoticesName) {
       }
     }
   }
+}
+
+TEST(PlyPoints, ComeInPiecesAsFromFrontToBack) {
+  std::string file = kBig +
+                     "element camera 1\nproperty int a\nelement vertex 70000\nproperty short x\n"
+                     "property short y\nproperty uchar k\nelement edge 1\nproperty int a\n"
+                     "end_header\nfour";
+  for (int i = 0; i < 70000; ++i) {
+    file += number<std::int16_t>(i % 30000, true) + number<std::int16_t>(-i % 30000, true) +
+            static_cast<char>(i % 100);
+  }
+  expect_equal_pieces("a.ply", file + "four");
 }
 
 TEST(PlyPoints, CutAnywhereAreAnError) {
