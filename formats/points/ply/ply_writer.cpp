@@ -2,17 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "formats/bytes/bytes.h"
 #include "formats/bytes/notes.h"
+#include "formats/bytes/number_type.h"
 #include "formats/ply/ply_header.h"
 #include "formats/points/attributes/unique_names.h"
 #include "formats/points/rows/row_encoder.h"
+#include "formats/points/rows/row_writer.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -56,67 +56,40 @@ std::string property_lines(int coordinates, const AttributeLayout& attributes) {
   return lines;
 }
 
-class PlyWriter : public PointWriter {
+/// Its length does not depend on the count: a comment makes up for digits.
+std::string header_text(const std::vector<std::string>& notes, std::uint64_t count,
+                        const std::string& properties) {
+  constexpr std::size_t kMostDigits = 20;  // of a number of 64 bits
+  std::string text = "ply\nformat binary_little_endian 1.0\n";
+  for (const std::string& note : notes) text += "comment " + note + '\n';
+  const std::string number = fmt::format("{}", count);
+  text += fmt::format("comment points{}\n", std::string(kMostDigits - number.size(), ' '));
+  return text + fmt::format("element vertex {}\n{}end_header\n", number, properties);
+}
+
+/// Makes sure that the integers of 64 bits which become doubles are doubles.
+class IntegerCheck {
  public:
-  PlyWriter(std::unique_ptr<OutputFile> file, const PointWriterOptions& options)
-      : file_(std::move(file)),
-        count_(options.count),
-        notes_(crs_notes(options.crs)),
-        from_(options.attributes),
-        properties_(property_lines(options.coordinates, as_ply(from_))),
-        rows_(options.lattice, options.coordinates, from_, as_ply(from_)) {
-    file_->write(as_bytes_of(header(count_.value_or(0))));
-  }
+  IntegerCheck(AttributeLayout layout, std::string file)
+      : layout_(std::move(layout)), file_(std::move(file)) {}
 
-  void write(std::span<const LatticePoint> points, std::span<const std::byte> records) override {
-    constexpr std::size_t kBlockPoints = 8192;
-    const std::size_t record_size = from_.record_size();
-    while (!points.empty()) {
-      const std::size_t count = std::min(points.size(), kBlockPoints);
-      const std::span<const std::byte> some = records.first(count * record_size);
-      check_integers(some);
-      file_->write(rows_.encode(points.first(count), some));
-      written_ += count;
-      points = points.subspan(count);
-      records = records.subspan(some.size());
-    }
-  }
-
-  void finish() override {
-    check_written(*file_, count_, written_);
-    if (!count_) file_->rewrite(0, as_bytes_of(header(written_)));
-    file_->commit();
-  }
-
- private:
-  /// Its length does not depend on the count: a comment makes up for digits.
-  [[nodiscard]] std::string header(std::uint64_t count) const {
-    constexpr std::size_t kMostDigits = 20;  // of a number of 64 bits
-    std::string text = "ply\nformat binary_little_endian 1.0\n";
-    for (const std::string& note : notes_) text += "comment " + note + '\n';
-    const std::string number = fmt::format("{}", count);
-    text += fmt::format("comment points{}\n", std::string(kMostDigits - number.size(), ' '));
-    return text + fmt::format("element vertex {}\n{}end_header\n", number, properties_);
-  }
-
-  /// Throws Error for an integer that is no double.
-  void check_integers(std::span<const std::byte> records) const {
-    for (const AttributeField& field : from_.fields()) {
+  void operator()(std::span<const std::byte> records, std::uint64_t first) const {
+    const std::size_t size = layout_.record_size();
+    for (const AttributeField& field : layout_.fields()) {
       if (ply_type(field.attribute.type)) continue;
-      for (std::size_t i = 0; i * from_.record_size() < records.size(); ++i) {
-        check_integers(field, &records[i * from_.record_size() + field.at], written_ + i);
+      for (std::size_t at = 0; at < records.size(); at += size) {
+        check(field.attribute, &records[at + field.at], first + at / size);
       }
     }
   }
 
-  void check_integers(const AttributeField& field, const std::byte* numbers,
-                      std::uint64_t point) const {
-    const Attribute& attribute = field.attribute;
+ private:
+  void check(const Attribute& attribute, const std::byte* numbers, std::uint64_t point) const {
     for (std::size_t e = 0; e < attribute.elements; ++e, numbers += size_of(attribute.type)) {
       const double value = load_number(attribute.type, numbers);
       if (value > -kLargestExact && value < kLargestExact) continue;
       throw CannotWrite(
-          file_->name(),
+          file_,
           fmt::format("point {} has {} for {}, and PLY, without integers of 64 bits, holds none "
                       "beyond 2^53; leave it out with --attributes",
                       point, value, attribute.name),
@@ -124,20 +97,20 @@ class PlyWriter : public PointWriter {
     }
   }
 
-  std::unique_ptr<OutputFile> file_;
-  std::optional<std::uint64_t> count_;  // promised
-  std::uint64_t written_ = 0;
-  std::vector<std::string> notes_;
-  AttributeLayout from_;    // of what comes
-  std::string properties_;  // lines of the header
-  RowEncoder rows_;
+  AttributeLayout layout_;  // of what comes
+  std::string file_;
 };
 
 }  // namespace
 
 std::unique_ptr<PointWriter> open_ply_point_writer(std::unique_ptr<OutputFile> file,
                                                    const PointWriterOptions& options) {
-  return std::make_unique<PlyWriter>(std::move(file), options);
+  RowFormat format{.attributes = as_ply(options.attributes), .header = {}};
+  format.header = [notes = crs_notes(options.crs),
+                   properties = property_lines(options.coordinates, format.attributes)](
+                      std::uint64_t count) { return header_text(notes, count, properties); };
+  format.check = IntegerCheck(options.attributes, file->name());
+  return open_row_writer(std::move(file), options, std::move(format));
 }
 
 }  // namespace spillway::detail
