@@ -1,5 +1,6 @@
 #include "formats/bytes/fields.h"
 
+#include <cctype>
 #include <charconv>
 
 namespace spillway::detail {
@@ -41,6 +42,12 @@ std::optional<std::uint64_t> Fields::count() { return parse_count(word()); }
 
 std::optional<std::uint64_t> parse_count(std::string_view text) {
   return parse<std::uint64_t>(text);
+}
+
+bool begins_with_word(std::string_view first_bytes, std::string_view word) {
+  return first_bytes.starts_with(word) &&
+         (first_bytes.size() == word.size() ||
+          std::isspace(static_cast<unsigned char>(first_bytes[word.size()])) != 0);
 }
 
 }  // namespace spillway::detail

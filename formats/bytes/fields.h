@@ -29,6 +29,9 @@ class Fields {
   std::string_view rest_;
 };
 
+/// Whether a file's first bytes are this word, and nothing that makes it longer.
+bool begins_with_word(std::string_view first_bytes, std::string_view word);
+
 /// All of `text` as an unsigned integer, or nothing.
 std::optional<std::uint64_t> parse_count(std::string_view text);
 

@@ -12,7 +12,6 @@
 #include "formats/bytes/line_reader.h"
 #include "formats/compression/decompress.h"
 #include "formats/inputs/unread_points.h"
-#include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/points/open_las.h"
 #include "src/error.h"
@@ -39,8 +38,10 @@ constexpr std::size_t kProbe = 512;
 void refuse_meshes(InputBytes& source) {
   const MeshFormat* const format = mesh_format_of_bytes(as_text(source.peek(kProbe)));
   if (format == nullptr || format->is_table()) return;
-  if (format->has_simplices != nullptr && !format->has_simplices(source)) {
-    fail_for_point_cloud(source.name(), format->title);
+  if (const PointFormat* const points = point_format_of_header(source)) {
+    throw BadInput(source.name(),
+                   fmt::format("this is {}, not text; do not name a format", points->title),
+                   at_byte(0));
   }
   fail_for_mesh(source, format->title);
 }
@@ -89,6 +90,7 @@ const PointFormat& format_of(InputBytes& source, const std::string& path, PointF
   const PointFormat* const text = text_format(formats);
   const PointFormat* const told = point_format_of_bytes(as_text(first_bytes), formats);
   if (told != nullptr) return *told;
+  if (const PointFormat* const format = point_format_of_header(source, formats)) return *format;
   if (text != nullptr && compression_of_content(first_bytes) != Compression::kNone) return *text;
   refuse_what_is_no_points(source);
   if (const PointFormat* const format = point_format_of_path(path, formats)) return *format;
@@ -145,7 +147,10 @@ std::unique_ptr<InputFile> text_in(InputBytes& source, const std::string& path,
     return nullptr;
   }
   auto content = std::make_unique<InputBytes>(decompressed(source, compression));
-  if (begins_as_points(content->peek(kProbe), formats)) fail_for_compressed(source);
+  if (begins_as_points(content->peek(kProbe), formats) ||
+      point_format_of_header(*content, formats) != nullptr) {
+    fail_for_compressed(source);
+  }
   refuse_what_is_no_points(*content);
   check_text(*content, formats);
   return content;

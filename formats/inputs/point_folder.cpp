@@ -15,6 +15,7 @@
 #include "formats/compression/decompress.h"
 #include "formats/disk/extension.h"
 #include "formats/disk/file_system.h"
+#include "formats/inputs/open_mesh.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/points/point_formats.h"
 #include "src/error.h"
@@ -75,6 +76,7 @@ PointFolder look_into_folder(const std::string& folder) {
     if (entry->path().filename().string().starts_with('.')) continue;  // hidden
     const PointFormat* const format = point_format_of_path(name);
     if (format == nullptr || entry->is_directory(unknown)) continue;
+    if (format->has_points != nullptr && is_mesh(disk(), name)) continue;
     if (mesh_format_of_part(disk(), name) != nullptr) {
       ++found.of_meshes;
     } else {

@@ -11,6 +11,7 @@
 #include "formats/points/las/las_format.h"
 #include "formats/points/laz/laz_format.h"
 #include "formats/points/npy/npy_format.h"
+#include "formats/points/ply/ply_format.h"
 #include "formats/points/spp/spp_format.h"
 #include "formats/points/text/text_format.h"
 #include "src/error.h"
@@ -25,6 +26,7 @@ constexpr const PointFormat* kFormats[] = {
     &kCopcPoints,
     &kTextPoints,
     &kNpyPoints,
+    &kPlyPoints,
     &kSppPoints,
 };
 // clang-format on
@@ -72,6 +74,12 @@ const PointFormat& point_format_by_name(std::string_view name, PointFormats form
 const PointFormat* point_format_of_bytes(std::string_view first_bytes, PointFormats formats) {
   return find(formats, [&](const PointFormat& format) {
     return format.recognises != nullptr && format.recognises(first_bytes);
+  });
+}
+
+const PointFormat* point_format_of_header(InputBytes& source, PointFormats formats) {
+  return find(formats, [&](const PointFormat& format) {
+    return format.has_points != nullptr && format.has_points(source);
   });
 }
 

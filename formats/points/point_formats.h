@@ -16,7 +16,8 @@ PointFormats point_formats();
 /// The one that standard output takes: Spillway's own stream.
 const PointFormat& own_point_stream();
 
-/// Their names, as the command line lists them: "las", "laz", "copc", "text", "npy", "spp".
+/// Their names, as the command line lists them: "las", "laz", "copc", "text", "npy", "ply",
+/// "spp".
 std::vector<std::string> point_format_names(PointFormats formats = point_formats());
 
 /// Those of them that are written.
@@ -33,6 +34,11 @@ const PointFormat& point_format_by_name(std::string_view name,
 /// The format of a file by its first bytes, 512 or more, or all there are; null if they tell none.
 const PointFormat* point_format_of_bytes(std::string_view first_bytes,
                                          PointFormats formats = point_formats());
+
+/// The format of a source that begins as a mesh might, and whose header tells of points; null if it
+/// does not. Throws Error if such a header is damaged.
+const PointFormat* point_format_of_header(InputBytes& source,
+                                          PointFormats formats = point_formats());
 
 /// The format that the extension of `path` stands for, those of compressed text (.gz, .bz2, .zst,
 /// .lz4) included; null for other extensions.

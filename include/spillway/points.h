@@ -75,7 +75,7 @@ struct PointOptions {
   /// Of text: the columns of x, y and, if there is a third one, z, counted from 1; empty: by their
   /// names, or, where these are missing, the first ones.
   std::vector<int> columns{};
-  /// Leave out and count rows of text and npy that are no points: what is no number, or not
+  /// Leave out and count rows of text, npy and PLY that are no points: what is no number, or not
   /// finite, or lacks a column. Without it they are an error.
   bool skip_invalid = false;
   bool keep_withheld = false;        ///< use points that LAS flags as withheld

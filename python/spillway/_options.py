@@ -226,7 +226,7 @@ _OPTIONS = {
     "input_format": _Option(
         "str, optional",
         'Format of the points, where neither first bytes nor name tell: ``"las"``, ``"laz"``, '
-        '``"copc"``, ``"text"``, ``"npy"`` or ``"spp"``.',
+        '``"copc"``, ``"text"``, ``"npy"``, ``"ply"`` or ``"spp"``.',
         "points",
         attribute("format"),
     ),
@@ -238,7 +238,7 @@ _OPTIONS = {
     ),
     "skip_invalid": _Option(
         "bool, optional",
-        "Leave out rows of text and npy that are no points. By default they are an error.",
+        "Leave out rows of text, npy and PLY that are no points. By default they are an error.",
         "points",
         attribute("skip_invalid"),
     ),

@@ -12,7 +12,10 @@ spillway_test(points_test unit
     formats/points/las/las_reader_test.cpp
     formats/points/las/las_salvage_test.cpp
     formats/points/las/las_shared_data_test.cpp
+    formats/points/attribute_round_trip_test.cpp
+    formats/points/npy/npy_attributes_test.cpp
     formats/points/npy/npy_reader_test.cpp
+    formats/points/ply/ply_points_test.cpp
     formats/points/invalid_rows_test.cpp
     formats/points/point_format_test.cpp
     formats/points/point_writer_test.cpp

@@ -29,7 +29,8 @@ spillway_test(stream_fault_test fault
   LIBS spillway_stream spillway_generators)
 
 spillway_test(point_input_test unit
-  SOURCES stream/source/common_lattice_test.cpp stream/source/header_survey_test.cpp
+  SOURCES stream/source/common_lattice_test.cpp stream/source/condition_test.cpp
+          stream/source/header_survey_test.cpp
           stream/source/input_crs_test.cpp stream/source/input_regions_test.cpp
           stream/source/ordered_blocks_test.cpp stream/source/piece_sequence_test.cpp
           stream/source/point_filter_test.cpp stream/source/thinning/point_runs_test.cpp

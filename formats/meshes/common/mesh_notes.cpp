@@ -12,7 +12,6 @@ namespace spillway::detail {
 namespace {
 
 constexpr std::string_view kLatticeNote = "spillway lattice ";
-constexpr std::string_view kCrsNote = "crs ";
 
 }  // namespace
 
@@ -22,17 +21,14 @@ std::vector<std::string> mesh_notes(const MeshHeader& header, std::size_t longes
     notes.push_back(fmt::format("{}{} {}", kLatticeNote, fmt::join(header.lattice->scale, " "),
                                 fmt::join(header.lattice->offset, " ")));
   }
-  const std::string crs = one_line(header.crs);
-  for (std::size_t begin = 0; begin < crs.size(); begin += longest_crs) {
-    notes.push_back(fmt::format("{}{}", kCrsNote, crs.substr(begin, longest_crs)));
-  }
+  const std::vector<std::string> of_crs = crs_notes(header.crs, longest_crs);
+  notes.insert(notes.end(), of_crs.begin(), of_crs.end());
   return notes;
 }
 
 bool read_mesh_note(std::string_view comment, MeshHeader& header) {
-  if (comment.starts_with(kCrsNote)) {
-    header.crs += comment.substr(kCrsNote.size());
-  } else if (comment.starts_with(kLatticeNote)) {
+  if (read_crs_note(comment, header.crs)) return true;
+  if (comment.starts_with(kLatticeNote)) {
     Fields fields(comment.substr(kLatticeNote.size()));
     std::vector<double> numbers;
     while (!fields.at_end()) {
@@ -58,12 +54,6 @@ std::optional<Lattice> lattice_of(std::span<const double> numbers) {
     }
   }
   return lattice;
-}
-
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
-  return text;
 }
 
 }  // namespace spillway::detail

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/bytes/notes.h"
 #include "formats/meshes/common/mesh.h"
 
 namespace spillway::detail {
@@ -24,8 +25,5 @@ bool read_mesh_note(std::string_view comment, MeshHeader& header);
 /// The lattice of six numbers: scale x, y, z, offset x, y, z. Nothing unless all are finite and
 /// the scales are positive.
 std::optional<Lattice> lattice_of(std::span<const double> numbers);
-
-/// A coordinate system in one line: each line break or control character becomes a blank.
-std::string one_line(std::string text);
 
 }  // namespace spillway::detail

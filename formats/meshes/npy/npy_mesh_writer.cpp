@@ -22,7 +22,7 @@ class ArrayOutput {
     NpyHeader header;
     header.type = std::move(type);
     header.shape = std::move(shape);
-    header_ = npy_header_bytes(header);
+    header_ = npy_header_bytes(header, output_.name());
     output_.append(header_);
   }
 

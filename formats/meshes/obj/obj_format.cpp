@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "formats/meshes/common/mesh_checks.h"
+#include "formats/bytes/fields.h"
 #include "formats/meshes/obj/obj_reader.h"
 #include "formats/meshes/obj/obj_writer.h"
 

@@ -7,6 +7,7 @@
 
 #include "formats/bytes/fields.h"
 #include "formats/bytes/line_reader.h"
+#include "formats/bytes/notes.h"
 #include "formats/meshes/common/face_cutter.h"
 #include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/common/mesh_notes.h"

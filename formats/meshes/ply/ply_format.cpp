@@ -2,11 +2,10 @@
 
 #include <utility>
 
-#include "formats/meshes/common/mesh_checks.h"
-#include "formats/meshes/ply/ply_header.h"
 #include "formats/meshes/ply/ply_reader.h"
 #include "formats/meshes/ply/ply_records.h"
 #include "formats/meshes/ply/ply_writer.h"
+#include "formats/ply/ply_header.h"
 
 namespace spillway::detail {
 namespace {
@@ -37,9 +36,9 @@ constinit const MeshFormat kPlyMesh = {
     .holds_tetrahedra = true,
     .holds_input_index = true,
     .stands_in_parts = true,
-    .recognises = [](std::string_view text) { return begins_with_word(text, "ply"); },
+    .recognises = begins_as_ply,
     .has_simplices =
-        [](InputBytes& source) { return read_ply_header(source).simplices() != nullptr; },
+        [](InputBytes& source) { return peek_ply_header(source).simplices() != nullptr; },
     .read = read_ply,
     .open_writer =
         [](MeshFiles files, const MeshHeader& header) {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "formats/meshes/common/face_cutter.h"
-#include "formats/meshes/common/mesh_checks.h"
-#include "formats/meshes/ply/ply_header.h"
-#include "formats/meshes/ply/ply_values.h"
+#include "formats/meshes/common/mesh_notes.h"
+#include "formats/ply/ply_header.h"
+#include "formats/ply/ply_values.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -36,8 +36,10 @@ class PlyReader {
         simplices_(header_.simplices()),
         size_known_(source.size().has_value()) {
     if (vertices_ == nullptr) fail("the header names no vertices");
-    if (simplices_ == nullptr) fail_for_point_cloud(source.name(), "PLY");
-    mesh_.header = header_.notes;
+    if (simplices_ == nullptr) {
+      fail("there are no faces or tetrahedra: this is a cloud of points; triangulate it first");
+    }
+    read_notes();
     mesh_.header.dimension = simplices_->name == kPlyTetrahedron ? 3 : 2;
     mesh_.header.vertices = vertices_->count;
     mesh_.header.simplices = simplices_->count;
@@ -59,6 +61,15 @@ class PlyReader {
   }
 
  private:
+  void read_notes() {
+    for (const PlyComment& comment : header_.comments) {
+      if (read_mesh_note(comment.text, mesh_.header)) continue;
+      throw BadInput::at(source_.name(), at_line(comment.line),
+                         "the lattice must be six numbers: three positive scales, three offsets; "
+                         "the header is corrupt");
+    }
+  }
+
   void check_properties() const {
     for (const std::string_view name : {"x", "y", "z", "input_index"}) {
       const int place = vertices_->find(name);
@@ -120,11 +131,7 @@ class PlyReader {
       } else if (&element == simplices_) {
         read_simplices(values);
       } else {
-        for (std::uint64_t i = 0; i < element.count; ++i) {
-          values.begin_item(element.name, i);
-          for (const PlyProperty& property : element.properties) pass_over(values, property);
-          values.end_item();
-        }
+        pass_over(values, element);
       }
     }
     values.finish();
@@ -212,13 +219,6 @@ class PlyReader {
     } else {
       mesh_.corners.insert(mesh_.corners.end(), corners_.begin(), corners_.end());
     }
-  }
-
-  template <typename Values>
-  static void pass_over(Values& values, const PlyProperty& property) {
-    const std::uint64_t count =
-        property.length_type ? values.index(*property.length_type, "the length of a list") : 1;
-    values.skip(property.type, count);
   }
 
   [[noreturn]] void fail(const std::string& what) const {

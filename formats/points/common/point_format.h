@@ -49,6 +49,10 @@ struct PointFormat {
   /// Whether a file is of this format, by its first bytes: 512 or more, or all there are. Null if
   /// they do not tell.
   bool (*recognises)(std::string_view first_bytes) = nullptr;
+  /// Set instead where files that begin as this format may be meshes, too: whether a source is of
+  /// this format and holds points, by its header, which stays unread. Throws Error if the header is
+  /// damaged.
+  bool (*has_points)(InputBytes& source) = nullptr;
   std::unique_ptr<PointReader> (*open_reader)(PointInput input,
                                               const PointReaderOptions& options) = nullptr;
   /// Set instead where files begin as LAS: the header tells which of these formats a file has.

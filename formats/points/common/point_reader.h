@@ -108,7 +108,7 @@ struct RawPoints {
 /// What a source says about its points before any is read.
 struct PointHeader {
   std::string name;       ///< as the user gave it, for messages
-  std::string format;     ///< "las", "laz", "copc", "text", "npy" or "spp"
+  std::string format;     ///< "las", "laz", "copc", "text", "npy", "ply" or "spp"
   std::string version;    ///< the format's own version, e.g. "1.2"; empty if it has none
   int point_format = -1;  ///< LAS point data record format, -1 for others
   int coordinates = 3;    ///< 2 if the points have no z
@@ -148,7 +148,7 @@ struct PointReaderOptions {
   double resolution = 0;
   /// Of text: the columns of x, y and z, counted from 0; that of z is -1 where there is none.
   std::optional<std::array<int, 3>> columns{};
-  /// Of text and npy: leave out and count rows that are no points.
+  /// Of text, npy and PLY: leave out and count rows that are no points.
   bool skip_invalid = false;
   /// Of LAS and LAZ: give the points that are whole of a file that is cut off or damaged, and those
   /// that its header does not count. Where lost ones are known of beforehand, PointHeader::lost has

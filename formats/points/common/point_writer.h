@@ -34,12 +34,12 @@ void share(const WorkSharing& sharing, std::size_t count, const WorkSharing::Bod
 struct PointWriterOptions {
   std::string format{};  ///< a name of point_format.h; empty: by extension
   int coordinates = 3;   ///< 2: x and y only (not LAS, LAZ, COPC)
-  /// How many points will come, where known. The headers of LAS, LAZ and npy tell it, so on a pipe
-  /// they need it, or `scratch`.
+  /// How many points will come, where known. The headers of LAS, LAZ, npy and PLY tell it, so on a
+  /// pipe they need it, or `scratch`.
   std::optional<std::uint64_t> count{};
   std::optional<Lattice> lattice{};  ///< set if the points come as integers; LAS and LAZ require it
   std::optional<Box<3>> extent{};    ///< in output coordinates, where known; told by spp only
-  std::string crs{};                 ///< as in PointHeader; told by LAS, LAZ, COPC and spp
+  std::string crs{};                 ///< as in PointHeader; told by LAS, LAZ, COPC, PLY and spp
   /// `crs` as WKT where it is a code and the caller knows; without, LAS tells the code.
   std::string crs_wkt{};
   /// Points come region by region, as set_regions() tells; for formats that hold regions. Count and

@@ -17,6 +17,7 @@ constinit const PointFormat kNpyPoints = {
     .name = "npy",
     .title = "npy",
     .extensions = kExtensions,
+    .holds_attributes = true,
     .recognises = [](std::string_view text) { return text.starts_with(kNpyMagic); },
     .open_reader =
         [](PointInput input, const PointReaderOptions& options) {

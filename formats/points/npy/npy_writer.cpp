@@ -1,71 +1,53 @@
 #include "formats/points/npy/npy_writer.h"
 
-#include <algorithm>
-#include <string>
+#include <array>
+#include <cstdint>
 #include <utility>
-#include <vector>
 
-#include "formats/bytes/bytes.h"
+#include "formats/points/attributes/unique_names.h"
 #include "formats/points/npy/npy_header.h"
+#include "formats/points/npy/npy_types.h"
+#include "formats/points/rows/row_encoder.h"
+#include "formats/points/rows/row_writer.h"
 
 namespace spillway::detail {
 namespace {
 
-class NpyWriter : public PointWriter {
- public:
-  NpyWriter(std::unique_ptr<OutputFile> file, const PointWriterOptions& options)
-      : file_(std::move(file)),
-        lattice_(options.lattice),
-        count_(options.count),
-        columns_(options.coordinates) {
-    file_->write(as_bytes_of(header(count_.value_or(0))));
-  }
+constexpr std::array<const char*, 3> kCoordinates = {"x", "y", "z"};
 
-  void write(std::span<const LatticePoint> points,
-             std::span<const std::byte> /*attributes*/) override {
-    constexpr std::size_t kBlockPoints = 8192;
-    while (!points.empty()) {
-      const std::span<const LatticePoint> block =
-          points.first(std::min(points.size(), kBlockPoints));
-      values_.clear();
-      for (const LatticePoint& p : block) {
-        const WorldPoint world = in_world(lattice_, p);
-        values_.insert(values_.end(), world.begin(), world.begin() + columns_);
-      }
-      file_->write(std::as_bytes(std::span(values_)));
-      written_ += block.size();
-      points = points.subspan(block.size());
-    }
+/// The fields of a structured array; none if there are no attributes.
+std::vector<NpyField> fields_of(int coordinates, const AttributeLayout& attributes) {
+  std::vector<NpyField> fields;
+  if (attributes.empty()) return fields;
+  for (int axis = 0; axis < coordinates; ++axis) {
+    fields.push_back({.name = kCoordinates[axis], .type = npy_type(NumberType::kFloat64)});
   }
-
-  void finish() override {
-    check_written(*file_, count_, written_);
-    if (!count_) file_->rewrite(0, as_bytes_of(header(written_)));
-    file_->commit();
+  UniqueNames names({kCoordinates.begin(), kCoordinates.end()});
+  for (const AttributeField& field : attributes.fields()) {
+    fields.push_back({.name = names.take(field.attribute.name),
+                      .type = npy_type(field.attribute.type),
+                      .elements = field.attribute.elements});
   }
-
- private:
-  /// Always 128 bytes long: its padding has room for 20 digits.
-  [[nodiscard]] std::string header(std::uint64_t count) const {
-    NpyHeader header;
-    header.type = "<f8";
-    header.shape = {count, static_cast<std::uint64_t>(columns_)};
-    return npy_header_bytes(header);
-  }
-
-  std::unique_ptr<OutputFile> file_;
-  std::optional<Lattice> lattice_;
-  std::optional<std::uint64_t> count_;  // promised
-  std::uint64_t written_ = 0;
-  int columns_;
-  std::vector<double> values_;
-};
+  return fields;
+}
 
 }  // namespace
 
 std::unique_ptr<PointWriter> open_npy_writer(std::unique_ptr<OutputFile> file,
                                              const PointWriterOptions& options) {
-  return std::make_unique<NpyWriter>(std::move(file), options);
+  RowFormat format{.attributes = without_scales(options.attributes), .header = {}};
+  NpyHeader header;
+  header.type = npy_type(NumberType::kFloat64);
+  header.fields = fields_of(options.coordinates, format.attributes);
+  header.shape = {0};
+  if (header.fields.empty()) {
+    header.shape.push_back(static_cast<std::uint64_t>(options.coordinates));
+  }
+  format.header = [header, name = file->name()](std::uint64_t count) mutable {
+    header.shape[0] = count;
+    return npy_header_bytes(header, name);
+  };
+  return open_row_writer(std::move(file), options, std::move(format));
 }
 
 }  // namespace spillway::detail

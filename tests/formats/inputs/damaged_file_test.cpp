@@ -107,6 +107,7 @@ std::vector<Damage> damaged_points() {
       {"copc", "a.copc.laz", copc_bytes, always(at_byte(1'000'000))},
       {"text", "a.txt", [] { return std::string("1 2 3\n4 5 6\n7 8 nine\n"); }, always(at_line(3))},
       {"npy", "a.npy", [] { return without_end(points_as("a.npy")); }, end_of_file},
+      {"ply", "a.ply", [] { return without_end(points_as("a.ply")); }, end_of_file},
       {"spp", "a.spp", [] { return without_end(points_as("a.spp")); }, end_of_file},
   };
 }

@@ -94,9 +94,12 @@ TEST_P(PointFaults, AnUnfinishedFileIsDropped) {
   EXPECT_TRUE(files.parts.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, PointFaults, ::testing::Values("a.las", "a.laz", "a.copc.laz", "a.xyz", "a.npy", "a.spp"),
-    [](const auto& tested) { return tested.param.substr(2, tested.param.find('.', 2) - 2); });
+INSTANTIATE_TEST_SUITE_P(All, PointFaults,
+                         ::testing::Values("a.las", "a.laz", "a.copc.laz", "a.xyz", "a.npy",
+                                           "a.ply", "a.spp"),
+                         [](const auto& tested) {
+                           return tested.param.substr(2, tested.param.find('.', 2) - 2);
+                         });
 
 TEST(ShrinkingFile, LasEndsWithinAPoint) {
   FaultyFileSystem files;
@@ -151,14 +154,47 @@ TEST(AnyCorruption, LasGivesPointsOrAnError) {
   read_every_corruption("a.las", file.bytes());
 }
 
-TEST(AnyCorruption, NpyGivesPointsOrAnError) {
+/// A file of two points with those attributes.
+std::string file_of_two(const std::string& path, const AttributeLayout& attributes) {
   FaultyFileSystem files;
   PointWriterOptions options;
   options.count = 2;
-  const auto writer = open_point_writer(files, "a.npy", options);
-  writer->write(std::vector<LatticePoint>(2, LatticePoint{1, 2, 3}), {});
+  options.attributes = attributes;
+  const auto writer = open_point_writer(files, path, options);
+  writer->write(std::vector<LatticePoint>(2, LatticePoint{1, 2, 3}),
+                std::vector<std::byte>(2 * attributes.record_size()));
   writer->finish();
-  read_every_corruption("a.npy", files.files.at("a.npy"));
+  return files.files.at(path);
+}
+
+const AttributeLayout kSomeAttributes({{.name = "class", .type = NumberType::kUint8},
+                                       {.name = "v", .type = NumberType::kInt16, .elements = 2}});
+
+TEST(AnyCorruption, NpyGivesPointsOrAnError) {
+  read_every_corruption("a.npy", file_of_two("a.npy", {}));
+}
+
+TEST(AnyCorruption, StructuredNpyGivesPointsOrAnError) {
+  read_every_corruption("a.npy", file_of_two("a.npy", kSomeAttributes));
+}
+
+TEST(AnyCorruption, FortranOrderedNpyGivesPointsOrAnError) {
+  const std::string dictionary = "{'descr': '>i2', 'fortran_order': True, 'shape': (4, 2), }";
+  const std::string length = bytes_of(static_cast<std::uint16_t>(dictionary.size()));
+  read_every_corruption(
+      "a.npy", "\x93NUMPY" + std::string("\1\0", 2) + length + dictionary + std::string(16, '\1'));
+}
+
+TEST(AnyCorruption, PlyGivesPointsOrAnError) {
+  read_every_corruption("a.ply", file_of_two("a.ply", kSomeAttributes));
+  for (const std::string encoding : {"ascii", "binary_big_endian"}) {
+    const std::string head = "ply\nformat " + encoding +
+                             " 1.0\nelement a 1\nproperty char b\nelement vertex 2\nproperty char "
+                             "x\nproperty list char char l\nproperty char y\nend_header\n";
+    read_every_corruption("a.ply",
+                          head + (encoding == "ascii" ? std::string("7\n1 0 2\n3 2 8 8 4\n")
+                                                      : std::string("\7\1\0\2\3\2\x8\x8\4", 9)));
+  }
 }
 
 TEST(AnyCorruption, TextGivesPointsOrAnError) {

@@ -50,9 +50,9 @@ TEST(PointFormatTable, OneFormatIsText) {
 }
 
 TEST(PointFormatTable, ListsForMessagesAreInItsOrder) {
-  EXPECT_EQ(list_of_points(is_written, "or"), "LAS, LAZ, COPC, text, npy or spp");
+  EXPECT_EQ(list_of_points(is_written, "or"), "LAS, LAZ, COPC, text, npy, PLY or spp");
   EXPECT_THAT(point_extensions(), ElementsAre(".las", ".laz", ".copc.laz", ".txt", ".xyz", ".csv",
-                                              ".asc", ".npy", ".spp"));
+                                              ".asc", ".npy", ".ply", ".spp"));
 }
 
 // A format as its folder would have it: "TOY" and coordinates.

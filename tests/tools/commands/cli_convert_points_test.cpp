@@ -21,13 +21,13 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::vector<std::string> kFormats = {"las", "xyz", "csv", "npy", "spp"};
+const std::vector<std::string> kFormats = {"las", "xyz", "csv", "npy", "ply", "spp"};
 
 TEST(ConvertPoints, KeepsLatticePointsWhateverTheFormats) {
   const Workspace work;
   work.succeed(
       "spillway generate -q terrain -n 3000 -o in.las\n"
-      "spillway convert -q in.las -o in.npy");
+      "spillway convert -q in.las -o in.npy --attributes none");
   for (const std::string& there : kFormats) {
     work.succeed(fmt::format("spillway convert -q in.las -o there.{}", there));
     for (const std::string& back : kFormats) {
@@ -35,7 +35,7 @@ TEST(ConvertPoints, KeepsLatticePointsWhateverTheFormats) {
       work.succeed(fmt::format(
           "spillway convert -q there.{} -o back.{} --scale 0.01 --offset 500000,4100000,0\n"
           "spillway convert -q back.{} -o back.las --scale 0.01 --offset 500000,4100000,0\n"
-          "spillway convert -q back.las -o back.npy\n"
+          "spillway convert -q back.las -o back.npy --attributes none\n"
           "cmp in.npy back.npy",
           there, back, back));
     }
@@ -45,7 +45,7 @@ TEST(ConvertPoints, KeepsLatticePointsWhateverTheFormats) {
 TEST(ConvertPoints, KeepsEveryBitOfDoubles) {
   const Workspace work;
   work.succeed("spillway generate -q uniform --dim 3 -n 3000 -o in.npy");
-  for (const std::string format : {"xyz", "csv", "npy", "spp"}) {
+  for (const std::string format : {"xyz", "csv", "npy", "ply", "spp"}) {
     work.succeed(
         fmt::format("spillway convert -q in.npy -o there.{0}\n"
                     "spillway convert -q there.{0} -o back.npy\n"
@@ -57,7 +57,7 @@ TEST(ConvertPoints, KeepsEveryBitOfDoubles) {
 TEST(ConvertPoints, KeepsTwoColumns) {
   const Workspace work;
   work.write("in.txt", "1 2.5\n-3 4\n");
-  for (const std::string format : {"npy", "spp", "csv"}) {
+  for (const std::string format : {"npy", "spp", "csv", "ply"}) {
     work.succeed(
         fmt::format("spillway convert -q in.txt -o there.{0}\n"
                     "spillway convert -q there.{0} -o back.txt\n"
@@ -215,19 +215,21 @@ TEST(ConvertPoints, GivesAPipeWhatAFileWouldHold) {
   const Workspace work;
   work.succeed(
       "spillway generate -q terrain -n 100000 -o in.las\n"
-      "spillway convert -q in.las -o out.npy\n"
-      "spillway convert -q in.las -o out.las");
+      "spillway convert -q in.las -o out.npy --attributes none\n"
+      "spillway convert -q in.las -o out.las --attributes none");
   for (const std::string format : {"npy", "las"}) {
     work.succeed(
-        fmt::format("spillway convert -q - -o - --output-format {0} < in.las > piped.{0}\n"
+        fmt::format("spillway convert -q - -o - --output-format {0} --attributes none < in.las > "
+                    "piped.{0}\n"
                     "cmp out.{0} piped.{0}\n"
                     "cat in.las | spillway convert -q - -o - --tmpdir . | "
-                    "spillway convert -q - -o - --output-format {0} --tmpdir . | cat > piped.{0}",
+                    "spillway convert -q - -o - --output-format {0} --attributes none --tmpdir . "
+                    "| cat > piped.{0}",
                     format));
   }
   work.succeed(
       "cmp out.npy piped.npy\n"
-      "spillway convert -q piped.las -o again.npy\n"
+      "spillway convert -q piped.las -o again.npy --attributes none\n"
       "cmp out.npy again.npy");
   EXPECT_EQ(work.info("piped.las")["extent"], work.info("in.las")["extent"]);
   EXPECT_EQ(work.names(), (std::vector<std::string>{"again.npy", "in.las", "out.las", "out.npy",
@@ -287,6 +289,46 @@ TEST(ConvertPoints, TakesAttributesToTextAndBack) {
   EXPECT_THAT(unknown.err, HasSubstr("the points have no attribute \"colour\": choose of "
                                      "intensity, return_number, "));
   EXPECT_TRUE(work.run("test -e x.csv").exit_code != 0);
+}
+
+TEST(ConvertPoints, ReplacesAnInputByWhatHoldsLessOnlyIfThatIsMeant) {
+  const Workspace work;
+  const std::string las = las_of_format(3, 0);
+  work.write("in.las", las);
+  for (const std::string options : {"--every 2", "--attributes class", "--scale 0.5"}) {
+    const Result refused = work.run("spillway convert in.las -o ./in.las " + options);
+    EXPECT_EQ(refused.exit_code, 2) << options;
+    EXPECT_THAT(refused.err, HasSubstr("in.las is an input, and would lose "));
+    EXPECT_THAT(refused.err, HasSubstr("choose another name, or add --force"));
+    EXPECT_EQ(work.read("in.las"), las);
+    work.succeed("spillway convert -q in.las -o in.las --force " + options);
+    EXPECT_NE(work.read("in.las"), las);
+    work.write("in.las", las);
+  }
+  work.succeed("spillway convert -q in.las -o in.las --keep-withheld");
+  EXPECT_EQ(work.info("in.las")["points"], 5);
+}
+
+TEST(ConvertPoints, KeepsPointsOfWhichAConditionHolds) {
+  const Workspace work;
+  work.write("in.csv", "x,y,z,intensity,class\n1,2,3,100,2\n4,5,6,300,2\n7,8,9,300,5\n");
+  work.succeed(
+      "spillway convert -q in.csv -o out.csv --where 'intensity > 200 and class in (2, 9)'");
+  EXPECT_EQ(work.read("out.csv"), "x,y,z,intensity,classification\n4,5,6,300,2\n");
+  EXPECT_THAT(work.run("spillway convert in.csv -o out.csv --where 'x > 3 and not class = 5'").err,
+              HasSubstr("3 points read, 2 for which the condition does not hold, 1 kept"));
+  const Result missing = work.run("spillway convert in.csv -o out.csv --where 'red > 3'");
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err,
+              HasSubstr("in.csv: the points have no red, which a filter looks at; they "
+                        "have intensity, classification; leave out that filter"));
+  EXPECT_EQ(work.run("spillway triangulate in.csv -o t.ply --where 'z >'").exit_code, 2);
+  work.succeed("spillway generate -q terrain -n 20000 -o all.las");
+  work.succeed(
+      "spillway triangulate -q all.las -o a.spm --where 'y < 500 or z > 40'\n"
+      "spillway convert -q all.las -o part.las --where 'y < 500 or z > 40'\n"
+      "spillway triangulate -q part.las -o b.spm");
+  EXPECT_EQ(work.info("a.spm")["canonical_hash"], work.info("b.spm")["canonical_hash"]);
 }
 
 TEST(ConvertPoints, TakesAttributesThroughPipesFiltersAndThinning) {
@@ -384,7 +426,7 @@ TEST(ConvertPoints, RefusesWhatItCannotDoAndLeavesNothing) {
   const Result copc = work.run("spillway convert in.txt -o out.copc.laz --las-version 1.2");
   EXPECT_THAT(copc.err, HasSubstr("COPC is LAS 1.4"));
   EXPECT_EQ(copc.exit_code, 2);
-  EXPECT_THAT(work.run("spillway convert in.txt -o out.ply").err, HasSubstr("these are points"));
+  EXPECT_THAT(work.run("spillway convert in.txt -o out.obj").err, HasSubstr("these are points"));
   EXPECT_EQ(work.run("spillway convert in.txt -o out.dat").exit_code, 2);
   work.succeed("spillway generate -q uniform -n 9 | spillway triangulate -q - -o mesh.spm");
   EXPECT_EQ(work.run("spillway convert mesh.spm -o out.ply --every 2").exit_code, 2);

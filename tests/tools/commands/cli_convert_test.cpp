@@ -89,7 +89,7 @@ TEST(Convert, RefusesWhatItCannotDoAndLeavesNothing) {
       "head -c 1000 mesh.spm > short.spm");
   EXPECT_THAT(work.run("spillway convert -q mesh.spm -o mesh.obj").err,
               HasSubstr("holds no tetrahedra"));
-  EXPECT_THAT(work.run("spillway convert -q in.npy -o mesh.ply").err,
+  EXPECT_THAT(work.run("spillway convert -q in.npy -o mesh.obj").err,
               HasSubstr("these are points"));
   EXPECT_EQ(work.run("spillway convert -q short.spm -o mesh.ply").exit_code, 1);
   EXPECT_EQ(work.run("spillway convert -q mesh.spm -o mesh.xyz").exit_code, 2);

@@ -161,23 +161,126 @@ TEST(TextColumns, WhatCannotBeToldLeavesNothing) {
   EXPECT_EQ(work.names(), (std::vector<std::string>{"a.csv", "b.csv"}));
 }
 
-TEST(PlyPoints, AreNoMesh) {
+TEST(PlyPoints, AreWhatTheOtherFormatsHold) {
   const Workspace work;
-  work.write("cloud.ply",
-             "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
-             "property double z\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
-  for (const std::string command :
-       {"triangulate cloud.ply -o x.spm", "info cloud.ply", "check cloud.ply",
-        "convert cloud.ply -o x.las", "info - <cloud.ply"}) {
-    const Result result = work.run("spillway " + command);
-    EXPECT_EQ(result.exit_code, 1) << command;
-    EXPECT_THAT(result.err,
-                ::testing::AllOf(
-                    HasSubstr("this is a cloud of points, and Spillway does not read points from "
-                              "PLY; convert it to LAS, text or npy"),
-                    ::testing::Not(HasSubstr("mesh"))))
-        << command;
+  work.write(
+      "cloud.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\n"
+      "property double z\nproperty uchar red\nend_header\n0 0 0 1\n1 0 0 2\n0 1 0 3\n5 5 1 4\n");
+  EXPECT_EQ(work.info("cloud.ply").at("kind"), "points");
+  EXPECT_EQ(
+      work.succeed("spillway convert -q cloud.ply -o -  --output-format text --attributes all"),
+      "x y z red\n0 0 0 1\n1 0 0 2\n0 1 0 3\n5 5 1 4\n");
+  EXPECT_EQ(work.succeed("cat cloud.ply | spillway convert -q - -o - --output-format text"),
+            "0 0 0\n1 0 0\n0 1 0\n5 5 1\n");
+  const Result mesh = work.run("spillway convert cloud.ply -o mesh.obj");
+  EXPECT_EQ(mesh.exit_code, 1);
+  EXPECT_THAT(mesh.err, HasSubstr("these are points, and mesh.obj would be a mesh"));
+}
+
+TEST(PlyPoints, AndMeshesAreToldApartByTheInputInConvert) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q terrain -n 500 -o in.ply\n"
+      "spillway triangulate -q in.ply -o mesh.ply\n"
+      "spillway convert -q mesh.ply -o again.ply\n"
+      "spillway convert -q in.ply -o - --output-format ply | cmp - in.ply\n"
+      "spillway convert -q mesh.ply -o - --output-format ply | cmp - again.ply");
+  EXPECT_EQ(work.info("in.ply").at("kind"), "points");
+  EXPECT_EQ(work.info("again.ply").at("kind"), "mesh");
+  EXPECT_THAT(work.run("spillway triangulate mesh.ply -o x.spm").err,
+              HasSubstr("this is a mesh (PLY), not points"));
+}
+
+TEST(PlyPoints, OfAFolderAreTakenAndMeshesThereAreNot) {
+  const Workspace work;
+  work.succeed(
+      "mkdir folder\n"
+      "spillway generate -q terrain -n 500 -o folder/in.ply\n"
+      "spillway triangulate -q folder/in.ply -o folder/mesh.ply\n"
+      "spillway convert -q folder -o all.xyz --attributes none");
+  EXPECT_EQ(work.succeed("wc -l < all.xyz"), "500\n");
+}
+
+/// The hash of what the command makes of a file.
+std::string hash_of(const Workspace& work, const std::string& file) {
+  work.succeed("spillway triangulate -q " + file + " -o mesh.spm");
+  return work.info("mesh.spm").at("canonical_hash");
+}
+
+TEST(PointsWithAttributes, HaveTheTriangulationOfTheirCoordinates) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q uniform -n 2000 -o in.xyz\n"
+      "spillway generate -q terrain -n 2000 -o hills.las\n"
+      "spillway convert -q hills.las -o hills.npy\n"
+      "spillway convert -q hills.las -o hills.ply\n"
+      "spillway convert -q in.xyz -o in.npy\n"
+      "spillway convert -q in.xyz -o in.ply");
+  for (const std::string format : {"npy", "ply"}) {
+    EXPECT_EQ(hash_of(work, "in." + format), hash_of(work, "in.xyz")) << format;
+    EXPECT_EQ(hash_of(work, "hills." + format), hash_of(work, "hills.las")) << format;
   }
+}
+
+TEST(PointsWithAttributes, OfLasComeBackByteByByte) {
+  const Workspace work;
+  std::string table = "x,y,z,class,intensity,gps_time,red,green,blue,scan_angle,mine\n";
+  for (int i = 0; i < 500; ++i) {
+    table +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", i * 0.25, i * i % 97, i % 7, i % 256,
+                    i * 131 % 65536, 1e9 + i * 0.001, i, 65535 - i, i * 7, i % 3 * 0.006, -i * 0.1);
+  }
+  work.write("in.csv", table);
+  const std::string lattice = " --scale 0.25,1,1 --offset 0,0,0\n";
+  work.succeed("spillway convert -q in.csv -o in.las" + lattice);
+  for (const std::string format : {"npy", "ply"}) {
+    work.succeed("spillway convert -q in.las -o there." + format + "\nspillway convert -q there." +
+                 format + " -o back.las" + lattice + "cmp in.las back.las");
+  }
+}
+
+bool has_numpy(const Workspace& work) {
+  return work.run("/usr/bin/python3 -c 'import numpy'").exit_code == 0;
+}
+constexpr const char* kNoNumpy = "/usr/bin/python3 has no NumPy";
+
+TEST(NumpyArrays, OfEveryKindAreReadAsTheyAreMeant) {
+  const Workspace work;
+  if (!has_numpy(work)) GTEST_SKIP() << kNoNumpy;
+  work.write("make.py", R"(
+import numpy as np
+a = np.random.default_rng(5).integers(-100, 100, (300, 5)).astype("f8")
+np.savetxt("a.xyz", a[:, :3], fmt="%.17g")
+for i, t in enumerate(["f8", "f4", "i8", "i4", "i2", "i1", ">f8", ">f4", ">i8", ">i4", ">i2"]):
+    np.save(f"plain{i}.npy", a[:, :3].astype(t))
+    np.save(f"columns{i}.npy", np.asfortranarray(a.astype(t)))
+    s = np.zeros(300, np.dtype([("c", "u1"), ("Y", t), ("name", "U4"), ("x", ">f8"), ("z", t),
+                                ("v", "<u2", (3,)), ("t", "M8[us]")], align=i % 2 == 0))
+    s["x"], s["Y"], s["z"] = a[:, :3].T
+    np.save(f"fields{i}.npy", s)
+)");
+  work.succeed(
+      "/usr/bin/python3 make.py\n"
+      "spillway convert -q a.xyz -o want.npy\n"
+      "for f in plain*.npy columns*.npy fields*.npy; do\n"
+      "  spillway convert -q $f -o got.npy --attributes none && cmp got.npy want.npy || exit 1\n"
+      "done");
+}
+
+TEST(NumpyArrays, OfPointsWithAttributesAreStructures) {
+  const Workspace work;
+  if (!has_numpy(work)) GTEST_SKIP() << kNoNumpy;
+  work.write("in.csv", "x,y,class,it's\n1,2,3,0.5\n4,5,6,nan\n");
+  work.write("look.py", R"(
+import numpy as np
+a = np.load("out.npy")
+assert a.dtype.names == ("x", "y", "classification", "it's"), a.dtype
+assert a.shape == (2,) and list(a["x"]) == [1, 4] and list(a["classification"]) == [3, 6]
+)");
+  work.succeed(
+      "spillway convert -q in.csv -o out.npy && /usr/bin/python3 look.py\n"
+      "cat in.csv | spillway convert -q - -o - --output-format npy | cmp - out.npy");
 }
 
 /// The layer is called after the file, whose name may be anything.

@@ -2,7 +2,9 @@
 
 #include <limits>
 
+#include "formats/points/npy/npy_header.h"
 #include "tests/formats/point_test_helpers.h"
+#include "tests/formats/points/npy/npy_bytes.h"
 
 namespace spillway::detail::testing {
 namespace {
@@ -10,26 +12,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-/// An npy file with this dictionary and these values.
-template <typename T>
-std::string npy(const std::string& dictionary, const std::vector<T>& values, int version = 1) {
-  std::string file = "\x93NUMPY";
-  file += static_cast<char>(version);
-  file += '\0';
-  if (version == 1) {
-    file += bytes_of(static_cast<std::uint16_t>(dictionary.size()));
-  } else {
-    file += bytes_of(static_cast<std::uint32_t>(dictionary.size()));
-  }
-  file += dictionary;
-  for (const T& value : values) file += bytes_of(value);
-  return file;
-}
-
-std::string dictionary(const std::string& type, const std::string& shape) {
-  return fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}   \n", type, shape);
-}
 
 template <typename T>
 void expect_points_of_type(const std::string& type) {
@@ -49,6 +31,38 @@ TEST(NpyReader, Float64) { expect_points_of_type<double>("<f8"); }
 TEST(NpyReader, Float32) { expect_points_of_type<float>("<f4"); }
 TEST(NpyReader, Int32) { expect_points_of_type<std::int32_t>("<i4"); }
 TEST(NpyReader, Int64) { expect_points_of_type<std::int64_t>("<i8"); }
+TEST(NpyReader, Int16) { expect_points_of_type<std::int16_t>("<i2"); }
+TEST(NpyReader, Int8) { expect_points_of_type<std::int8_t>("|i1"); }
+
+template <typename T>
+void expect_unsigned_points_of_type(const std::string& type) {
+  EXPECT_THAT(read_content("a.npy", npy<T>(dictionary(type, "(1, 3)"), {1, 2, 200})).points,
+              ElementsAre(LatticePoint{1, 2, 200}));
+}
+
+TEST(NpyReader, Uint8) { expect_unsigned_points_of_type<std::uint8_t>("|u1"); }
+TEST(NpyReader, Uint16) { expect_unsigned_points_of_type<std::uint16_t>("<u2"); }
+TEST(NpyReader, Uint32) { expect_unsigned_points_of_type<std::uint32_t>("<u4"); }
+TEST(NpyReader, Uint64) { expect_unsigned_points_of_type<std::uint64_t>("<u8"); }
+
+template <typename T>
+void expect_big_endian_points_of_type(const std::string& type) {
+  std::vector<T> values = {T(1), T(-20), T(3), T(4), T(100), T(6)};
+  for (T& value : values) value = of_other_order(value);
+  EXPECT_THAT(read_content("a.npy", npy<T>(dictionary(type, "(2, 3)"), values)).points,
+              ElementsAre(LatticePoint{1, static_cast<double>(T(-20)), 3}, LatticePoint{4, 100, 6}))
+      << type;
+}
+
+TEST(NpyReader, BigEndianNumbersOfAllTypes) {
+  expect_big_endian_points_of_type<double>(">f8");
+  expect_big_endian_points_of_type<float>(">f4");
+  expect_big_endian_points_of_type<std::int16_t>(">i2");
+  expect_big_endian_points_of_type<std::int32_t>(">i4");
+  expect_big_endian_points_of_type<std::int64_t>(">i8");
+  expect_big_endian_points_of_type<std::uint16_t>(">u2");
+  expect_big_endian_points_of_type<std::uint32_t>(">u4");
+}
 
 TEST(NpyReader, AllHeaderVersions) {
   for (const int version : {1, 2, 3}) {
@@ -106,22 +120,27 @@ TEST(NpyCorruption, HeaderLengthTooLarge) {
   EXPECT_THAT(error_of_content("a.npy", file), HasSubstr("4294967295 bytes, but 65536"));
 }
 
-TEST(NpyCorruption, NoPlainArray) {
+TEST(NpyCorruption, NoDescriptionOfAnArray) {
   for (const char* text :
        {"", "{", "{}", "[]", "{'descr'}", "{'descr': '<f8', 'shape': (1, 2)}",
-        "{'descr': [('x', '<f8')], 'fortran_order': False, 'shape': (3,), }",
+        "{'descr': [], 'fortran_order': False, 'shape': (3,), }",
+        "{'descr': [('x', '<f8'), 'fortran_order': False, 'shape': (3,), }",
+        "{'descr': [('x')], 'fortran_order': False, 'shape': (3,), }",
+        "{'descr': [('x', '<f8', (3)], 'fortran_order': False, 'shape': (3,), }",
+        "{'descr': [('x', '<f8', (4294967297, 4294967297))], 'fortran_order': False, 'shape': "
+        "(3,)}",
         "{'descr': '<f8', 'fortran_order': Maybe, 'shape': (1, 2)}",
         "{'descr': '<f8', 'fortran_order': False, 'shape': (1, -2)}",
         "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 99999999999999999999)}",
         "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2",
         "{'descr': '<f8, 'fortran_order': False, 'shape': (1, 2)}",
         "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2), 'more': 1}"}) {
-    EXPECT_THAT(error_of_dictionary(text), HasSubstr("does not describe one plain array")) << text;
+    EXPECT_THAT(error_of_dictionary(text), HasSubstr("does not describe one array")) << text;
   }
 }
 
 TEST(NpyCorruption, WrongShape) {
-  for (const char* shape : {"()", "(6,)", "(6, 1)", "(1, 6)", "(1, 2, 3)"}) {
+  for (const char* shape : {"()", "(6,)", "(6, 1)", "(2, 6)", "(1, 5000)", "(1, 2, 3)"}) {
     EXPECT_THAT(error_of_dictionary(dictionary("<f8", shape)), HasSubstr("n x 2 or n x 3"));
   }
 }
@@ -130,7 +149,7 @@ TEST(NpyReader, AnArrayOfAnotherShapeIsToldTheCallThatMakesPointsOfIt) {
   const auto error = [](const char* shape) {
     return error_of_dictionary(dictionary("<f8", shape));
   };
-  EXPECT_THAT(error("(6, 4)"), AllOf(HasSubstr("(6, 4)"), HasSubstr("save a[:, :3] if")));
+  EXPECT_THAT(error("(6, 4097)"), AllOf(HasSubstr("(6, 4097)"), HasSubstr("save a[:, :3] if")));
   EXPECT_THAT(error("(3, 9)"), HasSubstr("save numpy.ascontiguousarray(a.T)"));
   EXPECT_THAT(error("(6,)"), HasSubstr("save a.reshape(-1, 3)"));
   EXPECT_THAT(error("(4, 5, 3)"), HasSubstr("save a.reshape(-1, 3)"));
@@ -138,15 +157,45 @@ TEST(NpyReader, AnArrayOfAnotherShapeIsToldTheCallThatMakesPointsOfIt) {
 }
 
 TEST(NpyCorruption, UnknownType) {
-  for (const char* type : {">f8", "<f2", "|u1", "<c16", "|O"}) {
+  for (const char* type : {"<f2", "<c16", "|O", "<U3", "f8", "<f16", "<M8[us]"}) {
     EXPECT_THAT(error_of_dictionary(dictionary(type, "(2, 3)")),
                 AllOf(HasSubstr(type), HasSubstr("astype")));
   }
 }
 
-TEST(NpyCorruption, FortranOrder) {
-  EXPECT_THAT(error_of_dictionary("{'descr': '<f8', 'fortran_order': True, 'shape': (2, 3), }"),
-              HasSubstr("Fortran order"));
+/// Points (i, 2 i, -i), columns one after another.
+std::string in_columns(int count) {
+  std::vector<std::int32_t> values(3 * count);
+  for (int i = 0; i < count; ++i) {
+    values[i] = i;
+    values[count + i] = 2 * i;
+    values[2 * count + i] = -i;
+  }
+  return npy(fmt::format("{{'descr': '<i4', 'fortran_order': True, 'shape': ({}, 3), }}", count),
+             values);
+}
+
+TEST(NpyReader, ColumnsInFortranOrderAreReadInBlocks) {
+  constexpr int kCount = 100000;
+  const AllPoints all = read_content("a.npy", in_columns(kCount));
+  ASSERT_EQ(all.points.size(), kCount);
+  for (int i = 0; i < kCount; i += 777) EXPECT_EQ(all.points[i], (LatticePoint(i, 2 * i, -i)));
+}
+
+TEST(NpyCorruption, FortranOrderInAPipe) {
+  FaultyFileSystem files;
+  files.seekable = false;
+  files.files["-"] = in_columns(3);
+  EXPECT_THAT(error_of([&] { read_all_points(files, "-"); }),
+              AllOf(HasSubstr("Fortran order"), HasSubstr("ascontiguousarray")));
+}
+
+TEST(NpyCorruption, FortranOrderCutAnywhere) {
+  const std::string whole = in_columns(5);
+  for (std::size_t size = kNpyMagic.size(); size < whole.size(); ++size) {
+    EXPECT_THAT(error_of_content("a.npy", whole.substr(0, size)), HasSubstr("the file ends"))
+        << size;
+  }
 }
 
 TEST(NpyCorruption, CountLargerThanFile) {

@@ -1,4 +1,4 @@
-#include "formats/meshes/ply/ply_header.h"
+#include "formats/ply/ply_header.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/fields.h"
 #include "formats/bytes/line_reader.h"
-#include "formats/meshes/common/mesh_checks.h"
-#include "formats/meshes/common/mesh_notes.h"
+#include "formats/bytes/notes.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -92,9 +91,7 @@ class HeaderParser {
     constexpr std::string_view kComment = "comment ";
     if (line.starts_with(kComment)) {
       const std::string_view comment = line.substr(kComment.size());
-      if (!read_mesh_note(comment, header_.notes)) {
-        fail("the lattice must be six numbers: three positive scales, three offsets");
-      }
+      header_.comments.push_back({std::string(comment), header_.lines});
       header_.by_spillway |= is_spillway_note(comment);
       return;
     }
@@ -153,7 +150,8 @@ class HeaderParser {
       type = fields.word();
     }
     property.type = type_called(type);
-    property.name = in_lower_case(fields.word());
+    property.written = fields.word();
+    property.name = in_lower_case(property.written);
     if (property.name.empty() || !fields.at_end()) {
       fail("a property is given as \"property TYPE NAME\" or \"property list TYPE TYPE NAME\"");
     }
@@ -203,6 +201,18 @@ const PlyElement* PlyHeader::simplices() const {
   }
   if (!by_spillway) return nullptr;
   return tetrahedra != nullptr ? tetrahedra : faces;
+}
+
+bool begins_as_ply(std::string_view first_bytes) { return begins_with_word(first_bytes, kMagic); }
+
+std::optional<std::string_view> ply_type(NumberType type) {
+  const auto* const found = std::ranges::find(kTypes, type, &NamedType::type);
+  if (found == kTypes.end()) return std::nullopt;
+  return found->name;
+}
+
+PlyHeader peek_ply_header(InputBytes& source) {
+  return HeaderParser(source.name()).parse(header_text(source));
 }
 
 PlyHeader read_ply_header(InputBytes& source) {

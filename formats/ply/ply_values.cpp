@@ -1,4 +1,4 @@
-#include "formats/meshes/ply/ply_values.h"
+#include "formats/ply/ply_values.h"
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ void PlyItem::fail_for_end(const FilePlace& place) const {
 void PlyItem::fail_for_excess(const FilePlace& place) const {
   throw BadInput(file_,
                  fmt::format("the file goes on at {} after all that its header says; the header is "
-                             "corrupt or there is more than one mesh",
+                             "corrupt or something else follows",
                              text_of(place)),
                  place);
 }

@@ -10,6 +10,7 @@
 #include "formats/bytes/fields.h"
 #include "formats/bytes/line_reader.h"
 #include "formats/bytes/number_type.h"
+#include "formats/ply/ply_header.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -117,5 +118,23 @@ class PlyTextValues {
   Fields fields_{""};
   std::uint64_t header_lines_;
 };
+
+/// Reads and drops a property of the current item.
+template <typename Values>
+void pass_over(Values& values, const PlyProperty& property) {
+  const std::uint64_t count =
+      property.length_type ? values.index(*property.length_type, "the length of a list") : 1;
+  values.skip(property.type, count);
+}
+
+/// Reads and drops all items of an element.
+template <typename Values>
+void pass_over(Values& values, const PlyElement& element) {
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    values.begin_item(element.name, i);
+    for (const PlyProperty& property : element.properties) pass_over(values, property);
+    values.end_item();
+  }
+}
 
 }  // namespace spillway::detail
