@@ -152,7 +152,10 @@ void PointFile::check_overwriting(const RunPoints& points) const {
     std::error_code unknown;
     return std::filesystem::equivalent(header.name, path_, unknown);
   });
-  const bool holds_less = !lost_.empty() || rounds_ || points.leaves_out;
+  const bool same_lattice =
+      how_.lattice && chosen_lattice({options_.scale, options_.offset}, how_.lattice,
+                                     points.extent.value_or(Box<3>{})) == *how_.lattice;
+  const bool holds_less = !lost_.empty() || (rounds_ && !same_lattice) || points.leaves_out;
   if (!is_input || !holds_less) return;
   const std::string what = !lost_.empty()      ? fmt::format("{}", fmt::join(lost_, ", "))
                            : points.leaves_out ? std::string("points that are left out")
