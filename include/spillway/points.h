@@ -105,6 +105,10 @@ struct PointOptions {
   bool skip_broken = false;
 };
 
+/// The names of attributes, and x, y and z, that a condition asks for (PointOptions::where). Throws
+/// Error(kInvalidArgument), with the place, for what is no condition.
+SPILLWAY_API std::vector<std::string> names_in_condition(const std::string& condition);
+
 /// All points of files, one file after the other. A path may be a file, a folder (its point files),
 /// a pattern ("tiles/*.laz"), "@list" (a file that lists such) or "-" (standard input). Files on
 /// one lattice of integers are triangulated as integers. Throws Error: kInputOutput, kBadInput with

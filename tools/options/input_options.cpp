@@ -74,8 +74,9 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   take_parsed(add("--returns", options.returns, "LIST",
                   "Use these returns of a pulse: first, last, single, numbers"),
               parse_returns);
-  add("--where", options.where, "CONDITION",
-      "Use points of which this holds, as 'intensity > 200 and class in (2, 9)'");
+  take_parsed(add("--where", options.where, "CONDITION",
+                  "Use points of which this holds, as 'intensity > 200 and class in (2, 9)'"),
+              parse_condition);
   take_parsed(add("--bounds", options.bounds, "BOX",
                   "Use points in xmin,ymin,xmax,ymax or xmin,ymin,zmin,xmax,ymax,zmax"),
               parse_bounds);
@@ -245,6 +246,14 @@ std::string parse_crs(std::string_view text) {
   wkt.erase(0, wkt.find_first_not_of(' '));
   if (looks_like_crs(wkt)) return wkt;
   throw UsageError(fmt::format("{} holds no WKT of a coordinate system", crs));
+}
+
+void parse_condition(const std::string& text) {
+  try {
+    static_cast<void>(names_in_condition(text));
+  } catch (const spillway::Error& error) {
+    throw UsageError(error.what());
+  }
 }
 
 PointOptions point_options(const InputOptions& options, int dimension) {

@@ -52,6 +52,9 @@ void add_input_options(CommandLine& app, InputOptions& options);
 /// The same for open_points(). Throws UsageError for wrong options.
 PointOptions point_options(const InputOptions& options, int dimension);
 
+/// Checks the value of --where. Throws UsageError for what is no condition.
+void parse_condition(const std::string& text);
+
 /// Options of a mesh of this format, which has the same ones about coordinate systems.
 MeshOptions mesh_options(const InputOptions& options, const std::string& format);
 

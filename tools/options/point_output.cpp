@@ -11,7 +11,7 @@ namespace spillway::detail {
 
 void add_las_version(CommandLine& app, PointOutput& output) {
   add_choice(app, "--las-version", output.las_version, {"1.2", "1.4"},
-             "Version of LAS and LAZ to write, with point format 0 or 6");
+             "Version of LAS and LAZ to write; 1.4 has the point formats from 6 on");
 }
 
 void check_las_version(const PointOutput& output, bool is_las) {

@@ -256,6 +256,10 @@ RunPoints FilePoints::begin(RunWatch& watch, bool index) {
 
 namespace spillway {
 
+std::vector<std::string> names_in_condition(const std::string& condition) {
+  return detail::Condition(condition).names();
+}
+
 std::unique_ptr<PointSource> open_points(const std::vector<std::string>& paths,
                                          const PointOptions& options, const Context& context) {
   return std::make_unique<detail::FilePoints>(paths, options, context);
