@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -20,13 +21,14 @@ bool is_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
 }
 
-/// All of a text as a number; nothing if it is none.
+/// All of a text as a finite number; nothing if it is none.
 std::optional<double> number_of(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double number = 0;
   const char* const end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, number);
-  return read.ec == std::errc{} && read.ptr == end ? std::optional(number) : std::nullopt;
+  const bool is_number = read.ec == std::errc{} && read.ptr == end && std::isfinite(number);
+  return is_number ? std::optional(number) : std::nullopt;
 }
 
 std::string lower(std::string_view text) {
@@ -187,7 +189,10 @@ ConditionParser::Question ConditionParser::parse_list(const Operand& operand) {
   };
 }
 
+/// Words for what is no finite number are no names, either.
 bool ConditionParser::at_name() const {
+  const std::string word = lower(token_);
+  if (word == "nan" || word == "inf" || word == "infinity") return false;
   return !token_.empty() && (std::isalpha(static_cast<unsigned char>(token_[0])) != 0 ||
                              token_[0] == '_' || token_[0] == '"');
 }

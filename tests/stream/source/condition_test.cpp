@@ -100,6 +100,8 @@ TEST(Condition, SaysWhereItCannotBeRead) {
   EXPECT_THAT(error_of("z not 3"), HasSubstr("\"in\" is missing before '3'"));
   EXPECT_THAT(error_of("3"), HasSubstr("a comparison is missing"));
   EXPECT_THAT(error_of("z > 3x"), HasSubstr("expected before '3x'"));
+  EXPECT_THAT(error_of("z = nan"), HasSubstr("expected before 'nan'"));
+  EXPECT_THAT(error_of("z < inf"), HasSubstr("expected before 'inf'"));
   EXPECT_THAT(error_of("\"z > 3"), HasSubstr("a name in quotes does not end"));
   EXPECT_THAT(error_of("z & 3"), HasSubstr("before '& 3'"));
   EXPECT_THAT(error_of(std::string(5000, '(')), HasSubstr("too many brackets"));
