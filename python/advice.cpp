@@ -30,7 +30,7 @@ std::string advice(const ErrorFacts& facts) {
     case Remedy::kPlane:
       return " (dim=2 makes triangles)";
     case Remedy::kFilters:
-      return ", so keep_class, drop_class and returns cannot be used with it";
+      return "; leave out that filter, or that input";
     case Remedy::kForeignCrs:
       return " with force_crs=True";
     case Remedy::kLas14:
@@ -49,6 +49,10 @@ std::string advice(const ErrorFacts& facts) {
     case Remedy::kGroundScale:
       return "; name the right coordinate system with crs and force_crs=True, or say with z_factor "
              "what heights are to be multiplied by";
+    case Remedy::kSalvage:
+      return ", or take what is whole of it with salvage=True";
+    case Remedy::kForce:
+      return ", or give force=True";
     case Remedy::kNone:
     case Remedy::kOneFile:  // of runs over several processes, as the next one
     case Remedy::kRanks:
