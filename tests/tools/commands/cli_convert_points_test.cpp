@@ -389,7 +389,9 @@ TEST_P(SharedAttributes, GoThroughEveryFormatAndBack) {
         format, version, three("scale"), three("offset")));
     EXPECT_TRUE(work.read("back.csv") == work.read("in.csv")) << format;
     const std::string there = work.read("there.las");
-    if (format == "las") EXPECT_TRUE(there == work.read("in.las"));
+    if (format == "las") {
+      EXPECT_TRUE(there == work.read("in.las"));
+    }
   }
 }
 

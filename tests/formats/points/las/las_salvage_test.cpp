@@ -54,7 +54,9 @@ TEST(LasSalvage, AFileThatIsCutOffGivesTheRecordsThatAreWhole) {
                   ElementsAre(fmt::format("the file ends at byte {}, after {} of {} points: {} are "
                                           "lost",
                                           size, whole, kPoints, kPoints - whole)));
-      if (whole > 0) EXPECT_EQ(all.points.back()[1], 2.0 * static_cast<double>(whole - 1));
+      if (whole > 0) {
+        EXPECT_EQ(all.points.back()[1], 2.0 * static_cast<double>(whole - 1));
+      }
     }
     const AllPoints pipe = read_cut(bytes, size, false);
     EXPECT_EQ(pipe.points.size(), whole);
