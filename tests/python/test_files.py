@@ -389,7 +389,7 @@ class Errors(InFolder):
         for words, call in [
             ('memory="64M" is enough', lambda: spillway.dem(points, resolution=1, memory="32M")),
             ("EPSG:99999999", lambda: spillway.triangulate(points, "a.gpkg", crs="EPSG:99999999")),
-            ("cannot be used with it", lambda: spillway.triangulate("a.npy", "a.spm", keep_class=2)),
+            ("leave out that filter", lambda: spillway.triangulate("a.npy", "a.spm", keep_class=2)),
             ("force_crs=True", lambda: spillway.contour(points, "a.geojson", interval=1)),
             ("columns=", lambda: spillway.triangulate("a.txt", "a.spm")),
         ]:
