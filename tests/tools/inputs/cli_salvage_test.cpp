@@ -169,7 +169,9 @@ TEST_F(SkipBroken, TheOutputIsCompleteWithoutThemAndTheyAreNamedAtTheEnd) {
 }
 
 TEST_F(SkipBroken, StatisticsNameThemToo) {
-  work_.run("spillway triangulate a.las no.las -o a.spm --skip-broken --stats stats.json");
+  const Result result =
+      work_.run("spillway triangulate a.las no.las -o a.spm --skip-broken --stats stats.json");
+  EXPECT_EQ(result.exit_code, 1);
   const auto skipped = nlohmann::json::parse(work_.read("stats.json"))["skipped_files"];
   ASSERT_EQ(skipped.size(), 1U);
   EXPECT_EQ(skipped[0]["path"], "no.las");
