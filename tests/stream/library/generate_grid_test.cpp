@@ -141,7 +141,6 @@ TEST_F(GeneratedGrid, RefusesWhatCannotBeAndLeavesNothing) {
   EXPECT_EQ(code(terrain, "a_#.las", {.columns = 0}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code(terrain, "a_#.las", {.columns = 101, .rows = 100}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code(terrain, "a_#.las", {.overlap = 0.41}), ErrorCode::kInvalidArgument);
-  EXPECT_EQ(code(terrain, "a_#.copc.laz", {}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code(terrain, "a.las", {}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code({.family = "uniform", .count = 9}, "a_#.las", {}), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code({.family = "clouds"}, "a_#.las", {}), ErrorCode::kInvalidArgument);

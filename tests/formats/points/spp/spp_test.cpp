@@ -206,7 +206,7 @@ TEST(Spp, BlocksThatMakeNoSense) {
   const std::string good = header_content(1, 3, 0);
   EXPECT_THAT(error(header_content(3, 3, 0), kSppTrailer, ""), HasSubstr("version 3 of spp"));
   EXPECT_THAT(error(header_content(1, 4, 0), kSppTrailer, ""), HasSubstr("2 or 3 coordinates"));
-  EXPECT_THAT(error(header_content(1, 3, 8), kSppTrailer, ""), HasSubstr("unknown flags"));
+  EXPECT_THAT(error(header_content(1, 3, 16), kSppTrailer, ""), HasSubstr("unknown flags"));
   EXPECT_THAT(error(header_content(1, 3, kSppHasCount), kSppTrailer, ""), HasSubstr("ends early"));
   EXPECT_THAT(error(header_content(1, 3, kSppHasLattice) + std::string(48, '\0'), kSppTrailer, ""),
               HasSubstr("the lattice"));
