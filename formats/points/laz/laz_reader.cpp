@@ -4,19 +4,17 @@
 
 #include <algorithm>
 #include <iterator>
-#include <mutex>
-#include <numeric>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "formats/bytes/bytes.h"
-#include "formats/points/las/records/record_unpacking.h"
 #include "formats/points/las/uncompressed_points.h"
 #include "formats/points/laz/chunk_decoder.h"
 #include "formats/points/laz/chunk_table.h"
 #include "formats/points/laz/file_bytes.h"
 #include "formats/points/laz/laz_detail.h"
+#include "formats/points/laz/laz_point_blocks.h"
 #include "formats/points/laz/salvaged_chunks.h"
 #include "src/error.h"
 
@@ -51,7 +49,7 @@ class LazReader : public PointReader {
       : source_(std::move(source)),
         las_(las),
         header_(las_point_header(las, path)),
-        withheld_flag_(options.keep_withheld ? 0U : LasFlags::kWithheld),
+        blocks_(las, options.keep_withheld),
         salvage_(options.salvage),
         count_(las.count),
         stream_(*source_) {
@@ -68,11 +66,7 @@ class LazReader : public PointReader {
 
   [[nodiscard]] const PointHeader& header() const override { return header_; }
 
-  void carry(const AttributeLayout& layout) override {
-    whole_records_ = needs_records(layout);
-    unpacking_ = LasRecordUnpacking(whole_records_ ? las_.fields() : las_flag_fields(), layout);
-    idle_.clear();
-  }
+  void carry(const AttributeLayout& layout) override { blocks_.carry(layout); }
 
   bool fetch(RawPoints& raw) override {
     raw.decoded.clear();
@@ -98,7 +92,7 @@ class LazReader : public PointReader {
       std::swap(raw.decoded, block);
       return;
     }
-    std::unique_ptr<LazChunkDecoder> decoder = take_decoder();
+    std::unique_ptr<LazChunkDecoder> decoder = blocks_.take_decoder();
     MemoryBytes bytes(raw.bytes);
     try {
       decoder->begin(bytes, raw.count);
@@ -111,7 +105,7 @@ class LazReader : public PointReader {
       block.notices.push_back(text_of_loss(raw.count, fault_at(raw.offset, error)));
       return;
     }
-    give_back(std::move(decoder));
+    blocks_.give_back(std::move(decoder));
     block.lost = 0;
     block.notices = std::move(raw.decoded.notices);
   }
@@ -425,7 +419,7 @@ class LazReader : public PointReader {
     chunk.count = count;
     std::uint64_t wanted = 0;
     std::uint64_t others = 0;
-    const std::size_t wanted_layers = laz_wanted_layers(format, detail());
+    const std::size_t wanted_layers = laz_wanted_layers(format, blocks_.detail());
     for (std::size_t i = 0; i < layers; ++i) {
       std::byte* const size = &raw.bytes[sizes_at + i * sizeof(std::uint32_t)];
       (i < wanted_layers ? wanted : others) += load<std::uint32_t>(size);
@@ -472,7 +466,7 @@ class LazReader : public PointReader {
   void begin_in_order(const LazChunk& chunk, LazBytes& bytes) {
     in_order_at_ = chunk.offset;
     left_ = chunk.count;
-    if (!in_order_) in_order_ = take_decoder();
+    if (!in_order_) in_order_ = blocks_.take_decoder();
     checked([&] { in_order_->begin(bytes, chunk.count); });
   }
 
@@ -493,24 +487,24 @@ class LazReader : public PointReader {
   /// The same point by point, of a stream that may be cut off: then the block has the points of
   /// which all bytes are there when it throws, and none if something else is wrong.
   void decode_while_whole(std::uint64_t count, PointBlock& block) {
-    Details details = details_of(count, block);
+    LazPointBlocks::Parts parts = blocks_.begin(count, block);
     const std::uint64_t first = next_;
     std::uint64_t whole = 0;
     try {
       for (std::uint64_t i = 0; i < count; ++i) {
-        decode_part(*in_order_, i, 1, block, details);
+        blocks_.decode(*in_order_, i, 1, block, parts);
         // From here on the decoder could go on with what it has read ahead.
         if (in_order_->end() > 0 || !stream_.at_end()) whole = i + 1;
       }
       next_ += count;
       left_ -= count;
       if (left_ == 0) end_in_order();
-      complete(first, count, details, block);
+      blocks_.complete(first, count, parts, block);
     } catch (const Error& error) {
       if (stream_.read_failed()) throw;
       if (!stream_.at_end()) whole = 0;
       next_ = first + whole;
-      complete(first, whole, details, block);
+      blocks_.complete(first, whole, parts, block);
       fail_at(in_order_at_, error);
     }
   }
@@ -538,126 +532,18 @@ class LazReader : public PointReader {
     }
   }
 
-  /// What is decoded of points besides coordinates, as it is needed.
-  struct Details {
-    std::vector<LasFlags> flags;
-    std::vector<std::byte> records;
-  };
-
   /// Decodes `count` points, the first of which has that number, and leaves out withheld ones.
   void decode_points(LazChunkDecoder& decoder, std::uint64_t first, std::uint64_t count,
                      PointBlock& block) const {
-    Details details = details_of(count, block);
-    decode_part(decoder, 0, count, block, details);
-    complete(first, count, details, block);
-  }
-
-  /// Makes room for so many points, in the block, too.
-  [[nodiscard]] Details details_of(std::uint64_t count, PointBlock& block) const {
-    block.points.resize(count);
-    Details details;
-    if (whole_records_) {
-      details.records.resize(count * las_.record_length);
-    } else if (needs_flags()) {
-      details.flags.resize(count);
-    }
-    return details;
-  }
-
-  /// Decodes the points from the `begin`-th one on.
-  void decode_part(LazChunkDecoder& decoder, std::size_t begin, std::size_t count,
-                   PointBlock& block, Details& details) const {
-    if (whole_records_) {
-      const std::size_t length = las_.record_length;
-      decoder.decode_records(std::span(details.records).subspan(begin * length, count * length));
-    } else {
-      decoder.decode(std::span(block.points).subspan(begin, count),
-                     details.flags.empty() ? std::span<LasFlags>()
-                                           : std::span(details.flags).subspan(begin, count));
-    }
-  }
-
-  /// Makes a block of the first `count` points that were decoded.
-  void complete(std::uint64_t first, std::uint64_t count, Details& details,
-                PointBlock& block) const {
-    block.points.resize(count);
-    block.index.resize(count);
-    std::iota(block.index.begin(), block.index.end(), first);
-    block.withheld = 0;
-    if (whole_records_) {
-      details.records.resize(count * las_.record_length);
-      complete_with_records(details.records, block);
-    } else if (!details.flags.empty()) {
-      details.flags.resize(count);
-      complete_with_flags(details.flags, block);
-    }
-    block.withheld = count - block.size();
-  }
-
-  void complete_with_flags(const std::vector<LasFlags>& flags, PointBlock& block) const {
-    if (!unpacking_.empty()) {
-      unpacking_.unpack(std::as_bytes(std::span(flags)), sizeof(LasFlags), block.attributes);
-    }
-    if (withheld_flag_ == 0) return;
-    block.keep([&](std::size_t i) { return (flags[i].flags & withheld_flag_) == 0; });
-  }
-
-  void complete_with_records(const std::vector<std::byte>& records, PointBlock& block) const {
-    const std::size_t length = las_.record_length;
-    for (std::size_t i = 0; i < block.size(); ++i) {
-      const std::byte* const record = &records[i * length];
-      block.points[i] = {static_cast<double>(load<std::int32_t>(record)),
-                         static_cast<double>(load<std::int32_t>(record + 4)),
-                         static_cast<double>(load<std::int32_t>(record + 8))};
-    }
-    unpacking_.unpack(records, length, block.attributes);
-    if (withheld_flag_ == 0) return;
-    const auto flag = static_cast<std::byte>(las_withheld_mask(las_.point_format));
-    block.keep(
-        [&](std::size_t i) { return (records[i * length + kLasFlagByte] & flag) == std::byte{}; });
-  }
-
-  /// Whether the layout has something that the layers of flags do not tell.
-  [[nodiscard]] bool needs_records(const AttributeLayout& layout) const {
-    const std::vector<AttributeField> flags = las_flag_fields();
-    const auto has = [](const std::vector<AttributeField>& fields, const std::string& name) {
-      return std::ranges::any_of(
-          fields, [&](const AttributeField& field) { return field.attribute.name == name; });
-    };
-    const std::vector<AttributeField> all = las_.fields();
-    return std::ranges::any_of(layout.fields(), [&](const AttributeField& field) {
-      return has(all, field.attribute.name) && !has(flags, field.attribute.name);
-    });
-  }
-
-  [[nodiscard]] bool needs_flags() const { return !unpacking_.empty() || withheld_flag_ != 0; }
-
-  [[nodiscard]] LazDetail detail() const {
-    if (whole_records_) return LazDetail::kRecords;
-    return needs_flags() ? LazDetail::kFlags : LazDetail::kCoordinates;
-  }
-
-  std::unique_ptr<LazChunkDecoder> take_decoder() const {
-    const std::lock_guard lock(idle_mutex_);
-    if (idle_.empty()) {
-      return std::make_unique<LazChunkDecoder>(las_.laz->format, detail());
-    }
-    std::unique_ptr<LazChunkDecoder> decoder = std::move(idle_.back());
-    idle_.pop_back();
-    return decoder;
-  }
-
-  void give_back(std::unique_ptr<LazChunkDecoder> decoder) const {
-    const std::lock_guard lock(idle_mutex_);
-    idle_.push_back(std::move(decoder));
+    LazPointBlocks::Parts parts = blocks_.begin(count, block);
+    blocks_.decode(decoder, 0, count, block, parts);
+    blocks_.complete(first, count, parts, block);
   }
 
   std::unique_ptr<InputBytes> source_;
   LasHeader las_;
   PointHeader header_;
-  LasRecordUnpacking unpacking_;  // of attributes that are wanted
-  bool whole_records_ = false;    // for these
-  unsigned withheld_flag_;
+  LazPointBlocks blocks_;
   bool salvage_;
   bool told_of_more_ = false;
   std::uint64_t count_ = 0;  // of all records that come
@@ -676,9 +562,6 @@ class LazReader : public PointReader {
   FileBytes stream_;        // its bytes if it is pointwise
   std::vector<std::byte> held_;
   MemoryBytes held_bytes_{{}};  // if it is layered
-
-  mutable std::mutex idle_mutex_;
-  mutable std::vector<std::unique_ptr<LazChunkDecoder>> idle_;  // guarded by idle_mutex_
 };
 
 }  // namespace
