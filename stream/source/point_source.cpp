@@ -1,6 +1,7 @@
 #include "stream/source/point_source.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "stream/source/ordered_blocks.h"
@@ -164,12 +165,14 @@ std::vector<PointHeader> PointSource::headers() const {
   return headers;
 }
 
-/// With those that the filter looks at.
-void PointSource::carry(AttributeChoice choice) {
+void PointSource::carry(const AttributeChoice& choice) {
+  AttributeChoice read = choice;
   const std::vector<std::string> filtered = options_.filter.attributes();
-  choice.names.insert(choice.names.end(), filtered.begin(), filtered.end());
+  read.names.insert(read.names.end(), filtered.begin(), filtered.end());
   attributes_ = chosen(facts_.attributes(), choice);
-  pieces_.carry(attributes_);
+  read_attributes_ = chosen(facts_.attributes(), read);
+  without_filtered_ = RecordConversion(read_attributes_.fields(), attributes_.fields());
+  pieces_.carry(read_attributes_);
   if (thinning_) thinning_->carry(attributes_);
 }
 
@@ -204,15 +207,18 @@ bool PointSource::read(PointBlock& block) {
 
 void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   piece.reader->decode(piece.raw, block);
-  if (block.attributes.empty()) block.attributes.resize(block.size() * attributes_.record_size());
-  coordinates_.bring(piece.input, attributes_, block);
+  if (block.attributes.empty()) {
+    block.attributes.resize(block.size() * read_attributes_.record_size());
+  }
+  coordinates_.bring(piece.input, read_attributes_, block);
   PointCounts counts;
   counts.invalid = block.invalid;
   counts.withheld = block.withheld;
   counts.lost = block.lost;
   counts.read = block.size() + block.invalid + block.withheld;
   if (options_.filter.active()) {
-    apply_filter(options_.filter, lattice(), attributes_, block, counts);
+    apply_filter(options_.filter, lattice(), read_attributes_, block, counts);
+    drop_filtered_attributes(block);
   }
   if (!positions_.empty()) {
     regions_.check(block, regions_.number(piece.input, piece.raw.region));
@@ -229,6 +235,17 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
       untold_.push_back(std::move(notice));
     }
   }
+}
+
+/// Those that only the filter looks at.
+void PointSource::drop_filtered_attributes(PointBlock& block) const {
+  const std::size_t size = attributes_.record_size();
+  if (size == read_attributes_.record_size()) return;
+  std::vector<std::byte> records(block.size() * size);
+  // Numbers stay as they are, so all fit.
+  std::ignore = without_filtered_.convert(block.attributes.data(), read_attributes_.record_size(),
+                                          records.data(), size, block.size());
+  block.attributes = std::move(records);
 }
 
 /// The points of all inputs reach the cells in their order.

@@ -11,6 +11,7 @@
 
 #include "formats/disk/file_system.h"
 #include "formats/disk/scratch_folder.h"
+#include "formats/points/attributes/record_conversion.h"
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
@@ -71,10 +72,10 @@ class PointSource : public PointStream {
   /// Whether blocks come with the index of their points. To be called before they are read.
   void set_index(bool index) { options_.index = index; }
 
-  /// Which attributes blocks have, of those that facts() tells of; without it, those that the
-  /// filter looks at. To be called before points are read.
-  void carry(AttributeChoice choice);
-  /// The layout of their records: what was chosen, and what the filter looks at.
+  /// Which attributes blocks have, of those that facts() tells of; without it none. To be called
+  /// before points are read.
+  void carry(const AttributeChoice& choice);
+  /// The layout of their records.
   [[nodiscard]] const AttributeLayout& attributes() const { return attributes_; }
 
   [[nodiscard]] const SourceFacts& facts() const { return facts_; }
@@ -151,6 +152,7 @@ class PointSource : public PointStream {
 
   [[nodiscard]] std::optional<Box<3>> find_world_extent() const;
   void decode_input(SourcePiece& piece, PointBlock& block);
+  void drop_filtered_attributes(PointBlock& block) const;
   void thin_inputs();
 
   PointSourceOptions options_;
@@ -165,6 +167,8 @@ class PointSource : public PointStream {
   std::optional<Box<3>> world_extent_;
   std::optional<Box<3>> extent_;
   AttributeLayout attributes_;
+  AttributeLayout read_attributes_;    ///< these, and what the filter looks at
+  RecordConversion without_filtered_;  ///< from records as they are read
   std::optional<Thinning> thinning_;
   bool thinned_ = false;
   bool tells_ = true;                ///< this process looked at the files first

@@ -315,6 +315,12 @@ TEST(ConvertPoints, KeepsPointsOfWhichAConditionHolds) {
   work.succeed(
       "spillway convert -q in.csv -o out.csv --where 'intensity > 200 and class in (2, 9)'");
   EXPECT_EQ(work.read("out.csv"), "x,y,z,intensity,classification\n4,5,6,300,2\n");
+  // The filter looks at others than those that are written.
+  work.succeed(
+      "spillway convert -q in.csv -o some.csv --attributes class --where 'intensity > 200'");
+  EXPECT_EQ(work.read("some.csv"), "x,y,z,classification\n4,5,6,2\n7,8,9,5\n");
+  work.succeed("spillway convert -q in.csv -o thin.csv --attributes class --thin 1 --keep-class 5");
+  EXPECT_EQ(work.read("thin.csv"), "x,y,z,classification\n7,8,9,5\n");
   EXPECT_THAT(work.run("spillway convert in.csv -o out.csv --where 'x > 3 and not class = 5'").err,
               HasSubstr("3 points read, 2 for which the condition does not hold, 1 kept"));
   const Result missing = work.run("spillway convert in.csv -o out.csv --where 'red > 3'");
