@@ -4,12 +4,14 @@
 
 #include <spillway/totals.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "formats/points/attributes/attribute_layout.h"
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
@@ -24,6 +26,7 @@ struct MeshStreamHeader {
   std::optional<std::uint64_t> points;  ///< of the input, where known beforehand
   std::optional<Box<3>> extent;         ///< of the points, in output coordinates, where known
   std::string crs;                      ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
+  AttributeLayout attributes;           ///< that vertices carry
 };
 
 /// What a sink makes of a block by itself, before its turn has come: each sink has its own kind.
@@ -46,6 +49,7 @@ struct MeshBlock {
   /// space, z are integers; in the plane z may lie between), else in output coordinates.
   std::vector<LatticePoint> vertices;
   std::vector<std::uint64_t> input_index;  ///< of `vertices`, if the header says has_input_index
+  std::vector<std::byte> attributes;       ///< of `vertices`: a record each, as the header has them
   std::vector<std::uint64_t> imported;     ///< stream numbers of earlier vertices used here
   std::vector<std::uint32_t> corners;      ///< dimension+1 short numbers a simplex, oriented
   std::vector<std::uint32_t> finalized;    ///< short numbers of vertices that come no more
@@ -55,13 +59,15 @@ struct MeshBlock {
   /// Bytes that its members take, counted by their sizes.
   [[nodiscard]] std::uint64_t bytes() const {
     return vertices.size() * sizeof(vertices[0]) + input_index.size() * sizeof(input_index[0]) +
-           imported.size() * sizeof(imported[0]) + corners.size() * sizeof(corners[0]) +
-           finalized.size() * sizeof(finalized[0]) + (absorbed ? absorbed->bytes() : 0);
+           attributes.size() + imported.size() * sizeof(imported[0]) +
+           corners.size() * sizeof(corners[0]) + finalized.size() * sizeof(finalized[0]) +
+           (absorbed ? absorbed->bytes() : 0);
   }
 
   void clear() {
     vertices.clear();
     input_index.clear();
+    attributes.clear();
     imported.clear();
     corners.clear();
     finalized.clear();
