@@ -57,7 +57,7 @@ void run(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
   if (!root) refuse_empty_input(source.counts());
   refuse_flat_points(engine.span(), engine.points());
   options.extent_known(plane_of(root->box), root->points);
-  if constexpr (D == 2) budget.set_enough(enough_memory<D>(root->points));
+  if constexpr (D == 2) budget.set_enough(enough_memory<D>(root->points, options.record_size));
   engine.triangulate(*root, {});
   options.end_phase(engine.points());
 }
@@ -95,7 +95,9 @@ struct Trust {
 template <int D>
 void run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
                const StreamOptions& options, const std::optional<Box<2>>& extent) {
-  if constexpr (D == 2) budget.set_enough(enough_memory<D>(source.expected().value_or(0)));
+  if constexpr (D == 2) {
+    budget.set_enough(enough_memory<D>(source.expected().value_or(0), options.record_size));
+  }
   options.begin_phase("read");
   SeenExtent seen;
   PointFeed feed = feed_of(source, options, engine.times());
@@ -123,8 +125,8 @@ Trust trust_in(PointStream& source, int dimension, const MemoryBudget& budget,
   if (!options.early || source.regions().empty()) return {};
   std::size_t capacity = options.tile_capacity;
   if (capacity == 0) {
-    const MemoryPlan memory =
-        plan_memory(budget.limit(), dimension, options.threads, budget.whole(), true);
+    const MemoryPlan memory = plan_memory(budget.limit(), dimension, options.threads,
+                                          budget.whole(), true, options.record_size);
     capacity = tile_capacity_for(source.expected().value_or(0), memory);
   }
   Trust trust;

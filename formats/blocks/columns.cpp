@@ -316,6 +316,17 @@ void append_column(std::vector<std::byte>& out, std::span<const std::uint32_t> v
   with_longest_vectors([&] { encode<Integers<std::uint32_t>>(out, values, kIntegers); });
 }
 
+void append_byte_planes(std::vector<std::byte>& out, std::span<const std::byte> records,
+                        std::size_t record_size) {
+  const std::size_t count = records.size() / record_size;
+  const std::size_t before = out.size();
+  out.resize(before + records.size());
+  std::byte* next = out.data() + before;
+  for (std::size_t b = 0; b < record_size; ++b) {
+    for (std::size_t i = 0; i < count; ++i) *next++ = records[i * record_size + b];
+  }
+}
+
 ColumnReader::ColumnReader(std::span<const std::byte> bytes, FileSpot where)
     : left_(bytes), where_(std::move(where)) {}
 
@@ -337,6 +348,17 @@ void ColumnReader::read(std::size_t count, std::vector<std::uint64_t>& values) {
 
 void ColumnReader::read(std::size_t count, std::vector<std::uint32_t>& values) {
   read_integers(left_, where_, count, values);
+}
+
+void ColumnReader::read_byte_planes(std::size_t count, std::vector<std::byte>& records) {
+  const std::size_t record_size = left_.size() / count;
+  if (record_size * count != left_.size()) fail(where_, "records of points are cut short");
+  records.resize(left_.size());
+  const std::byte* next = left_.data();
+  for (std::size_t b = 0; b < record_size; ++b) {
+    for (std::size_t i = 0; i < count; ++i) records[i * record_size + b] = *next++;
+  }
+  left_ = {};
 }
 
 void ColumnReader::expect_end() const {

@@ -19,6 +19,11 @@ bool append_column(std::vector<std::byte>& out, std::span<const double> values);
 void append_column(std::vector<std::byte>& out, std::span<const std::uint64_t> values);
 void append_column(std::vector<std::byte>& out, std::span<const std::uint32_t> values);
 
+/// Appends records of bytes, all of one size: the first bytes of all, then their second ones, and
+/// so on.
+void append_byte_planes(std::vector<std::byte>& out, std::span<const std::byte> records,
+                        std::size_t record_size);
+
 /// Takes columns off the front of `bytes`. The number of values is the caller's to know, and to
 /// bound, since equal steps take no bytes. Throws BadInput of `where` if bytes are missing
 ///  or make no sense; otherwise allocates nothing that the bytes do not back.
@@ -29,6 +34,8 @@ class ColumnReader {
   void read(std::size_t count, std::vector<double>& values);
   void read(std::size_t count, std::vector<std::uint64_t>& values);
   void read(std::size_t count, std::vector<std::uint32_t>& values);
+  /// Takes all that is left as the byte planes of so many records, at least one.
+  void read_byte_planes(std::size_t count, std::vector<std::byte>& records);
 
   /// Throws Error if anything is left.
   void expect_end() const;

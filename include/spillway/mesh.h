@@ -102,6 +102,9 @@ SPILLWAY_API std::unique_ptr<MeshSource> open_mesh(const std::string& path,
 struct MeshFileOptions {
   std::string format{};  ///< "spm", "ply", "vtu", ...; empty: by the extension
   bool parts = false;    ///< over ranks: a file for each of them (ContextOptions::executor)
+  /// Names of the attributes of points that their vertices keep, "all" for all of them. Nothing:
+  /// none, but the colour of points in PLY, and what the mesh has that is converted.
+  std::optional<std::vector<std::string>> attributes{};
 };
 
 /// A mesh file, of any format that is written; "-" is standard output, as spm. It gets its name

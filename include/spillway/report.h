@@ -62,6 +62,7 @@ struct Report : RunFigures {
   double write_seconds = 0;        ///< wall time of completing the output
   /// Inputs that PointOptions::skip_broken left out. What was made is complete without them.
   std::vector<SkippedFile> skipped_files{};
+  std::vector<std::string> lost{};  ///< attributes of vertices that the output does not hold
 };
 
 }  // namespace spillway

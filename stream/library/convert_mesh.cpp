@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "formats/points/attributes/record_conversion.h"
 #include "src/error.h"
 #include "src/geometry/simplex_name.h"
 #include "src/parallel/parallel.h"
@@ -19,18 +22,28 @@
 namespace spillway::detail {
 namespace {
 
-/// A mesh on its way from a reader to a sink.
+/// A mesh on its way from a reader to a sink, whose vertices keep some of their attributes.
 class MeshPassage {
  public:
-  MeshPassage(MeshStreamReader& reader, BlockSink& blocks, RunWatch& watch)
-      : reader_(reader), blocks_(blocks), watch_(watch) {}
+  MeshPassage(MeshStreamReader& reader, const AttributeLayout& kept, BlockSink& blocks,
+              RunWatch& watch)
+      : reader_(reader),
+        blocks_(blocks),
+        watch_(watch),
+        kept_(kept),
+        conversion_(reader.header().attributes.fields(), kept.fields()) {}
 
   /// Several blocks are absorbed at a time.
   void run(unsigned threads) {
     std::vector<Slot> slots(threads + 1);
     const auto source = [&](std::size_t slot) { return read(slots[slot]); };
     const std::vector<PipelineStep> steps = {
-        {.in_order = false, .work = [&](std::size_t slot) { blocks_.absorb(slots[slot].block); }},
+        {.in_order = false,
+         .work =
+             [&](std::size_t slot) {
+               drop_attributes(slots[slot].block);
+               blocks_.absorb(slots[slot].block);
+             }},
         {.in_order = true, .work = [&](std::size_t slot) { write(slots[slot]); }}};
     with_threads(threads, [&] { run_pipeline(slots.size(), source, steps); });
   }
@@ -50,6 +63,17 @@ class MeshPassage {
     return more;
   }
 
+  /// All but those that are kept.
+  void drop_attributes(MeshBlock& block) const {
+    const std::size_t size = reader_.header().attributes.record_size();
+    if (kept_.record_size() == size) return;
+    std::vector<std::byte> records(block.vertices.size() * kept_.record_size());
+    // Numbers stay as they are, so all fit.
+    std::ignore = conversion_.convert(block.attributes.data(), size, records.data(),
+                                      kept_.record_size(), block.vertices.size());
+    block.attributes = std::move(records);
+  }
+
   void write(Slot& slot) {
     blocks_.write(std::move(slot.block));
     watch_.tell(simplices_ += slot.simplices, reader_.fraction_read());
@@ -58,6 +82,8 @@ class MeshPassage {
   MeshStreamReader& reader_;
   BlockSink& blocks_;
   RunWatch& watch_;
+  AttributeLayout kept_;
+  RecordConversion conversion_;
   std::uint64_t simplices_ = 0;
 };
 
@@ -65,12 +91,15 @@ Report convert(MeshStreamReader& reader, const std::string& name,
                const std::optional<OpenedMesh::Extent2>& extent, const std::string& crs,
                EngineSink& sink, const Context& context, RunWatch& watch) {
   const int dimension = reader.header().dimension;
+  const AttributeLayout& there = reader.header().attributes;
+  sink.check_attributes(there);
   MeshStart start{.header = reader.header(), .name = name};
+  start.header.attributes = chosen(there, sink.wanted_attributes(false));
   start.header.crs = crs;
   BlockSink& blocks = sink.start(start);
   if (extent) sink.extent_known(extent->box, extent->vertices);
   watch.begin(simplices_of(dimension), simplices_of(dimension));
-  MeshPassage passage(reader, blocks, watch);
+  MeshPassage passage(reader, start.header.attributes, blocks, watch);
   passage.run(sink.feeding_threads(context.threads()));
   Report report;
   report.dimension = dimension;

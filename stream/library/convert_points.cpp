@@ -45,8 +45,17 @@ PointConversion to_file(const RunPoints& points, PointFile& file, unsigned threa
                         RunWatch& watch) {
   file.start(points, {.at_once = threads, .run = share_out});
   pass_on(*points.stream, threads, watch, [&](PointBlock& block) { file.append(block); });
+  bool finishes = false;
+  const auto finishing = [&](std::uint64_t done) {
+    const std::uint64_t all = points.stream->points_read();
+    if (!std::exchange(finishes, true)) {
+      watch.end(all);
+      watch.begin("write", "points");
+    }
+    watch.tell(done, static_cast<double>(done) / static_cast<double>(all));
+  };
   PointConversion done;
-  with_threads(threads, [&] { done = file.complete(); });
+  with_threads(threads, [&] { done = file.complete(finishing); });
   return done;
 }
 

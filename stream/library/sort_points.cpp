@@ -23,6 +23,8 @@ constexpr std::uint64_t kCellPoints = 65536;
 constexpr std::size_t kLeastBuffer = 512;
 /// Bytes of a point on its way from its cell to the file: encoded, and decoded.
 constexpr std::size_t kPointBytes = 56;
+/// How often its attributes are there then: encoded, decoded, and in the block that is written.
+constexpr std::size_t kRecords = 3;
 /// Share of the memory for those.
 constexpr double kWrittenShare = 0.4;
 constexpr std::size_t kMostUnderWay = 6;
@@ -43,18 +45,16 @@ std::size_t cell_capacity(const SortOptions& options, const MemoryPlan& plan,
 }
 
 /// Calls `take` for the points of a tile, some thousand at a time, in the order in which they came.
-void visit_points(StoredTile& stored,
-                  const std::function<void(std::span<const LatticePoint>)>& take) {
+void visit_points(StoredTile& stored, const std::function<void(const PointsView&)>& take) {
   for (StoredTile::Segment& segment : stored.segments) {
     PointBlock points;
     for (const TileBlock& block : find_blocks(segment.bytes, segment.where)) {
       decode_points(std::span<const std::byte>(segment.bytes).subspan(block.offset, block.size),
                     segment.where, points);
-      take(points.points);
+      take(PointsView::of(points));
     }
     segment.bytes = {};
-    segment.buffer.drain([&](std::span<const LatticePoint> waiting,
-                             std::span<const std::uint64_t> /*index*/) { take(waiting); });
+    segment.buffer.drain(take);
   }
 }
 
@@ -90,7 +90,8 @@ class Sorting {
         file_(file),
         watch_(watch),
         memory_(context.memory()),
-        plan_(plan_memory(memory_, 2, context.threads())),
+        record_size_(points.attributes.record_size()),
+        plan_(plan_memory(memory_, 2, context.threads(), 0, false, record_size_)),
         capacity_(cell_capacity(*file.sorted(), plan_, points_.expected())),
         scratch_(context.state().scratch(context)),
         tree_({.dimension = file.sorted()->dimension,
@@ -99,6 +100,7 @@ class Sorting {
                .buffered_points = buffered_points(plan_),
                .expected = points_.expected(),
                .extent = extent_of(points, file),
+               .record_size = record_size_,
                .batches = plan_.batches},
               *scratch_, times_) {}
 
@@ -179,11 +181,11 @@ class Sorting {
   void write_points(std::span<const TileNode<3>* const> cells) {
     struct Slot {
       StoredTile stored;
-      std::vector<LatticePoint> points;
+      PointBlock points;
     };
     const auto room = static_cast<std::size_t>(static_cast<double>(memory_) * kWrittenShare);
-    std::vector<Slot> slots(
-        std::clamp<std::size_t>(room / (kPointBytes * capacity_), 1, kMostUnderWay));
+    std::vector<Slot> slots(std::clamp<std::size_t>(
+        room / ((kPointBytes + kRecords * record_size_) * capacity_), 1, kMostUnderWay));
     std::size_t taken = 0;
     const auto read = [&](std::size_t slot) {
       if (taken == cells.size()) return false;
@@ -192,19 +194,16 @@ class Sorting {
     };
     const auto decode = [&](std::size_t slot) {
       StoredTile& stored = slots[slot].stored;
-      std::vector<LatticePoint>& points = slots[slot].points;
+      PointBlock& points = slots[slot].points;
       points.clear();
       if (stored.points > capacity_) return;  // equal points, which may be too many for the memory
-      visit_points(stored, [&](std::span<const LatticePoint> some) {
-        points.insert(points.end(), some.begin(), some.end());
-      });
+      visit_points(stored, [&](const PointsView& some) { some.append_to(points); });
     };
     const auto append = [&](std::size_t slot) {
       StoredTile& stored = slots[slot].stored;
-      file_.append_placed(slots[slot].points);
+      file_.append_placed(PointsView::of(slots[slot].points));
       if (stored.points > capacity_) {
-        visit_points(stored,
-                     [&](std::span<const LatticePoint> some) { file_.append_placed(some); });
+        visit_points(stored, [&](const PointsView& some) { file_.append_placed(some); });
       }
       written_ += stored.points;
       watch_.tell(written_, static_cast<double>(written_) / static_cast<double>(tree_.points()));
@@ -219,6 +218,7 @@ class Sorting {
   PointFile& file_;
   RunWatch& watch_;
   std::uint64_t memory_;
+  std::size_t record_size_;
   MemoryPlan plan_;
   std::size_t capacity_;
   std::shared_ptr<ScratchFolder> scratch_;

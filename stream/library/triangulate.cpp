@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "src/error.h"
+#include "stream/library/attribute_choice.h"
 #include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
@@ -118,6 +119,7 @@ MeshStart Run::start() const {
   start.header.points = points.records;
   start.header.crs = points.crs;
   start.header.extent = points.extent;
+  start.header.attributes = points.attributes;
   start.is_triangulated = true;
   start.has_heights = points.has_heights;
   start.name = points.name;
@@ -141,6 +143,7 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   auto* target = OwnParts::of(sink);
   if (target == nullptr) target = &program_sink.emplace(sink);
   points->settle_crs(target->crs_need());
+  points->carry(target->wanted_attributes(true));
   const std::uint64_t own = target->own_memory(context.memory());
   Executor* const executor = context.options().executor.get();
   // Processes tell by the index which of several equal points comes first.
@@ -153,7 +156,9 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
           .stream = stream_options(options, context, *target, watch),
           .budget = MemoryBudget(context.memory() - own, context.memory()),
           .scratch = context.state().scratch(context)};
+  run.stream.record_size = run.points.attributes.record_size();
   check(run.points, options.dimension);
+  target->check_attributes(attributes_of_inputs(run.points));
   return executor != nullptr ? executor->triangulate(run) : triangulate_here(run);
 }
 

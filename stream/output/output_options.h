@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "src/geometry/lattice.h"
@@ -11,6 +12,7 @@ struct OutputOptions {
   std::optional<Lattice> lattice{};  ///< coordinates are on it
   std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, output units
   bool input_index = false;          ///< vertices carry their index in the input
+  std::size_t record_size = 0;       ///< bytes of the attributes that vertices carry
   bool imported_vertices = false;    ///< fill Settled::imported_vertices
 };
 

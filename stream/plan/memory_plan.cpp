@@ -60,9 +60,16 @@ constexpr double kEarlyShare = 0.75;
 constexpr double kWaitingShare = 0.1;
 constexpr std::size_t kBufferedPointBytes = 24;
 
+/// How often the attributes of a point are in memory: in two loaded tiles and the output that
+/// waits; in a leaf and what is made of it; in a batch as it was read and as it is dealt.
+constexpr std::size_t kTileRecords = 3;
+constexpr std::size_t kLeafRecords = 2;
+constexpr std::size_t kBatchRecords = 2;
+
 /// Batches of points: raw, and dealt.
 constexpr double kBatchesShare = 0.35;
-constexpr std::size_t kBatchBytes = 65'536 * 58;
+constexpr std::size_t kBatchPoints = 65'536;
+constexpr std::size_t kBatchPointBytes = 58;
 constexpr std::size_t kLeastBatches = 3;
 /// ... beside tiles that are triangulated, with which threads go on meanwhile.
 constexpr std::size_t kLeastEarlyBatches = 2;
@@ -78,7 +85,7 @@ std::size_t share(std::uint64_t limit, double part, std::size_t bytes_each) {
 }  // namespace
 
 MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads,
-                       std::uint64_t whole, bool early) {
+                       std::uint64_t whole, bool early, std::size_t record_size) {
   const Costs& costs = costs_of(dimension);
   if (limit < costs.least_limit) {
     const double parts = static_cast<double>(std::max(whole, limit)) /
@@ -92,16 +99,18 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
   MemoryPlan plan;
   limit -= early ? kEarlyReserve : kReserve;
   const double part = early ? kEarlyShare : 1;
-  plan.buffered_points = share(limit, part * costs.buffer_share, kBufferedPointBytes);
-  plan.tile_room = share(limit, part * kTileShare, costs.tile_bytes);
+  const std::size_t leaf_bytes = costs.leaf_bytes + kLeafRecords * record_size;
+  plan.buffered_points = share(limit, part * costs.buffer_share, kBufferedPointBytes + record_size);
+  plan.tile_room = share(limit, part * kTileShare, costs.tile_bytes + kTileRecords * record_size);
   plan.tile_capacity = std::min(plan.tile_room, costs.good_tile);
-  plan.leaf_size = std::min(
-      {costs.good_leaf, share(limit, costs.leaf_share, costs.leaf_bytes), plan.tile_capacity});
+  plan.leaf_size =
+      std::min({costs.good_leaf, share(limit, costs.leaf_share, leaf_bytes), plan.tile_capacity});
   plan.waiting_bytes = share(limit, kWaitingShare, 1);
   plan.batches = std::clamp(
-      share(limit, kBatchesShare, kBatchBytes), early ? kLeastEarlyBatches : kLeastBatches,
+      share(limit, kBatchesShare, kBatchPoints * (kBatchPointBytes + kBatchRecords * record_size)),
+      early ? kLeastEarlyBatches : kLeastBatches,
       std::max<std::size_t>(kEnoughBatches, kBatchesOfThread * wanted_threads));
-  const std::size_t most = share(limit, costs.leaves_share, costs.leaf_bytes * plan.leaf_size);
+  const std::size_t most = share(limit, costs.leaves_share, leaf_bytes * plan.leaf_size);
   plan.threads = static_cast<unsigned>(std::clamp<std::size_t>(most, 1, wanted_threads));
   return plan;
 }

@@ -20,9 +20,9 @@ struct MemoryPlan {
 /// The plan for a limit in bytes. `wanted_threads` is cut down to what there is memory for. Throws
 /// TooSmallLimit with the least that is enough if this one is too small: of `whole`, if the limit
 /// is a part of that. If tiles are triangulated `early`, while points wait for others, both
-/// get less.
+/// get less. `record_size`: bytes of the attributes that each point carries.
 MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads,
-                       std::uint64_t whole = 0, bool early = false);
+                       std::uint64_t whole = 0, bool early = false, std::size_t record_size = 0);
 
 /// The capacity of tiles for `points` points: the plan's, and larger where that would be very many
 /// tiles, as far as there is room.

@@ -27,7 +27,8 @@ struct StreamOptions {
   Heights heights = Heights::kFirst;
   std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, in output units
   bool input_index = false;
-  RunTrace* trace = nullptr;  ///< told what the run does, if there is one
+  std::size_t record_size = 0;  ///< bytes of the attributes that points carry
+  RunTrace* trace = nullptr;    ///< told what the run does, if there is one
   /// Triangulate while points are being read, where regions of the source tell where they lie.
   bool early = false;
   /// Told the box around all points in x and y, in the coordinates in which the source gives them,

@@ -18,6 +18,7 @@ MeshBlock PartFileNumbers::take(MergedSection&& merged) {
   // New vertices come first among the short numbers, so imported ones wait for their number.
   std::vector<std::uint32_t> short_numbers(used.size());
   std::vector<std::size_t> imports;
+  const std::size_t size = used.empty() ? 0 : merged.imported_attributes.size() / used.size();
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (const std::optional<std::uint64_t> number = find(used[i])) {
       block.imported.push_back(*number);
@@ -27,6 +28,9 @@ MeshBlock PartFileNumbers::take(MergedSection&& merged) {
     short_numbers[i] = static_cast<std::uint32_t>(block.vertices.size());
     block.vertices.push_back(merged.imported_vertices[i]);
     if (!merged.imported_index.empty()) block.input_index.push_back(merged.imported_index[i]);
+    const auto record = merged.imported_attributes.begin() + static_cast<std::ptrdiff_t>(i * size);
+    block.attributes.insert(block.attributes.end(), record,
+                            record + static_cast<std::ptrdiff_t>(size));
     foreign_.emplace(used[i], vertices_++);
     append_id(ids_, used[i]);
   }

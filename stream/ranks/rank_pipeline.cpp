@@ -28,6 +28,7 @@ using distributed::Reduction;
 /// Memory for a piece that is read, encoded and sent, and for one that comes from another rank; and
 /// the shares of the limit that all own pieces and all others under way may have.
 constexpr std::uint64_t kPieceBytes = std::uint64_t{6} << 20;
+constexpr std::uint64_t kPiecePoints = 65'536;
 constexpr std::uint64_t kArrivingBytes = std::uint64_t{1} << 20;
 constexpr double kOwnShare = 0.1;
 constexpr double kArrivingShare = 0.1;
@@ -72,7 +73,8 @@ class RankRun {
       refuse_flat(all.points);
       run_collective_step(ranks_, [&] { options_.extent_known(plane_of(all.box), all.points); });
       if constexpr (D == 2) {
-        budget_.set_enough(enough_memory<D>(all.points) + all.points * kMergedBytes);
+        budget_.set_enough(enough_memory<D>(all.points, options_.record_size) +
+                           all.points * (kMergedBytes + options_.record_size));
       }
       if (tree.own_node()) triangulate(tree);
       collect(tree);
@@ -83,9 +85,10 @@ class RankRun {
   }
 
  private:
-  /// The index tells which of several equal points comes first: in the plane heights depend on it.
+  /// The index tells which of several equal points comes first: attributes depend on it, and in the
+  /// plane heights.
   [[nodiscard]] static bool is_indexed(const StreamOptions& options) {
-    return D == 2 || options.input_index;
+    return D == 2 || options.input_index || options.record_size > 0;
   }
 
   [[nodiscard]] std::optional<std::uint64_t> expected_share() const {
@@ -105,7 +108,7 @@ class RankRun {
     const std::uint64_t all_ranks = most.pieces_of_rank * static_cast<std::uint64_t>(ranks_.size());
     const MemoryLease lease(
         budget_,
-        most.pieces_of_rank * kPieceBytes + std::min(most.pieces, all_ranks) * kArrivingBytes,
+        most.pieces_of_rank * piece_bytes() + std::min(most.pieces, all_ranks) * arriving_bytes(),
         "points on their way between ranks");
     PointExchange exchange(pieces, division, ranks_, most, is_indexed(options_), engine_.times());
     const auto report = [&] { options_.progress(source_.points_read(), exchange.fraction()); };
@@ -136,14 +139,21 @@ class RankRun {
     return count;
   }
 
+  [[nodiscard]] std::uint64_t piece_bytes() const {
+    return kPieceBytes + 2 * kPiecePoints * options_.record_size;
+  }
+  [[nodiscard]] std::uint64_t arriving_bytes() const {
+    return kArrivingBytes + kPiecePoints * options_.record_size;
+  }
+
   /// What a round may have; the same at all ranks.
   [[nodiscard]] ExchangeRound round() const {
     const auto limit = static_cast<double>(budget_.limit());
     std::array<std::uint64_t, 2> most = {
-        std::clamp<std::uint64_t>(static_cast<std::uint64_t>(limit * kOwnShare) / kPieceBytes, 1,
+        std::clamp<std::uint64_t>(static_cast<std::uint64_t>(limit * kOwnShare) / piece_bytes(), 1,
                                   std::max<std::uint64_t>(kUsualPieces, engine_.threads())),
         std::max<std::uint64_t>(
-            1, static_cast<std::uint64_t>(limit * kArrivingShare) / kArrivingBytes)};
+            1, static_cast<std::uint64_t>(limit * kArrivingShare) / arriving_bytes())};
     ranks_.reduce(most, Reduction::kLeast);
     return {.pieces_of_rank = most[0], .pieces = most[1]};
   }
@@ -233,11 +243,12 @@ class RankRun {
     section.mesh = std::move(settled.mesh);
     section.imported_vertices = std::move(settled.imported_vertices);
     section.imported_index = std::move(settled.imported_index);
+    section.imported_attributes = std::move(settled.imported_attributes);
     imported_.push_back(std::move(settled.imported));
-    merged_bytes_ += section.mesh.bytes() +
-                     section.imported_vertices.size() * sizeof(LatticePoint) +
-                     section.imported_index.size() * sizeof(std::uint64_t) +
-                     imported_.back().size() * (sizeof(StreamPlace) + sizeof(std::uint64_t));
+    merged_bytes_ +=
+        section.mesh.bytes() + section.imported_vertices.size() * sizeof(LatticePoint) +
+        section.imported_index.size() * sizeof(std::uint64_t) + section.imported_attributes.size() +
+        imported_.back().size() * (sizeof(StreamPlace) + sizeof(std::uint64_t));
     merged_lease_ = {};
     merged_lease_ = MemoryLease(budget_, merged_bytes_, "what merges between ranks made final");
     result_.merged.push_back(std::move(section));

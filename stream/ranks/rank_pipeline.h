@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -32,6 +33,7 @@ struct MergedSection {
   MeshBlock mesh;                               ///< `imported` are numbers in the whole stream
   std::vector<LatticePoint> imported_vertices;  ///< the same vertices, like the mesh's own
   std::vector<std::uint64_t> imported_index;    ///< likewise, if vertices carry it
+  std::vector<std::byte> imported_attributes;   ///< likewise
   std::uint64_t canonical_hash = 0;             ///< of its simplices
 };
 

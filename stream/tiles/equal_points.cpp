@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace spillway::detail {
 
@@ -16,24 +17,26 @@ EqualPoints::Rank EqualPoints::rank_of(const LatticePoint& point, std::uint64_t 
   return {sign_ == 0 ? 0 : sign_ * point[2], place};
 }
 
-void EqualPoints::add(std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
+void EqualPoints::add(const PointsView& points) {
   for (std::size_t i = 0; i < points.size(); ++i, ++count_) {
-    const Rank rank = rank_of(points[i], index.empty() ? count_ : index[i]);
+    const LatticePoint& point = points.points[i];
+    const Rank rank = rank_of(point, points.index.empty() ? count_ : points.index[i]);
     if (count_ == 0 || rank < least_) {
       least_ = rank;
-      chosen_ = {points[i], index.empty() ? 0 : index[i]};
+      chosen_.clear();
+      points.subview(i, 1).append_to(chosen_);
     }
-    if (mean_) heights_.push_back(points[i][2]);
+    if (mean_) heights_.push_back(point[2]);
   }
 }
 
-EqualPoints::Chosen EqualPoints::choose() {
+PointBlock EqualPoints::choose() {
   if (mean_) {
     std::sort(heights_.begin(), heights_.end());
-    chosen_.point[2] = std::accumulate(heights_.begin(), heights_.end(), 0.0) /
-                       static_cast<double>(heights_.size());
+    chosen_.points.front()[2] = std::accumulate(heights_.begin(), heights_.end(), 0.0) /
+                                static_cast<double>(heights_.size());
   }
-  return chosen_;
+  return std::move(chosen_);
 }
 
 }  // namespace spillway::detail

@@ -3,10 +3,10 @@
 #include <spillway/choices.h>
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "src/geometry/framed_point.h"
+#include "stream/tiles/storage/points_view.h"
 
 namespace spillway::detail {
 
@@ -17,18 +17,15 @@ class EqualPoints {
  public:
   EqualPoints(int dimension, Heights choice);
 
-  /// The next points, in the order in which they came. `index` has numbers that ascend in the order
-  /// of the input; none if that is the order in which they come.
-  void add(std::span<const LatticePoint> points, std::span<const std::uint64_t> index);
+  /// The next points, in the order in which they came. Their indices ascend in the order of the
+  /// input; without these that is the order in which they come.
+  void add(const PointsView& points);
 
   [[nodiscard]] std::uint64_t count() const { return count_; }
 
-  struct Chosen {
-    LatticePoint point{};
-    std::uint64_t index = 0;  ///< if points have one
-  };
-  /// Of at least one point; to be called once.
-  Chosen choose();
+  /// One point, with the index and attributes that points have. Of at least one point; to be called
+  /// once.
+  PointBlock choose();
 
  private:
   /// What is least is chosen.
@@ -45,7 +42,7 @@ class EqualPoints {
   bool mean_;
   std::uint64_t count_ = 0;
   Rank least_{};
-  Chosen chosen_;
+  PointBlock chosen_;
   std::vector<double> heights_;  ///< for their mean
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -132,14 +133,10 @@ void TileTree::deal_held(HeldPoints held, Batch& batch) {
   Batch dealt;
   dealt.arrival = held.arrival;
   dealt.run = held.run;
-  PointBlock points;
-  held.buffer.drain_in_chunks(
-      [&](std::span<const LatticePoint> chunk, std::span<const std::uint64_t> index) {
-        points.points.assign(chunk.begin(), chunk.end());
-        points.index.assign(index.begin(), index.end());
-        deal(dealt, points);
-        append_dealt(dealt.dealt, dealt);
-      });
+  held.buffer.drain_in_chunks([&](const PointBlock& points) {
+    deal(dealt, points);
+    append_dealt(dealt.dealt, dealt);
+  });
   std::ranges::move(dealt.spills, std::back_inserter(batch.spills));
 }
 
@@ -295,28 +292,29 @@ std::vector<HeldPoints> TileTree::part(HeldPoints held, const TileCut& first,
     part.run = held.run;
   }
   constexpr std::size_t kMost = PointBuffer::kPagePoints;
-  std::vector<LatticePoint> dealt(kParts * kMost);
-  std::vector<std::uint64_t> dealt_index;
-  held.buffer.drain([&](std::span<const LatticePoint> points,
-                        std::span<const std::uint64_t> index) {
-    if (!index.empty()) dealt_index.resize(dealt.size());
+  PointBlock dealt;
+  dealt.points.resize(kParts * kMost);
+  held.buffer.drain([&](const PointsView& some) {
+    const std::size_t record = some.record_size();
+    if (!some.index.empty()) dealt.index.resize(dealt.size());
+    dealt.attributes.resize(dealt.size() * record);
     std::array<std::size_t, kParts> counts{};
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const std::size_t side = points[i][first.axis] >= first.value ? 1 : 0;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const LatticePoint& point = some.points[i];
+      const std::size_t side = point[first.axis] >= first.value ? 1 : 0;
       const TileCut& next = second[side];
-      const std::size_t part = 2 * side + (points[i][next.axis] >= next.value ? 1 : 0);
+      const std::size_t part = 2 * side + (point[next.axis] >= next.value ? 1 : 0);
       const std::size_t place = part * kMost + counts[part]++;
-      dealt[place] = points[i];
-      if (!index.empty()) dealt_index[place] = index[i];
+      dealt.points[place] = point;
+      if (!some.index.empty()) dealt.index[place] = some.index[i];
+      if (record > 0) {
+        std::memcpy(&dealt.attributes[place * record], &some.attributes[i * record], record);
+      }
     }
     for (std::size_t p = 0; p < kParts; ++p) {
-      if (counts[p] == 0) continue;
-      const auto some = std::span(dealt).subspan(p * kMost, counts[p]);
-      for (const LatticePoint& point : some) parts[p].box.expand(point);
-      parts[p].buffer.append(
-          some, index.empty()
-                    ? std::span<const std::uint64_t>()
-                    : std::span<const std::uint64_t>(dealt_index).subspan(p * kMost, counts[p]));
+      const PointsView of_part = PointsView::of(dealt).subview(p * kMost, counts[p]);
+      for (const LatticePoint& point : of_part.points) parts[p].box.expand(point);
+      parts[p].buffer.append(of_part);
     }
   });
   return parts;

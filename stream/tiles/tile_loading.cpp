@@ -185,20 +185,16 @@ StoredTile TileTree::one_of(Tile tile) const {
         PointBlock points;
         while (reader.fetch(blocks)) {
           decode_all_points(blocks.bytes, blocks.where, points);
-          all.add(points.points, points.index);
+          all.add(PointsView::of(points));
         }
       },
       [&](PointBuffer& buffer) {
-        buffer.drain([&](std::span<const LatticePoint> points,
-                         std::span<const std::uint64_t> index) { all.add(points, index); });
+        buffer.drain([&](const PointsView& points) { all.add(points); });
       });
   StoredTile stored;
   stored.points = 1;
   stored.left_out = all.count() - 1;
-  const EqualPoints::Chosen chosen = all.choose();
-  stored.segments.emplace_back().buffer.append(
-      std::span(&chosen.point, 1),
-      options_.index ? std::span(&chosen.index, 1) : std::span<const std::uint64_t>());
+  stored.segments.emplace_back().buffer.append(PointsView::of(all.choose()));
   return stored;
 }
 
@@ -219,13 +215,11 @@ template <int D>
 TilePoints<D> TileTree::decode(StoredTile stored) const {
   TilePoints<D> result;
   result.left_out = stored.left_out;
-  result.resize(stored.points, options_.index);
+  result.resize(stored.points, options_.index, options_.record_size);
   std::size_t position = 0;
-  const auto put = [&](std::size_t first, std::span<const LatticePoint> points,
-                       std::span<const std::uint64_t> index) {
-    for (std::size_t i = 0; i < points.size(); ++i) result.set(first + i, points[i]);
-    std::copy(index.begin(), index.end(),
-              result.index.begin() + static_cast<std::ptrdiff_t>(index.empty() ? 0 : first));
+  const auto put = [&](std::size_t first, const PointsView& some) {
+    for (std::size_t i = 0; i < some.size(); ++i) result.set(first + i, some.points[i]);
+    result.set_carried(first, some);
   };
   for (StoredTile::Segment& segment : stored.segments) {
     const std::vector<TileBlock> blocks = find_blocks(segment.bytes, segment.where);
@@ -241,14 +235,13 @@ TilePoints<D> TileTree::decode(StoredTile stored) const {
         decode_points(
             std::span<const std::byte>(segment.bytes).subspan(blocks[b].offset, blocks[b].size),
             segment.where, points);
-        put(first[b], points.points, points.index);
+        put(first[b], PointsView::of(points));
       }
     });
-    segment.buffer.drain(
-        [&](std::span<const LatticePoint> points, std::span<const std::uint64_t> index) {
-          put(position, points, index);
-          position += points.size();
-        });
+    segment.buffer.drain([&](const PointsView& points) {
+      put(position, points);
+      position += points.size();
+    });
   }
   return result;
 }

@@ -45,6 +45,7 @@ TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageT
       cuts_(options.dimension),
       tiles_(1),
       capacity_(options.capacity) {
+  refuse_large_records(options.record_size);
   if (options.plan == nullptr) return;
   cuts_ = options.plan->cuts;
   tiles_.resize(cuts_.tiles());
@@ -145,18 +146,13 @@ void TileTree::append(Batch& batch) {
 
 void TileTree::append_dealt(const DealtPoints& dealt, Batch& batch) {
   for (const PointRun& run : dealt.runs) {
-    const auto points = std::span(dealt.points.points).subspan(run.begin, run.end - run.begin);
-    const auto index = dealt.points.index.empty()
-                           ? std::span<const std::uint64_t>()
-                           : std::span<const std::uint64_t>(dealt.points.index)
-                                 .subspan(run.begin, run.end - run.begin);
+    const PointsView points = dealt.points_of(run);
     if (tiles_[run.tile].cut_at <= batch.cuts_made) {
-      append_points(run.tile, points, index, run.box, batch);
+      append_points(run.tile, points, run.box, batch);
       continue;
     }
     PointBlock block;  // the tile has been cut since
-    block.points.assign(points.begin(), points.end());
-    block.index.assign(index.begin(), index.end());
+    points.append_to(block);
     DealtPoints again;
     again.deal(cuts_, block);
     Batch now;
@@ -168,8 +164,7 @@ void TileTree::append_dealt(const DealtPoints& dealt, Batch& batch) {
   }
 }
 
-void TileTree::append_points(std::uint32_t number, std::span<const LatticePoint> points,
-                             std::span<const std::uint64_t> index, const Box<3>& box,
+void TileTree::append_points(std::uint32_t number, const PointsView& points, const Box<3>& box,
                              Batch& batch) {
   Tile& tile = tiles_[number];
   const bool other_run = !tile.held.empty() && tile.held.back().run != batch.run;
@@ -178,19 +173,18 @@ void TileTree::append_points(std::uint32_t number, std::span<const LatticePoint>
     tile.held.push_back({.arrival = batch.arrival, .run = batch.run});
   }
   tile.used = batches_;
-  put(tile.held.back(), tile, points, index, box);
+  put(tile.held.back(), tile, points, box);
   if (filled_) tile.expected = std::max(0.0, tile.expected - static_cast<double>(points.size()));
   if (divided_ && outgrown(tile)) cut_in_two(number, filled_);
 }
 
 /// Puts points of that box into a buffer of a tile.
-void TileTree::put(HeldPoints& held, Tile& tile, std::span<const LatticePoint> points,
-                   std::span<const std::uint64_t> index, const Box<3>& box) {
+void TileTree::put(HeldPoints& held, Tile& tile, const PointsView& points, const Box<3>& box) {
   tile.points += points.size();
   tile.box.expand(box);
   held.box.expand(box);
   room_ -= held.buffer.room();
-  held.buffer.append(points, index);
+  held.buffer.append(points);
   room_ += held.buffer.room();
 }
 

@@ -124,10 +124,9 @@ class TileTree {
   void deal(Batch& batch, const PointBlock& points) const;
   void append(Batch& batch);
   void append_dealt(const DealtPoints& dealt, Batch& batch);
-  void append_points(std::uint32_t number, std::span<const LatticePoint> points,
-                     std::span<const std::uint64_t> index, const Box<3>& box, Batch& batch);
-  void put(HeldPoints& held, Tile& tile, std::span<const LatticePoint> points,
-           std::span<const std::uint64_t> index, const Box<3>& box);
+  void append_points(std::uint32_t number, const PointsView& points, const Box<3>& box,
+                     Batch& batch);
+  void put(HeldPoints& held, Tile& tile, const PointsView& points, const Box<3>& box);
   [[nodiscard]] std::size_t most_room() const;
   void spill_some(Batch& batch);
   [[nodiscard]] bool may_be_cut_later() const;

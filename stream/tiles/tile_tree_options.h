@@ -25,6 +25,7 @@ struct TileTreeOptions {
   std::optional<std::uint64_t> expected{};  ///< how many points will come, where that is known
   std::optional<Box<3>> extent{};           ///< where they will lie, where that is known
   bool index = false;                       ///< points keep their index; that of others is dropped
+  std::size_t record_size = 0;              ///< bytes of the attributes that points carry
   std::size_t batches = 6;                  ///< most of them under way at a time
   const RegionPlan* plan = nullptr;         ///< that the feed keeps to; outlives the tree
   /// If set, read() makes one point of a tile of points that are one vertex, where they are more

@@ -87,6 +87,8 @@ class Merge {
         std::fill(wanted_.begin() + first_vertex_[c], wanted_.begin() + first_vertex_[c + 1], 1);
       }
       vertices.insert(vertices.end(), child.vertices.begin(), child.vertices.end());
+      std::vector<std::byte>& attributes = result_.border.attributes;
+      attributes.insert(attributes.end(), child.attributes.begin(), child.attributes.end());
     }
     for (VertexId v = 0; v < first_vertex_.back(); ++v) {
       if (wanted_[v] != 0) border_vertices_.push_back(v);
@@ -226,12 +228,13 @@ class Merge {
 }  // namespace
 
 template <int D>
-std::uint64_t enough_memory(std::uint64_t points, std::uint64_t simplices_a_point) {
-  const std::uint64_t border =
-      sizeof(BorderVertex<D>) + simplices_a_point * sizeof(std::array<VertexId, D + 1>);
+std::uint64_t enough_memory(std::uint64_t points, std::size_t record_size,
+                            std::uint64_t simplices_a_point) {
+  const std::uint64_t border = sizeof(BorderVertex<D>) + record_size +
+                               simplices_a_point * sizeof(std::array<VertexId, D + 1>);
   const std::uint64_t merge =
       std::max(kAllBorderMergeBytes<D>, simplices_a_point * kMergedSimplexBytes);
-  return points * (kLoadedPointBytes + 2 * border + merge);
+  return points * (kLoadedPointBytes + record_size + 2 * border + merge);
 }
 
 template <int D>
@@ -253,8 +256,8 @@ MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tre
   return Merge<D, Tree>(children, trees, budget, kernel).run(task);
 }
 
-template std::uint64_t enough_memory<2>(std::uint64_t, std::uint64_t);
-template std::uint64_t enough_memory<3>(std::uint64_t, std::uint64_t);
+template std::uint64_t enough_memory<2>(std::uint64_t, std::size_t, std::uint64_t);
+template std::uint64_t enough_memory<3>(std::uint64_t, std::size_t, std::uint64_t);
 template std::uint64_t enough_for<2>(const WorkForecast&, std::uint64_t);
 template std::uint64_t enough_for<3>(const WorkForecast&, std::uint64_t);
 template std::uint64_t merge_bytes<2>(std::uint64_t, std::uint64_t);

@@ -36,7 +36,8 @@ struct Border {
   int dimension = -1;  ///< of the affine hull of all the part's points
   std::vector<BorderVertex<D>> vertices;
   std::vector<std::array<VertexId, D + 1>> simplices;  ///< of numbers of `vertices`
-  std::vector<Exposure> exposure;  ///< by simplex, if it is known, as of most parts of tiles
+  std::vector<Exposure> exposure;     ///< by simplex, if it is known, as of most parts of tiles
+  std::vector<std::byte> attributes;  ///< a record a vertex, if points carry any
 
   /// Whether the part has no simplices and gives all its points to the merge above, since they span
   /// fewer than D dimensions.
@@ -48,7 +49,7 @@ struct Border {
   }
   [[nodiscard]] std::uint64_t bytes() const {
     return vertices.size() * sizeof(vertices[0]) + simplices.size() * sizeof(simplices[0]) +
-           exposure.size() * sizeof(exposure[0]);
+           exposure.size() * sizeof(exposure[0]) + attributes.size();
   }
 };
 
@@ -64,9 +65,11 @@ struct MergedBorder {
 
 /// Bytes of memory that are enough to triangulate `points` points, even if all of them stay in the
 /// border to the end, where there are at most so many simplices for each. In the plane there are
-/// two; in space there may be as many as there are points.
+/// two; in space there may be as many as there are points. Each carries attributes of `record_size`
+/// bytes.
 template <int D>
-std::uint64_t enough_memory(std::uint64_t points, std::uint64_t simplices_a_point = 2);
+std::uint64_t enough_memory(std::uint64_t points, std::size_t record_size,
+                            std::uint64_t simplices_a_point = 2);
 
 /// Bytes of memory that are likely to be enough for `points` points if base cases go on as this
 /// forecast of one says, whatever is divided: where many simplices meet in each point, the borders

@@ -85,8 +85,8 @@ template <int D>
 std::uint64_t BorderGrowth<D>::enough_for(const Shortage& shortage) const {
   const std::lock_guard lock(mutex_);
   if (tile_vertices_ >= points_ / 2) {
-    const double all_in_borders =
-        static_cast<double>(enough_memory<D>(shortage.all_points, shortage.densest));
+    const double all_in_borders = static_cast<double>(
+        enough_memory<D>(shortage.all_points, shortage.record_size, shortage.densest));
     return static_cast<std::uint64_t>(kReserve * all_in_borders);
   }
   const auto limit = static_cast<double>(shortage.limit);
@@ -120,7 +120,9 @@ std::uint64_t BorderGrowth<D>::enough_for(const Shortage& shortage) const {
       (resident + std::clamp(merge, refused, std::max(refused, resident + most_triangulated)));
   const auto loaded = static_cast<double>(std::min(shortage.loaded, shortage.all_points));
   const double tiles =
-      kReserve * std::max(others, loaded * kLoadedPointBytes + kLeastTileWork * limit);
+      kReserve *
+      std::max(others, loaded * static_cast<double>(kLoadedPointBytes + shortage.record_size) +
+                           kLeastTileWork * limit);
   if (tiles > kMostTileShare * limit) return 0;
   const double of_any_size = between / (1 - tiles / limit);
   const double of_all_loaded = between + tiles * all / loaded;

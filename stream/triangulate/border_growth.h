@@ -23,6 +23,7 @@ class BorderGrowth {
     std::uint64_t loaded = 0;      ///< most points of tiles in memory, which grow with the limit
     std::uint64_t all_points = 0;  ///< of the whole run
     std::uint64_t densest = 0;     ///< simplices for each point of a leaf, at most
+    std::size_t record_size = 0;   ///< bytes of a point's attributes
   };
 
   /// A tile of so many points is done.

@@ -106,6 +106,7 @@ class Settlement {
       const BorderVertex<D>& vertex = part_.vertex(v);
       mesh.vertices[count] = output_point(vertex);
       if (output_.input_index) mesh.input_index[count] = vertex.input_index;
+      carry(v, mesh.attributes);
       hashes_[count] = vertex_hash<D>(world(vertex.position));
       short_number_[v] = count++;
     }
@@ -129,6 +130,7 @@ class Settlement {
       }
       kept_number_[v] = static_cast<VertexId>(result_.border.vertices.size());
       result_.border.vertices.push_back(part_.vertex(v));
+      carry(v, result_.border.attributes);
       if (!place.announced() && (use_[v] & kByFinal) != 0) {
         result_.border.vertices.back().place = {part_.block, short_number_[v]};
       }
@@ -144,6 +146,15 @@ class Settlement {
     if (!output_.imported_vertices) return;
     result_.imported_vertices.push_back(output_point(vertex));
     if (output_.input_index) result_.imported_index.push_back(vertex.input_index);
+    carry(v, result_.imported_attributes);
+  }
+
+  /// Appends the attributes of a vertex to those of others.
+  void carry(VertexId v, std::vector<std::byte>& attributes) const {
+    const std::size_t size = output_.record_size;
+    if (size == 0) return;
+    const std::byte* const record = part_.record(v, size);
+    attributes.insert(attributes.end(), record, record + size);
   }
 
   void list_simplices() {

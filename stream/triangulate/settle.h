@@ -3,6 +3,7 @@
 // into the stream, the others stay in memory as a border.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,6 +24,7 @@ struct Settled {
   std::vector<StreamPlace> imported;            ///< where the imported vertices were announced
   std::vector<LatticePoint> imported_vertices;  ///< they themselves, like the mesh's, if asked for
   std::vector<std::uint64_t> imported_index;    ///< likewise, if vertices carry it
+  std::vector<std::byte> imported_attributes;   ///< likewise
   CanonicalHash<D> hash;                        ///< of the simplices in `mesh`
   std::uint64_t final_simplices = 0;            ///< finite and infinite ones
   std::uint64_t hull_facets = 0;                ///< infinite simplices that are final
@@ -59,6 +61,10 @@ struct MergeToSettle {
     return merged.simplices[i];
   }
   [[nodiscard]] const BorderVertex<D>& vertex(VertexId v) const { return merged.vertices[v]; }
+  /// The bytes of its attributes, if vertices carry any.
+  [[nodiscard]] const std::byte* record(VertexId v, std::size_t size) const {
+    return &merged.attributes[v * size];
+  }
   [[nodiscard]] const Point<D>& position(VertexId v) const { return merged.vertices[v].position; }
   void expect(VertexId /*v*/) const {}
   [[nodiscard]] StreamPlace place(VertexId v) const { return merged.vertices[v].place; }
@@ -83,9 +89,10 @@ struct LeafToSettle {
   std::span<const Simplex<D>> open_simplices;
   std::span<const Exposure> exposure;     ///< of those `open`, where it is known
   std::span<const Point<D>> points;       ///< by vertex
-  std::span<const VertexId> input_index;  ///< by vertex: its place in the two that follow
+  std::span<const VertexId> input_index;  ///< by vertex: its place in the three that follow
   std::span<const double> heights;        ///< D = 2
   std::span<const std::uint64_t> index;   ///< the points' index in the input, or none
+  std::span<const std::byte> attributes;  ///< likewise, of a record each
 
   [[nodiscard]] int dimension() const { return D; }
   [[nodiscard]] std::size_t vertex_count() const { return points.size(); }
@@ -113,6 +120,9 @@ struct LeafToSettle {
     if constexpr (D == 2) vertex.height = heights[input_index[v]];
     if (!index.empty()) vertex.input_index = index[input_index[v]];
     return vertex;
+  }
+  [[nodiscard]] const std::byte* record(VertexId v, std::size_t size) const {
+    return &attributes[input_index[v] * size];
   }
   [[nodiscard]] const Point<D>& position(VertexId v) const { return points[v]; }
   /// Fetches ahead what vertex(v) will look up far away.

@@ -38,8 +38,7 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
                           MemoryBudget& budget, const StreamOptions& options)
     : options_(options),
       budget_(budget),
-      plan_(plan_memory(budget.limit(), D, options.threads, budget.whole(),
-                        expected.plan != nullptr)),
+      plan_(plan_for(options.threads, expected.plan != nullptr)),
       counts_(budget),
       held_points_(budget),
       expected_points_(expected.count.value_or(0)),
@@ -54,8 +53,7 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
     counts_.times.tell_steps([trace = options.trace](const StageStep& step) { trace->step(step); });
   }
   if (options.trace != nullptr) {
-    const MemoryPlan any =
-        plan_memory(budget.limit(), D, kMostThreads, budget.whole(), expected.plan != nullptr);
+    const MemoryPlan any = plan_for(kMostThreads, expected.plan != nullptr);
     options.trace->limits({.batches = any.batches,
                            .tile_points = plan_.tile_room,
                            .loaded_points = kTilesAtATime * plan_.tile_room,
@@ -69,13 +67,18 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
 }
 
 template <int D>
+MemoryPlan TileEngine<D>::plan_for(unsigned threads, bool early) const {
+  return plan_memory(budget_.limit(), D, threads, budget_.whole(), early, options_.record_size);
+}
+
+template <int D>
 TileOptions TileEngine<D>::tile_options(const std::optional<Lattice>& lattice) const {
   TileOptions tile;
   tile.division = options_.division;
   tile.children = options_.children;
   tile.kernel = options_.kernel;
   tile.heights = options_.heights;
-  tile.output = {lattice, options_.max_edge, options_.input_index};
+  tile.output = {lattice, options_.max_edge, options_.input_index, options_.record_size};
   return tile;
 }
 
@@ -100,6 +103,7 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
           .expected = expected.count,
           .extent = expected.extent,
           .index = index,
+          .record_size = options_.record_size,
           .batches = plan_.batches,
           .plan = expected.plan,
           .one_of_equal = options_.heights};
@@ -126,8 +130,7 @@ void TileEngine<D>::refuse_too_many(std::size_t tiles) const {
 template <int D>
 void TileEngine<D>::spill(const PointFeed& feed) {
   const Stopwatch watch(figures_.read_seconds);
-  const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(LatticePoint),
-                            "points that wait to be spilled");
+  const MemoryLease buffers(budget_, buffer_bytes(), "points that wait to be spilled");
   const PointFeed spanned = {.fetch = feed.fetch,
                              .decode = [&](SourcePiece& piece, PointBlock& block) {
                                budget_.give_back_freed();
@@ -152,13 +155,18 @@ void TileEngine<D>::spill(const PointFeed& feed) {
 template <int D>
 std::uint64_t TileEngine<D>::divide_large() {
   const Stopwatch watch(figures_.divide_seconds);
-  const MemoryLease buffers(budget_, plan_.buffered_points * sizeof(LatticePoint),
-                            "points that wait to be spilled");
+  const MemoryLease buffers(budget_, buffer_bytes(), "points that wait to be spilled");
   return figures_.divided_points =
              tree_.divide_large([this](std::uint64_t points, double fraction) {
                budget_.give_back_freed();
                options_.progress(points, fraction);
              });
+}
+
+/// What points take that wait to be spilled, at most.
+template <int D>
+std::uint64_t TileEngine<D>::buffer_bytes() const {
+  return plan_.buffered_points * (sizeof(LatticePoint) + options_.record_size);
 }
 
 /// From now on what waits gets less: as much as there is of it is leased.
@@ -211,7 +219,8 @@ void TileEngine<D>::estimate_shortages(std::uint64_t all_points) {
                                                         .refused = refusal.bytes,
                                                         .loaded = kTilesAtATime * plan_.tile_room,
                                                         .all_points = all_points,
-                                                        .densest = counts_.densest_leaf});
+                                                        .densest = counts_.densest_leaf,
+                                                        .record_size = options_.record_size});
     if (refusal.forecast == nullptr) return by_growth;
     // Work has outgrown what is usual: perhaps all points make that many simplices.
     return std::max({by_growth, enough_for<D>(*refusal.forecast, all_points),
@@ -314,7 +323,8 @@ void TileEngine<D>::work_off(Node& node) {
   if (node.children.empty()) {
     Task task;
     {
-      const MemoryLease lease(budget_, loaded_points(node) * kLoadedPointBytes, "a tile");
+      const MemoryLease lease(
+          budget_, loaded_points(node) * (kLoadedPointBytes + options_.record_size), "a tile");
       held_points_.give_back(node.stored.held_bytes());
       TilePoints<D> points = tree_.template decode<D>(std::move(node.stored));
       sample_.note(points.points);

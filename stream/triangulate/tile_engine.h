@@ -130,9 +130,11 @@ class TileEngine {
   using Node = typename Forest::Node;
   using Lanes = WorkLanes<Node>;
 
+  [[nodiscard]] MemoryPlan plan_for(unsigned threads, bool early) const;
   [[nodiscard]] TileOptions tile_options(const std::optional<Lattice>& lattice) const;
   TileTreeOptions tree_options(const ExpectedPoints& expected);
   void refuse_too_many(std::size_t tiles) const;
+  [[nodiscard]] std::uint64_t buffer_bytes() const;
   void lease_held_points();
   void begin_triangulating(std::uint64_t points, std::uint64_t all_points);
   void add_cell(std::uint32_t cell);

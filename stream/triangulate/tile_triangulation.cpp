@@ -255,7 +255,9 @@ class TileRun {
     const Part<D>& part = *node.tree;
     const auto points = std::span(tile_.points).subspan(part.begin, part.size());
     WorkingMemory<D> memory(
-        WorkLease(context_.budget, part.size() * kLeafBytes<D>, "the triangulation of a leaf"),
+        WorkLease(context_.budget,
+                  part.size() * (kLeafBytes<D> + context_.options.output.record_size),
+                  "the triangulation of a leaf"),
         context_.options.leaf_size);
     BaseCase<D> leaf = base_case(node, points, memory.lease());
     counts_.points += part.size();
@@ -329,12 +331,14 @@ class TileRun {
     leaf.input_index = std::span(input_index_).subspan(part.begin, part.size());
     if constexpr (D == 2) leaf.heights = tile_.heights;
     leaf.index = tile_.index;
+    leaf.attributes = tile_.attributes;
     return leaf;
   }
 
   /// A leaf without simplices: all its distinct points.
   [[nodiscard]] Border<D> open_border(const Part<D>& part, const BaseCase<D>& base_case) const {
     const LeafToSettle<D> leaf = leaf_of(part);
+    const std::size_t record_size = context_.options.output.record_size;
     Border<D> border;
     border.dimension = base_case.dimension;
     auto duplicate = base_case.duplicates.begin();
@@ -343,6 +347,9 @@ class TileRun {
         ++duplicate;
       } else {
         border.vertices.push_back(leaf.vertex(v));
+        if (record_size == 0) continue;
+        const std::byte* const record = leaf.record(v, record_size);
+        border.attributes.insert(border.attributes.end(), record, record + record_size);
       }
     }
     return border;

@@ -21,8 +21,33 @@
 
 namespace spillway::detail {
 
+/// What the points of a test carry: their number in the input, and its lowest byte, so that records
+/// have an odd size.
+inline AttributeLayout number_attributes() {
+  return AttributeLayout({{"number", NumberType::kUint32}, {"low_byte", NumberType::kUint8}});
+}
+
+inline void append_number_record(std::uint64_t number, std::vector<std::byte>& records) {
+  const auto value = static_cast<std::uint32_t>(number);
+  const auto bytes = std::as_bytes(std::span(&value, 1));
+  records.insert(records.end(), bytes.begin(), bytes.end());
+  records.push_back(static_cast<std::byte>(number));
+}
+
+/// Whether each vertex of these carries the attributes of the point whose index it has.
+inline void expect_attributes_of(const std::vector<std::uint64_t>& index,
+                                 const std::vector<std::byte>& attributes) {
+  std::vector<std::byte> expected;
+  for (const std::uint64_t number : index) append_number_record(number, expected);
+  EXPECT_TRUE(attributes == expected) << "attributes are not those of the vertices' points";
+}
+
+/// Runs on an even number of threads carry attributes, so that both kinds are tried.
+inline bool carries_attributes(const StreamOptions& options) { return options.threads % 2 == 0; }
+
 /// Keeps all blocks, and checks on the way that vertices are announced before and finalized after
-/// their last use, once each, and that a block imports what it uses or finalizes, and nothing else.
+/// their last use, once each, and that a block imports what it uses or finalizes, and nothing else;
+/// and that attributes, if there are any, are those of the point with the vertex' index.
 class KeepingWriter : public BlockSink {
  public:
   explicit KeepingWriter(int dimension) : corners_(dimension + 1) {}
@@ -51,6 +76,8 @@ class KeepingWriter : public BlockSink {
     }
     vertices.insert(vertices.end(), block.vertices.begin(), block.vertices.end());
     index.insert(index.end(), block.input_index.begin(), block.input_index.end());
+    if (!block.attributes.empty()) expect_attributes_of(block.input_index, block.attributes);
+    has_attributes |= !block.attributes.empty();
     most_live = std::max(most_live, live_.size());
     blocks.push_back(std::move(block));
   }
@@ -62,27 +89,32 @@ class KeepingWriter : public BlockSink {
   std::vector<std::uint64_t> corner_list;
   std::vector<MeshBlock> blocks;
   std::size_t most_live = 0;
+  bool has_attributes = false;
 
  private:
   std::size_t corners_;
   StreamVertices<std::monostate> live_;
 };
 
-/// A file of points in the test's temporary folder, of this process alone.
+/// A file of points in the test's temporary folder, of this process alone. They carry numbers from
+/// `first_number` on.
 template <int D>
-std::string write_points(const std::vector<Point<D>>& points) {
+std::string write_points(const std::vector<Point<D>>& points, std::uint64_t first_number = 0) {
   const std::string path = testing::TempDir() + "points" + std::to_string(::getpid()) + ".npy";
   PointWriterOptions options;
   options.coordinates = D;
   options.count = points.size();
+  options.attributes = number_attributes();
   const auto writer = open_point_writer(disk(), path, options);
   std::vector<LatticePoint> block;
+  std::vector<std::byte> records;
   for (const Point<D>& p : points) {
+    append_number_record(first_number + block.size(), records);
     LatticePoint point{};
     std::copy(p.begin(), p.end(), point.begin());
     block.push_back(point);
   }
-  writer->write(block, {});
+  writer->write(block, records);
   writer->finish();
   return path;
 }
@@ -98,9 +130,14 @@ StreamRun run_stream(const std::string& path, StreamOptions options,
   StreamRun run{{}, KeepingWriter(D)};
   options.input_index = true;
   PointSource source(disk(), {path}, {.dimension = D, .index = true});
+  if (carries_attributes(options)) {
+    source.carry({.all = true});
+    options.record_size = source.attributes().record_size();
+  }
   const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
   MemoryBudget budget(memory);
   run.figures = triangulate_stream<D>(source, run.mesh, *scratch, budget, options);
+  EXPECT_EQ(run.mesh.has_attributes, carries_attributes(options));
   return run;
 }
 

@@ -124,17 +124,6 @@ void tell_changes(const PointConversion& done, Progress& progress) {
   if (!done.points.all_kept()) progress.say(describe(done.points));
 }
 
-/// The words between the commas.
-std::vector<std::string> names_of(const std::string& list) {
-  std::vector<std::string> names;
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    names.push_back(list.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return names;
-}
-
 int run_points(const ConvertCommandOptions& options, const Context& context, Progress& progress) {
   check_points_output(options);
   const PointOutput& output = options.output;
@@ -142,12 +131,8 @@ int run_points(const ConvertCommandOptions& options, const Context& context, Pro
                            .las_version = output.las_version,
                            .scale = options.scale,
                            .offset = options.offset,
-                           .force = options.force};
-  if (options.attributes == "none") {
-    written.attributes.emplace();
-  } else if (!options.attributes.empty()) {
-    written.attributes = names_of(options.attributes);
-  }
+                           .force = options.force,
+                           .attributes = attribute_names(options.attributes)};
   if (options.sorted) {
     written.sorted = options.sorting;
     reuse_freed_memory(std::size_t{4} << 20);
@@ -201,8 +186,8 @@ void run_mesh(const ConvertCommandOptions& options, const Context& context, Prog
   if (!options.input.crs.empty()) {
     std::erase_if(of_points, [](auto name) { return name == "--crs" || name == "--force-crs"; });
   }
-  of_points.insert(of_points.end(), {"--scale", "--offset", "--attributes", "--force",
-                                     "--las-version", "--sorted", "--cell-points", "--dim"});
+  of_points.insert(of_points.end(), {"--scale", "--offset", "--force", "--las-version", "--sorted",
+                                     "--cell-points", "--dim"});
   refuse_given(*options.app, of_points, fmt::format("on {}, which is a mesh", input));
   check_mesh_output(options);
   const PointOutput& output = options.output;
@@ -211,8 +196,12 @@ void run_mesh(const ConvertCommandOptions& options, const Context& context, Prog
     throw UsageError("a mesh stream cannot go to a terminal: name a file, or pipe it on");
   }
   const auto mesh = open_mesh(input, mesh_options(options.input, options.mesh_format), context);
-  const auto file = create_mesh(output.path, {.format = output.format}, context);
-  const MeshTotals totals = convert(*mesh, *file, context).mesh;
+  const auto file = create_mesh(
+      output.path, {.format = output.format, .attributes = attribute_names(options.attributes)},
+      context);
+  const Report report = convert(*mesh, *file, context);
+  const MeshTotals& totals = report.mesh;
+  if (!report.lost.empty()) progress.say(fmt::format("not kept: {}", fmt::join(report.lost, ", ")));
   progress.say(fmt::format("{} vertices, {} simplices in {}", totals.vertices, totals.simplices,
                            files_of(output.path, format)));
   const std::string note = rounding_note(format, output.path);
@@ -266,9 +255,8 @@ Subcommand add_convert(CommandLine& root) {
       .value_name("N[,N,N]");
   add_number_list(app, "--offset", options->offset, "Count these multiples from here on; likewise")
       .value_name("N[,N,N]");
-  app.add_option("--attributes", options->attributes,
-                 "Write these attributes of points; usually all, in text but CSV none")
-      .value_name("all|none|NAME,...");
+  add_attributes(app, options->attributes,
+                 "Attributes that are written; usually all, of points in text but CSV none");
   app.add_flag("--force", options->force, "Replace an input, though the output holds less than it");
   app.add_flag("--sorted", options->sorted,
                "Write the points cell by cell, so that who reads them can begin at once");

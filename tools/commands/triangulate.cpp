@@ -53,6 +53,7 @@ struct TriangulateCommandOptions : TriangulationOptions {
   std::string output_format;
   int dimension = 2;
   bool input_index = false;
+  std::string attributes;  ///< as --attributes takes them
   std::string core_list;
   std::string disk_speed;
   std::string simulated_points;
@@ -71,6 +72,8 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
   add_dimension(app, options.dimension,
                 "2: triangles over x, y, with z carried along; 3: tetrahedra");
   app.add_flag("--id", options.input_index, "Write each vertex's index in the input");
+  add_attributes(app, options.attributes,
+                 "What points carry that their vertices keep; of ply usually colour, else none");
   app.add_flag(
       "--parts", options.parts,
       "Under mpirun: a file for each rank, NAME.0.EXT, NAME.1.EXT, ... (vtu: and NAME.pvtu)");
@@ -132,6 +135,7 @@ void say(const TriangulateCommandOptions& options, const Report& report, const R
                            report.mesh.points, report.mesh.duplicates, report.mesh.vertices,
                            report.mesh.simplices, simplices_of(report.dimension),
                            hash_to_hex(report.mesh.canonical_hash), facts.seconds));
+  if (!report.lost.empty()) progress.say(fmt::format("not kept: {}", fmt::join(report.lost, ", ")));
   const MeshFormat& format = mesh_format(options.output, report.output_format);
   const std::string note = rounding_note(format, options.output);
   if (!note.empty()) progress.say(note);
@@ -218,7 +222,10 @@ int run(const TriangulateCommandOptions& options) {
   const Context context(limits);
   reuse_freed_memory(kept_memory(options.dimension, context.memory()));
   const auto mesh = create_mesh(options.output,
-                                {.format = options.output_format, .parts = options.parts}, context);
+                                {.format = options.output_format,
+                                 .parts = options.parts,
+                                 .attributes = attribute_names(options.attributes)},
+                                context);
   const auto points =
       open_points(options.inputs, point_options(options.input, options.dimension), context);
   check_heights(options, points->header());

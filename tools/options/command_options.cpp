@@ -104,6 +104,22 @@ Option add_choice(CommandLine& app, const std::string& name, std::string& value,
   return option;
 }
 
+Option add_attributes(CommandLine& app, std::string& list, const std::string& description) {
+  return app.add_option("--attributes", list, description).value_name("all|none|NAME,...");
+}
+
+std::optional<std::vector<std::string>> attribute_names(const std::string& list) {
+  if (list.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  if (list == "none") return names;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    names.push_back(list.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return names;
+}
+
 Option add_dimension(CommandLine& app, int& dimension, const std::string& description) {
   return app.add_option("--dim", dimension, description)
       .one_of({"2", "3"})

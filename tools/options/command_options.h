@@ -67,6 +67,12 @@ inline void refuse_given(const CommandLine& app, std::initializer_list<std::stri
 Option add_choice(CommandLine& app, const std::string& name, std::string& value,
                   const std::vector<std::string>& words, const std::string& description);
 
+/// --attributes: names and commas, "all" or "none".
+Option add_attributes(CommandLine& app, std::string& list, const std::string& description);
+
+/// The names that --attributes gives, none for "none"; nothing if it is not given.
+std::optional<std::vector<std::string>> attribute_names(const std::string& list);
+
 /// --dim: 2 or 3.
 Option add_dimension(CommandLine& app, int& dimension, const std::string& description);
 

@@ -58,6 +58,9 @@ struct PointWriterOptions {
   WorkSharing sharing{};
   /// Bytes that a run keeps to, for formats that hold points back; 0: as few as may be.
   std::uint64_t memory = 0;
+  /// Told by finish() of such formats, again and again, how many points are done. What it throws
+  /// ends the writing.
+  std::function<void(std::uint64_t points)> finishing = [](std::uint64_t) {};
 };
 
 /// Writes points. Nothing appears under the final name before finish().

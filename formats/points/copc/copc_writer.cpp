@@ -85,6 +85,7 @@ class CopcWriter : public PointWriter {
         sharing_(options.sharing),
         scratch_(options.scratch),
         memory_(checked_memory(options.memory)),
+        finishing_(options.finishing),
         lattice_(options.lattice.value_or(Lattice{})),
         content_(file_->name(), with_wkt(options, file_->name()), LasProfile::kCopc),
         laz_(laz_record_for(content_.target())),
@@ -125,7 +126,8 @@ class CopcWriter : public PointWriter {
     OctreeWriting writing({.scratch = scratch_,
                            .sharing = sharing_,
                            .bytes_in_memory = record_memory(),
-                           .levels_at_once = memory_ >= kMuchMemory ? 3 : 2},
+                           .levels_at_once = memory_ >= kMuchMemory ? 3 : 2,
+                           .progress = finishing_},
                           length, cube, rules, chunks);
     writing.write_all(spool_);
     const std::vector<std::byte> table = chunk_table_bytes(chunks.chunks(), true);
@@ -175,6 +177,7 @@ class CopcWriter : public PointWriter {
   WorkSharing sharing_;
   ScratchFolder* scratch_;
   std::size_t memory_;
+  std::function<void(std::uint64_t points)> finishing_;
   Lattice lattice_;
   LasContent content_;
   LazRecord laz_;

@@ -84,8 +84,7 @@ class SppReader : public PointReader {
     const auto flags = stream_.take<std::uint32_t>();
     const bool is_sorted = version == kSppSortedVersion;
     const std::uint32_t known =
-        is_sorted ? kSppHasLattice
-                  : kSppHasLattice | kSppHasCount | kSppHasExtent | kSppHasAttributes;
+        kSppHasLattice | kSppHasAttributes | (is_sorted ? 0 : kSppHasCount | kSppHasExtent);
     if ((flags & ~known) != 0) stream_.fail("unknown flags are set");
     if ((flags & kSppHasLattice) != 0) {
       Lattice& lattice = header_.lattice.emplace();

@@ -114,7 +114,7 @@ class SppWriter : public PointWriter {
     if (!options_.by_regions) return most_points_;
     if (cell_ == cells_.size()) return 0;
     return static_cast<std::size_t>(
-        std::min<std::uint64_t>(kSppBlockPoints, cells_[cell_] - in_cell_));
+        std::min<std::uint64_t>(most_points_, cells_[cell_] - in_cell_));
   }
 
   /// Writes the collected points.

@@ -58,8 +58,12 @@ class EngineSink {
   [[nodiscard]] virtual std::uint64_t own_memory(std::uint64_t /*limit*/) const { return 0; }
   /// What it needs of the coordinate system.
   [[nodiscard]] virtual CrsNeed crs_need() const { return CrsNeed::kNone; }
-  /// Which attributes of points it is to have with their vertices.
-  [[nodiscard]] virtual AttributeChoice wanted_attributes() const { return {}; }
+  /// Which attributes its vertices are to have: of points that are triangulated, or of a mesh.
+  [[nodiscard]] virtual AttributeChoice wanted_attributes(bool /*triangulated*/) const {
+    return {};
+  }
+  /// Throws Error(kInvalidArgument) for one that was asked for by name and is not there.
+  virtual void check_attributes(const AttributeLayout& /*there*/) const {}
   /// Whether what it makes ends with a canonical hash.
   [[nodiscard]] virtual bool tells_hash() const { return false; }
   /// By how many of so many threads it can be fed at a time.

@@ -9,6 +9,7 @@
 #include "formats/meshes/mesh_stream_writer.h"
 #include "formats/meshes/vector/vector_format.h"
 #include "src/geometry/simplex_name.h"
+#include "stream/library/attribute_choice.h"
 #include "stream/library/context/context_state.h"
 
 namespace spillway::detail {
@@ -38,11 +39,21 @@ MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, cons
     : OwnSink(context),
       target_(mesh_target(path, options.format, options.parts)),
       scratch_(context.state().scratch(context)) {
+  if (options.attributes) attributes_ = choice_of(*options.attributes);
   if (target_.parts && context.options().executor == nullptr) {
     throw InvalidArgument("parts are a file for each rank, and there is one process",
                           {.remedy = Remedy::kRanks});
   }
   if (target_.format == &kGpkgMesh) tell_lost_layers(kGeoPackage, target_.path, context);
+}
+
+AttributeChoice MeshFile::wanted_attributes(bool triangulated) const {
+  if (attributes_) return *attributes_;
+  return {.all = !triangulated};
+}
+
+void MeshFile::check_attributes(const AttributeLayout& there) const {
+  if (attributes_) refuse_unknown(*attributes_, there, "the points");
 }
 
 BlockSink& MeshFile::open(const MeshStart& start) {

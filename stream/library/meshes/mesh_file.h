@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "formats/disk/scratch_folder.h"
@@ -32,6 +33,8 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   [[nodiscard]] CrsNeed crs_need() const override {
     return target_.format->reads_crs ? CrsNeed::kAll : CrsNeed::kNone;
   }
+  [[nodiscard]] AttributeChoice wanted_attributes(bool triangulated) const override;
+  void check_attributes(const AttributeLayout& there) const override;
   [[nodiscard]] bool tells_hash() const override { return target_.format->has_totals; }
   /// Blocks are written one after the other, and nothing is done before.
   [[nodiscard]] unsigned feeding_threads(unsigned /*threads*/) const override { return 1; }
@@ -44,6 +47,7 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   BlockSink& open(const MeshStart& start) override;
 
   MeshTarget target_;
+  std::optional<AttributeChoice> attributes_;  ///< if the caller chooses
   std::shared_ptr<ScratchFolder> scratch_;
   MeshStreamHeader header_;
   std::unique_ptr<MeshStreamWriter> writer_;

@@ -10,13 +10,13 @@
 #include <system_error>
 
 #include "formats/gdal/gdal.h"
-#include "formats/points/attributes/attribute_names.h"
 #include "formats/points/create_points.h"
 #include "formats/points/las/records/las_metadata.h"
 #include "formats/points/point_formats.h"
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
 #include "src/parallel/parallel.h"
+#include "stream/library/attribute_choice.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/points/lost_fields.h"
 #include "stream/library/points/public_points.h"
@@ -48,13 +48,6 @@ std::string las_version_for(const RunPoints& points, bool has_metadata) {
       points.headers, [](const PointHeader& header) { return header.point_format >= 6; });
   if (many || (extended && !has_metadata)) return "1.4";
   return has_metadata || std::ranges::none_of(points.headers, is_las) ? "" : "1.2";
-}
-
-/// The names of attributes as points have them.
-std::vector<std::string> own_names(const std::vector<std::string>& names) {
-  std::vector<std::string> own;
-  for (const std::string& name : names) own.push_back(attribute_name(name));
-  return own;
 }
 
 /// What all inputs that are LAS tell, if all are.
@@ -115,9 +108,6 @@ void PointFile::check(const PointFileOptions& options) const {
     throw InvalidArgument(
         fmt::format("only spp can be sorted, and {} is {}", path_, format_.title));
   }
-  if (options.sorted && options.attributes && !options.attributes->empty()) {
-    throw InvalidArgument("sorted points carry no attributes: leave these out, or do not sort");
-  }
   if (options.sorted && options.sorted->dimension != 2 && options.sorted->dimension != 3) {
     throw InvalidArgument(
         fmt::format("points are sorted in 2 or 3 dimensions, not {}", options.sorted->dimension));
@@ -137,11 +127,8 @@ void PointFile::check(const PointFileOptions& options) const {
 }
 
 AttributeChoice PointFile::wanted_attributes() const {
-  if (!format_.holds_attributes || options_.sorted) return {};
-  if (options_.attributes) {
-    const std::vector<std::string>& names = *options_.attributes;
-    return {.all = std::ranges::find(names, "all") != names.end(), .names = own_names(names)};
-  }
+  if (!format_.holds_attributes) return {};
+  if (options_.attributes) return choice_of(*options_.attributes);
   return {.all = format_.writes_attributes == nullptr || format_.writes_attributes(path_)};
 }
 
@@ -172,18 +159,7 @@ void PointFile::check_attributes(const RunPoints& points) const {
     throw InvalidArgument(fmt::format("{} holds no attributes of points, and {} is {}",
                                       format_.title, path_, format_.title));
   }
-  std::vector<AttributeLayout> layouts = {points.attributes};
-  for (const PointHeader& header : points.headers) layouts.push_back(header.attributes);
-  const AttributeLayout attributes = joined(layouts);
-  for (const std::string& name : own_names(*options_.attributes)) {
-    if (name == "all" || attributes.find(name) != nullptr) continue;
-    std::vector<std::string> names;
-    for (const AttributeField& field : attributes.fields()) names.push_back(field.attribute.name);
-    throw InvalidArgument(fmt::format("the points have no attribute \"{}\": {}", name,
-                                      names.empty()
-                                          ? std::string("they have none")
-                                          : fmt::format("choose of {}", fmt::join(names, ", "))));
-  }
+  refuse_unknown(choice_of(*options_.attributes), attributes_of_inputs(points), "the points");
 }
 
 void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
@@ -196,6 +172,9 @@ void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
   how_.scratch = scratch_.get();
   how_.sharing = sharing;
   how_.memory = memory_;
+  how_.finishing = [this](std::uint64_t done) {
+    if (finishing_) finishing_(done);
+  };
   how_.by_regions = options_.sorted.has_value();
   // Points may be left out of LAS, since they are flagged as withheld.
   if (std::ranges::none_of(points.headers, is_las)) how_.count = points.records;
@@ -257,8 +236,8 @@ void PointFile::append_regions(std::span<const PointRegion> regions) {
   writer_->set_regions(regions);
 }
 
-void PointFile::append_placed(std::span<const LatticePoint> points) {
-  writer_->write(points, {});
+void PointFile::append_placed(const PointsView& points) {
+  writer_->write(points.points, points.attributes);
   written_ += points.size();
 }
 
@@ -268,8 +247,9 @@ Box<3> PointFile::world_box(const PointBlock& block) const {
   return box;
 }
 
-PointConversion PointFile::complete() {
+PointConversion PointFile::complete(std::function<void(std::uint64_t points)> finishing) {
   if (!writer_) open({});
+  finishing_ = std::move(finishing);
   writer_->finish();
   writer_.reset();
   begun_ = false;

@@ -4,6 +4,7 @@
 #include <spillway/points.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "formats/points/common/point_writer.h"
 #include "stream/library/points/engine_points.h"
 #include "stream/library/points/lattice_rounding.h"
+#include "stream/tiles/storage/points_view.h"
 
 namespace spillway::detail {
 
@@ -63,10 +65,11 @@ class PointFile final : public spillway::PointSink {
   /// Tells the regions of all points, as PointWriter::set_regions().
   void append_regions(std::span<const PointRegion> regions);
   /// The next points, after place().
-  void append_placed(std::span<const LatticePoint> points);
+  void append_placed(const PointsView& points);
 
-  /// Returns what became of the points, counts apart.
-  PointConversion complete();
+  /// Returns what became of the points, counts apart. `finishing` is told how many points are done,
+  /// as PointWriterOptions::finishing.
+  PointConversion complete(std::function<void(std::uint64_t points)> finishing = {});
 
  private:
   PointFile* point_file() override { return this; }
@@ -93,6 +96,7 @@ class PointFile final : public spillway::PointSink {
   bool begun_ = false;
   bool finished_ = false;
   std::uint64_t written_ = 0;
+  std::function<void(std::uint64_t points)> finishing_;
 };
 
 }  // namespace spillway::detail

@@ -136,7 +136,7 @@ void PointComparison::add_vertex(const WorldPoint& vertex) {
 
 void PointComparison::put_away() {
   PointBuffer buffer;
-  buffer.append(pending_.points, pending_.index);
+  buffer.append(PointsView::of(pending_));
   pending_.clear();
   if (!file_) file_ = scratch_.create("vertices");
   std::vector<std::byte> bytes;

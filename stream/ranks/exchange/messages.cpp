@@ -150,6 +150,7 @@ void pack(Packer& message, const Border<D>& border, bool with_index) {
   message.put_list(index);
   message.put_list(places);
   message.put_list(border.simplices);
+  message.put_list(border.attributes);
 }
 
 template <int D>
@@ -169,6 +170,7 @@ Border<D> unpack_border(Unpacker& message, bool with_index) {
     vertex.place = places.at(v);
   }
   border.simplices = message.take_list<std::vector<std::array<VertexId, D + 1>>>();
+  border.attributes = message.take_list<std::vector<std::byte>>();
   return border;
 }
 

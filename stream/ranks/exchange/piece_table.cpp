@@ -67,7 +67,7 @@ void PieceTable::store(std::vector<Stored>& pieces, ScratchFolder& scratch,
     }
     records += more;
     bytes.clear();
-    append_all_points(bytes, block.points, block.index);
+    append_all_points(bytes, PointsView::of(block));
     if (!file_) file_ = scratch.create("input");
     pieces.push_back({file_->size(), bytes.size(), more});
     file_->append(bytes);

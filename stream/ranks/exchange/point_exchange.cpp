@@ -127,19 +127,14 @@ void PointExchange::deal(OwnPiece& piece) const {
     }
     dealt.deal(division_.cuts, block);
     for (const PointRun& run : dealt.runs) {
-      const auto points = std::span<const LatticePoint>(dealt.points.points)
-                              .subspan(run.begin, run.end - run.begin);
-      const auto index = indexed_ ? std::span<const std::uint64_t>(dealt.points.index)
-                                        .subspan(run.begin, run.end - run.begin)
-                                  : std::span<const std::uint64_t>();
+      PointsView points = dealt.points_of(run);
+      if (!indexed_) points.index = {};
       const int rank = division_.rank_of_tile[run.tile];
       if (rank == ranks_.rank()) {
-        PointBlock& kept = piece.kept.emplace_back();
-        kept.points.assign(points.begin(), points.end());
-        kept.index.assign(index.begin(), index.end());
+        points.append_to(piece.kept.emplace_back());
       } else {
         std::vector<std::byte> bytes;
-        append_all_points(bytes, points, index);
+        append_all_points(bytes, points);
         for_rank[static_cast<std::size_t>(rank)].put_list(bytes);
         piece.sent += points.size();
       }

@@ -57,6 +57,7 @@ Thinning::Thinning(const ThinningOptions& options, ScratchFolder& scratch)
 
 void Thinning::carry(const AttributeLayout& attributes) {
   record_size_ = attributes.record_size();
+  refuse_large_records(record_size_);
   capacity_ = cells_in(options_.memory, record_size_);
   attributes_.reserve(capacity_ * record_size_);
 }
@@ -154,8 +155,8 @@ void Thinning::put_aside(const Candidate& candidate, const std::byte* attributes
     --done_;
   }
   Bucket& bucket = buckets_[mix64(hash + level_) % buckets_.size()];
-  bucket.buffer.append(std::span(&candidate.point, 1), std::span(&candidate.index, 1));
-  bucket.attributes.insert(bucket.attributes.end(), attributes, attributes + record_size_);
+  bucket.buffer.append(
+      {std::span(&candidate.point, 1), std::span(&candidate.index, 1), {attributes, record_size_}});
   if (bucket.buffer.size() == PointBuffer::kChunk) write(bucket);
 }
 
@@ -166,8 +167,6 @@ void Thinning::write(Bucket& bucket) {
     block.offset += bucket.file->size();
     bucket.blocks.push_back(block);
   }
-  bytes.insert(bytes.end(), bucket.attributes.begin(), bucket.attributes.end());
-  bucket.attributes.clear();
   bucket.file->append(bytes);
 }
 
@@ -196,13 +195,12 @@ void Thinning::run_pass(Bucket bucket) {
   PointBlock points;
   std::vector<std::byte> bytes;
   for (const TileBlock& block : bucket.blocks) {
-    bytes.resize(block.size + block.points * record_size_);
+    bytes.resize(block.size);
     bucket.file->read(block.offset, bytes);
-    const std::span<const std::byte> coordinates = std::span(bytes).first(block.size);
-    decode_points(coordinates, {bucket.file->name(), at_byte(block.offset)}, points);
+    decode_points(bytes, {bucket.file->name(), at_byte(block.offset)}, points);
     done_ += points.size();  // but for those that are put aside again
     for (std::size_t i = 0; i < points.size(); ++i) {
-      offer({points.points[i], points.index[i]}, &bytes[block.size] + i * record_size_);
+      offer({points.points[i], points.index[i]}, points.attributes.data() + i * record_size_);
     }
     options_.progress.update(done_, put_aside_);
   }

@@ -80,11 +80,9 @@ class Thinning {
     std::uint32_t hash = 0;    ///< lower half of that of its cell
     std::uint32_t number = 0;  ///< of the candidate + 1; 0: free
   };
-  /// Points of cells for which there was no room. In the file the attributes of a block's points
-  /// follow it.
+  /// Points of cells for which there was no room.
   struct Bucket {
     PointBuffer buffer;
-    std::vector<std::byte> attributes;  ///< of those in the buffer
     std::unique_ptr<ScratchFile> file;
     std::vector<TileBlock> blocks;
     unsigned level = 0;  ///< passes that its points have been through

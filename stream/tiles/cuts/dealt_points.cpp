@@ -1,5 +1,7 @@
 #include "stream/tiles/cuts/dealt_points.h"
 
+#include <cstring>
+
 namespace spillway::detail {
 
 void DealtPoints::deal(const CutTree& cuts, const PointBlock& block) {
@@ -17,10 +19,15 @@ void DealtPoints::deal(const CutTree& cuts, const PointBlock& block) {
   }
   points.points.resize(count);
   points.index.resize(block.index.size());
+  points.attributes.resize(block.attributes.size());
+  const std::size_t record = block.record_size();
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t position = next[tile_[i]]++;
     points.points[position] = block.points[i];
     if (!block.index.empty()) points.index[position] = block.index[i];
+    if (record > 0) {
+      std::memcpy(&points.attributes[position * record], &block.attributes[i * record], record);
+    }
   }
   for (PointRun& run : runs) {
     Box<3> box;

@@ -7,6 +7,7 @@
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
 #include "stream/tiles/cuts/cut_tree.h"
+#include "stream/tiles/storage/points_view.h"
 
 namespace spillway::detail {
 
@@ -22,6 +23,10 @@ struct PointRun {
 struct DealtPoints {
   PointBlock points;
   std::vector<PointRun> runs;  ///< those with any points, by tile
+
+  [[nodiscard]] PointsView points_of(const PointRun& run) const {
+    return PointsView::of(points).subview(run.begin, run.end - run.begin);
+  }
 
   /// Replaces all by the points of `block`.
   void deal(const CutTree& cuts, const PointBlock& block);

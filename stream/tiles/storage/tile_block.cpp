@@ -11,45 +11,54 @@
 namespace spillway::detail {
 namespace {
 
-/// A block's kind is the number of its points, and whether they have an index.
+/// A block's kind is the number of its points, and what they have besides coordinates.
 constexpr std::uint32_t kIndexed = 1;
+constexpr std::uint32_t kHasAttributes = 2;
+constexpr std::uint32_t kOnePoint = 4;
 
-std::uint32_t kind_of(std::size_t points, bool indexed) {
-  return static_cast<std::uint32_t>(2 * points) + (indexed ? kIndexed : 0);
+std::uint32_t kind_of(const PointsView& points) {
+  return kOnePoint * static_cast<std::uint32_t>(points.size()) +
+         (points.index.empty() ? 0 : kIndexed) + (points.attributes.empty() ? 0 : kHasAttributes);
 }
 
-std::size_t points_of(const BlockHead& head) { return head.kind / 2; }
+std::size_t points_of(const BlockHead& head) { return head.kind / kOnePoint; }
 
 }  // namespace
 
-void append_points(std::vector<std::byte>& bytes, std::span<const LatticePoint> points,
-                   std::span<const std::uint64_t> index) {
+void refuse_large_records(std::size_t record_size) {
+  if (record_size <= PointBuffer::kMostRecord) return;
+  throw InvalidArgument(
+      fmt::format("the attributes of a point take {} bytes, and {} are the most: choose fewer",
+                  record_size, PointBuffer::kMostRecord));
+}
+
+void append_points(std::vector<std::byte>& bytes, const PointsView& points) {
   std::vector<std::byte> content;
   std::vector<double> column(points.size());
   for (int k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < points.size(); ++i) column[i] = points[i][k];
+    for (std::size_t i = 0; i < points.size(); ++i) column[i] = points.points[i][k];
     append_column(content, column);
   }
-  if (!index.empty()) append_column(content, index);
-  append_block(bytes, kind_of(points.size(), !index.empty()), content);
+  if (!points.index.empty()) append_column(content, points.index);
+  if (!points.attributes.empty()) {
+    append_byte_planes(content, points.attributes, points.record_size());
+  }
+  append_block(bytes, kind_of(points), content);
 }
 
-void append_all_points(std::vector<std::byte>& bytes, std::span<const LatticePoint> points,
-                       std::span<const std::uint64_t> index) {
+void append_all_points(std::vector<std::byte>& bytes, const PointsView& points) {
   for (std::size_t i = 0; i < points.size(); i += PointBuffer::kChunk) {
-    const std::size_t count = std::min(PointBuffer::kChunk, points.size() - i);
-    append_points(bytes, points.subspan(i, count), index.empty() ? index : index.subspan(i, count));
+    append_points(bytes, points.subview(i, std::min(PointBuffer::kChunk, points.size() - i)));
   }
 }
 
 std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes) {
   std::vector<TileBlock> blocks;
-  points.drain_in_chunks(
-      [&](std::span<const LatticePoint> some, std::span<const std::uint64_t> index) {
-        const std::size_t begin = bytes.size();
-        append_points(bytes, some, index);
-        blocks.push_back({begin, bytes.size() - begin, some.size()});
-      });
+  points.drain_in_chunks([&](const PointBlock& some) {
+    const std::size_t begin = bytes.size();
+    append_points(bytes, PointsView::of(some));
+    blocks.push_back({begin, bytes.size() - begin, some.size()});
+  });
   return blocks;
 }
 
@@ -84,7 +93,11 @@ void decode_points(std::span<const std::byte> block, const FileSpot& where, Poin
     for (std::size_t i = 0; i < count; ++i) points.points[i][k] = column[i];
   }
   points.index.clear();
+  points.attributes.clear();
   if ((head.kind & kIndexed) != 0) columns.read(count, points.index);
+  if ((head.kind & kHasAttributes) != 0 && count > 0) {
+    columns.read_byte_planes(count, points.attributes);
+  }
   columns.expect_end();
 }
 
@@ -98,8 +111,7 @@ void decode_all_points(std::span<const std::byte> blocks, const FileSpot& where,
     const std::size_t size =
         std::min<std::size_t>(blocks.size(), kBlockHeadSize + head.stored_size);
     decode_points(blocks.first(size), where, some);
-    points.points.insert(points.points.end(), some.points.begin(), some.points.end());
-    points.index.insert(points.index.end(), some.index.begin(), some.index.end());
+    PointsView::of(some).append_to(points);
     blocks = blocks.subspan(size);
   }
 }

@@ -1,8 +1,9 @@
 #pragma once
 // How points lie in a tile's file: blocks (formats/blocks/block.h) of up to some thousand points,
-// each the columns x, y, z and, where wanted, the index (formats/blocks/columns.h). The head tells
-// their number.
+// each the columns x, y, z and, where wanted, the index (formats/blocks/columns.h), and then the
+// byte planes of attributes, where points carry any. The head tells their number.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,6 +15,7 @@
 #include "src/error.h"
 #include "src/geometry/point.h"
 #include "stream/tiles/storage/point_buffer.h"
+#include "stream/tiles/storage/points_view.h"
 
 namespace spillway::detail {
 
@@ -21,14 +23,21 @@ namespace spillway::detail {
 template <int D>
 struct TilePoints {
   std::vector<Point<D>> points;
-  std::vector<double> heights;       ///< D = 2: z, one a point
-  std::vector<std::uint64_t> index;  ///< one a point, or none
-  std::uint64_t left_out = 0;        ///< points equal to one of these that are not among them
+  std::vector<double> heights;        ///< D = 2: z, one a point
+  std::vector<std::uint64_t> index;   ///< one a point, or none
+  std::vector<std::byte> attributes;  ///< a record a point, or none
+  std::uint64_t left_out = 0;         ///< points equal to one of these that are not among them
 
-  void resize(std::size_t count, bool with_index) {
+  void resize(std::size_t count, bool with_index, std::size_t record_size) {
     resize(points, count);
     if constexpr (D == 2) resize(heights, count);
     if (with_index) resize(index, count);
+    if (record_size > 0) resize(attributes, count * record_size);
+  }
+  /// Puts what points have besides coordinates into the places from `first` on.
+  void set_carried(std::size_t first, const PointsView& some) {
+    std::ranges::copy(some.index, index.data() + (some.index.empty() ? 0 : first));
+    std::ranges::copy(some.attributes, attributes.data() + first * some.record_size());
   }
   /// Puts a point into a place.
   void set(std::size_t place, const LatticePoint& point) {
@@ -49,9 +58,13 @@ struct TilePoints {
   }
 };
 
-/// What a point takes in it, with an index, and with its number while it is triangulated.
+/// What a point takes in it, with an index, and with its number while it is triangulated; its
+/// attributes come on top.
 constexpr std::uint64_t kLoadedPointBytes =
     sizeof(LatticePoint) + sizeof(std::uint64_t) + sizeof(std::uint32_t);
+
+/// Throws Error(kInvalidArgument) for more bytes of attributes than a point may have that waits.
+void refuse_large_records(std::size_t record_size);
 
 /// Where a block lies in a tile's file, and how many points it holds.
 struct TileBlock {
@@ -68,14 +81,11 @@ std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>
 /// out. Throws BadInput of `where`, the spot of the first byte, for what is no head.
 std::vector<TileBlock> find_blocks(std::span<const std::byte> bytes, const FileSpot& where);
 
-/// Appends one block of points, at most PointBuffer::kChunk. `index` has one entry a point, or
-/// none.
-void append_points(std::vector<std::byte>& bytes, std::span<const LatticePoint> points,
-                   std::span<const std::uint64_t> index);
+/// Appends one block of points, at most PointBuffer::kChunk.
+void append_points(std::vector<std::byte>& bytes, const PointsView& points);
 
 /// Appends any number of points, as blocks one after the other.
-void append_all_points(std::vector<std::byte>& bytes, std::span<const LatticePoint> points,
-                       std::span<const std::uint64_t> index);
+void append_all_points(std::vector<std::byte>& bytes, const PointsView& points);
 
 /// Replaces `points` by those of one block, given by its bytes. Throws BadInput of
 /// `where` if the block is corrupt.

@@ -72,7 +72,7 @@ class MeshOfRanks : public testing::TestWithParam<FamilyCase> {};
 
 TEST_P(MeshOfRanks, EqualsThatOfOneProcessForSmallSets) {
   for (const std::uint64_t count : {3, 4, 5, 7, 12, 30, 100}) {
-    expect_one_mesh(GetParam(), count, 1, 3, {.threads = 1, .tile_capacity = 20, .leaf_size = 8});
+    expect_one_mesh(GetParam(), count, 1, 3, {.threads = 2, .tile_capacity = 20, .leaf_size = 8});
   }
 }
 

@@ -26,7 +26,8 @@ std::vector<std::string> write_shared_points(const std::vector<Point<D>>& points
     const std::size_t begin = points.size() * f / files;
     const std::size_t end = points.size() * (f + 1) / files;
     const std::string path = write_points<D>({points.begin() + static_cast<std::ptrdiff_t>(begin),
-                                              points.begin() + static_cast<std::ptrdiff_t>(end)});
+                                              points.begin() + static_cast<std::ptrdiff_t>(end)},
+                                             begin);
     paths.push_back(fmt::format("{}.{}.npy", path, f));
     std::filesystem::rename(path, paths.back());
   }
@@ -37,16 +38,21 @@ std::vector<std::string> write_shared_points(const std::vector<Point<D>>& points
 struct RankRunResult {
   RankMesh mesh;
   KeepingWriter own;
+  bool carries = false;  ///< attributes
 };
 
 template <int D>
 RankRunResult run_over_ranks(const std::vector<std::string>& paths, StreamOptions options,
                              std::uint64_t memory = std::uint64_t{1} << 30) {
   const distributed::Ranks& ranks = distributed::world();
-  RankRunResult run{{}, KeepingWriter(D)};
+  RankRunResult run{{}, KeepingWriter(D), carries_attributes(options)};
   options.input_index = true;
   const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
   const auto source = open_shared_source(disk(), paths, {.dimension = D, .index = true}, ranks);
+  if (run.carries) {
+    source->carry({.all = true});
+    options.record_size = source->attributes().record_size();
+  }
   MemoryBudget budget(memory);
   run.mesh = triangulate_over_ranks<D>(*source, run.own, *scratch, budget, options, ranks);
   return run;
@@ -93,6 +99,10 @@ WholeMesh<D> gather_mesh(const RankRunResult& run) {
   }
   for (const MergedSection& section : run.mesh.merged) {
     rank_runner_internal::append_simplices<D>(section, simplices);
+    if (run.carries) {
+      expect_attributes_of(section.mesh.input_index, section.mesh.attributes);
+      expect_attributes_of(section.imported_index, section.imported_attributes);
+    }
     const std::uint64_t first = run.mesh.sections[section.section].first_vertex;
     for (std::size_t v = 0; v < section.mesh.input_index.size(); ++v) {
       named.push_back({first + v, section.mesh.input_index[v]});

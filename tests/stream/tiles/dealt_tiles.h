@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <ostream>
 #include <random>
 #include <utility>
@@ -141,7 +143,12 @@ struct Dealing {
   unsigned threads = 2;
   Knowledge known{};
   bool evenly = false;  ///< divide all anew at the end
+  bool carry = false;   ///< points carry three bytes each, by carried_by()
 };
+
+inline std::array<std::byte, 3> carried_by(std::uint64_t number) {
+  return {std::byte{7}, static_cast<std::byte>(number), static_cast<std::byte>(number >> 8)};
+}
 
 /// Deals points, whose numbers are their indices.
 template <int D>
@@ -151,7 +158,8 @@ DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dea
   TileTreeOptions options{.dimension = D,
                           .capacity = dealing.capacity,
                           .buffered_points = dealing.buffered,
-                          .index = true};
+                          .index = true,
+                          .record_size = dealing.carry ? carried_by(0).size() : 0};
   if (dealing.known.count) options.expected = points.size();
   if (dealing.known.extent) {
     options.extent = Box<3>();
@@ -166,7 +174,12 @@ DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dea
       const auto begin = points.begin() + static_cast<std::ptrdiff_t>(next);
       block.points.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
       block.index.resize(count);
-      for (std::uint64_t& index : block.index) index = next++;
+      block.attributes.clear();
+      for (std::uint64_t& index : block.index) {
+        if (dealing.carry)
+          std::ranges::copy(carried_by(next), std::back_inserter(block.attributes));
+        index = next++;
+      }
       return count > 0;
     });
     std::uint64_t told = 0;

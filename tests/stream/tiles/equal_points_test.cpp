@@ -13,31 +13,43 @@ namespace {
 
 const std::vector<LatticePoint> kPoints = {{1, 2, 5}, {1, 2, 3}, {1, 2, 9}, {1, 2, 3}, {1, 2, 9}};
 const std::vector<std::uint64_t> kIndex = {40, 30, 20, 10, 50};
+const std::vector<std::byte> kAttributes = {std::byte{40}, std::byte{30}, std::byte{20},
+                                            std::byte{10}, std::byte{50}};
 
-EqualPoints::Chosen chosen(Heights choice, bool index, int dimension = 2) {
+PointBlock chosen(Heights choice, bool index, int dimension = 2) {
   EqualPoints equal(dimension, choice);
   for (std::size_t i = 0; i < kPoints.size(); ++i) {
-    equal.add(std::span(kPoints).subspan(i, 1),
-              index ? std::span(kIndex).subspan(i, 1) : std::span<const std::uint64_t>());
+    PointsView point = PointsView{kPoints, kIndex, kAttributes}.subview(i, 1);
+    if (!index) point.index = {};
+    equal.add(point);
   }
   EXPECT_EQ(equal.count(), kPoints.size());
   return equal.choose();
 }
 
 TEST(EqualPoints, ChoosesByHeightAndThenByThePlaceInTheInput) {
-  EXPECT_EQ(chosen(Heights::kFirst, false).point[2], 5);
-  EXPECT_EQ(chosen(Heights::kFirst, true).index, 10U);
-  EXPECT_EQ(chosen(Heights::kFirst, true).point[2], 3);
-  EXPECT_EQ(chosen(Heights::kLowest, true).index, 10U);
-  EXPECT_EQ(chosen(Heights::kHighest, true).index, 20U);
-  EXPECT_EQ(chosen(Heights::kHighest, true).point[2], 9);
-  EXPECT_EQ(chosen(Heights::kMean, true).point[2], 29.0 / 5);
-  EXPECT_EQ(chosen(Heights::kMean, true).index, 10U);
+  EXPECT_EQ(chosen(Heights::kFirst, false).points[0][2], 5);
+  EXPECT_EQ(chosen(Heights::kFirst, true).index[0], 10U);
+  EXPECT_EQ(chosen(Heights::kFirst, true).points[0][2], 3);
+  EXPECT_EQ(chosen(Heights::kLowest, true).index[0], 10U);
+  EXPECT_EQ(chosen(Heights::kHighest, true).index[0], 20U);
+  EXPECT_EQ(chosen(Heights::kHighest, true).points[0][2], 9);
+  EXPECT_EQ(chosen(Heights::kMean, true).points[0][2], 29.0 / 5);
+  EXPECT_EQ(chosen(Heights::kMean, true).index[0], 10U);
+}
+
+TEST(EqualPoints, KeepTheAttributesOfTheChosenOne) {
+  for (const Heights choice :
+       {Heights::kFirst, Heights::kLowest, Heights::kHighest, Heights::kMean}) {
+    const PointBlock one = chosen(choice, true);
+    ASSERT_EQ(one.attributes.size(), 1U);
+    EXPECT_EQ(std::to_integer<std::uint64_t>(one.attributes[0]), one.index[0]);
+  }
 }
 
 TEST(EqualPoints, OfSpaceAreTheFirst) {
-  EXPECT_EQ(chosen(Heights::kHighest, true, 3).index, 10U);
-  EXPECT_EQ(chosen(Heights::kMean, false, 3).point[2], 5);
+  EXPECT_EQ(chosen(Heights::kHighest, true, 3).index[0], 10U);
+  EXPECT_EQ(chosen(Heights::kMean, false, 3).points[0][2], 5);
 }
 
 /// To the last bit, whatever the heights.
@@ -67,10 +79,10 @@ TEST(EqualPoints, ChoosesWhatIsChosenOfPointsInMemory) {
     std::vector<double> chosen_heights = heights;
     choose_heights(duplicates, choice, places, chosen_heights, index);
     EqualPoints equal(2, choice);
-    equal.add(points, index);
-    const EqualPoints::Chosen chosen = equal.choose();
-    EXPECT_EQ(chosen.index, index[places[0]]);
-    EXPECT_EQ(chosen.point[2], chosen_heights[places[0]]);
+    equal.add({points, index});
+    const PointBlock chosen = equal.choose();
+    EXPECT_EQ(chosen.index[0], index[places[0]]);
+    EXPECT_EQ(chosen.points[0][2], chosen_heights[places[0]]);
   }
 }
 

@@ -152,6 +152,25 @@ TEST_P(TileTreeOfOrder, DividedEvenlyKeepsEveryPointAndTheOrderOfEqualOnes) {
   }
 }
 
+/// Through memory, through files that are read once and twice, and through tiles that are divided.
+TEST_P(TileTreeOfOrder, KeepsWhatPointsCarry) {
+  const Points points = make_points(GetParam(), 20'000);
+  for (Dealing dealing : {Dealing{.buffered = kMany}, Dealing{.buffered = 10'000},
+                          Dealing{.capacity = 200, .buffered = 6'000, .block = 300},
+                          Dealing{.capacity = 200, .buffered = 6'000, .evenly = true}}) {
+    dealing.carry = true;
+    const DealtTiles<2> dealt = deal_into_tiles<2>(points, dealing);
+    EXPECT_EQ(fault_of(dealt, points), "");
+    for (const DealtTile<2>& tile : dealt.tiles) {
+      std::vector<std::byte> carried;
+      for (const std::uint64_t index : tile.points.index) {
+        std::ranges::copy(carried_by(index), std::back_inserter(carried));
+      }
+      ASSERT_TRUE(tile.points.attributes == carried);
+    }
+  }
+}
+
 TEST_P(TileTreeOfOrder, DividedEvenlyIsTheSameForAnyNumberOfThreads) {
   const Points points = make_points(GetParam(), kMany / 8);
   Dealing dealing{.capacity = 300, .buffered = 6'000, .block = 300, .threads = 1, .evenly = true};

@@ -98,7 +98,7 @@ TEST(BorderGrowth, LooksAtTheMergeThatIsRefused) {
 
 TEST(BorderGrowth, MayBeThatOfAllPointsWhereNoTileIsDone) {
   const BorderGrowth<2> growth;
-  EXPECT_GT(estimate(growth, 33 * kMiB, 8), enough_memory<2>(8 * kTile));
+  EXPECT_GT(estimate(growth, 33 * kMiB, 8), enough_memory<2>(8 * kTile, 0));
 }
 
 TEST(BorderGrowth, TellsNothingWhereTilesThemselvesTakeAllMemory) {

@@ -49,6 +49,25 @@ TEST(Settle, FinalSimplicesAnnounceTheirVerticesAndOthersStay) {
   EXPECT_FALSE(result.border.vertices[2].place.announced());
 }
 
+TEST(Settle, VerticesCarryTheirAttributes) {
+  Border<2> merged = strip(5);
+  merged.vertices[0].place = {{2, 0}, 40};
+  for (const int b : {10, 11, 20, 21, 30, 31, 40, 41, 50, 51}) {
+    merged.attributes.push_back(static_cast<std::byte>(b));
+  }
+  const auto numbers = [](const std::vector<std::byte>& bytes) {
+    std::vector<int> numbers;
+    for (const std::byte b : bytes) numbers.push_back(std::to_integer<int>(b));
+    return numbers;
+  };
+  const Settled<2> result = settled(merged, {Fate::kFinal, Fate::kKept, Fate::kKept},
+                                    {.record_size = 2, .imported_vertices = true});
+  EXPECT_THAT(numbers(result.mesh.attributes), ElementsAre(20, 21, 30, 31));
+  EXPECT_THAT(numbers(result.imported_attributes), ElementsAre(10, 11));
+  EXPECT_THAT(numbers(result.border.attributes), ElementsAre(20, 21, 30, 31, 40, 41, 50, 51));
+  EXPECT_EQ(result.border.bytes(), strip(4).bytes() + 8);
+}
+
 TEST(Settle, VerticesThatAreInTheStreamAreImported) {
   Border<2> merged = strip(4);
   merged.vertices[1].place = {{2, 0}, 40};

@@ -38,7 +38,7 @@ class Bench {
   Border<D> tile(std::uint32_t slot, const std::vector<Point<D>>& points, std::uint64_t first,
                  const Outside<D>& outside) {
     TilePoints<D> loaded;
-    loaded.resize(points.size(), true);
+    loaded.resize(points.size(), true, 0);
     loaded.points = points;
     std::iota(loaded.index.begin(), loaded.index.end(), first);
     return tile(slot, std::move(loaded), outside);
@@ -121,7 +121,7 @@ TYPED_TEST(TileTriangulation, HasATaskForEachLeafAndMerge) {
   constexpr int kD = TypeParam::value;
   Bench<kD> bench;
   TilePoints<kD> points;
-  points.resize(1000, true);
+  points.resize(1000, true, 0);
   points.points = random_points<kD>(1000, 1);
   std::iota(points.index.begin(), points.index.end(), std::uint64_t{0});
   const Outside<kD> outside;

@@ -120,7 +120,13 @@ void OctreeWriting::write_small(RecordLists& lists, std::span<const OctreePart> 
                        }});
     }
   }
+  write_nodes(nodes);
+}
+
+void OctreeWriting::write_nodes(std::span<const NodeToWrite> nodes) {
   chunks_.write(nodes);
+  for (const NodeToWrite& node : nodes) written_ += node.count;
+  resources_.progress(written_);
 }
 
 void OctreeWriting::write_large(RecordLists& lists, const OctreePart& part) {
@@ -129,7 +135,7 @@ void OctreeWriting::write_large(RecordLists& lists, const OctreePart& part) {
                              read_part(lists, part, record_length_,
                                        [&](auto records) { encoder.add(records); });
                            }};
-    chunks_.write({&node, 1});
+    write_nodes({&node, 1});
     return;
   }
   // Not more levels than points of a surface need: nodes that are dealt in vain come together
@@ -140,7 +146,10 @@ void OctreeWriting::write_large(RecordLists& lists, const OctreePart& part) {
     ++levels;
   }
   OctreeDealing dealing(resources_.scratch, record_length_, part.key, levels, cube_, rules_);
-  read_part(lists, part, record_length_, [&](auto records) { dealing.deal(records); });
+  read_part(lists, part, record_length_, [&](auto records) {
+    resources_.progress(written_);
+    dealing.deal(records);
+  });
   write_parts(dealing.lists(), dealing.parts());
 }
 

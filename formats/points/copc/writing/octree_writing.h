@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "formats/disk/scratch_folder.h"
@@ -21,6 +23,8 @@ class OctreeWriting {
     WorkSharing sharing{};
     std::size_t bytes_in_memory = 0;  ///< of records that are divided at a time
     int levels_at_once = 3;           ///< that more records are dealt into, at most
+    /// Told how many records have been written; what it throws ends the writing.
+    std::function<void(std::uint64_t records)> progress = [](std::uint64_t) {};
   };
 
   OctreeWriting(const Resources& resources, std::size_t record_length, const OctreeCube& cube,
@@ -32,6 +36,7 @@ class OctreeWriting {
  private:
   void write_parts(RecordLists& lists, const std::vector<OctreePart>& parts);
   void write_small(RecordLists& lists, std::span<const OctreePart> parts);
+  void write_nodes(std::span<const NodeToWrite> nodes);
   void write_large(RecordLists& lists, const OctreePart& part);
 
   Resources resources_;
@@ -39,6 +44,7 @@ class OctreeWriting {
   const OctreeCube& cube_;
   const OctreeRules& rules_;
   ChunkFile& chunks_;
+  std::uint64_t written_ = 0;  ///< records
 };
 
 }  // namespace spillway::detail

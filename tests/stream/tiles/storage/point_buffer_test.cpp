@@ -21,34 +21,54 @@ std::vector<LatticePoint> points_from(std::size_t begin, std::size_t count) {
   return points;
 }
 
-TEST(PointBuffer, GivesBackPointsAndIndicesInTheirOrder) {
-  for (const bool in_chunks : {false, true}) {
-    PointBuffer buffer;
-    std::size_t begin = 0;
-    for (const std::size_t count : std::array<std::size_t, 5>{1, 0, kPiece, 3 * kPiece, 7}) {
-      std::vector<std::uint64_t> index(count);
-      for (std::size_t i = 0; i < count; ++i) index[i] = 2 * (begin + i);
-      buffer.append(points_from(begin, count), index);
-      begin += count;
+/// What point number `i` carries.
+std::byte byte_of(std::size_t i, std::size_t b) { return static_cast<std::byte>(i * 7 + b); }
+
+/// With records of so many bytes, point i has the index 2 i.
+void expect_all_come_back(bool indexed, std::size_t record_size, bool in_chunks) {
+  PointBuffer buffer;
+  std::size_t begin = 0;
+  for (const std::size_t count : std::array<std::size_t, 5>{1, 0, kPiece, 3 * kPiece, 7}) {
+    PointBlock block;
+    block.points = points_from(begin, count);
+    for (std::size_t i = begin; i < begin + count; ++i) {
+      if (indexed) block.index.push_back(2 * i);
+      for (std::size_t b = 0; b < record_size; ++b) block.attributes.push_back(byte_of(i, b));
     }
-    EXPECT_EQ(buffer.size(), begin);
-    std::size_t next = 0;
-    const auto take = [&](std::span<const LatticePoint> points,
-                          std::span<const std::uint64_t> index) {
-      ASSERT_EQ(points.size(), index.size());
-      EXPECT_LE(points.size(), in_chunks ? kPiece : PointBuffer::kPagePoints);
-      for (std::size_t i = 0; i < points.size(); ++i, ++next) {
-        ASSERT_EQ(points[i][0], static_cast<double>(next));
-        ASSERT_EQ(index[i], 2 * next);
-      }
-    };
-    if (in_chunks) {
-      buffer.drain_in_chunks(take);
-    } else {
-      buffer.drain(take);
-    }
-    EXPECT_EQ(next, begin);
+    buffer.append(PointsView::of(block));
+    begin += count;
   }
+  EXPECT_EQ(buffer.size(), begin);
+  std::size_t next = 0;
+  const auto take = [&](const PointsView& some) {
+    ASSERT_EQ(some.index.size(), indexed ? some.size() : 0);
+    ASSERT_EQ(some.attributes.size(), some.size() * record_size);
+    EXPECT_LE(some.size(), in_chunks ? kPiece : PointBuffer::kPagePoints);
+    for (std::size_t i = 0; i < some.size(); ++i, ++next) {
+      ASSERT_EQ(some.points[i][0], static_cast<double>(next));
+      if (indexed) ASSERT_EQ(some.index[i], 2 * next);
+      for (std::size_t b = 0; b < record_size; ++b) {
+        ASSERT_EQ(some.attributes[i * record_size + b], byte_of(next, b));
+      }
+    }
+  };
+  if (in_chunks) {
+    buffer.drain_in_chunks([&](const PointBlock& chunk) { take(PointsView::of(chunk)); });
+  } else {
+    buffer.drain(take);
+  }
+  EXPECT_EQ(next, begin);
+}
+
+TEST(PointBuffer, GivesBackPointsIndicesAndAttributesInTheirOrder) {
+  for (const bool in_chunks : {false, true}) {
+    for (const bool indexed : {false, true}) {
+      for (const std::size_t record_size : {0, 1, 5, 40}) {
+        expect_all_come_back(indexed, record_size, in_chunks);
+      }
+    }
+  }
+  expect_all_come_back(true, PointBuffer::kMostRecord, true);
 }
 
 TEST(PointBuffer, HasMemoryForLessThanAPageMore) {
@@ -57,7 +77,7 @@ TEST(PointBuffer, HasMemoryForLessThanAPageMore) {
   EXPECT_EQ(buffer.room(), 0U);
   std::size_t points = 0;
   for (const std::size_t count : std::array<std::size_t, 4>{1, 200, kPiece, 5 * kPiece}) {
-    buffer.append(points_from(points, count), {});
+    buffer.append({points_from(points, count)});
     points += count;
     EXPECT_EQ(buffer.size(), points);
     EXPECT_GE(buffer.room(), points);
@@ -69,8 +89,8 @@ TEST(PointBuffer, ShowsAllItsPointsInTheirOrder) {
   for (const bool indexed : {false, true}) {
     const std::vector<LatticePoint> points = points_from(0, kPiece + 9);
     PointBuffer buffer;
-    buffer.append(
-        points, indexed ? std::vector<std::uint64_t>(points.size()) : std::vector<std::uint64_t>());
+    const std::vector<std::uint64_t> index(indexed ? points.size() : 0);
+    buffer.append({points, index});
     std::vector<LatticePoint> seen;
     buffer.visit([&](std::span<const LatticePoint> some) {
       seen.insert(seen.end(), some.begin(), some.end());
@@ -82,29 +102,26 @@ TEST(PointBuffer, ShowsAllItsPointsInTheirOrder) {
 
 TEST(PointBuffer, GivesAsManyAtATimeAsAChunkHas) {
   PointBuffer buffer;
-  buffer.append(points_from(0, 2 * kPiece + 3), {});
+  buffer.append({points_from(0, 2 * kPiece + 3)});
   std::vector<std::size_t> counts;
-  buffer.drain_in_chunks([&](std::span<const LatticePoint> points, std::span<const std::uint64_t>) {
-    counts.push_back(points.size());
-  });
+  buffer.drain_in_chunks([&](const PointBlock& chunk) { counts.push_back(chunk.size()); });
   EXPECT_EQ(counts, (std::vector<std::size_t>{kPiece, kPiece, 3}));
 }
 
 TEST(PointBuffer, IsEmptyAfterItIsDrainedAndCanBeUsedAgain) {
   PointBuffer buffer;
-  buffer.append(points_from(0, kPiece + 1), {});
+  buffer.append({points_from(0, kPiece + 1)});
   std::size_t taken = 0;
-  const auto take = [&](std::span<const LatticePoint> points,
-                        std::span<const std::uint64_t> index) {
+  const auto take = [&](const PointsView& points) {
     taken += points.size();
-    EXPECT_TRUE(index.empty());
+    EXPECT_TRUE(points.index.empty());
   };
   buffer.drain(take);
   EXPECT_EQ(taken, kPiece + 1);
   EXPECT_EQ(buffer.size(), 0U);
   EXPECT_EQ(buffer.room(), 0U);
   buffer.drain(take);
-  buffer.append(points_from(0, 2), {});
+  buffer.append({points_from(0, 2)});
   buffer.drain(take);
   EXPECT_EQ(taken, kPiece + 3);
 }

@@ -26,7 +26,7 @@ std::vector<std::byte> random_blocks(std::size_t count, unsigned seed, PointBloc
     block.index.push_back(i);
   }
   std::vector<std::byte> bytes;
-  append_all_points(bytes, block.points, block.index);
+  append_all_points(bytes, PointsView::of(block));
   all.points.insert(all.points.end(), block.points.begin(), block.points.end());
   all.index.insert(all.index.end(), block.index.begin(), block.index.end());
   return bytes;

@@ -25,6 +25,7 @@ PointBlock random_points(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     block.points.push_back({unit(random), 1e9 * unit(random), std::floor(100 * unit(random))});
     block.index.push_back(random());
+    for (int b = 0; b < 3; ++b) block.attributes.push_back(static_cast<std::byte>(random()));
   }
   return block;
 }
@@ -41,13 +42,14 @@ std::string error_of(std::span<const std::byte> block) {
 
 TEST(TilePoints, InThePlaneHeightsStandApart) {
   TilePoints<2> plane;
-  plane.resize(2, true);
+  plane.resize(2, true, 3);
   plane.set(1, {3, 4, 5});
   EXPECT_EQ(plane.points[1], (Point<2>{3, 4}));
   EXPECT_EQ(plane.heights[1], 5);
   EXPECT_EQ(plane.index.size(), 2U);
+  EXPECT_EQ(plane.attributes.size(), 6U);
   TilePoints<3> space;
-  space.resize(2, false);
+  space.resize(2, false, 0);
   space.set(0, {3, 4, 5});
   EXPECT_EQ(space.points[0], (LatticePoint{3, 4, 5}));
   EXPECT_TRUE(space.heights.empty());
@@ -58,28 +60,30 @@ TEST(TileBlock, OneBlockComesBack) {
   for (const std::size_t count : {std::size_t{0}, std::size_t{1}, kPiece}) {
     const PointBlock points = random_points(count);
     std::vector<std::byte> bytes;
-    append_points(bytes, points.points, points.index);
+    append_points(bytes, PointsView::of(points));
     PointBlock back = random_points(5);  // to be replaced
     decode_points(bytes, {"here"}, back);
     EXPECT_EQ(back.points, points.points);
     EXPECT_EQ(back.index, points.index);
+    EXPECT_EQ(back.attributes, points.attributes);
   }
 }
 
-TEST(TileBlock, WithoutIndicesNoneComeBack) {
+TEST(TileBlock, WithoutIndicesAndAttributesNoneComeBack) {
   const PointBlock points = random_points(100);
   std::vector<std::byte> bytes;
-  append_points(bytes, points.points, {});
+  append_points(bytes, {points.points});
   PointBlock back = random_points(5);
   decode_points(bytes, {"here"}, back);
   EXPECT_EQ(back.points, points.points);
   EXPECT_TRUE(back.index.empty());
+  EXPECT_TRUE(back.attributes.empty());
 }
 
 TEST(TileBlock, ABufferBecomesABlockForEachPiece) {
   const PointBlock points = random_points(2 * kPiece + 3);
   PointBuffer buffer;
-  buffer.append(points.points, points.index);
+  buffer.append(PointsView::of(points));
   std::vector<std::byte> bytes(11);  // what stands there already stays
   const std::vector<TileBlock> blocks = encode_points(buffer, bytes);
   ASSERT_EQ(blocks.size(), 3U);
@@ -91,18 +95,18 @@ TEST(TileBlock, ABufferBecomesABlockForEachPiece) {
     PointBlock some;
     decode_points(std::span(bytes).subspan(block.offset, block.size), {"here"}, some);
     EXPECT_EQ(some.size(), block.points);
-    all.points.insert(all.points.end(), some.points.begin(), some.points.end());
-    all.index.insert(all.index.end(), some.index.begin(), some.index.end());
+    PointsView::of(some).append_to(all);
   }
   EXPECT_EQ(all.points, points.points);
   EXPECT_EQ(all.index, points.index);
+  EXPECT_EQ(all.attributes, points.attributes);
 }
 
 TEST(TileBlock, AnyNumberOfPointsComesBackAsOne) {
   for (const std::size_t count : {std::size_t{0}, kPiece, 2 * kPiece + 1}) {
     const PointBlock points = random_points(count);
     std::vector<std::byte> bytes;
-    append_all_points(bytes, points.points, points.index);
+    append_all_points(bytes, PointsView::of(points));
     PointBlock back = random_points(5);
     decode_all_points(bytes, {"here"}, back);
     EXPECT_EQ(back.points, points.points);
@@ -110,10 +114,21 @@ TEST(TileBlock, AnyNumberOfPointsComesBackAsOne) {
   }
 }
 
+TEST(TileBlock, RecordsThatNoPageHoldsAreRefused) {
+  EXPECT_NO_THROW(refuse_large_records(PointBuffer::kMostRecord));
+  try {
+    refuse_large_records(5000);
+    FAIL() << "5000 bytes were accepted";
+  } catch (const InvalidArgument& error) {
+    EXPECT_STREQ(error.what(),
+                 "the attributes of a point take 5000 bytes, and 4064 are the most: choose fewer");
+  }
+}
+
 TEST(TileBlock, TruncatedIsRefused) {
   const PointBlock points = random_points(100);
   std::vector<std::byte> bytes;
-  append_points(bytes, points.points, points.index);
+  append_points(bytes, PointsView::of(points));
   EXPECT_EQ(error_of(std::span(bytes).first(kBlockHeadSize - 1)),
             "tile 7, byte 0: the block is cut short");
   EXPECT_EQ(error_of(std::span(bytes).first(bytes.size() - 1)),
@@ -123,14 +138,14 @@ TEST(TileBlock, TruncatedIsRefused) {
 TEST(TileBlock, ChecksumMismatchIsRefused) {
   const PointBlock points = random_points(100);
   std::vector<std::byte> bytes;
-  append_points(bytes, points.points, points.index);
+  append_points(bytes, PointsView::of(points));
   bytes.back() ^= std::byte{1};
   EXPECT_THAT(error_of(bytes), HasSubstr("tile 7, byte 0"));
 }
 
 TEST(TileBlock, TooManyPointsAreRefused) {
   std::vector<std::byte> bytes;
-  append_block(bytes, 2 * (kPiece + 1), {});
+  append_block(bytes, 4 * (kPiece + 1), {});
   EXPECT_EQ(error_of(bytes), "tile 7, byte 0: the block has too many points");
 }
 
