@@ -20,7 +20,8 @@ CheckedMeshWriter::CheckedMeshWriter(MeshHeader header, std::string name)
 }
 
 void CheckedMeshWriter::write_vertices(std::span<const WorldPoint> vertices,
-                                       std::span<const std::uint64_t> input_index) {
+                                       std::span<const std::uint64_t> input_index,
+                                       std::span<const std::byte> attributes) {
   if (vertices.size() > header_.vertices - vertices_) {
     fail(fmt::format("more than the {} vertices that were promised came", header_.vertices));
   }
@@ -28,7 +29,12 @@ void CheckedMeshWriter::write_vertices(std::span<const WorldPoint> vertices,
     fail(
         fmt::format("{} vertices came with {} input indices", vertices.size(), input_index.size()));
   }
-  put_vertices(vertices, input_index);
+  const std::size_t record = header_.attributes.record_size();
+  if (attributes.size() != vertices.size() * record) {
+    fail(fmt::format("{} vertices came with {} bytes of attributes, but each has {}",
+                     vertices.size(), attributes.size(), record));
+  }
+  put_vertices(vertices, input_index, attributes);
   vertices_ += vertices.size();
 }
 

@@ -13,7 +13,8 @@ namespace spillway::detail {
 class CheckedMeshWriter : public MeshWriter {
  public:
   void write_vertices(std::span<const WorldPoint> vertices,
-                      std::span<const std::uint64_t> input_index) final;
+                      std::span<const std::uint64_t> input_index,
+                      std::span<const std::byte> attributes) final;
   void write_simplices(std::span<const std::uint64_t> corners) final;
   void finish() final;
 
@@ -23,7 +24,8 @@ class CheckedMeshWriter : public MeshWriter {
 
   /// Appends vertices that have passed the checks.
   virtual void put_vertices(std::span<const WorldPoint> vertices,
-                            std::span<const std::uint64_t> input_index) = 0;
+                            std::span<const std::uint64_t> input_index,
+                            std::span<const std::byte> attributes) = 0;
 
   /// Appends simplices that have passed the checks, after the last vertex.
   virtual void put_simplices(std::span<const std::uint64_t> corners) = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -15,9 +16,10 @@ class MeshWriter {
   virtual ~MeshWriter() = default;
 
   /// Appends vertices. `input_index` has one entry a vertex if the header says has_input_index and
-  /// is empty otherwise.
+  /// is empty otherwise; `attributes` has a record a vertex, as the header has them.
   virtual void write_vertices(std::span<const WorldPoint> vertices,
-                              std::span<const std::uint64_t> input_index) = 0;
+                              std::span<const std::uint64_t> input_index,
+                              std::span<const std::byte> attributes) = 0;
 
   /// Appends simplices: dimension+1 vertex numbers each, counted from 0, positively oriented.
   virtual void write_simplices(std::span<const std::uint64_t> corners) = 0;

@@ -23,7 +23,8 @@ class PlyWriter : public CheckedMeshWriter {
 
  private:
   void put_vertices(std::span<const WorldPoint> vertices,
-                    std::span<const std::uint64_t> input_index) override {
+                    std::span<const std::uint64_t> input_index,
+                    std::span<const std::byte> /*attributes*/) override {
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       std::size_t count = 0;
       std::array<double, 2> indices;

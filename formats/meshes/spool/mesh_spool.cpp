@@ -118,7 +118,7 @@ void MeshSpool::copy_to(MeshWriter& writer) const {
   MeshBlock block;
   const std::unique_ptr<MeshStreamReader> for_vertices = open();
   while (for_vertices->read(block)) {
-    writer.write_vertices(world_vertices(header_, block), block.input_index);
+    writer.write_vertices(world_vertices(header_, block), block.input_index, block.attributes);
   }
   const std::unique_ptr<MeshStreamReader> for_simplices = open();
   std::vector<std::uint64_t> corners;

@@ -135,7 +135,8 @@ class VtuWriter : public CheckedMeshWriter {
   }
 
   void put_vertices(std::span<const WorldPoint> vertices,
-                    std::span<const std::uint64_t> input_index) override {
+                    std::span<const std::uint64_t> input_index,
+                    std::span<const std::byte> /*attributes*/) override {
     if (vertices.empty()) return;
     output_.append(as_text(std::as_bytes(vertices)));
     points_ += vertices.size();

@@ -60,10 +60,13 @@ inline void write_mesh(FileSystem& files, const std::string& path, const MeshFor
   const auto writer = open_mesh_writer(files, path, format, mesh.header);
   const std::span<const WorldPoint> vertices(mesh.vertices);
   const std::span<const std::uint64_t> index(mesh.input_index);
+  const std::span<const std::byte> records(mesh.attributes);
+  const std::size_t record = mesh.header.attributes.record_size();
   for (std::size_t at = 0; at < vertices.size(); at += block) {
     const std::size_t count = std::min(block, vertices.size() - at);
     writer->write_vertices(vertices.subspan(at, count),
-                           index.empty() ? index : index.subspan(at, count));
+                           index.empty() ? index : index.subspan(at, count),
+                           records.subspan(at * record, count * record));
   }
   const std::span<const std::uint64_t> corners(mesh.corners);
   const std::size_t step = block * mesh.corners_per_simplex();
@@ -120,6 +123,8 @@ inline void expect_equal(const Mesh& a, const Mesh& b) {
   }
   EXPECT_EQ(a.corners, b.corners);
   EXPECT_EQ(a.input_index, b.input_index);
+  EXPECT_TRUE(a.header.attributes == b.header.attributes);
+  EXPECT_TRUE(a.attributes == b.attributes);
 }
 
 }  // namespace spillway::detail::testing
