@@ -103,7 +103,7 @@ TEST(PlyRecords, AreWhatTheWriterWrites) {
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
       std::vector<std::byte> record(ply_vertex_size(1));
       const double index = ply_index(mesh.input_index[i], "a.ply");
-      EXPECT_EQ(put_ply_vertex(record.data(), mesh.vertices[i], std::span(&index, 1)),
+      EXPECT_EQ(put_ply_vertex(record.data(), mesh.vertices[i], std::span(&index, 1), {}),
                 record.data() + record.size());
       bytes += as_text(record);
     }
