@@ -102,8 +102,8 @@ class PartFiles : public MeshOutput {
     run_collective_step(ranks_, [&] { file_->commit(); });
     run_collective_step(ranks_, [&] {
       if (!index_) return;
-      const std::string text = part_index_text(target_.path, *target_.format, ranks_.size(),
-                                               spool_.header().has_input_index);
+      const std::string text =
+          part_index_text(target_.path, *target_.format, ranks_.size(), spool_.header());
       index_->write(as_bytes_of(text));
       index_->commit();
       bytes_ += text.size();

@@ -38,11 +38,18 @@ void CheckedMeshWriter::write_vertices(std::span<const WorldPoint> vertices,
   vertices_ += vertices.size();
 }
 
+bool CheckedMeshWriter::begin_vertices_again() {
+  if (vertices_ != header_.vertices || !wants_vertices_again()) return false;
+  vertices_ = 0;
+  return true;
+}
+
 void CheckedMeshWriter::write_simplices(std::span<const std::uint64_t> corners) {
   if (vertices_ != header_.vertices) {
     fail(fmt::format("{} vertices were promised, but {} came before the first simplex",
                      header_.vertices, vertices_));
   }
+  if (wants_vertices_again()) fail("the vertices did not come again, as was asked for");
   const std::size_t count = corners.size() / corners_per_simplex();
   if (corners.size() % corners_per_simplex() != 0 || count > header_.simplices - simplices_) {
     fail(fmt::format("{} corners came where {} simplices of {} were left to write", corners.size(),

@@ -123,10 +123,12 @@ std::unique_ptr<MeshStreamReader> MeshSpool::open() const {
 
 void MeshSpool::copy_to(MeshWriter& writer) const {
   MeshBlock block;
-  const std::unique_ptr<MeshStreamReader> for_vertices = open();
-  while (for_vertices->read(block)) {
-    writer.write_vertices(world_vertices(header_, block), block.input_index, block.attributes);
-  }
+  do {
+    const std::unique_ptr<MeshStreamReader> for_vertices = open();
+    while (for_vertices->read(block)) {
+      writer.write_vertices(world_vertices(header_, block), block.input_index, block.attributes);
+    }
+  } while (writer.begin_vertices_again());
   const std::unique_ptr<MeshStreamReader> for_simplices = open();
   std::vector<std::uint64_t> corners;
   std::uint64_t first = 0;

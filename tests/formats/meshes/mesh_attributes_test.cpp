@@ -5,6 +5,7 @@
 #include "formats/meshes/ply/ply_records.h"
 #include "formats/meshes/spooled_mesh_writer.h"
 #include "formats/meshes/vtu/vtu_format.h"
+#include "formats/meshes/vtu/vtu_writer.h"
 #include "tests/formats/meshes/attributed_mesh.h"
 #include "tests/formats/meshes/mesh_writer_helpers.h"
 
@@ -144,7 +145,9 @@ TEST_P(KeptAttributes, RecordsThatAreNotOneAVertexAreRefused) {
 constexpr KeepingFormat kPly{"Ply", &kPlyMesh, "a.ply", true, false};
 constexpr KeepingFormat kPlyAscii{"PlyAscii", &kPlyAsciiMesh, "a.ply", true, false};
 
-INSTANTIATE_TEST_SUITE_P(All, KeptAttributes, Combine(Values(kPly, kPlyAscii), Values(2, 3)),
+constexpr KeepingFormat kVtu{"Vtu", &kVtuMesh, "a.vtu"};
+
+INSTANTIATE_TEST_SUITE_P(All, KeptAttributes, Combine(Values(kPly, kPlyAscii, kVtu), Values(2, 3)),
                          [](const auto& tested) {
                            return std::string(std::get<0>(tested.param).name) +
                                   std::to_string(std::get<1>(tested.param));
@@ -270,6 +273,53 @@ TEST(PlyAttributes, AFileThatEndsWithinThemIsRefused) {
       error_of_bytes("a.ply", good.substr(0, size));
     }
   }
+}
+
+TEST(VtuAttributes, AreTheSameWhereverTheyWaitForTheirTurn) {
+  Mesh mesh = full_mesh(2);
+  mesh.header.global_ids = {{100, 2}, {7, 1}, {103, 1}};
+  add_attributes(mesh, every_type(), 4);
+  const std::string expected = written(kVtuMesh, mesh);
+  for (const std::size_t memory : {0, 1, 8, 40, 100, 1000}) {
+    FaultyFileSystem files;
+    write_mesh(*open_vtu_writer(files.create("a"), mesh.header, memory), mesh);
+    EXPECT_EQ(files.files.at("a"), expected) << memory;
+  }
+}
+
+TEST(VtuAttributes, ThatDidNotAllComeAreAnError) {
+  Mesh mesh = small_mesh(2);
+  add_attributes(mesh, every_type(), 4);
+  FaultyFileSystem files;
+  const auto writer = open_vtu_writer(files.create("a"), mesh.header, 0);
+  EXPECT_FALSE(writer->begin_vertices_again()) << "nothing has come yet";
+  writer->write_vertices(mesh.vertices, {}, mesh.attributes);
+  EXPECT_THAT(error_of([&] { writer->write_simplices(mesh.corners); }),
+              HasSubstr("did not come again"));
+  EXPECT_TRUE(writer->begin_vertices_again());
+}
+
+TEST(VtuAttributes, HaveAnyNamesButThoseOfOtherArrays) {
+  Mesh mesh = full_mesh(2);
+  const std::vector<std::string> names = {"a<b & \"c\"", "connectivity", "input_index", "types"};
+  std::vector<Attribute> attributes;
+  for (const std::string& name : names) attributes.push_back({.name = name});
+  add_attributes(mesh, AttributeLayout(attributes), 1);
+  const Mesh read = read_bytes("a.vtu", written(kVtuMesh, mesh));
+  EXPECT_EQ(read.input_index, mesh.input_index);
+  EXPECT_EQ(numbers_of(read, names[0]), numbers_of(mesh, names[0]));
+  EXPECT_EQ(numbers_of(read, "connectivity"), numbers_of(mesh, "connectivity"));
+  EXPECT_EQ(numbers_of(read, "input_index_2"), numbers_of(mesh, "input_index"));
+  EXPECT_EQ(numbers_of(read, "types"), numbers_of(mesh, "types"));
+}
+
+TEST(VtuAttributes, IntegersOf64BitsKeepAllOfThem) {
+  Mesh mesh = small_mesh(2);
+  add_attributes(mesh,
+                 AttributeLayout({{.name = "first", .type = NumberType::kInt64},
+                                  {.name = "second", .type = NumberType::kUint64}}),
+                 1, std::numeric_limits<std::uint64_t>::max() - 1);
+  expect_equal(read_bytes("a.vtu", written(kVtuMesh, mesh)), mesh);
 }
 
 TEST(PlyAttributes, AreInRecordsOfRanksAsInAFileOfOneProcess) {
