@@ -1,6 +1,8 @@
 #include "formats/bytes/xml_scanner.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace spillway::detail {
 namespace {
@@ -34,6 +36,21 @@ std::string xml_escaped(std::string_view text) {
       default:
         result += c;
     }
+  }
+  return result;
+}
+
+std::string xml_unescaped(std::string_view text) {
+  constexpr std::array<std::pair<std::string_view, char>, 5> kEntities = {
+      {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}}};
+  std::string result;
+  while (!text.empty()) {
+    const auto* const entity =
+        std::find_if(kEntities.begin(), kEntities.end(),
+                     [&](const auto& known) { return text.starts_with(known.first); });
+    const bool found = entity != kEntities.end();
+    result += found ? entity->second : text.front();
+    text.remove_prefix(found ? entity->first.size() : 1);
   }
   return result;
 }

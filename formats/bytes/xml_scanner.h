@@ -20,6 +20,9 @@ struct XmlTag {
 /// Text as it stands in XML, between tags or in quotes.
 std::string xml_escaped(std::string_view text);
 
+/// Such text with its entities replaced.
+std::string xml_unescaped(std::string_view text);
+
 /// Goes through the tags of an XML text, as far as VTK's headers need it: comments and processing
 /// instructions are passed over, entities stay as they are.
 class XmlScanner {

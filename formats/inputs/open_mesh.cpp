@@ -130,6 +130,7 @@ Mesh collect_mesh(MeshStreamReader& stream) {
   mesh.header.has_input_index = stream.header().has_input_index;
   mesh.header.lattice = stream.header().lattice;
   mesh.header.crs = stream.header().crs;
+  mesh.header.attributes = stream.header().attributes;
   MeshBlock block;
   while (stream.read(block)) {
     append_stream_numbers(block, mesh.vertices.size(), mesh.corners);
@@ -137,6 +138,7 @@ Mesh collect_mesh(MeshStreamReader& stream) {
     mesh.vertices.insert(mesh.vertices.end(), vertices.begin(), vertices.end());
     mesh.input_index.insert(mesh.input_index.end(), block.input_index.begin(),
                             block.input_index.end());
+    mesh.attributes.insert(mesh.attributes.end(), block.attributes.begin(), block.attributes.end());
   }
   mesh.header.vertices = mesh.vertices.size();
   mesh.header.simplices = mesh.corners.size() / mesh.corners_per_simplex();

@@ -31,13 +31,13 @@ std::string part_index_name(const std::string& path, const MeshFormat& format) {
 }
 
 std::string part_index_text(const std::string& path, const MeshFormat& format, int parts,
-                            bool has_input_index) {
+                            const MeshStreamHeader& header) {
   std::vector<std::string> names;
   for (int part = 0; part < parts; ++part) {
     const std::filesystem::path name = part_file_name(path, format, part, parts);
     names.push_back(name.filename().string());
   }
-  return format.part_index->text(names, has_input_index);
+  return format.part_index->text(names, header);
 }
 
 }  // namespace spillway::detail

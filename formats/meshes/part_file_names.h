@@ -15,8 +15,8 @@ std::string part_file_name(const std::string& path, const MeshFormat& format, in
 /// The name of the index of the mesh `path`, of a format that has one.
 std::string part_index_name(const std::string& path, const MeshFormat& format);
 
-/// That index of so many parts.
+/// That index of so many parts of a mesh with this header.
 std::string part_index_text(const std::string& path, const MeshFormat& format, int parts,
-                            bool has_input_index);
+                            const MeshStreamHeader& header);
 
 }  // namespace spillway::detail

@@ -46,8 +46,9 @@ class SpooledMeshWriter : public MeshStreamWriter {
 
   void finish(const MeshTotals& totals) override {
     spool_.finish(totals);
-    const std::unique_ptr<MeshWriter> writer =
-        open_mesh_writer(std::move(files_), header_of_mesh(spool_.header(), totals));
+    MeshHeader header = header_of_mesh(spool_.header(), totals);
+    header.colours_are_bytes = spool_.colours_are_bytes();
+    const std::unique_ptr<MeshWriter> writer = open_mesh_writer(std::move(files_), header);
     spool_.copy_to(*writer);
     writer->finish();
   }

@@ -31,6 +31,11 @@ void PlyItem::fail_for_excess(const FilePlace& place) const {
                  place);
 }
 
+std::string misfit_text(const PlyProperty& property, double value) {
+  return fmt::format("the property {} is {}, but of the type {}", property.written, value,
+                     ply_type(property.type).value_or(""));
+}
+
 void PlyBinaryValues::finish() {
   const std::uint64_t end = input_.position();
   if (input_.take(1) != nullptr) item_.fail_for_excess(at_byte(end));

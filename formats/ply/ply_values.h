@@ -38,6 +38,9 @@ class PlyItem {
   std::uint64_t number_ = 0;
 };
 
+/// Says that the value is not of the property's type.
+std::string misfit_text(const PlyProperty& property, double value);
+
 /// Values in binary, of the machine's byte order or the other one.
 class PlyBinaryValues {
  public:
@@ -118,6 +121,13 @@ class PlyTextValues {
   Fields fields_{""};
   std::uint64_t header_lines_;
 };
+
+/// Reads a property of one number and puts it at `at`, in its type.
+template <typename Values>
+void read_number(Values& values, const PlyProperty& property, std::byte* at) {
+  const double value = values.number(property.type);
+  if (!store_number(property.type, at, value)) values.fail(misfit_text(property, value));
+}
 
 /// Reads and drops a property of the current item.
 template <typename Values>

@@ -83,7 +83,18 @@ class PartFiles : public MeshOutput {
   }
 
   std::uint64_t finish(RankMesh& mesh) override {
-    run_collective_step(ranks_, [&] { write(mesh); });
+    MeshTotals totals;
+    std::vector<IdRun> ids;
+    run_collective_step(ranks_, [&] { totals = fill_spool(mesh, ids); });
+    std::uint64_t colours_exceed = spool_.colours_are_bytes() ? 0 : 1;
+    ranks_.reduce(std::span(&colours_exceed, 1), Reduction::kMost);
+    run_collective_step(ranks_, [&] {
+      if (target_.format == &own_mesh_stream()) {
+        write_stream(totals);
+      } else {
+        write_whole(totals, ids, colours_exceed == 0);
+      }
+    });
     std::optional<FolderLock> lock;  // of all ranks together
     run_collective_step(ranks_, [&] {
       if (ranks_.rank() == 0) lock.emplace(file_->name());
@@ -91,8 +102,8 @@ class PartFiles : public MeshOutput {
     run_collective_step(ranks_, [&] { file_->commit(); });
     run_collective_step(ranks_, [&] {
       if (!index_) return;
-      const std::string text = part_index_text(target_.path, *target_.format, ranks_.size(),
-                                               spool_.header().has_input_index);
+      const std::string text =
+          part_index_text(target_.path, *target_.format, ranks_.size(), spool_.header());
       index_->write(as_bytes_of(text));
       index_->commit();
       bytes_ += text.size();
@@ -108,7 +119,7 @@ class PartFiles : public MeshOutput {
 
   [[nodiscard]] bool plane() const { return spool_.header().dimension == 2; }
 
-  void write(RankMesh& mesh) {
+  MeshTotals fill_spool(RankMesh& mesh, std::vector<IdRun>& ids) {
     PartFileNumbers numbers(mesh);
     MeshTotals totals;
     totals.canonical_hash = mesh.figures.mesh.canonical_hash;
@@ -122,11 +133,8 @@ class PartFiles : public MeshOutput {
     totals.vertices = numbers.vertices();
     totals.points = totals.vertices;
     spool_.finish(totals);
-    if (target_.format == &own_mesh_stream()) {
-      write_stream(totals);
-    } else {
-      write_whole(totals, numbers.global_ids());
-    }
+    ids = numbers.global_ids();
+    return totals;
   }
 
   void write_stream(MeshTotals totals) {
@@ -142,12 +150,14 @@ class PartFiles : public MeshOutput {
     file.write(spm_trailer(totals));
   }
 
-  void write_whole(const MeshTotals& totals, const std::vector<IdRun>& ids) {
+  void write_whole(const MeshTotals& totals, const std::vector<IdRun>& ids,
+                   bool colours_are_bytes) {
     MeshFiles files;
     files.format = target_.format;
     files.main = std::make_unique<HeldOutput>(*file_, bytes_);
     MeshHeader header = header_of_mesh(spool_.header(), totals);
     header.global_ids = ids;
+    header.colours_are_bytes = colours_are_bytes;
     const std::unique_ptr<MeshWriter> writer = open_mesh_writer(std::move(files), header);
     spool_.copy_to(*writer);
     writer->finish();

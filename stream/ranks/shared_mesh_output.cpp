@@ -8,6 +8,7 @@
 
 #include "formats/bytes/bytes.h"
 #include "formats/disk/unfinished_files.h"
+#include "formats/meshes/common/colour.h"
 #include "formats/meshes/common/mesh_block.h"
 #include "formats/meshes/spm/spm_block.h"
 #include "formats/meshes/spm/spm_encoding.h"
@@ -18,6 +19,7 @@ namespace spillway::detail {
 namespace {
 
 using distributed::Ranks;
+using distributed::Reduction;
 using distributed::SharedFile;
 
 /// Collects small pieces for a place in a shared file.
@@ -100,15 +102,17 @@ class SharedMeshOutput : public MeshOutput {
   }
 
   std::uint64_t write_records(RankMesh& mesh) {
+    const MeshHeader header = header_of_file(mesh);
+    vertex_size_ = records().vertex_size(header);
+    attributes_.emplace(records().attributes(header, target_.path));
     std::vector<std::byte> head;
     run_collective_step(ranks_, [&] {
-      const std::string text =
-          records().header(header_of_mesh(spool_.header(), mesh.totals), target_.path);
+      const std::string text = records().header(header, target_.path);
       const std::span<const std::byte> bytes = as_bytes_of(text);
       head.assign(bytes.begin(), bytes.end());
     });
     ranks_.broadcast(head, 0);
-    const std::uint64_t simplices_at = head.size() + mesh.totals.vertices * vertex_size();
+    const std::uint64_t simplices_at = head.size() + mesh.totals.vertices * vertex_size_;
     run_collective_step(ranks_, [&] {
       if (ranks_.rank() == 0) file_->write(0, head);
       std::vector<std::uint64_t> first_simplex = {0};
@@ -116,8 +120,8 @@ class SharedMeshOutput : public MeshOutput {
         first_simplex.push_back(first_simplex.back() + section.simplices);
       }
       const auto write_section = [&](std::uint32_t section, const auto& put_blocks) {
-        OffsetOutput vertices(*file_,
-                              head.size() + mesh.sections[section].first_vertex * vertex_size());
+        next_vertex_ = mesh.sections[section].first_vertex;
+        OffsetOutput vertices(*file_, head.size() + next_vertex_ * vertex_size_);
         OffsetOutput simplices(*file_, simplices_at + first_simplex[section] * simplex_size());
         put_blocks(vertices, simplices);
         vertices.flush();
@@ -141,8 +145,19 @@ class SharedMeshOutput : public MeshOutput {
     return simplices_at + mesh.totals.simplices * simplex_size();
   }
 
-  void put_own_blocks(std::uint64_t first_vertex, OffsetOutput& vertices,
-                      OffsetOutput& simplices) const {
+  /// Collective.
+  MeshHeader header_of_file(const RankMesh& mesh) const {
+    ColourDepth of_merges(spool_.header().attributes);
+    for (const MergedSection& merged : mesh.merged) of_merges.add(merged.mesh.attributes);
+    const bool are_bytes = spool_.colours_are_bytes() && of_merges.is_bytes();
+    std::uint64_t exceed = are_bytes ? 0 : 1;
+    ranks_.reduce(std::span(&exceed, 1), Reduction::kMost);
+    MeshHeader header = header_of_mesh(spool_.header(), mesh.totals);
+    header.colours_are_bytes = exceed == 0;
+    return header;
+  }
+
+  void put_own_blocks(std::uint64_t first_vertex, OffsetOutput& vertices, OffsetOutput& simplices) {
     const std::unique_ptr<MeshStreamReader> reader = spool_.open();
     MeshBlock block;
     std::vector<std::uint64_t> corners;
@@ -165,13 +180,17 @@ class SharedMeshOutput : public MeshOutput {
 
   /// Moves the block's vertices to output coordinates.
   void put_block(MeshBlock& block, std::span<const std::uint64_t> corners, OffsetOutput& vertices,
-                 OffsetOutput& simplices) const {
+                 OffsetOutput& simplices) {
+    const std::span<const std::byte> attributes =
+        attributes_->convert(block.attributes, next_vertex_);
+    next_vertex_ += block.vertices.size();
     for (std::size_t i = 0; i < block.vertices.size(); ++i) {
-      std::byte* const at = vertices.reserve(vertex_size());
+      std::byte* const at = vertices.reserve(vertex_size_);
       std::optional<std::uint64_t> index;
       if (spool_.header().has_input_index) index = block.input_index[i];
       vertices.advance_to(records().put_vertex(
-          at, in_world(spool_.header().lattice, block.vertices[i]), index, target_.path));
+          at, in_world(spool_.header().lattice, block.vertices[i]), index,
+          attributes.subspan(i * attributes_->size(), attributes_->size()), target_.path));
     }
     const std::size_t count = spool_.header().dimension + 1;
     for (; !corners.empty(); corners = corners.subspan(count)) {
@@ -181,9 +200,6 @@ class SharedMeshOutput : public MeshOutput {
   }
 
   [[nodiscard]] const MeshRecords& records() const { return *target_.format->records; }
-  [[nodiscard]] std::size_t vertex_size() const {
-    return records().vertex_size(spool_.header().has_input_index);
-  }
   [[nodiscard]] std::size_t simplex_size() const {
     return records().simplex_size(spool_.header().dimension);
   }
@@ -193,6 +209,10 @@ class SharedMeshOutput : public MeshOutput {
   std::unique_ptr<OutputFile> created_;             ///< by rank 0
   std::optional<OthersUnfinishedFile> unfinished_;  ///< the same file, at the other ranks
   std::optional<SharedFile> file_;
+  // Of a file of records.
+  std::optional<VertexRecords> attributes_;
+  std::size_t vertex_size_ = 0;
+  std::uint64_t next_vertex_ = 0;  ///< that is put down
 };
 
 }  // namespace

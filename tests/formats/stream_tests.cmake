@@ -6,6 +6,7 @@ spillway_test(mesh_streams_test unit
     formats/meshes/spool/mesh_spool_test.cpp
     formats/meshes/sma/sma_test.cpp
     formats/meshes/spool/spm_section_test.cpp
+    formats/meshes/spm/spm_attributes_test.cpp
     formats/meshes/spm/spm_test.cpp
     formats/meshes/spm/spm_tetrahedra_test.cpp
     formats/meshes/spool/spooled_mesh_writer_test.cpp

@@ -20,7 +20,8 @@ CheckedMeshWriter::CheckedMeshWriter(MeshHeader header, std::string name)
 }
 
 void CheckedMeshWriter::write_vertices(std::span<const WorldPoint> vertices,
-                                       std::span<const std::uint64_t> input_index) {
+                                       std::span<const std::uint64_t> input_index,
+                                       std::span<const std::byte> attributes) {
   if (vertices.size() > header_.vertices - vertices_) {
     fail(fmt::format("more than the {} vertices that were promised came", header_.vertices));
   }
@@ -28,8 +29,19 @@ void CheckedMeshWriter::write_vertices(std::span<const WorldPoint> vertices,
     fail(
         fmt::format("{} vertices came with {} input indices", vertices.size(), input_index.size()));
   }
-  put_vertices(vertices, input_index);
+  const std::size_t record = header_.attributes.record_size();
+  if (attributes.size() != vertices.size() * record) {
+    fail(fmt::format("{} vertices came with {} bytes of attributes, but each has {}",
+                     vertices.size(), attributes.size(), record));
+  }
+  put_vertices(vertices, input_index, attributes);
   vertices_ += vertices.size();
+}
+
+bool CheckedMeshWriter::begin_vertices_again() {
+  if (vertices_ != header_.vertices || !wants_vertices_again()) return false;
+  vertices_ = 0;
+  return true;
 }
 
 void CheckedMeshWriter::write_simplices(std::span<const std::uint64_t> corners) {
@@ -37,6 +49,7 @@ void CheckedMeshWriter::write_simplices(std::span<const std::uint64_t> corners) 
     fail(fmt::format("{} vertices were promised, but {} came before the first simplex",
                      header_.vertices, vertices_));
   }
+  if (wants_vertices_again()) fail("the vertices did not come again, as was asked for");
   const std::size_t count = corners.size() / corners_per_simplex();
   if (corners.size() % corners_per_simplex() != 0 || count > header_.simplices - simplices_) {
     fail(fmt::format("{} corners came where {} simplices of {} were left to write", corners.size(),

@@ -13,7 +13,9 @@ namespace spillway::detail {
 class CheckedMeshWriter : public MeshWriter {
  public:
   void write_vertices(std::span<const WorldPoint> vertices,
-                      std::span<const std::uint64_t> input_index) final;
+                      std::span<const std::uint64_t> input_index,
+                      std::span<const std::byte> attributes) final;
+  bool begin_vertices_again() final;
   void write_simplices(std::span<const std::uint64_t> corners) final;
   void finish() final;
 
@@ -23,7 +25,11 @@ class CheckedMeshWriter : public MeshWriter {
 
   /// Appends vertices that have passed the checks.
   virtual void put_vertices(std::span<const WorldPoint> vertices,
-                            std::span<const std::uint64_t> input_index) = 0;
+                            std::span<const std::uint64_t> input_index,
+                            std::span<const std::byte> attributes) = 0;
+
+  /// Whether all vertices must come again, of which the last has come.
+  [[nodiscard]] virtual bool wants_vertices_again() const { return false; }
 
   /// Appends simplices that have passed the checks, after the last vertex.
   virtual void put_simplices(std::span<const std::uint64_t> corners) = 0;
@@ -40,7 +46,7 @@ class CheckedMeshWriter : public MeshWriter {
  private:
   MeshHeader header_;
   std::string name_;
-  std::uint64_t vertices_ = 0;   // written so far
+  std::uint64_t vertices_ = 0;   // written so far, since they began to come (again)
   std::uint64_t simplices_ = 0;  // written so far
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -8,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/points/attributes/attribute_layout.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 
@@ -30,6 +32,10 @@ struct MeshHeader {
   /// Of a part of a larger mesh: which of its vertices these are. Only PLY and VTU have a place for
   /// them; readers pass over it.
   std::optional<std::vector<IdRun>> global_ids{};
+  AttributeLayout attributes{};  ///< that each vertex carries
+  /// Whether all numbers of the attributes `red`, `green` and `blue` are known to be below 256:
+  /// then they are bytes, though they may be of 16 bits, as LAS has no others.
+  bool colours_are_bytes = false;
 };
 
 /// A whole mesh in memory, as `check`, `info` and `convert` read it.
@@ -38,6 +44,7 @@ struct Mesh {
   std::vector<WorldPoint> vertices;        ///< output coordinates; z is 0 where the file has none
   std::vector<std::uint64_t> corners;      ///< dimension+1 vertex numbers a simplex, in file order
   std::vector<std::uint64_t> input_index;  ///< one a vertex if header.has_input_index, else empty
+  std::vector<std::byte> attributes{};     ///< of all vertices: a record each
   std::string_view format{};               ///< name of the format of the file that was read
   /// What was made of the file, or left out, that it does not say itself.
   std::vector<std::string> notices{};

@@ -23,6 +23,7 @@ MeshHeader header_of_mesh(const MeshStreamHeader& header, const MeshTotals& tota
   mesh.has_input_index = header.has_input_index;
   mesh.lattice = header.lattice;
   mesh.crs = header.crs;
+  mesh.attributes = header.attributes;
   return mesh;
 }
 

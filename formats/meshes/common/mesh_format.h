@@ -51,7 +51,7 @@ struct MeshFileSet {
 struct MeshPartIndex {
   std::string_view extension;
   /// `names`: those of the parts, without folders.
-  std::string (*text)(std::span<const std::string> names, bool has_input_index);
+  std::string (*text)(std::span<const std::string> names, const MeshStreamHeader& header);
 };
 
 /// A format of meshes: a constant, of which there is one object. What it cannot do is null.

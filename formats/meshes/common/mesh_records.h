@@ -7,6 +7,7 @@
 #include <string>
 
 #include "formats/meshes/common/mesh.h"
+#include "formats/meshes/common/vertex_records.h"
 
 namespace spillway::detail {
 
@@ -16,13 +17,15 @@ namespace spillway::detail {
 struct MeshRecords {
   /// All before the first vertex. Throws Error for a mesh that the format cannot hold.
   std::string (*header)(const MeshHeader& header, const std::string& name);
-  std::size_t (*vertex_size)(bool has_input_index);
+  /// What makes the records of attributes that put_vertex() is given.
+  VertexRecords (*attributes)(const MeshHeader& header, const std::string& name);
+  std::size_t (*vertex_size)(const MeshHeader& header);
   std::size_t (*simplex_size)(int dimension);
-  /// Puts down a vertex, or a simplex, and returns where it ends. Throws Error for an index that is
-  /// too large.
+  /// Puts down a vertex with its record, or a simplex, and returns where it ends. Throws Error for
+  /// an index that is too large.
   std::byte* (*put_vertex)(std::byte* at, const WorldPoint& vertex,
                            const std::optional<std::uint64_t>& input_index,
-                           const std::string& name);
+                           std::span<const std::byte> record, const std::string& name);
   std::byte* (*put_simplex)(std::byte* at, std::span<const std::uint64_t> corners);
 };
 

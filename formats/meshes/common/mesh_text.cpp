@@ -3,6 +3,9 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
+#include "formats/bytes/bytes.h"
+#include "formats/bytes/number_type.h"
+
 namespace spillway::detail {
 namespace {
 
@@ -23,6 +26,21 @@ void append_coordinates(BufferedOutput& output, std::string_view before, const W
 void append_number(BufferedOutput& output, std::string_view before, std::uint64_t number) {
   char* const at = text(output.reserve(kLongestLine));
   output.advance_to(bytes(fmt::format_to(at, FMT_COMPILE("{}{}"), before, number)));
+}
+
+void append_numbers(BufferedOutput& output, const AttributeLayout& layout,
+                    std::span<const std::byte> record) {
+  for (const AttributeField& field : layout.fields()) {
+    const std::byte* number = record.data() + field.at;
+    for (std::size_t e = 0; e < field.attribute.elements; ++e) {
+      number = with_number_type(field.attribute.type, [&](auto of_type) {
+        const auto value = load<decltype(of_type)>(number);
+        char* const at = text(output.reserve(kLongestLine));
+        output.advance_to(bytes(fmt::format_to(at, FMT_COMPILE(" {}"), +value)));
+        return number + sizeof(value);
+      });
+    }
+  }
 }
 
 void append_simplex(BufferedOutput& output, std::string_view keyword,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -7,7 +8,8 @@
 
 namespace spillway::detail {
 
-/// Writes one mesh: first all vertices, in blocks of any size, then all simplices, then finish().
+/// Writes one mesh: first all vertices, in blocks of any size, once more while
+/// begin_vertices_again(), then all simplices, then finish().
 /// Numbers must add up to the header's counts. Nothing appears under the final name before
 /// finish(); a writer that is destroyed without it leaves nothing behind.
 class MeshWriter {
@@ -15,9 +17,14 @@ class MeshWriter {
   virtual ~MeshWriter() = default;
 
   /// Appends vertices. `input_index` has one entry a vertex if the header says has_input_index and
-  /// is empty otherwise.
+  /// is empty otherwise; `attributes` has a record a vertex, as the header has them.
   virtual void write_vertices(std::span<const WorldPoint> vertices,
-                              std::span<const std::uint64_t> input_index) = 0;
+                              std::span<const std::uint64_t> input_index,
+                              std::span<const std::byte> attributes) = 0;
+
+  /// To be called after the last vertex. Returns whether all vertices must be written once more, in
+  /// the same order: a format that has what belongs to them in arrays apart need not hold it all.
+  virtual bool begin_vertices_again() = 0;
 
   /// Appends simplices: dimension+1 vertex numbers each, counted from 0, positively oriented.
   virtual void write_simplices(std::span<const std::uint64_t> corners) = 0;

@@ -45,7 +45,8 @@ class GlbWriter : public CheckedMeshWriter {
 
  private:
   void put_vertices(std::span<const WorldPoint> vertices,
-                    std::span<const std::uint64_t> /*input_index*/) override {
+                    std::span<const std::uint64_t> /*input_index*/,
+                    std::span<const std::byte> /*attributes*/) override {
     for (const WorldPoint& vertex : vertices) {
       if (written_ == 0) origin_ = local_origin(vertex);
       const auto position = to_local(vertex, origin_);

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -20,22 +18,6 @@
 
 namespace spillway::detail {
 namespace {
-
-/// Text with its entities replaced.
-std::string unescaped(std::string_view text) {
-  constexpr std::array<std::pair<std::string_view, char>, 5> kEntities = {
-      {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}}};
-  std::string result;
-  while (!text.empty()) {
-    const auto* const entity =
-        std::find_if(kEntities.begin(), kEntities.end(),
-                     [&](const auto& known) { return text.starts_with(known.first); });
-    const bool found = entity != kEntities.end();
-    result += found ? entity->second : text.front();
-    text.remove_prefix(found ? entity->first.size() : 1);
-  }
-  return result;
-}
 
 /// Goes through the tags of a file of any size, a window of which is in memory.
 class XmlTags {
@@ -142,7 +124,7 @@ class LandXmlReader {
     if (!code.empty()) {
       mesh_.header.crs = fmt::format("EPSG:{}", code);
     } else {
-      mesh_.header.crs = unescaped(tag_.attribute(landxml::kWkt));
+      mesh_.header.crs = xml_unescaped(tag_.attribute(landxml::kWkt));
     }
   }
 

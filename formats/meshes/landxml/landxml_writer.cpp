@@ -72,7 +72,8 @@ class LandXmlWriter : public CheckedMeshWriter {
 
  private:
   void put_vertices(std::span<const WorldPoint> vertices,
-                    std::span<const std::uint64_t> /*input_index*/) override {
+                    std::span<const std::uint64_t> /*input_index*/,
+                    std::span<const std::byte> /*attributes*/) override {
     for (const WorldPoint& vertex : vertices) {
       append_number(output_, "<P id=\"", ++points_);
       append_coordinates(output_, "\">", {vertex[1], vertex[0], vertex[2]});

@@ -56,7 +56,8 @@ class NpyMeshWriter : public CheckedMeshWriter {
 
  private:
   void put_vertices(std::span<const WorldPoint> vertices,
-                    std::span<const std::uint64_t> input_index) override {
+                    std::span<const std::uint64_t> input_index,
+                    std::span<const std::byte> /*attributes*/) override {
     vertices_.append(vertices);
     if (input_index_) input_index_->append(input_index);
   }

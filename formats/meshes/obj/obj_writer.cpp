@@ -19,7 +19,8 @@ class ObjWriter : public CheckedMeshWriter {
 
  private:
   void put_vertices(std::span<const WorldPoint> vertices,
-                    std::span<const std::uint64_t> /*input_index*/) override {
+                    std::span<const std::uint64_t> /*input_index*/,
+                    std::span<const std::byte> /*attributes*/) override {
     for (const WorldPoint& vertex : vertices) {
       append_coordinates(output_, "v ", vertex);
       append_line_end(output_);

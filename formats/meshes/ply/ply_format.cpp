@@ -16,13 +16,18 @@ constexpr std::string_view kAsciiExtensions[] = {"ply-ascii"};
 constexpr MeshRecords kRecords = {
     .header = [](const MeshHeader& header,
                  const std::string& name) { return ply_header_text(header, false, name); },
-    .vertex_size = [](bool has_input_index) { return ply_vertex_size(has_input_index ? 1 : 0); },
+    .attributes = ply_vertex_records,
+    .vertex_size =
+        [](const MeshHeader& header) {
+          return ply_vertex_size(header.has_input_index ? 1 : 0) +
+                 ply_vertex_layout(header.attributes).record_size();
+        },
     .simplex_size = ply_simplex_size,
     .put_vertex =
         [](std::byte* at, const WorldPoint& vertex, const std::optional<std::uint64_t>& input_index,
-           const std::string& name) {
+           std::span<const std::byte> record, const std::string& name) {
           const double index = input_index ? ply_index(*input_index, name) : 0;
-          return put_ply_vertex(at, vertex, std::span(&index, input_index ? 1 : 0));
+          return put_ply_vertex(at, vertex, std::span(&index, input_index ? 1 : 0), record);
         },
     .put_simplex = put_ply_simplex,
 };

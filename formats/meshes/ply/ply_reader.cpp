@@ -11,12 +11,20 @@
 #include "formats/meshes/common/mesh_notes.h"
 #include "formats/ply/ply_header.h"
 #include "formats/ply/ply_values.h"
+#include "formats/points/attributes/attribute_names.h"
+#include "formats/points/attributes/unique_names.h"
 #include "src/error.h"
 
 namespace spillway::detail {
 namespace {
 
 constexpr std::string_view kInputIndex = "input_index";
+constexpr std::string_view kGlobalId = "global_id";
+
+// Where a property of vertices goes; axes have the numbers before.
+constexpr int kToIndex = 3;
+constexpr int kToAttribute = 4;
+constexpr int kNowhere = 5;
 
 /// The place of the list of corners in an element of simplices, or -1.
 int corner_list(const PlyElement& element) {
@@ -45,6 +53,7 @@ class PlyReader {
     mesh_.header.simplices = simplices_->count;
     mesh_.header.has_input_index = vertices_->find(kInputIndex) >= 0;
     check_properties();
+    aim_properties();
     check_size();
   }
 
@@ -86,6 +95,30 @@ class PlyReader {
         fail(fmt::format("the element {} has no properties", element.name));
       }
     }
+  }
+
+  /// Numbers of vertices that are nobody else's become attributes.
+  void aim_properties() {
+    targets_.assign(vertices_->properties.size(), kToAttribute);
+    const auto aim = [&](std::string_view property, int target) {
+      const int place = vertices_->find(property);
+      if (place >= 0) targets_[place] = target;
+    };
+    aim("x", 0);
+    aim("y", 1);
+    aim("z", 2);
+    aim(kInputIndex, kToIndex);
+    aim(kGlobalId, kNowhere);
+    std::vector<Attribute> attributes;
+    UniqueNames names;
+    for (std::size_t p = 0; p < targets_.size(); ++p) {
+      const PlyProperty& property = vertices_->properties[p];
+      if (property.length_type) targets_[p] = kNowhere;
+      if (targets_[p] != kToAttribute) continue;
+      attributes.push_back(
+          {.name = names.take(attribute_name(property.written)), .type = property.type});
+    }
+    mesh_.header.attributes = AttributeLayout(std::move(attributes));
   }
 
   /// Fewest bytes that one item of the element takes.
@@ -142,33 +175,28 @@ class PlyReader {
     if (size_known_) {
       mesh_.vertices.reserve(vertices_->count);
       if (mesh_.header.has_input_index) mesh_.input_index.reserve(vertices_->count);
+      mesh_.attributes.reserve(vertices_->count * mesh_.header.attributes.record_size());
     }
-    // Where each property goes: to an axis, to the input index, or nowhere.
-    constexpr int kToIndex = 3;
-    constexpr int kNowhere = 4;
-    std::vector<int> targets(vertices_->properties.size(), kNowhere);
-    const auto aim = [&](std::string_view property, int target) {
-      const int place = vertices_->find(property);
-      if (place >= 0) targets[place] = target;
-    };
-    aim("x", 0);
-    aim("y", 1);
-    aim("z", 2);
-    aim(kInputIndex, kToIndex);
+    const std::size_t record_size = mesh_.header.attributes.record_size();
     for (std::uint64_t i = 0; i < vertices_->count; ++i) {
       values.begin_item(kPlyVertex, i);
       WorldPoint point{};
-      for (std::size_t p = 0; p < targets.size(); ++p) {
+      mesh_.attributes.resize(mesh_.attributes.size() + record_size);
+      std::byte* attribute = mesh_.attributes.data() + mesh_.attributes.size() - record_size;
+      for (std::size_t p = 0; p < targets_.size(); ++p) {
         const PlyProperty& property = vertices_->properties[p];
-        if (targets[p] < 3) {
+        if (targets_[p] < 3) {
           const double coordinate = values.number(property.type);
           if (!std::isfinite(coordinate)) {
             values.fail(
                 fmt::format("the coordinate {} is {}, not finite", property.name, coordinate));
           }
-          point[targets[p]] = coordinate;
-        } else if (targets[p] == kToIndex) {
+          point[targets_[p]] = coordinate;
+        } else if (targets_[p] == kToIndex) {
           mesh_.input_index.push_back(values.index(property.type, kInputIndex));
+        } else if (targets_[p] == kToAttribute) {
+          read_number(values, property, attribute);
+          attribute += size_of(property.type);
         } else {
           pass_over(values, property);
         }
@@ -233,6 +261,7 @@ class PlyReader {
   bool size_known_;
   Mesh mesh_;
   FaceCutter cutter_{source_.name(), mesh_};
+  std::vector<int> targets_;            // of the properties of vertices
   std::vector<std::uint64_t> corners_;  // of the simplex being read
 };
 

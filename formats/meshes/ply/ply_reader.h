@@ -5,9 +5,9 @@
 
 namespace spillway::detail {
 
-/// Reads a PLY mesh, binary of either byte order or ASCII. Elements and properties that are not the
-/// mesh's are passed over, faces too where there are tetrahedra. Throws Error that names the item
-/// and its byte or line.
+/// Reads a PLY mesh, binary of either byte order or ASCII. Other numbers of vertices
+/// become attributes; elements and lists that are not the mesh's are passed over, faces too where
+/// there are tetrahedra. Throws Error that names the item and its byte or line.
 Mesh read_ply(InputBytes& source);
 
 }  // namespace spillway::detail

@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "formats/bytes/bytes.h"
 #include "formats/meshes/common/mesh_notes.h"
+#include "formats/points/attributes/unique_names.h"
+#include "formats/points/ply/ply_properties.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -14,6 +19,9 @@ constexpr std::uint64_t kMostInUint = std::uint64_t{1} << 32;
 
 /// Input indices are doubles, as PLY has no 64-bit integers; up to here they are exact.
 constexpr std::uint64_t kLargestIndex = std::uint64_t{1} << 53;
+
+/// Names that no attribute has.
+constexpr std::array<const char*, 5> kOwnProperties = {"x", "y", "z", "input_index", "global_id"};
 
 std::string index_property(std::string_view property) {
   return fmt::format(
@@ -43,9 +51,20 @@ std::string ply_header_text(const MeshHeader& header, bool ascii, const std::str
                   header.vertices);
   if (header.has_input_index) text += index_property("input_index");
   if (header.global_ids) text += index_property("global_id");
+  UniqueNames names({kOwnProperties.begin(), kOwnProperties.end()});
+  text += ply_property_lines(ply_vertex_layout(header.attributes), names);
   return text + fmt::format("element {} {}\nproperty list uchar {} vertex_indices\nend_header\n",
                             header.dimension == 2 ? "face" : "tetrahedron", header.simplices,
                             header.vertices > kMostInInt ? "uint" : "int");
+}
+
+AttributeLayout ply_vertex_layout(const AttributeLayout& attributes) {
+  return as_ply(with_byte_colours(attributes));
+}
+
+VertexRecords ply_vertex_records(const MeshHeader& header, const std::string& name) {
+  return {header, ply_vertex_layout(header.attributes),
+          PlyIntegerCheck(header.attributes, "vertex", name)};
 }
 
 double ply_index(std::uint64_t index, const std::string& name) {
@@ -57,11 +76,11 @@ double ply_index(std::uint64_t index, const std::string& name) {
   return static_cast<double>(index);
 }
 
-std::byte* put_ply_vertex(std::byte* at, const WorldPoint& vertex,
-                          std::span<const double> indices) {
+std::byte* put_ply_vertex(std::byte* at, const WorldPoint& vertex, std::span<const double> indices,
+                          std::span<const std::byte> record) {
   for (const double coordinate : vertex) at = put(at, coordinate);
   for (const double index : indices) at = put(at, index);
-  return at;
+  return std::ranges::copy(record, at).out;
 }
 
 std::byte* put_ply_simplex(std::byte* at, std::span<const std::uint64_t> corners) {

@@ -16,33 +16,42 @@ namespace {
 class PlyWriter : public CheckedMeshWriter {
  public:
   PlyWriter(std::unique_ptr<OutputFile> file, const MeshHeader& header, bool ascii)
-      : CheckedMeshWriter(header, file->name()), output_(std::move(file)), ascii_(ascii) {
+      : CheckedMeshWriter(header, file->name()),
+        output_(std::move(file)),
+        ascii_(ascii),
+        records_(ply_vertex_records(header, output_.name())) {
     output_.append(ply_header_text(header, ascii, output_.name()));
     if (this->header().global_ids) ids_.emplace(*this->header().global_ids);
   }
 
  private:
   void put_vertices(std::span<const WorldPoint> vertices,
-                    std::span<const std::uint64_t> input_index) override {
+                    std::span<const std::uint64_t> input_index,
+                    std::span<const std::byte> attributes) override {
+    const std::span<const std::byte> records = records_.convert(attributes, vertices_);
+    vertices_ += vertices.size();
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       std::size_t count = 0;
       std::array<double, 2> indices;
       if (header().has_input_index) indices[count++] = ply_index(input_index[i], output_.name());
       if (ids_) indices[count++] = ply_index(ids_->next(), output_.name());
-      put_vertex(vertices[i], std::span(indices).first(count));
+      put_vertex(vertices[i], std::span(indices).first(count),
+                 records.subspan(i * records_.size(), records_.size()));
     }
   }
 
-  void put_vertex(const WorldPoint& vertex, std::span<const double> indices) {
+  void put_vertex(const WorldPoint& vertex, std::span<const double> indices,
+                  std::span<const std::byte> record) {
     if (ascii_) {
       append_coordinates(output_, "", vertex);
       for (const double index : indices) {
         append_number(output_, " ", static_cast<std::uint64_t>(index));
       }
+      append_numbers(output_, records_.layout(), record);
       append_line_end(output_);
     } else {
-      std::byte* const at = output_.reserve(ply_vertex_size(indices.size()));
-      output_.advance_to(put_ply_vertex(at, vertex, indices));
+      std::byte* const at = output_.reserve(ply_vertex_size(indices.size()) + record.size());
+      output_.advance_to(put_ply_vertex(at, vertex, indices, record));
     }
   }
 
@@ -63,6 +72,8 @@ class PlyWriter : public CheckedMeshWriter {
 
   BufferedOutput output_;
   bool ascii_;
+  VertexRecords records_;
+  std::uint64_t vertices_ = 0;  // written so far
   std::optional<GlobalIds> ids_;
 };
 

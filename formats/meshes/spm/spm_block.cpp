@@ -9,6 +9,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/longest_vectors.h"
 #include "formats/meshes/spm/spm_corners.h"
+#include "formats/points/spp/spp_attributes.h"
 #include "formats/points/spp/spp_coordinates.h"
 #include "src/error.h"
 
@@ -56,6 +57,12 @@ SpmCounts counts_of(const MeshStreamHeader& header, const MeshBlock& block) {
   if (block.input_index.size() != (header.has_input_index ? block.vertices.size() : 0)) {
     fail_to_write(fmt::format("a block has {} vertices with {} input indices",
                               block.vertices.size(), block.input_index.size()));
+  }
+  const std::size_t record = header.attributes.record_size();
+  if (block.attributes.size() != block.vertices.size() * record) {
+    fail_to_write(
+        fmt::format("a block has {} vertices with {} bytes of attributes, but each has {}",
+                    block.vertices.size(), block.attributes.size(), record));
   }
   const std::uint32_t largest = std::max(largest_of(block.corners), largest_of(block.finalized));
   if (largest > block.vertices.size() + block.corners.size() + block.imported.size() +
@@ -130,6 +137,7 @@ SpmCounts append_spm_content(std::vector<std::byte>& out, const MeshStreamHeader
   append_corners(out, header.dimension, counts.numbers, block.corners);
   append_coordinates(out, header, block.vertices);
   append_column(out, block.input_index);
+  append_attribute_columns(out, header.attributes, block.attributes);
   return counts;
 }
 
@@ -160,6 +168,10 @@ SpmCounts read_spm_content(std::span<const std::byte> content, const MeshStreamH
   ColumnReader columns(columns_bytes, where);
   read_coordinates(columns, header, counts.vertices, where, block.vertices);
   columns.read(header.has_input_index ? counts.vertices : 0, block.input_index);
+  block.attributes.clear();
+  if (!read_attribute_columns(columns, header.attributes, counts.vertices, block.attributes)) {
+    fail("an attribute is larger than its type");
+  }
   columns.expect_end();
   return counts;
 }

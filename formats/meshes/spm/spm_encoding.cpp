@@ -5,6 +5,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/meshes/spm/spm_block.h"
 #include "formats/meshes/spm/spm_format.h"
+#include "formats/points/spp/spp_attributes.h"
 
 namespace spillway::detail {
 namespace {
@@ -21,7 +22,7 @@ void append_value(std::vector<std::byte>& out, const T& value) {
 std::vector<std::byte> spm_head(const MeshStreamHeader& header) {
   const bool has_extent = header.extent && !header.extent->empty();
   std::vector<std::byte> content;
-  append_value(content, kSpmVersion);
+  append_value(content, header.attributes.empty() ? kSpmVersion : kSpmAttributesVersion);
   append_value(content, static_cast<std::uint32_t>(header.dimension));
   append_value(content, (header.lattice ? kSpmHasLattice : 0) |
                             (header.points ? kSpmHasPoints : 0) | (has_extent ? kSpmHasExtent : 0) |
@@ -35,6 +36,7 @@ std::vector<std::byte> spm_head(const MeshStreamHeader& header) {
     append_value(content, header.extent->lo);
     append_value(content, header.extent->hi);
   }
+  if (!header.attributes.empty()) append_attribute_list(content, header.attributes);
   const std::span<const std::byte> crs = as_bytes_of(header.crs);
   content.insert(content.end(), crs.begin(), crs.end());
   const std::span<const std::byte> magic = as_bytes_of(kSpmMagic);

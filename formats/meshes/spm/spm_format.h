@@ -13,6 +13,7 @@ extern const MeshFormat kSpmMesh;
 
 inline constexpr std::string_view kSpmMagic = "SPWMESH\n";
 inline constexpr std::uint32_t kSpmVersion = 1;
+inline constexpr std::uint32_t kSpmAttributesVersion = 2;  ///< vertices carry attributes
 
 /// Kinds of blocks.
 inline constexpr std::uint32_t kSpmHeader = 1;

@@ -11,6 +11,7 @@
 #include "formats/meshes/common/mesh_notes.h"
 #include "formats/meshes/spm/spm_block.h"
 #include "formats/meshes/spm/spm_format.h"
+#include "formats/points/spp/spp_attributes.h"
 #include "src/geometry/lattice_check.h"
 
 namespace spillway::detail {
@@ -19,9 +20,14 @@ namespace {
 class SpmReader : public MeshStreamReader {
  public:
   explicit SpmReader(std::unique_ptr<InputBytes> source)
-      : stream_(std::move(source), {"spm", kSpmMagic, kSpmVersion, "mesh"}, [this] {
-          return fmt::format("{} vertices and {} simplices", vertices_, simplices_);
-        }) {
+      : stream_(
+            std::move(source),
+            {.name = "spm",
+             .magic = kSpmMagic,
+             .version = kSpmAttributesVersion,
+             .contents = "mesh",
+             .oldest_version = kSpmVersion},
+            [this] { return fmt::format("{} vertices and {} simplices", vertices_, simplices_); }) {
     if (stream_.next() != kSpmHeader) stream_.fail("the first block is not a header");
     parse_header();
   }
@@ -54,7 +60,7 @@ class SpmReader : public MeshStreamReader {
 
  private:
   void parse_header() {
-    stream_.take_version();
+    const std::uint32_t version = stream_.take_version();
     const auto dimension = stream_.take<std::uint32_t>();
     if (dimension != 2 && dimension != 3) stream_.fail("the dimension is neither 2 nor 3");
     header_.dimension = static_cast<int>(dimension);
@@ -70,6 +76,7 @@ class SpmReader : public MeshStreamReader {
     }
     if ((flags & kSpmHasPoints) != 0) header_.points = stream_.take<std::uint64_t>();
     if ((flags & kSpmHasExtent) != 0) header_.extent = stream_.take_extent();
+    if (version == kSpmAttributesVersion) header_.attributes = take_attribute_list(stream_);
     header_.crs = as_text(stream_.left());
   }
 

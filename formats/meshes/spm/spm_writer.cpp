@@ -71,7 +71,8 @@ class SpmWriter : public MeshStreamWriter {
   /// Of the block alone.
   void encode(MeshBlock& block) const {
     std::vector<std::byte> content;
-    content.reserve(24 * block.vertices.size() + 4 * block.corners.size());
+    content.reserve(24 * block.vertices.size() + 4 * block.corners.size() +
+                    block.attributes.size());
     auto absorbed = std::make_shared<EncodedBlock>();
     try {
       absorbed->counts = append_spm_content(content, header_, block);
@@ -82,6 +83,7 @@ class SpmWriter : public MeshStreamWriter {
     block.absorbed = std::move(absorbed);
     release(block.vertices);
     release(block.input_index);
+    release(block.attributes);
     release(block.corners);
     release(block.finalized);
   }

@@ -97,14 +97,21 @@ class SpoolInput : public InputFile {
 MeshSpool::MeshSpool(const MeshStreamHeader& header, const std::string& name,
                      ScratchFolder& scratch, std::size_t memory)
     : header_(header),
+      colours_(header.attributes),
       store_(std::make_unique<ByteSpool>(scratch, memory)),
       encoder_(open_spm_writer(std::make_unique<SpoolOutput>(*store_, name), header)) {}
 
 MeshSpool::~MeshSpool() = default;
 
-void MeshSpool::absorb(MeshBlock& block) { encoder_->absorb(block); }
+void MeshSpool::absorb(MeshBlock& block) {
+  colours_.add(block.attributes);
+  encoder_->absorb(block);
+}
 
-void MeshSpool::write(MeshBlock&& block) { encoder_->write(std::move(block)); }
+void MeshSpool::write(MeshBlock&& block) {
+  colours_.add(block.attributes);  // an absorbed block has none left
+  encoder_->write(std::move(block));
+}
 
 void MeshSpool::finish(const MeshTotals& totals) { encoder_->finish(totals); }
 
@@ -116,10 +123,12 @@ std::unique_ptr<MeshStreamReader> MeshSpool::open() const {
 
 void MeshSpool::copy_to(MeshWriter& writer) const {
   MeshBlock block;
-  const std::unique_ptr<MeshStreamReader> for_vertices = open();
-  while (for_vertices->read(block)) {
-    writer.write_vertices(world_vertices(header_, block), block.input_index);
-  }
+  do {
+    const std::unique_ptr<MeshStreamReader> for_vertices = open();
+    while (for_vertices->read(block)) {
+      writer.write_vertices(world_vertices(header_, block), block.input_index, block.attributes);
+    }
+  } while (writer.begin_vertices_again());
   const std::unique_ptr<MeshStreamReader> for_simplices = open();
   std::vector<std::uint64_t> corners;
   std::uint64_t first = 0;

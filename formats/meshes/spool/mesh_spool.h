@@ -7,6 +7,7 @@
 #include <string>
 
 #include "formats/disk/scratch_folder.h"
+#include "formats/meshes/common/colour.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/meshes/common/mesh_writer.h"
 
@@ -35,6 +36,9 @@ class MeshSpool : public MeshStreamWriter {
 
   [[nodiscard]] const MeshStreamHeader& header() const { return header_; }
 
+  /// Whether all numbers of colours, so far, are below 256, though they may be of 16 bits.
+  [[nodiscard]] bool colours_are_bytes() const { return colours_.is_bytes(); }
+
   /// The mesh from its first block on. The spool must outlive the reader.
   [[nodiscard]] std::unique_ptr<MeshStreamReader> open() const;
 
@@ -46,6 +50,7 @@ class MeshSpool : public MeshStreamWriter {
 
  private:
   MeshStreamHeader header_;
+  ColourDepth colours_;
   std::unique_ptr<ByteSpool> store_;
   std::unique_ptr<MeshStreamWriter> encoder_;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "formats/bytes/fields.h"
@@ -78,6 +79,14 @@ VtuArray vtu_array(const VtuTags& tags, std::string_view name) {
   array.place = value_of(tags, "format", kPlaces);
   if (array.place == VtuPlace::kAppended) array.offset = vtu_count(tags, "offset");
   return array;
+}
+
+std::string_view vtu_type(NumberType type) {
+  return std::ranges::find(kTypes, type, &Named<NumberType>::value)->name;
+}
+
+bool is_vtu_type(std::string_view name) {
+  return std::ranges::find(kTypes, name, &Named<NumberType>::name) != kTypes.end();
 }
 
 bool is_appended_base64(const VtuTags& tags) { return value_of(tags, "encoding", kEncodings); }

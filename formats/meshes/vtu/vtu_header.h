@@ -1,6 +1,7 @@
 #pragma once
 // What the tags of VTU files say, as docs/formats-meshes.md ("VTU") describes it.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -27,7 +28,9 @@ struct VtuArray {
   std::string name;
   NumberType type = NumberType::kFloat64;
   VtuPlace place = VtuPlace::kInlineText;
-  std::uint64_t offset = 0;  ///< of appended ones: from the first byte of the appended data
+  bool is_attribute = false;   ///< of points, for which a mesh has no name of its own
+  std::size_t components = 1;  ///< of an attribute: numbers of a point
+  std::uint64_t offset = 0;    ///< of appended ones: from the first byte of the appended data
 };
 
 /// What the tag VTKFile says. Throws Error for what is not read.
@@ -35,6 +38,12 @@ VtuCoding vtu_coding(const VtuTags& tags);
 
 /// What the tag DataArray says. Throws Error for what is malformed.
 VtuArray vtu_array(const VtuTags& tags, std::string_view name);
+
+/// The name of a type of numbers: "UInt8", "Float64".
+std::string_view vtu_type(NumberType type);
+
+/// Whether such a name is that of a type of numbers.
+bool is_vtu_type(std::string_view name);
 
 /// Whether the tag AppendedData promises base64, and not raw bytes. Throws Error for anything else.
 bool is_appended_base64(const VtuTags& tags);

@@ -7,6 +7,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/xml_scanner.h"
 #include "formats/meshes/vtu/vtu_names.h"
+#include "formats/meshes/vtu/vtu_point_arrays.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -16,8 +17,8 @@ constexpr std::size_t kProbe = 1024;
 
 }  // namespace
 
-std::string pvtu_text(std::span<const std::string> names, bool has_input_index) {
-  const auto array = [](std::string_view type, std::string_view name, int components) {
+std::string pvtu_text(std::span<const std::string> names, const MeshStreamHeader& header) {
+  const auto array = [](std::string_view type, std::string_view name, std::size_t components) {
     return fmt::format(R"(      <PDataArray type="{}" Name="{}" NumberOfComponents="{}"/>)"
                        "\n",
                        type, name, components);
@@ -30,8 +31,11 @@ std::string pvtu_text(std::span<const std::string> names, bool has_input_index) 
 )";
   text += array("Float64", "Points", 3);
   text += fmt::format("    </PPoints>\n    <PPointData GlobalIds=\"{}\">\n", vtu::kGlobalIds);
-  if (has_input_index) text += array("Int64", vtu::kInputIndex, 1);
+  if (header.has_input_index) text += array("Int64", vtu::kInputIndex, 1);
   text += array("Int64", vtu::kGlobalIds, 1);
+  for (const VtuPointArray& each : vtu_point_arrays(vtu_point_layout(header.attributes))) {
+    text += array(each.type, each.name, each.components);
+  }
   text += "    </PPointData>\n";
   for (const std::string& name : names) {
     text += fmt::format("    <Piece Source=\"{}\"/>\n", xml_escaped(name));

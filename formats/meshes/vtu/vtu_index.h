@@ -5,11 +5,12 @@
 #include <string>
 
 #include "formats/bytes/input_bytes.h"
+#include "formats/meshes/common/mesh_stream.h"
 
 namespace spillway::detail {
 
-/// The index of the parts of these names.
-std::string pvtu_text(std::span<const std::string> names, bool has_input_index);
+/// The index of the parts of these names, of a mesh with this header.
+std::string pvtu_text(std::span<const std::string> names, const MeshStreamHeader& header);
 
 /// Throws Error if this is such an index.
 void check_is_no_pvtu(InputBytes& source);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "formats/bytes/buffered_input.h"
+#include "formats/bytes/xml_scanner.h"
 #include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/common/mesh_notes.h"
 #include "formats/meshes/vtu/vtu_bytes.h"
@@ -22,6 +24,8 @@
 #include "formats/meshes/vtu/vtu_names.h"
 #include "formats/meshes/vtu/vtu_tags.h"
 #include "formats/meshes/vtu/vtu_values.h"
+#include "formats/points/attributes/attribute_names.h"
+#include "formats/points/attributes/unique_names.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -29,6 +33,15 @@ namespace {
 
 /// More numbers than a field array of Spillway has.
 constexpr std::size_t kMostInField = std::size_t{1} << 24;
+
+/// More numbers than a point has of anything that is an attribute.
+constexpr std::uint64_t kMostComponents = 4096;
+
+/// An attribute, and its numbers of all points.
+struct ReadAttribute {
+  Attribute attribute;
+  std::vector<std::byte> numbers;
+};
 
 class VtuReader {
  public:
@@ -39,6 +52,7 @@ class VtuReader {
   Mesh read() {
     read_tags();
     check_arrays();
+    put_attributes();
     cells_.put_into(mesh_, input_.name());
     if (mesh_.header.dimension == 0) fail_for_point_cloud(input_.name(), "VTU");
     return std::move(mesh_);
@@ -91,18 +105,47 @@ class VtuReader {
     return is_read ? std::optional(std::string(name)) : std::nullopt;
   }
 
+  /// Whether it is one of numbers that go with the points, of which Spillway knows no more.
+  [[nodiscard]] bool is_attribute() const {
+    const std::string_view name = tags_.tag().attribute("Name");
+    return section_ == "PointData" && !name.empty() && name != vtu::kInputIndex &&
+           name != vtu::kGlobalIds && is_vtu_type(tags_.tag().attribute("type"));
+  }
+
   void read_array_tag() {
     const std::optional<std::string> name = name_of_array();
     if (!coding_) tags_.fail("an array stands outside of VTKFile");
-    if (!name) {
+    if (name) {
+      const VtuArray array = vtu_array(tags_, *name);
+      if (section_ != "FieldData") check_array(array);
+      if (!seen_.insert(array.name).second) {
+        tags_.fail(fmt::format("there is a second {}", array.name));
+      }
+      take_array(array);
+    } else if (is_attribute()) {
+      read_attribute_tag();
+    } else {
       tags_.expect_data();
-      return;
     }
-    const VtuArray array = vtu_array(tags_, *name);
-    if (section_ != "FieldData") check_array(array);
-    if (!seen_.insert(array.name).second) {
-      tags_.fail(fmt::format("there is a second {}", array.name));
-    }
+  }
+
+  void read_attribute_tag() {
+    VtuArray array = vtu_array(tags_, xml_unescaped(tags_.tag().attribute("Name")));
+    if (!cell_count_) tags_.fail("an array of points or cells stands outside of a Piece");
+    array.is_attribute = true;
+    array.components = components();
+    if (array.components > 0 && array.components <= kMostComponents) return take_array(array);
+    mesh_.notices.push_back(fmt::format("the point array {} of {} components is left out",
+                                        array.name, array.components));
+    tags_.expect_data();
+  }
+
+  [[nodiscard]] std::uint64_t components() const {
+    const bool is_told = !tags_.tag().attribute("NumberOfComponents").empty();
+    return is_told ? vtu_count(tags_, "NumberOfComponents") : 1;
+  }
+
+  void take_array(const VtuArray& array) {
     if (array.place == VtuPlace::kAppended) {
       appended_.push_back(array);
     } else if (array.place == VtuPlace::kInlineBinary) {
@@ -121,10 +164,8 @@ class VtuReader {
     if (is_cells && !is_integer(array.type)) {
       tags_.fail(fmt::format("{} must be integers", array.name));
     }
-    const bool has_components = !tags_.tag().attribute("NumberOfComponents").empty();
-    const std::uint64_t found = has_components ? vtu_count(tags_, "NumberOfComponents") : 1;
     const std::uint64_t wanted = array.name == vtu::kPoints ? 3 : 1;
-    if (found != wanted) {
+    if (components() != wanted) {
       tags_.fail(fmt::format("the array {} needs {} components", array.name, wanted));
     }
   }
@@ -162,7 +203,9 @@ class VtuReader {
   }
 
   void read_array(const VtuArray& array, VtuValues& values) {
-    if (array.name == vtu::kPoints) {
+    if (array.is_attribute) {
+      read_attribute(array, values);
+    } else if (array.name == vtu::kPoints) {
       read_points(values);
     } else if (array.name == vtu::kConnectivity) {
       read_connectivity(values);
@@ -179,7 +222,7 @@ class VtuReader {
 
   /// Gives each number of an array to `take`, which must be as many as are declared.
   template <typename Take>
-  void read_numbers(const char* name, VtuValues& values, std::uint64_t declared, Take take) {
+  void read_numbers(const std::string& name, VtuValues& values, std::uint64_t declared, Take take) {
     std::uint64_t count = 0;
     for (; values.next(); ++count) {
       if (count == declared) {
@@ -246,6 +289,40 @@ class VtuReader {
     });
   }
 
+  void read_attribute(const VtuArray& array, VtuValues& values) {
+    const std::size_t size = size_of(array.type);
+    ReadAttribute& read = attributes_.emplace_back();
+    read.attribute = {.name = names_.take(attribute_name(array.name)),
+                      .type = array.type,
+                      .elements = array.components};
+    const std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / array.components;
+    const std::uint64_t declared = std::min(mesh_.header.vertices, most) * array.components;
+    read.numbers.reserve(std::min(values.count().value_or(0), declared) * size);
+    read_numbers(array.name, values, declared, [&](std::uint64_t i) {
+      read.numbers.resize(read.numbers.size() + size);
+      if (values.put(array.type, read.numbers.data() + i * size)) return;
+      fail(fmt::format("{} {} is not a number of its type", array.name, i));
+    });
+  }
+
+  /// Makes records of the arrays.
+  void put_attributes() {
+    std::vector<Attribute> all;
+    for (const ReadAttribute& read : attributes_) all.push_back(read.attribute);
+    const AttributeLayout layout(std::move(all));
+    const std::size_t record = layout.record_size();
+    mesh_.attributes.resize(mesh_.header.vertices * record);
+    for (std::size_t i = 0; i < attributes_.size(); ++i) {
+      const std::vector<std::byte> numbers = std::move(attributes_[i].numbers);
+      const AttributeField& field = layout.fields()[i];
+      const std::size_t size = size_of(field.attribute);
+      for (std::uint64_t vertex = 0; vertex < mesh_.header.vertices; ++vertex) {
+        std::memcpy(&mesh_.attributes[vertex * record + field.at], &numbers[vertex * size], size);
+      }
+    }
+    mesh_.header.attributes = layout;
+  }
+
   void read_field(const std::string& name, VtuValues& values) {
     std::vector<double> numbers;
     while (values.next()) {
@@ -297,7 +374,9 @@ class VtuReader {
   std::string section_;  // the element that the arrays are in
   std::optional<VtuCoding> coding_;
   std::optional<std::uint64_t> cell_count_;
-  std::set<std::string> seen_;      // names of arrays
+  std::set<std::string> seen_;  // names of arrays
+  std::vector<ReadAttribute> attributes_;
+  UniqueNames names_;               // of these
   std::vector<VtuArray> appended_;  // those whose values are still to come
   VtuCells cells_;
   Mesh mesh_;

@@ -5,8 +5,8 @@
 
 namespace spillway::detail {
 
-/// Reads a VTU file of triangles or tetrahedra with appended raw data, UInt64 headers,
-/// little-endian, uncompressed, one piece. Throws Error that names the byte.
+/// Reads a VTU file of triangles or tetrahedra in one piece. Other arrays of numbers that go with
+/// the points become attributes. Throws Error that names the byte.
 Mesh read_vtu(InputBytes& source);
 
 }  // namespace spillway::detail

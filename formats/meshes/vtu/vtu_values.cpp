@@ -9,6 +9,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/fields.h"
 #include "formats/bytes/line_reader.h"
+#include "formats/points/attributes/record_conversion.h"
 
 namespace spillway::detail {
 namespace {
@@ -209,6 +210,14 @@ VtuValues VtuValues::of_binary(VtuBytes& bytes, const VtuCoding& coding, const V
 
 VtuValues VtuValues::of_text(BufferedInput& input, const VtuArray& array) {
   return {std::make_unique<TextContent>(input, array.type), input, kept_type(array.type), false};
+}
+
+bool VtuValues::put(NumberType type, std::byte* at) const {
+  std::array<std::byte, sizeof(std::uint64_t)> number;
+  const std::span<std::byte> bytes = std::span(number).first(size_of_one_);
+  std::copy_n(buffer_.begin() + static_cast<std::ptrdiff_t>(at_), size_of_one_, bytes.begin());
+  if (swaps_) std::ranges::reverse(bytes);
+  return NumberConversion{.from = type_, .to = type}.convert(number.data(), at);
 }
 
 std::optional<std::uint64_t> VtuValues::count() const {

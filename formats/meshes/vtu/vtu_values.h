@@ -52,6 +52,9 @@ class VtuValues {
     return load_index(type_, buffer_.data() + at_, swaps_);
   }
 
+  /// Puts it at `at`, as a number of that type; false if it is none.
+  [[nodiscard]] bool put(NumberType type, std::byte* at) const;
+
   /// How many numbers there are, if the file is known to hold them.
   [[nodiscard]] std::optional<std::uint64_t> count() const;
 

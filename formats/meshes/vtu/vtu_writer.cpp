@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,7 +15,9 @@
 #include "formats/meshes/common/checked_mesh_writer.h"
 #include "formats/meshes/common/global_ids.h"
 #include "formats/meshes/common/mesh_notes.h"
+#include "formats/meshes/common/vertex_records.h"
 #include "formats/meshes/vtu/vtu_names.h"
+#include "formats/meshes/vtu/vtu_point_arrays.h"
 
 namespace spillway::detail {
 namespace {
@@ -22,7 +27,7 @@ namespace {
 class AppendedArrays {
  public:
   /// The element that declares an array of `bytes` bytes.
-  std::string declare(std::string_view name, std::string_view type, int components,
+  std::string declare(std::string_view name, std::string_view type, std::size_t components,
                       std::uint64_t bytes) {
     std::string text =
         fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" )"
@@ -46,21 +51,49 @@ std::string inline_array(std::string_view name, std::string_view type, const Ran
       type, name, std::size(numbers), fmt::join(numbers, " "));
 }
 
+/// An array of the points, and where its numbers come from.
+struct PointArray {
+  enum class Source { kCoordinates, kInputIndex, kGlobalIds, kAttributes };
+
+  Source source = Source::kCoordinates;
+  VtuPointArray declared;
+};
+
 class VtuWriter : public CheckedMeshWriter {
  public:
-  VtuWriter(std::unique_ptr<OutputFile> file, const MeshHeader& header)
-      : CheckedMeshWriter(header, file->name()), output_(std::move(file)) {
+  VtuWriter(std::unique_ptr<OutputFile> file, const MeshHeader& header, std::size_t memory)
+      : CheckedMeshWriter(header, file->name()),
+        output_(std::move(file)),
+        memory_(memory),
+        records_(header, vtu_point_layout(header.attributes)),
+        arrays_(arrays_of_points()) {
     output_.append(header_text());
-    append_value(points_bytes());
-    if (header.vertices == 0) begin_cells();
+    begin_arrays();
+    if (header.vertices == 0) end_arrays();
   }
 
  private:
-  [[nodiscard]] std::uint64_t points_bytes() const {
-    return header().vertices * sizeof(WorldPoint);
+  /// In their order in the file.
+  [[nodiscard]] std::vector<PointArray> arrays_of_points() const {
+    using Source = PointArray::Source;
+    std::vector<PointArray> arrays = {
+        {Source::kCoordinates, {vtu::kPoints, "Float64", 3, 0, sizeof(WorldPoint)}}};
+    if (header().has_input_index) {
+      arrays.push_back(
+          {Source::kInputIndex, {vtu::kInputIndex, "Int64", 1, 0, sizeof(std::int64_t)}});
+    }
+    if (header().global_ids) {
+      arrays.push_back(
+          {Source::kGlobalIds, {vtu::kGlobalIds, "Int64", 1, 0, sizeof(std::int64_t)}});
+    }
+    for (VtuPointArray& array : vtu_point_arrays(records_.layout())) {
+      arrays.push_back({Source::kAttributes, std::move(array)});
+    }
+    return arrays;
   }
-  [[nodiscard]] std::uint64_t index_bytes() const {
-    return header().vertices * sizeof(std::int64_t);
+
+  [[nodiscard]] std::uint64_t bytes_of(const PointArray& array) const {
+    return header().vertices * array.declared.size;
   }
   [[nodiscard]] std::uint64_t connectivity_bytes() const {
     return header().simplices * corners_per_simplex() * sizeof(std::int64_t);
@@ -103,7 +136,7 @@ class VtuWriter : public CheckedMeshWriter {
         R"(    <Piece NumberOfPoints="{}" NumberOfCells="{}">)"
         "\n      <Points>\n        ",
         header().vertices, header().simplices);
-    text += arrays.declare("Points", "Float64", 3, points_bytes());
+    text += declaration(arrays, arrays_.front());
     text += "      </Points>\n";
     text += point_data(arrays);
     // One statement each: the offsets depend on the order of the calls.
@@ -119,50 +152,102 @@ class VtuWriter : public CheckedMeshWriter {
     return text;
   }
 
+  [[nodiscard]] std::string declaration(AppendedArrays& arrays, const PointArray& array) const {
+    const VtuPointArray& declared = array.declared;
+    return arrays.declare(declared.name, declared.type, declared.components, bytes_of(array));
+  }
+
   /// The element of the arrays that go with the points; nothing if there are none.
   [[nodiscard]] std::string point_data(AppendedArrays& arrays) const {
+    if (arrays_.size() == 1) return "";
     std::string declared;
-    if (header().has_input_index) {
-      declared += "        " + arrays.declare(vtu::kInputIndex, "Int64", 1, index_bytes());
+    for (const PointArray& array : std::span(arrays_).subspan(1)) {
+      declared += "        " + declaration(arrays, array);
     }
-    if (header().global_ids) {
-      declared += "        " + arrays.declare(vtu::kGlobalIds, "Int64", 1, index_bytes());
-    }
-    if (declared.empty()) return "";
     const std::string ids =
         header().global_ids ? fmt::format(" GlobalIds=\"{}\"", vtu::kGlobalIds) : "";
     return fmt::format("      <PointData{}>\n{}      </PointData>\n", ids, declared);
   }
 
+  /// Chooses the arrays that the vertices which come now go to: the first to the file, others that
+  /// find room to the memory.
+  void begin_arrays() {
+    std::uint64_t held = 0;
+    held_.clear();
+    end_ = first_ + 1;
+    for (; end_ < arrays_.size(); ++end_) {
+      held += bytes_of(arrays_[end_]);
+      if (held > memory_) break;
+      held_.emplace_back();
+    }
+    if (header().global_ids) ids_.emplace(*header().global_ids);
+    append_value(bytes_of(arrays_[first_]));
+    points_ = 0;
+  }
+
+  /// Writes those that were held, and what stands between the last one and the corners of cells.
+  void end_arrays() {
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      append_value(bytes_of(arrays_[first_ + 1 + i]));
+      output_.append(as_text(held_[i]));
+    }
+    held_.clear();
+    first_ = end_;
+    if (first_ == arrays_.size()) {
+      append_value(connectivity_bytes());
+    } else {
+      begin_arrays();
+    }
+  }
+
+  [[nodiscard]] bool wants_vertices_again() const override { return first_ < arrays_.size(); }
+
   void put_vertices(std::span<const WorldPoint> vertices,
-                    std::span<const std::uint64_t> input_index) override {
+                    std::span<const std::uint64_t> input_index,
+                    std::span<const std::byte> attributes) override {
     if (vertices.empty()) return;
-    output_.append(as_text(std::as_bytes(vertices)));
+    check_index(input_index);
+    const std::span<const std::byte> records = records_.convert(attributes, points_);
+    const std::size_t first = first_;
+    for (std::size_t i = first; i < end_; ++i) {
+      const std::span<const std::byte> numbers =
+          numbers_of(arrays_[i], vertices, input_index, records);
+      if (i == first) {
+        output_.append(as_text(numbers));
+      } else {
+        std::vector<std::byte>& held = held_[i - first - 1];
+        held.insert(held.end(), numbers.begin(), numbers.end());
+      }
+    }
     points_ += vertices.size();
+    if (points_ == header().vertices) end_arrays();
+  }
+
+  void check_index(std::span<const std::uint64_t> input_index) const {
     for (const std::uint64_t index : input_index) {
       if (index > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
         fail(fmt::format("VTU cannot hold the input index {}", index));
       }
     }
-    input_index_.insert(input_index_.end(), input_index.begin(), input_index.end());
-    if (points_ == header().vertices) begin_cells();
   }
 
-  /// Writes what stands between the points and the corners of the cells.
-  void begin_cells() {
-    if (header().has_input_index) {
-      append_value(index_bytes());
-      output_.append(as_text(std::as_bytes(std::span(input_index_))));
-      input_index_ = {};
-    }
-    if (header().global_ids) {
-      append_value(index_bytes());
-      GlobalIds ids(*header().global_ids);
-      for (std::uint64_t vertex = 0; vertex < header().vertices; ++vertex) {
-        append_value(ids.next());
+  /// The bytes that some vertices have in an array, until the next call.
+  std::span<const std::byte> numbers_of(const PointArray& array,
+                                        std::span<const WorldPoint> vertices,
+                                        std::span<const std::uint64_t> input_index,
+                                        std::span<const std::byte> records) {
+    if (array.source == PointArray::Source::kCoordinates) return std::as_bytes(vertices);
+    if (array.source == PointArray::Source::kInputIndex) return std::as_bytes(input_index);
+    const std::size_t size = array.declared.size;
+    column_.resize(vertices.size() * size);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      if (array.source == PointArray::Source::kGlobalIds) {
+        store(&column_[i * size], ids_->next());
+      } else {
+        std::memcpy(&column_[i * size], &records[i * records_.size() + array.declared.at], size);
       }
     }
-    append_value(connectivity_bytes());
+    return column_;
   }
 
   void put_simplices(std::span<const std::uint64_t> corners) override {
@@ -189,15 +274,22 @@ class VtuWriter : public CheckedMeshWriter {
   }
 
   BufferedOutput output_;
-  std::uint64_t points_ = 0;
-  std::vector<std::uint64_t> input_index_;
+  std::size_t memory_;
+  VertexRecords records_;
+  std::vector<PointArray> arrays_;
+  std::size_t first_ = 0;                     ///< of the arrays that vertices go to now
+  std::size_t end_ = 0;                       ///< the one after the last of them
+  std::uint64_t points_ = 0;                  ///< that have come for these
+  std::vector<std::vector<std::byte>> held_;  ///< of those after the first
+  std::optional<GlobalIds> ids_;
+  std::vector<std::byte> column_;
 };
 
 }  // namespace
 
 std::unique_ptr<MeshWriter> open_vtu_writer(std::unique_ptr<OutputFile> file,
-                                            const MeshHeader& header) {
-  return std::make_unique<VtuWriter>(std::move(file), header);
+                                            const MeshHeader& header, std::size_t memory) {
+  return std::make_unique<VtuWriter>(std::move(file), header, memory);
 }
 
 }  // namespace spillway::detail

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "formats/disk/file_system.h"
@@ -8,10 +9,13 @@
 
 namespace spillway::detail {
 
+inline constexpr std::size_t kVtuMemory = std::size_t{64} << 20;
+
 /// Writes VTK's XML format for unstructured grids with appended raw data, as docs/formats-meshes.md
-/// ("VTU") describes it. Holds the input indices, if there are any, in memory until all vertices
-/// are written: 8 bytes a vertex.
+/// ("VTU") describes it. What goes with the points stands in arrays one after the other: of these
+/// it holds `memory` bytes at most, and asks for the vertices again for the others.
 std::unique_ptr<MeshWriter> open_vtu_writer(std::unique_ptr<OutputFile> file,
-                                            const MeshHeader& header);
+                                            const MeshHeader& header,
+                                            std::size_t memory = kVtuMemory);
 
 }  // namespace spillway::detail

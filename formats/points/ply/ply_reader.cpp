@@ -47,11 +47,7 @@ class ValueRows : public RowSource {
         pass_over(values_, property);
         continue;
       }
-      const double value = values_.number(property.type);
-      if (!store_number(property.type, at, value)) {
-        values_.fail(fmt::format("the property {} is {}, but of the type {}", property.written,
-                                 value, ply_type(property.type).value_or("")));
-      }
+      read_number(values_, property, at);
       at += size_of(property.type);
     }
     values_.end_item();

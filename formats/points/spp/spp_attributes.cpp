@@ -109,6 +109,7 @@ AttributeLayout take_attribute_list(BlockStream& stream) {
 
 void append_attribute_columns(std::vector<std::byte>& content, const AttributeLayout& layout,
                               std::span<const std::byte> records) {
+  if (layout.empty()) return;
   const std::size_t record = layout.record_size();
   std::vector<std::uint64_t> column(records.size() / record);
   for_each_number(layout, [&](std::size_t at, std::size_t size) {

@@ -105,11 +105,13 @@ WholeMesh::WholeMesh(Mesh mesh, const std::string& name, bool all_totals)
   header_.has_input_index = mesh.header.has_input_index;
   header_.lattice = mesh.header.lattice;
   header_.crs = mesh.header.crs;
+  header_.attributes = mesh.header.attributes;
   block_.vertices = stream_vertices(mesh, header_.lattice);
   for (const LatticePoint& vertex : block_.vertices) {
     extent_.expand(Point<2>{vertex[0], vertex[1]});
   }
   block_.input_index = std::move(mesh.input_index);
+  block_.attributes = std::move(mesh.attributes);
   block_.corners.assign(mesh.corners.begin(), mesh.corners.end());
   block_.finalized.resize(block_.vertices.size());
   std::iota(block_.finalized.begin(), block_.finalized.end(), 0U);

@@ -82,7 +82,8 @@ class ToyWriter : public CheckedMeshWriter {
  private:
   void put(const std::string& text) { file_->write(as_bytes_of(text)); }
   void put_vertices(std::span<const WorldPoint> vertices,
-                    std::span<const std::uint64_t> /*input_index*/) override {
+                    std::span<const std::uint64_t> /*input_index*/,
+                    std::span<const std::byte> /*attributes*/) override {
     for (const WorldPoint& v : vertices) put(fmt::format("{} {} {}\n", v[0], v[1], v[2]));
   }
   void put_simplices(std::span<const std::uint64_t> corners) override {

@@ -180,7 +180,7 @@ TEST_P(EveryFormat, RefusesInputIndicesThatAreNotOneAVertex) {
   const auto writer = open_mesh_writer(files, GetParam().path, *GetParam().format, header);
   const std::vector<WorldPoint> vertices(2);
   const std::vector<std::uint64_t> index(2);
-  error_of([&] { writer->write_vertices(vertices, index); });
+  error_of([&] { writer->write_vertices(vertices, index, {}); });
 }
 
 TEST_P(EveryFormat, NothingAppearsBeforeFinish) {

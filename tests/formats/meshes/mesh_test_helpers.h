@@ -55,22 +55,31 @@ inline Lattice awkward_lattice() {
 }
 
 /// Writes a mesh in blocks of `block` vertices and simplices.
-inline void write_mesh(FileSystem& files, const std::string& path, const MeshFormat& format,
-                       const Mesh& mesh, std::size_t block = 3) {
-  const auto writer = open_mesh_writer(files, path, format, mesh.header);
+inline void write_mesh(MeshWriter& writer, const Mesh& mesh, std::size_t block = 3) {
   const std::span<const WorldPoint> vertices(mesh.vertices);
   const std::span<const std::uint64_t> index(mesh.input_index);
-  for (std::size_t at = 0; at < vertices.size(); at += block) {
-    const std::size_t count = std::min(block, vertices.size() - at);
-    writer->write_vertices(vertices.subspan(at, count),
-                           index.empty() ? index : index.subspan(at, count));
-  }
+  const std::span<const std::byte> records(mesh.attributes);
+  const std::size_t record = mesh.header.attributes.record_size();
+  do {
+    for (std::size_t at = 0; at < vertices.size(); at += block) {
+      const std::size_t count = std::min(block, vertices.size() - at);
+      writer.write_vertices(vertices.subspan(at, count),
+                            index.empty() ? index : index.subspan(at, count),
+                            records.subspan(at * record, count * record));
+    }
+  } while (writer.begin_vertices_again());
   const std::span<const std::uint64_t> corners(mesh.corners);
   const std::size_t step = block * mesh.corners_per_simplex();
   for (std::size_t at = 0; at < corners.size(); at += step) {
-    writer->write_simplices(corners.subspan(at, std::min(step, corners.size() - at)));
+    writer.write_simplices(corners.subspan(at, std::min(step, corners.size() - at)));
   }
-  writer->finish();
+  writer.finish();
+}
+
+/// Writes a mesh to a file.
+inline void write_mesh(FileSystem& files, const std::string& path, const MeshFormat& format,
+                       const Mesh& mesh, std::size_t block = 3) {
+  write_mesh(*open_mesh_writer(files, path, format, mesh.header), mesh, block);
 }
 
 /// The bytes of a mesh in a format of one file.
@@ -120,6 +129,8 @@ inline void expect_equal(const Mesh& a, const Mesh& b) {
   }
   EXPECT_EQ(a.corners, b.corners);
   EXPECT_EQ(a.input_index, b.input_index);
+  EXPECT_TRUE(a.header.attributes == b.header.attributes);
+  EXPECT_TRUE(a.attributes == b.attributes);
 }
 
 }  // namespace spillway::detail::testing

@@ -145,7 +145,7 @@ TEST(PlyWriter, VertexNumbersBeyondIntAreUnsigned) {
     header.vertices = (std::uint64_t{1} << 31) + (beyond ? 1 : 0);
     FaultyFileSystem files;
     const auto writer = open_mesh_writer(files, "a.ply", kPlyMesh, header);
-    writer->write_vertices(enough_to_be_written_out, {});
+    writer->write_vertices(enough_to_be_written_out, {}, {});
     EXPECT_THAT(
         files.parts.at("a.ply").substr(0, 500),
         HasSubstr(beyond ? "list uchar uint vertex_indices\n" : "list uchar int vertex_indices\n"));
@@ -454,7 +454,7 @@ TEST_P(MeshWriterMisuse, AFileAfterAFailedBlockIsNeverCompleted) {
   FaultyFileSystem files;
   const Mesh mesh = small_mesh(2);
   const auto writer = open_mesh_writer(files, "a.x", *GetParam(), mesh.header);
-  writer->write_vertices(mesh.vertices, {});
+  writer->write_vertices(mesh.vertices, {}, {});
   const std::vector<std::uint64_t> bad = {0, 1, 4};
   error_of([&] { writer->write_simplices(bad); });
   writer->write_simplices(std::span(mesh.corners).first(3));

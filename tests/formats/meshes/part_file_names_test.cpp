@@ -24,7 +24,12 @@ TEST(MeshPartNames, HaveNumbersOfOneWidthBeforeTheExtension) {
 }
 
 TEST(PvtuIndex, IsAsVtkHasIt) {
-  EXPECT_EQ(part_index_text("a/x<y.pvtu", kVtuMesh, 2, true),
+  MeshStreamHeader header;
+  header.has_input_index = true;
+  header.attributes =
+      AttributeLayout({{"angle", NumberType::kInt16, 1, 0.006},
+                       {.name = "rgb", .type = NumberType::kUint16, .elements = 3}});
+  EXPECT_EQ(part_index_text("a/x<y.pvtu", kVtuMesh, 2, header),
             R"(<?xml version="1.0"?>
 <VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
   <PUnstructuredGrid GhostLevel="0">
@@ -34,6 +39,8 @@ TEST(PvtuIndex, IsAsVtkHasIt) {
     <PPointData GlobalIds="GlobalPointIds">
       <PDataArray type="Int64" Name="input_index" NumberOfComponents="1"/>
       <PDataArray type="Int64" Name="GlobalPointIds" NumberOfComponents="1"/>
+      <PDataArray type="Float64" Name="angle" NumberOfComponents="1"/>
+      <PDataArray type="UInt16" Name="rgb" NumberOfComponents="3"/>
     </PPointData>
     <Piece Source="x&lt;y.0.vtu"/>
     <Piece Source="x&lt;y.1.vtu"/>
@@ -103,7 +110,7 @@ TEST(PlyRecords, AreWhatTheWriterWrites) {
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
       std::vector<std::byte> record(ply_vertex_size(1));
       const double index = ply_index(mesh.input_index[i], "a.ply");
-      EXPECT_EQ(put_ply_vertex(record.data(), mesh.vertices[i], std::span(&index, 1)),
+      EXPECT_EQ(put_ply_vertex(record.data(), mesh.vertices[i], std::span(&index, 1), {}),
                 record.data() + record.size());
       bytes += as_text(record);
     }

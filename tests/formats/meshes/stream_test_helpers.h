@@ -131,6 +131,7 @@ inline std::string error_of_stream(const std::string& path, const std::string& b
 struct FlatMesh {
   std::vector<LatticePoint> vertices;
   std::vector<std::uint64_t> input_index;
+  std::vector<std::byte> attributes;
   std::vector<std::vector<std::uint64_t>> simplices;
   std::map<std::uint64_t, std::size_t> finalized;
 
@@ -159,6 +160,7 @@ inline FlatMesh flat(const StreamedMesh& mesh) {
     all.vertices.insert(all.vertices.end(), block.vertices.begin(), block.vertices.end());
     all.input_index.insert(all.input_index.end(), block.input_index.begin(),
                            block.input_index.end());
+    all.attributes.insert(all.attributes.end(), block.attributes.begin(), block.attributes.end());
     const std::size_t corners = mesh.header.dimension + 1;
     for (std::size_t i = 0; i < block.corners.size(); i += corners) {
       std::vector<std::uint64_t> simplex;

@@ -321,7 +321,7 @@ TEST(Spm, BadHeader) {
   const auto error = [](const std::string& header) {
     return error_of_stream("a.spm", stream_of({{kSpmHeader, header}}));
   };
-  EXPECT_THAT(error(header_content(2, 2, 0)), HasSubstr("version 2 of spm is not known"));
+  EXPECT_THAT(error(header_content(3, 2, 0)), HasSubstr("version 3 of spm is not known"));
   EXPECT_THAT(error(header_content(1, 4, 0)), HasSubstr("neither 2 nor 3"));
   EXPECT_THAT(error(header_content(1, 2, 16)), HasSubstr("unknown flags"));
   EXPECT_THAT(error(header_content(1, 2, kSpmHasLattice)), HasSubstr("ends early"));

@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "formats/compression/lz4.h"
+#include "tests/formats/meshes/attributed_mesh.h"
 #include "tests/formats/meshes/broken_files.h"
-#include "tests/formats/meshes/mesh_test_helpers.h"
 
 namespace spillway::detail::testing {
 namespace {
@@ -180,14 +180,23 @@ void add_cells(VtuFile& file, const Cells& cells) {
   file.array("Int64", "Name=\"offsets\"", ends);
 }
 
+std::vector<std::uint16_t> numbers_of_points(std::size_t count) {
+  std::vector<std::uint16_t> numbers(count);
+  for (std::size_t i = 0; i < count; ++i) numbers[i] = static_cast<std::uint16_t>(65535 - i);
+  return numbers;
+}
+
 /// A file of these points and cells, with arrays of other programs.
 std::string vtu(const Style& style, const std::vector<double>& points, const Cells& cells) {
   VtuFile file(style);
   file.section("PointData");
-  file.array("Float64", "Name=\"height\"", points);
+  file.array("Int64", "Name=\"GlobalPointIds\"", std::vector<std::int64_t>(points.size() / 3, 9));
   add_cells(file, cells);
   file.section("Points");
   file.array("Float64", "Name=\"p\" NumberOfComponents=\"3\"", points);
+  file.section("PointData");
+  file.array("Float64", "Name=\"Normals\" NumberOfComponents=\"3\"", points);
+  file.array("UInt16", "Name=\"Intensity\"", numbers_of_points(points.size() / 3));
   file.section("CellData");
   file.array("Int64", "Name=\"material\"", std::vector<std::int64_t>(cells.size(), 7));
   file.section("");
@@ -244,6 +253,42 @@ TEST(VtuReader, EveryStyleIsRead) {
     SCOPED_TRACE(style.name);
     expect_square(read_both(square_vtu(style)));
   }
+}
+
+TEST(VtuReader, NumbersOfPointsAreAttributesInAnyStyle) {
+  for (const Style& style : all_styles()) {
+    SCOPED_TRACE(style.name);
+    const Mesh mesh = read_both(square_vtu(style));
+    const std::vector<Attribute> expected = {
+        {.name = "Normals", .type = NumberType::kFloat64, .elements = 3},
+        {.name = "intensity", .type = NumberType::kUint16}};
+    EXPECT_EQ(mesh.header.attributes.attributes(), expected);
+    EXPECT_EQ(numbers_of(mesh, "Normals"), kSquare);
+    EXPECT_THAT(numbers_of(mesh, "intensity"), ElementsAre(65535, 65534, 65533, 65532));
+  }
+}
+
+TEST(VtuReader, PointArraysOfTheWrongLengthAreRefused) {
+  for (const int change : {-1, 1}) {
+    VtuFile file({.name = "Ascii", .format = "ascii"});
+    file.section("PointData");
+    file.array("UInt16", "Name=\"a\"", numbers_of_points(4 + change));
+    add_cells(file, {{5, {0, 1, 2}}, {5, {2, 1, 3}}});
+    file.section("Points");
+    file.array("Float64", "Name=\"p\" NumberOfComponents=\"3\"", kSquare);
+    file.section("");
+    EXPECT_THAT(error_of_bytes("a.vtu", file.text(4, 2)), HasSubstr("the array a has"));
+  }
+}
+
+TEST(VtuReader, PointArraysThatAreNoNumbersArePassedOver) {
+  const std::string bytes = square_vtu({.name = "Ascii", .format = "ascii"});
+  const std::string text = replaced(bytes, "type=\"UInt16\"", "type=\"String\"");
+  EXPECT_EQ(read_both(text).header.attributes.find("intensity"), nullptr);
+  const std::string many =
+      replaced(bytes, "Name=\"Intensity\"", "Name=\"Intensity\" NumberOfComponents=\"5000\"");
+  EXPECT_THAT(read_both(many).notices,
+              ElementsAre("the point array Intensity of 5000 components is left out"));
 }
 
 TEST(VtuReader, ACutFileOfAnyStyleIsAnError) {
@@ -422,7 +467,7 @@ TEST(VtuReader, BlocksThatDoNotDecompressAreTold) {
 TEST(VtuReader, LengthsThatTheFileDoesNotHoldTakeNoMemory) {
   const std::string good = square_vtu(kRaw);
   const std::size_t data = good.find("   _") + 4;
-  const std::size_t types = data + 8 + 96;
+  const std::size_t types = data + 8 + 32;
   for (const std::uint64_t length : {std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
     std::string bad = good;
     put(bad, types, length);
