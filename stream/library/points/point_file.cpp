@@ -10,7 +10,6 @@
 #include <system_error>
 
 #include "formats/gdal/gdal.h"
-#include "formats/points/attributes/attribute_names.h"
 #include "formats/points/create_points.h"
 #include "formats/points/las/records/las_metadata.h"
 #include "formats/points/point_formats.h"
@@ -48,13 +47,6 @@ std::string las_version_for(const RunPoints& points, bool has_metadata) {
       points.headers, [](const PointHeader& header) { return header.point_format >= 6; });
   if (many || (extended && !has_metadata)) return "1.4";
   return has_metadata || std::ranges::none_of(points.headers, is_las) ? "" : "1.2";
-}
-
-/// The names of attributes as points have them.
-std::vector<std::string> own_names(const std::vector<std::string>& names) {
-  std::vector<std::string> own;
-  for (const std::string& name : names) own.push_back(attribute_name(name));
-  return own;
 }
 
 /// What all inputs that are LAS tell, if all are.
@@ -138,10 +130,7 @@ void PointFile::check(const PointFileOptions& options) const {
 
 AttributeChoice PointFile::wanted_attributes() const {
   if (!format_.holds_attributes || options_.sorted) return {};
-  if (options_.attributes) {
-    const std::vector<std::string>& names = *options_.attributes;
-    return {.all = std::ranges::find(names, "all") != names.end(), .names = own_names(names)};
-  }
+  if (options_.attributes) return attribute_choice(*options_.attributes);
   return {.all = format_.writes_attributes == nullptr || format_.writes_attributes(path_)};
 }
 
@@ -172,18 +161,7 @@ void PointFile::check_attributes(const RunPoints& points) const {
     throw InvalidArgument(fmt::format("{} holds no attributes of points, and {} is {}",
                                       format_.title, path_, format_.title));
   }
-  std::vector<AttributeLayout> layouts = {points.attributes};
-  for (const PointHeader& header : points.headers) layouts.push_back(header.attributes);
-  const AttributeLayout attributes = joined(layouts);
-  for (const std::string& name : own_names(*options_.attributes)) {
-    if (name == "all" || attributes.find(name) != nullptr) continue;
-    std::vector<std::string> names;
-    for (const AttributeField& field : attributes.fields()) names.push_back(field.attribute.name);
-    throw InvalidArgument(fmt::format("the points have no attribute \"{}\": {}", name,
-                                      names.empty()
-                                          ? std::string("they have none")
-                                          : fmt::format("choose of {}", fmt::join(names, ", "))));
-  }
+  refuse_unknown_names(*options_.attributes, points.offered);
 }
 
 void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
@@ -210,7 +188,7 @@ void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
     how_.version = options_.las_version.empty() ? las_version_for(points, how_.las != nullptr)
                                                 : options_.las_version;
   }
-  lost_ = lost_fields(points.headers, format_, how_);
+  lost_ = lost_fields(points.offered, points.headers, format_, how_);
   rounds_ = !options_.scale.empty() || !options_.offset.empty() ||
             (format_.needs_lattice && !how_.lattice && !options_.exact);
   check_overwriting(points);
@@ -295,20 +273,26 @@ void PointFile::begin(const PointsHeader& header) {
   points.crs = header.crs;
   source_ = checked_lattice(header.lattice);
   points.heights_on_lattice = source_ && header.lattice->has_z;
+  told_ = checked_attributes(header.attributes);
+  points.attributes = told_;
+  points.offered = told_;
   start(points, {.at_once = threads_,
                  .run = [threads = threads_](std::size_t count, const WorkSharing::Body& body) {
                    with_threads(threads, [&] { share_out(count, body); });
                  }});
 }
 
-void PointFile::write(std::span<const spillway::Point<3>> points) {
+void PointFile::write(std::span<const spillway::Point<3>> points,
+                      const AttributeColumns& attributes) {
   if (!begun_) throw InvalidArgument("points of a file come between begin and finish");
   for (const spillway::Point<3>& point : points) {
     if (std::ranges::all_of(point, [](double x) { return std::isfinite(x); })) continue;
     throw InvalidArgument(
         fmt::format("a point has a coordinate that is not finite: ({})", fmt::join(point, ", ")));
   }
+  check_columns(attributes, told_, points.size(), "points");
   PointBlock block;
+  block.attributes = records_of(attributes, how_.attributes, 0, points.size());
   block.points = points_without_lattice(points);
   const int axes = how_.coordinates == 3 && how_.lattice ? 3 : 2;
   for (std::size_t i = 0; source_ && i < block.size(); ++i) {
