@@ -176,7 +176,7 @@ bool OpenedMesh::read(spillway::MeshBlock& block) {
   if (!reader.read(own)) return false;
   const std::uint64_t first = read_;
   read_ += own.vertices.size();
-  block = public_block(reader.header(), std::move(own), first);
+  block = public_block(reader.header(), std::move(own), first, reader.header().attributes);
   return true;
 }
 

@@ -4,6 +4,7 @@
 
 #include "src/geometry/simplex_name.h"
 #include "stream/library/meshes/engine_sink.h"
+#include "stream/library/points/attribute_records.h"
 
 namespace spillway::detail {
 
@@ -15,8 +16,14 @@ class ProgramSink final : public EngineSink, private BlockSink {
 
   BlockSink& open(const MeshStart& start) override {
     header_ = start.header;
-    sink_.begin(public_header(header_));
+    wanted_ = chosen(header_.attributes, wanted_attributes());
+    spillway::MeshHeader told = public_header(header_);
+    told.attributes = wanted_.attributes();
+    sink_.begin(told);
     return *this;
+  }
+  [[nodiscard]] AttributeChoice wanted_attributes() const override {
+    return attribute_choice(sink_.attributes_wanted());
   }
   [[nodiscard]] bool is_product() const override { return false; }
   void finalize(RunWatch& watch, Report& report, OtherShares& /*others*/) override {
@@ -29,12 +36,13 @@ class ProgramSink final : public EngineSink, private BlockSink {
   void write(MeshBlock&& block) override {
     const std::uint64_t first = vertices_;
     vertices_ += block.vertices.size();
-    sink_.write(public_block(header_, std::move(block), first));
+    sink_.write(public_block(header_, std::move(block), first, wanted_));
   }
   void finish(const MeshTotals& /*totals*/) override {}
 
   spillway::MeshSink& sink_;
   MeshStreamHeader header_;
+  AttributeLayout wanted_;  ///< of its attributes
   std::uint64_t vertices_ = 0;
 };
 

@@ -12,6 +12,7 @@
 #include "formats/meshes/common/mesh_block.h"
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
+#include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
 namespace spillway::detail {
@@ -56,6 +57,7 @@ spillway::MeshHeader public_header(const MeshStreamHeader& header) {
   }
   told.crs = header.crs;
   told.lattice = public_lattice(header.lattice);
+  told.attributes = header.attributes.attributes();
   return told;
 }
 
@@ -67,6 +69,7 @@ MeshStreamHeader stream_header(const spillway::MeshHeader& header) {
   stream.extent = told_box(header.extent, "a mesh");
   stream.crs = header.crs;
   stream.lattice = checked_lattice(header.lattice);
+  stream.attributes = checked_attributes(header.attributes);
   return stream;
 }
 
@@ -76,7 +79,7 @@ std::optional<Box<3>> extent_of_blocks(const MeshStreamHeader& header) {
 }
 
 spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& block,
-                                 std::uint64_t first_vertex) {
+                                 std::uint64_t first_vertex, const AttributeLayout& wanted) {
   spillway::MeshBlock told;
   told.first_vertex = first_vertex;
   append_stream_numbers(block, first_vertex, told.corners);
@@ -91,6 +94,7 @@ spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& blo
     for (const LatticePoint& vertex : block.vertices) told.on_lattice.push_back(vertex.numbers());
   }
   told.input_index = std::move(block.input_index);
+  told.attributes = columns_of(header.attributes, block.attributes, wanted);
   return told;
 }
 
@@ -122,6 +126,7 @@ void ProgramBlocks::check(const spillway::MeshBlock& block) const {
         "a block has {} vertices, but {} of them on {}", block.vertices.size(),
         block.on_lattice.size(), header_.lattice ? "the lattice" : "a lattice, which is not told"));
   }
+  check_columns(block.attributes, header_.attributes, block.vertices.size(), "vertices");
   for (std::size_t v = 0; v < block.vertices.size(); ++v) {
     const spillway::Point<3>& vertex = block.vertices[v];
     if (!std::ranges::all_of(vertex, [](double x) { return std::isfinite(x); })) {
@@ -208,6 +213,7 @@ MeshBlock ProgramBlocks::next(const spillway::MeshBlock& block) {
   MeshBlock stream;
   stream.vertices = vertices_of(block);
   stream.input_index = block.input_index;
+  stream.attributes = records_of(block.attributes, header_.attributes, 0, block.vertices.size());
   stream.corners.reserve(block.corners.size());
   for (const std::uint64_t vertex : block.corners) stream.corners.push_back(numbers.of(vertex));
   stream.finalized.reserve(block.finalized.size());

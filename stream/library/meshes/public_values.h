@@ -19,9 +19,10 @@ MeshStreamHeader stream_header(const spillway::MeshHeader& header);
 /// The extent that a header tells, in the coordinates of its blocks.
 std::optional<Box<3>> extent_of_blocks(const MeshStreamHeader& header);
 
-/// A block in output coordinates and stream numbers, where `first_vertex` vertices come before it.
+/// A block in output coordinates and stream numbers, where `first_vertex` vertices come before it,
+/// and of what these carry, `wanted` attributes of the header.
 spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& block,
-                                 std::uint64_t first_vertex);
+                                 std::uint64_t first_vertex, const AttributeLayout& wanted);
 
 /// The blocks of a program's mesh as those of a stream.
 class ProgramBlocks {

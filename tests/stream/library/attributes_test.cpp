@@ -326,5 +326,85 @@ TEST_F(Attributes, AreWrittenByAProgramThatCallsAFileItself) {
   expect_same(found.attributes, all.attributes, "classification");
 }
 
+/// Two triangles of a program, in two blocks.
+class CarryingMesh final : public MeshSource {
+ public:
+  explicit CarryingMesh(const PointsBlock& vertices) {
+    first_.vertices.assign(vertices.points.begin(), vertices.points.begin() + 3);
+    first_.attributes = vertices.attributes;
+    first_.attributes.resize(3);
+    first_.corners = {0, 1, 2};
+    first_.finalized = {0};
+    second_.first_vertex = 3;
+    second_.vertices = {vertices.points[3]};
+    second_.attributes = AttributeColumns(vertices.attributes.attributes(), 1);
+    second_.attributes.values<std::int32_t>("depth")[0] =
+        vertices.attributes.values<std::int32_t>("depth")[3];
+    second_.corners = {1, 3, 2};
+    second_.finalized = {1, 2, 3};
+  }
+
+  [[nodiscard]] MeshHeader header() const override {
+    return {.attributes = first_.attributes.attributes()};
+  }
+  bool read(MeshBlock& block) override {
+    if (next_ == 2) return false;
+    block = next_++ == 0 ? first_ : second_;
+    return true;
+  }
+  [[nodiscard]] MeshTotals totals() override { return {}; }
+
+ private:
+  MeshBlock first_;
+  MeshBlock second_;
+  int next_ = 0;
+};
+
+PointsBlock corners_of_a_square() {
+  PointsBlock corners = some_points(4);
+  corners.points = {{0, 0, 1}, {1, 0, 2}, {0, 1, 3}, {1, 1, 4}};
+  return corners;
+}
+
+TEST_F(Attributes, OfAMeshReachTheSinkThatAsksForThem) {
+  const PointsBlock corners = corners_of_a_square();
+  CarryingMesh some_of_them(corners);
+  MeshInMemory depths({"depth", "unknown"});
+  convert(some_of_them, depths, Context(options()));
+  EXPECT_EQ(depths.header().attributes.size(), 1U);
+  expect_same(depths.attributes(), corners.attributes, "depth");
+  EXPECT_EQ(depths.vertices(), corners.points);
+  CarryingMesh all_of_them(corners);
+  MeshInMemory all({"all"});
+  convert(all_of_them, all, Context(options()));
+  EXPECT_EQ(all.attributes().attributes(), some_attributes());
+}
+
+TEST_F(Attributes, OfAMeshDoNotComeToASinkThatDoesNotAsk) {
+  CarryingMesh mesh(corners_of_a_square());
+  int blocks = 0;
+  const auto sink = mesh_to([&](const MeshBlock& block) {
+    EXPECT_TRUE(block.attributes.empty());
+    ++blocks;
+  });
+  convert(mesh, *sink, Context(options()));
+  EXPECT_EQ(blocks, 2);
+  CarryingMesh again(corners_of_a_square());
+  MeshInMemory kept;
+  convert(again, kept, Context(options()));
+  EXPECT_TRUE(kept.attributes().empty());
+}
+
+TEST_F(Attributes, OfAMeshAreRefusedUnlessBlocksHaveWhatTheHeaderTells) {
+  const PointsBlock corners = corners_of_a_square();
+  MeshBlock block{.vertices = corners.points};
+  const auto sink = create_mesh(file("mesh.spm"), {}, Context(options()));
+  sink->begin({.attributes = some_attributes()});
+  EXPECT_EQ(code_of([&] { sink->write(block); }), ErrorCode::kInvalidArgument);
+  const auto other = create_mesh(file("other.spm"), {}, Context(options()));
+  EXPECT_EQ(code_of([&] { other->begin({.attributes = {Attribute{.name = ""}}}); }),
+            ErrorCode::kInvalidArgument);
+}
+
 }  // namespace
 }  // namespace spillway

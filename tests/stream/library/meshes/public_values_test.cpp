@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -68,7 +69,7 @@ class PublicBlocks : public ::testing::TestWithParam<int> {
 TEST_P(PublicBlocks, AreInOutputCoordinatesAndStreamNumbers) {
   std::uint64_t first = 0;
   for (const MeshBlock& block : mesh_.blocks) {
-    const spillway::MeshBlock told = public_block(mesh_.header, MeshBlock(block), first);
+    const spillway::MeshBlock told = public_block(mesh_.header, MeshBlock(block), first, {});
     EXPECT_EQ(told.first_vertex, first);
     EXPECT_EQ(told.corners, in_stream(block, first, block.corners));
     EXPECT_EQ(told.finalized, in_stream(block, first, block.finalized));
@@ -89,7 +90,7 @@ TEST_P(PublicBlocks, OfAProgramAreTheSameMeshAsAStream) {
   for (const MeshBlock& block : mesh_.blocks) {
     EXPECT_EQ(program.vertices(), first);
     EXPECT_EQ(program.simplices(), simplices);
-    spillway::MeshBlock told = public_block(mesh_.header, MeshBlock(block), first);
+    spillway::MeshBlock told = public_block(mesh_.header, MeshBlock(block), first, {});
     const MeshBlock stream = program.next(told);
     EXPECT_EQ(in_stream(stream, first, stream.corners), told.corners);
     EXPECT_EQ(in_stream(stream, first, stream.finalized), told.finalized);
@@ -117,12 +118,31 @@ TEST(PublicBlock, CarriesTheInputIndexOfItsVertices) {
   MeshBlock block;
   block.vertices = {{0, 0, 0}, {1, 0, 0}};
   block.input_index = {8, 3};
-  const spillway::MeshBlock told = public_block(header, std::move(block), 5);
+  const spillway::MeshBlock told = public_block(header, std::move(block), 5, {});
   EXPECT_THAT(told.input_index, ElementsAre(8, 3));
   ProgramBlocks program(public_header(header));
   spillway::MeshBlock first = told;
   first.first_vertex = 0;
   EXPECT_THAT(program.next(first).input_index, ElementsAre(8, 3));
+}
+
+TEST(PublicBlock, CarriesWhatItsVerticesDo) {
+  const Attribute depth{.name = "depth", .type = NumberType::kInt16, .scale = 0.1};
+  const Attribute kind{.name = "kind", .type = NumberType::kUint8, .elements = 2};
+  spillway::MeshHeader header{.attributes = {depth, kind}};
+  spillway::MeshBlock block{.vertices = {{0, 0, 0}, {1, 0, 0}},
+                            .attributes = AttributeColumns({depth, kind}, 2)};
+  block.attributes.values<std::int16_t>("depth")[1] = -7;
+  block.attributes.values<std::uint8_t>("kind")[2] = 9;
+  ProgramBlocks program(header);
+  EXPECT_EQ(program.header().attributes.attributes(), header.attributes);
+  EXPECT_EQ(public_header(program.header()).attributes, header.attributes);
+  MeshBlock own = program.next(block);
+  EXPECT_EQ(own.attributes.size(), 2 * program.header().attributes.record_size());
+  const spillway::MeshBlock told =
+      public_block(program.header(), std::move(own), 0, AttributeLayout({kind}));
+  EXPECT_THAT(told.attributes.attributes(), ElementsAre(kind));
+  EXPECT_THAT(told.attributes.values<std::uint8_t>("kind"), ElementsAre(0, 0, 9, 0));
 }
 
 /// A square in two blocks, of which the second is spoiled.
