@@ -38,6 +38,8 @@ std::size_t record_size(const Attribute& attribute) {
 
 }  // namespace
 
+const char* to_string(NumberType type) noexcept { return detail::name_of(type).data(); }
+
 AttributeColumns::AttributeColumns(std::vector<Attribute> attributes, std::size_t points)
     : attributes_(std::move(attributes)), columns_(attributes_.size()) {
   std::set<std::string_view> names;
