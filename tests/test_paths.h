@@ -18,4 +18,7 @@ std::string mpirun_path();
 /// Sample files outside of the repository; the folder need not be there.
 std::filesystem::path shared_data_folder();
 
+/// The pages of this checkout.
+std::filesystem::path docs_folder();
+
 }  // namespace spillway::detail::test

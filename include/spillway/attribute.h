@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spillway/export.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -19,6 +21,9 @@ enum class NumberType : std::uint8_t {
   kFloat32,
   kFloat64
 };
+
+/// The type's name in words: "int8", "uint16", "float64".
+SPILLWAY_API const char* to_string(NumberType type) noexcept;
 
 /// Something that points carry besides their coordinates: "intensity", "gps_time".
 struct Attribute {

@@ -1,6 +1,7 @@
 #pragma once
 // What files hold.
 
+#include <spillway/attribute.h>
 #include <spillway/context.h>
 #include <spillway/export.h>
 #include <spillway/extent.h>
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace spillway {
 
@@ -41,6 +43,7 @@ struct PointsInfo {
   /// How many of the points that are kept lie more than a step of the lattice outside of that box:
   /// it is false if there are any.
   std::uint64_t points_outside = 0;
+  std::vector<Attribute> attributes{};  ///< what the points carry
 };
 
 /// Reads all points of a file that the options ask for, so that counts and extent are exact

@@ -1,6 +1,7 @@
 #pragma once
 // A mesh that streams out, block by block: to files, into memory, to whatever a program derives.
 
+#include <spillway/attribute_columns.h>
 #include <spillway/context.h>
 #include <spillway/export.h>
 #include <spillway/extent.h>
@@ -33,6 +34,8 @@ struct MeshHeader {
   /// On which x and y of all vertices lie and, in space, z. In the plane z may lie between its
   /// steps, as means of heights do.
   std::optional<Lattice> lattice{};
+  /// What vertices carry of the points that they are.
+  std::vector<Attribute> attributes{};
 };
 
 /// Some vertices and simplices. A mesh numbers its vertices 0, 1, 2, ... in the order in which they
@@ -47,6 +50,7 @@ struct MeshBlock {
   /// Of `vertices`, the multiples of the header's lattice that they are, if it has one; or none:
   /// then they are found from the coordinates. Who changes coordinates clears these.
   std::vector<Point<3>> on_lattice{};
+  AttributeColumns attributes{};  ///< of `vertices`, those of the header
 };
 
 /// A stream of a mesh, read once, from one thread at a time.
@@ -72,6 +76,10 @@ class SPILLWAY_API MeshSource {
 class SPILLWAY_API MeshSink {
  public:
   virtual ~MeshSink();
+
+  /// Names of the attributes that vertices are to have, "all" for all of them; none unless a sink
+  /// asks. The header tells which of these there are. Asked before begin().
+  [[nodiscard]] virtual std::vector<std::string> attributes_wanted() const;
 
   virtual void begin(const MeshHeader& header);
   virtual void write(const MeshBlock& block) = 0;
@@ -121,11 +129,13 @@ SPILLWAY_API std::unique_ptr<MeshSink> mesh_to(std::function<void(const MeshBloc
 /// Keeps a whole mesh in memory.
 class SPILLWAY_API MeshInMemory : public MeshSink {
  public:
-  MeshInMemory();
+  /// Of the vertices' attributes, those of these names, "all" for all of them, are kept, too.
+  explicit MeshInMemory(std::vector<std::string> attributes = {});
   ~MeshInMemory() override;
   MeshInMemory(const MeshInMemory&) = delete;
   MeshInMemory& operator=(const MeshInMemory&) = delete;
 
+  [[nodiscard]] std::vector<std::string> attributes_wanted() const override { return wanted_; }
   void begin(const MeshHeader& header) override;
   void write(const MeshBlock& block) override;
   void finish(const MeshTotals& totals) override;
@@ -138,13 +148,17 @@ class SPILLWAY_API MeshInMemory : public MeshSink {
   [[nodiscard]] const std::vector<std::uint64_t>& input_index() const { return input_index_; }
   /// Vertices of all simplices. Shape: totals().simplices * (header().dimension + 1).
   [[nodiscard]] const std::vector<std::uint64_t>& corners() const { return corners_; }
+  /// Of the vertices: those of the header.
+  [[nodiscard]] const AttributeColumns& attributes() const { return attributes_; }
 
  private:
+  std::vector<std::string> wanted_;
   MeshHeader header_;
   MeshTotals totals_;
   std::vector<Point<3>> vertices_;
   std::vector<std::uint64_t> input_index_;
   std::vector<std::uint64_t> corners_;
+  AttributeColumns attributes_;
 };
 
 }  // namespace spillway

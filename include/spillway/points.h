@@ -1,6 +1,7 @@
 #pragma once
 // Points that stream in: from files, from memory, from whatever a program derives.
 
+#include <spillway/attribute_columns.h>
 #include <spillway/choices.h>
 #include <spillway/context.h>
 #include <spillway/export.h>
@@ -33,6 +34,14 @@ struct PointsHeader {
   /// On which all coordinates lie, to the last bit. Pass it on where points are passed on: without
   /// it other ties may come out, and files have other decimals.
   std::optional<Lattice> lattice{};
+  /// What each block has, too, in AttributeColumns; of LAS by the names of docs/attributes.md.
+  std::vector<Attribute> attributes{};
+};
+
+/// Some points, and what they carry.
+struct PointsBlock {
+  std::vector<Point<3>> points{};
+  AttributeColumns attributes{};  ///< of the header's attributes, for as many points
 };
 
 /// A stream of points, read once, from one thread at a time.
@@ -46,6 +55,10 @@ class SPILLWAY_API PointSource {
   /// Blocks of some ten thousand are best. Coordinates must be finite. What it throws ends the run
   /// and reaches whoever called triangulate().
   virtual bool read(std::vector<Point<3>>& points) = 0;
+
+  /// The same with what points carry. A source whose header tells of attributes overrides it, and
+  /// gives all of these with each block. A block of others comes without any.
+  virtual bool read(PointsBlock& block);
 
  private:
   friend struct detail::OwnParts;
@@ -103,6 +116,9 @@ struct PointOptions {
   /// report (skipped_files). It is an error if there are no others. A file that fails later, while
   /// its points are read, ends the run.
   bool skip_broken = false;
+  /// Names of the attributes that come with points where a program reads these itself, "all" for
+  /// all of them; empty: none, which costs nothing. Runs read those that their sink asks for.
+  std::vector<std::string> attributes{};
 };
 
 /// The names of attributes, and x, y and z, that a condition asks for (PointOptions::where). Throws
@@ -112,18 +128,24 @@ SPILLWAY_API std::vector<std::string> names_in_condition(const std::string& cond
 /// All points of files, one file after the other. A path may be a file, a folder (its point files),
 /// a pattern ("tiles/*.laz"), "@list" (a file that lists such) or "-" (standard input). Files on
 /// one lattice of integers are triangulated as integers. Throws Error: kInputOutput, kBadInput with
-/// the file's name, kInvalidArgument for options that cannot be.
+/// the file's name, kInvalidArgument for options that cannot be and attributes that no file has.
 SPILLWAY_API std::unique_ptr<PointSource> open_points(const std::vector<std::string>& paths,
                                                       const PointOptions& options,
                                                       const Context& context);
 
-/// Points as they lie in a program's memory, which must stay there while they are read.
-SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<3> points);
+/// Points as they lie in a program's memory, which must stay there while they are read, and what
+/// they carry, which the source keeps. Throws Error(kInvalidArgument) for attributes of another
+/// number of points.
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<3> points,
+                                                           AttributeColumns attributes = {});
 /// The same without z.
-SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<2> points);
-/// Points that the source keeps: for those that nobody else does.
-SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(std::vector<Point<3>>&& points);
-SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(std::vector<Point<2>>&& points);
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<2> points,
+                                                           AttributeColumns attributes = {});
+/// Points that the source keeps: for those that nobody else does. Throws likewise.
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(std::vector<Point<3>>&& points,
+                                                           AttributeColumns attributes = {});
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(std::vector<Point<2>>&& points,
+                                                           AttributeColumns attributes = {});
 
 /// What takes points. All calls come one at a time: begin() once, write() for each block, and
 /// finish() once, if nothing fails; a sink that is destroyed without it leaves nothing behind.
@@ -131,9 +153,16 @@ class SPILLWAY_API PointSink {
  public:
   virtual ~PointSink();
 
+  /// Names of the attributes that points are to have, "all" for all of them; none unless a sink
+  /// asks. The header tells which of these there are. Asked before begin().
+  [[nodiscard]] virtual std::vector<std::string> attributes_wanted() const;
+
   virtual void begin(const PointsHeader& header);
   /// The next points, in the order of the input.
   virtual void write(std::span<const Point<3>> points) = 0;
+  /// The same with the attributes of the header. A sink that asks for some overrides it; others
+  /// get the points alone.
+  virtual void write(std::span<const Point<3>> points, const AttributeColumns& attributes);
   virtual void finish();
 
  private:

@@ -9,6 +9,7 @@
 #include "src/parallel/parallel.h"
 #include "stream/library/context/run_watch.h"
 #include "stream/library/own_parts.h"
+#include "stream/library/points/attribute_records.h"
 #include "stream/library/points/engine_points.h"
 #include "stream/library/points/point_file.h"
 #include "stream/library/points/program_points.h"
@@ -68,11 +69,13 @@ PointConversion to_program(const RunPoints& points, spillway::PointSink& sink, u
   header.crs = points.crs;
   const std::optional<Lattice>& lattice = points.stream->lattice();
   header.lattice = public_lattice(lattice, points.heights_on_lattice);
+  header.attributes = points.attributes.attributes();
   sink.begin(header);
   PointConversion done;
   pass_on(*points.stream, threads, watch, [&](PointBlock& block) {
     if (block.size() == 0) return;
-    sink.write(public_points(lattice, block.points));
+    sink.write(public_points(lattice, block.points),
+               columns_of(points.attributes, block.attributes));
     done.written += block.size();
   });
   sink.finish();
@@ -95,6 +98,8 @@ PointConversion convert(PointSource& source, PointSink& sink, const Context& con
   if (file != nullptr) {
     points->settle_crs(file->crs_need());
     points->carry(file->wanted_attributes());
+  } else {
+    points->carry(attribute_choice(sink.attributes_wanted()));
   }
   const RunPoints run = points->begin(watch, true);
   if (file != nullptr && file->sorted()) return sort_points(run, *file, context, watch);

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "src/error.h"
-#include "stream/library/attribute_choice.h"
 #include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
@@ -158,7 +157,7 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
           .scratch = context.state().scratch(context)};
   run.stream.record_size = run.points.attributes.record_size();
   check(run.points, options.dimension);
-  target->check_attributes(attributes_of_inputs(run.points));
+  target->check_attributes(run.points.offered);
   return executor != nullptr ? executor->triangulate(run) : triangulate_here(run);
 }
 

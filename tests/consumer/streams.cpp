@@ -2,6 +2,7 @@
 
 #include "streams.h"
 
+#include <spillway/convert.h>
 #include <spillway/triangulate.h>
 
 #include <cerrno>
@@ -138,6 +139,29 @@ void convert_ways(const Folder& folder) {
   expect(mesh.vertices().at(17) == points.at(index), "vertices know their index");
 }
 
+// Points that carry something: from the program to a file, and back.
+void carry_attributes(const Folder& folder) {
+  const spillway::Context context({.memory = "64M", .scratch_folder = folder.path()});
+  const std::vector<spillway::Point<3>> points{{0, 0, 1}, {4, 0, 2}, {4, 3, 3}};
+  spillway::AttributeColumns carried(
+      {{.name = "intensity", .type = spillway::NumberType::kUint16}, {.name = "depth"}},
+      points.size());
+  carried.values<std::uint16_t>("intensity")[2] = 700;
+  carried.values<double>("depth")[2] = -1.5;
+  const auto file = spillway::create_points(folder.file("survey.las"), {}, context);
+  spillway::convert(*spillway::points_in_memory(points, carried), *file, context);
+
+  spillway::PointOptions with;
+  with.attributes = {"intensity", "depth"};
+  const auto read = spillway::open_points({folder.file("survey.las")}, with, context);
+  spillway::PointsBlock block;
+  while (read->read(block)) {
+    const auto intensities = block.attributes.values<std::uint16_t>("intensity");
+    const std::vector<double> depths = block.attributes.meant("depth");
+    expect(intensities[2] == 700 && depths[2] == -1.5, "attributes come back");
+  }
+}
+
 // The error that the work ends with.
 template <typename Work>
 spillway::Error fault_of(Work&& work) {
@@ -259,6 +283,7 @@ void use_streams() {
   }
   const Folder folder;
   convert_ways(folder);
+  carry_attributes(folder);
   catch_errors_of_streams(folder);
   stop_a_run(folder);
 }

@@ -71,7 +71,8 @@ spillway_mpi_test(rank_output_test
   TIMEOUT 300)
 
 spillway_test(stream_library_test unit
-  SOURCES stream/library/convert_points_test.cpp stream/library/generate_grid_test.cpp
+  SOURCES stream/library/attribute_table_test.cpp stream/library/attributes_test.cpp
+          stream/library/convert_points_test.cpp stream/library/generate_grid_test.cpp
           stream/library/generate_test.cpp stream/library/misuse_test.cpp
           stream/library/passed_on_test.cpp stream/library/runs_beside_test.cpp
           stream/library/sort_points_test.cpp stream/library/triangulate_test.cpp
@@ -86,6 +87,8 @@ spillway_test(stream_library_unit_test unit
           stream/library/meshes/opened_mesh_test.cpp stream/library/meshes/program_mesh_test.cpp
           stream/library/meshes/program_sink_test.cpp stream/library/meshes/public_values_test.cpp
           stream/library/meshes/whole_mesh_test.cpp
+          stream/library/points/attribute_columns_test.cpp
+          stream/library/points/attribute_records_test.cpp
           stream/library/points/generated_points_test.cpp
           stream/library/points/grid_names_test.cpp
           stream/library/points/lattice_rounding_test.cpp

@@ -20,7 +20,8 @@ spillway_command_test(cli_tests cli
   tools/commands/cli_formats_test.cpp
   tools/commands/cli_info_check_test.cpp
   tools/commands/cli_shared_data_test.cpp
-  tools/commands/cli_convert_copc_test.cpp tools/commands/cli_convert_points_test.cpp
+  tools/commands/cli_convert_copc_test.cpp tools/commands/cli_convert_laz_test.cpp
+  tools/commands/cli_convert_points_test.cpp
   tools/commands/cli_convert_sorted_test.cpp
   tools/commands/cli_convert_test.cpp tools/inputs/cli_stream_test.cpp
   tools/commands/cli_triangulate_test.cpp

@@ -67,6 +67,27 @@ Json density(const std::optional<Extent>& extent, std::uint64_t points) {
   return area > 0 ? Json(static_cast<double>(points) / area) : Json(nullptr);
 }
 
+/// Members that say nothing are left out: one element, no scale.
+Json attribute_json(const Attribute& attribute) {
+  Json json;
+  json["name"] = attribute.name;
+  json["type"] = to_string(attribute.type);
+  if (attribute.elements != 1) json["elements"] = attribute.elements;
+  if (attribute.scale != 1 || attribute.offset != 0) {
+    json["scale"] = attribute.scale;
+    json["offset"] = attribute.offset;
+  }
+  if (!attribute.unit.empty()) json["unit"] = attribute.unit;
+  if (!attribute.description.empty()) json["description"] = attribute.description;
+  return json;
+}
+
+Json attributes_json(const std::vector<Attribute>& attributes) {
+  Json json = Json::array();
+  for (const Attribute& attribute : attributes) json.push_back(attribute_json(attribute));
+  return json;
+}
+
 Json points_json(const std::string& path, const PointsInfo& info, bool filtered) {
   Json json;
   json["name"] = path;
@@ -88,6 +109,7 @@ Json points_json(const std::string& path, const PointsInfo& info, bool filtered)
   json["crs_note"] = text_or_null(info.crs_note);
   json["software"] = text_or_null(info.software);
   if (info.cells) json["cells"] = *info.cells;
+  json["attributes"] = attributes_json(info.attributes);
   return json;
 }
 
@@ -139,10 +161,22 @@ std::string value_text(const Json& value) {
   if (value.is_text()) return printable(value.text());
   if (value.is_float()) return fmt::format("{:.15g}", value.number());
   if (!value.is_array()) return json_text(value);
+  if (value.elements().empty()) return "-";
   std::string text;
   for (const Json& item : value.elements()) {
     if (!text.empty()) text += "  ";
     text += value_text(item);
+  }
+  return text;
+}
+
+/// "uint16", "float32  elements 3  unit m": what an attribute is besides its name.
+std::string attribute_text(const Json& attribute) {
+  std::string text;
+  for (const auto& [key, value] : attribute.members()) {
+    if (key == "name") continue;
+    if (key != "type") text += "  " + key + ' ';
+    text += value_text(value);
   }
   return text;
 }
@@ -156,6 +190,12 @@ std::string describe(const Json& json) {
       for (const auto& [inner_key, inner_value] : value.members()) {
         const std::string path = fmt::format("{} {}", key, inner_key);
         text += fmt::format("  {:16} {}\n", path, value_text(inner_value));
+      }
+    } else if (key == "attributes" && !value.elements().empty()) {
+      text += fmt::format("  {}\n", key);
+      for (const Json& attribute : value.elements()) {
+        text += fmt::format("    {:22} {}\n", value_text(*attribute.find("name")),
+                            attribute_text(attribute));
       }
     } else {
       const bool estimate = key == "density" && value.is_number();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/vectors/vector_formats.h"
@@ -14,6 +15,7 @@
 #include "src/geometry/box.h"
 #include "stream/library/context/run_watch.h"
 #include "stream/library/meshes/public_values.h"
+#include "stream/library/points/attribute_records.h"
 #include "stream/sinks/mesh_shares.h"
 #include "stream/source/source_crs.h"
 
@@ -125,9 +127,15 @@ class OwnSink : public PublicSink, public EngineSink {
  public:
   explicit OwnSink(const Context& context) : context_(context) {}
 
+  [[nodiscard]] std::vector<std::string> attributes_wanted() const final {
+    return names_of(wanted_attributes(true));
+  }
+
   void begin(const spillway::MeshHeader& header) final {
     ProgramBlocks program(header);
     const MeshStreamHeader& stream = program.header();
+    check_attributes(stream.attributes);
+    program.keep(chosen(stream.attributes, wanted_attributes(false)));
     const bool wants_extent = this->wants_extent() && header.dimension == 2;
     if (wants_extent && !stream.extent) {
       throw InvalidArgument("the header of the mesh must tell its extent");

@@ -9,8 +9,8 @@
 #include "formats/meshes/mesh_stream_writer.h"
 #include "formats/meshes/vector/vector_format.h"
 #include "src/geometry/simplex_name.h"
-#include "stream/library/attribute_choice.h"
 #include "stream/library/context/context_state.h"
+#include "stream/library/points/attribute_records.h"
 
 namespace spillway::detail {
 
@@ -38,8 +38,8 @@ MeshTarget mesh_target(const std::string& path, const std::string& format_name, 
 MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, const Context& context)
     : OwnSink(context),
       target_(mesh_target(path, options.format, options.parts)),
+      attributes_(options.attributes),
       scratch_(context.state().scratch(context)) {
-  if (options.attributes) attributes_ = choice_of(*options.attributes);
   if (target_.parts && context.options().executor == nullptr) {
     throw InvalidArgument("parts are a file for each rank, and there is one process",
                           {.remedy = Remedy::kRanks});
@@ -48,12 +48,12 @@ MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, cons
 }
 
 AttributeChoice MeshFile::wanted_attributes(bool triangulated) const {
-  if (attributes_) return *attributes_;
+  if (attributes_) return attribute_choice(*attributes_);
   return {.all = !triangulated};
 }
 
 void MeshFile::check_attributes(const AttributeLayout& there) const {
-  if (attributes_) refuse_unknown(*attributes_, there, "the points");
+  if (attributes_) refuse_unknown_names(*attributes_, there);
 }
 
 BlockSink& MeshFile::open(const MeshStart& start) {

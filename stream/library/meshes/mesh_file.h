@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "formats/disk/scratch_folder.h"
 #include "formats/meshes/common/mesh_format.h"
@@ -47,7 +48,7 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   BlockSink& open(const MeshStart& start) override;
 
   MeshTarget target_;
-  std::optional<AttributeChoice> attributes_;  ///< if the caller chooses
+  std::optional<std::vector<std::string>> attributes_;  ///< names, if the caller chooses
   std::shared_ptr<ScratchFolder> scratch_;
   MeshStreamHeader header_;
   std::unique_ptr<MeshStreamWriter> writer_;

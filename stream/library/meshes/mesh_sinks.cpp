@@ -27,6 +27,7 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
 
 MeshSource::~MeshSource() = default;
 MeshSink::~MeshSink() = default;
+std::vector<std::string> MeshSink::attributes_wanted() const { return {}; }
 void MeshSink::begin(const MeshHeader& /*header*/) {}
 void MeshSink::finish(const MeshTotals& /*totals*/) {}
 
@@ -34,7 +35,7 @@ std::unique_ptr<MeshSink> mesh_to(std::function<void(const MeshBlock&)> take) {
   return std::make_unique<MeshTaker>(std::move(take));
 }
 
-MeshInMemory::MeshInMemory() = default;
+MeshInMemory::MeshInMemory(std::vector<std::string> attributes) : wanted_(std::move(attributes)) {}
 MeshInMemory::~MeshInMemory() = default;
 
 void MeshInMemory::begin(const MeshHeader& header) {
@@ -43,12 +44,14 @@ void MeshInMemory::begin(const MeshHeader& header) {
   vertices_.clear();
   input_index_.clear();
   corners_.clear();
+  attributes_ = AttributeColumns(header.attributes);
 }
 
 void MeshInMemory::write(const MeshBlock& block) {
   append(vertices_, block.vertices);
   append(input_index_, block.input_index);
   append(corners_, block.corners);
+  attributes_.append(block.attributes);
 }
 
 void MeshInMemory::finish(const MeshTotals& totals) { totals_ = totals; }

@@ -4,6 +4,7 @@
 
 #include "src/geometry/simplex_name.h"
 #include "stream/library/meshes/engine_sink.h"
+#include "stream/library/points/attribute_records.h"
 
 namespace spillway::detail {
 
@@ -17,6 +18,9 @@ class ProgramSink final : public EngineSink, private BlockSink {
     header_ = start.header;
     sink_.begin(public_header(header_));
     return *this;
+  }
+  [[nodiscard]] AttributeChoice wanted_attributes(bool /*triangulated*/) const override {
+    return attribute_choice(sink_.attributes_wanted());
   }
   [[nodiscard]] bool is_product() const override { return false; }
   void finalize(RunWatch& watch, Report& report, OtherShares& /*others*/) override {

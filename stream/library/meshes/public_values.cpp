@@ -12,6 +12,7 @@
 #include "formats/meshes/common/mesh_block.h"
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
+#include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
 namespace spillway::detail {
@@ -56,6 +57,7 @@ spillway::MeshHeader public_header(const MeshStreamHeader& header) {
   }
   told.crs = header.crs;
   told.lattice = public_lattice(header.lattice);
+  told.attributes = header.attributes.attributes();
   return told;
 }
 
@@ -67,6 +69,7 @@ MeshStreamHeader stream_header(const spillway::MeshHeader& header) {
   stream.extent = told_box(header.extent, "a mesh");
   stream.crs = header.crs;
   stream.lattice = checked_lattice(header.lattice);
+  stream.attributes = checked_attributes(header.attributes);
   return stream;
 }
 
@@ -91,10 +94,12 @@ spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& blo
     for (const LatticePoint& vertex : block.vertices) told.on_lattice.push_back(vertex.numbers());
   }
   told.input_index = std::move(block.input_index);
+  told.attributes = columns_of(header.attributes, block.attributes);
   return told;
 }
 
-ProgramBlocks::ProgramBlocks(const spillway::MeshHeader& header) : header_(stream_header(header)) {
+ProgramBlocks::ProgramBlocks(const spillway::MeshHeader& header)
+    : header_(stream_header(header)), told_(header_.attributes) {
   if (header.dimension != 2 && header.dimension != 3) {
     throw InvalidArgument(fmt::format("a mesh has 2 or 3 dimensions, not {}", header.dimension));
   }
@@ -122,6 +127,7 @@ void ProgramBlocks::check(const spillway::MeshBlock& block) const {
         "a block has {} vertices, but {} of them on {}", block.vertices.size(),
         block.on_lattice.size(), header_.lattice ? "the lattice" : "a lattice, which is not told"));
   }
+  check_columns(block.attributes, told_, block.vertices.size(), "vertices");
   for (std::size_t v = 0; v < block.vertices.size(); ++v) {
     const spillway::Point<3>& vertex = block.vertices[v];
     if (!std::ranges::all_of(vertex, [](double x) { return std::isfinite(x); })) {
@@ -208,6 +214,7 @@ MeshBlock ProgramBlocks::next(const spillway::MeshBlock& block) {
   MeshBlock stream;
   stream.vertices = vertices_of(block);
   stream.input_index = block.input_index;
+  stream.attributes = records_of(block.attributes, header_.attributes, 0, block.vertices.size());
   stream.corners.reserve(block.corners.size());
   for (const std::uint64_t vertex : block.corners) stream.corners.push_back(numbers.of(vertex));
   stream.finalized.reserve(block.finalized.size());

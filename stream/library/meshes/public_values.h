@@ -29,6 +29,9 @@ class ProgramBlocks {
   /// Throws Error(kInvalidArgument) for a header that cannot be.
   explicit ProgramBlocks(const spillway::MeshHeader& header);
 
+  /// From now on vertices have these attributes alone, which are some of the header's.
+  void keep(const AttributeLayout& attributes) { header_.attributes = attributes; }
+
   /// Throws Error(kInvalidArgument) for blocks out of their order, coordinates that are not finite,
   /// simplices of another dimension, and vertices that have not come or come no more.
   MeshBlock next(const spillway::MeshBlock& block);
@@ -46,6 +49,7 @@ class ProgramBlocks {
                   std::uint64_t number) const;
 
   MeshStreamHeader header_;
+  AttributeLayout told_;  ///< the attributes that blocks have
   ImportCheck imports_;
   std::uint64_t vertices_ = 0;  ///< that have come, like the next
   std::uint64_t simplices_ = 0;

@@ -23,6 +23,7 @@ struct RunPoints {
   bool has_heights = true;                 ///< there is z
   bool heights_on_lattice = true;          ///< if the stream has a lattice, z is on it, too
   AttributeLayout attributes{};            ///< that blocks have
+  AttributeLayout offered{};               ///< that they could have
   std::optional<std::uint64_t> records{};  ///< exactly how many there are
   bool leaves_out = false;                 ///< not all points of the inputs come
   std::optional<Box<3>> extent{};          ///< in output coordinates
@@ -39,8 +40,9 @@ class EnginePoints {
   /// To be called before begin(): makes RunPoints::crs what an output needs.
   virtual void settle_crs(CrsNeed /*need*/) {}
 
-  /// To be called before begin(): which attributes blocks are to have, where there are any.
-  virtual void carry(const AttributeChoice& /*choice*/) {}
+  /// To be called before begin(): which attributes blocks are to have, of those that there are;
+  /// none otherwise.
+  void carry(const AttributeChoice& choice) { choice_ = choice; }
 
   /// To be called once, and not beside the program's own reading. What follows is told to `watch`,
   /// which must live as long as points are read, and each point has its index if `index`.
@@ -48,6 +50,12 @@ class EnginePoints {
 
   /// What making points out of it is called: "convert", ...
   [[nodiscard]] virtual const char* phase() const { return "convert"; }
+
+ protected:
+  [[nodiscard]] const AttributeChoice& choice() const { return choice_; }
+
+ private:
+  AttributeChoice choice_;
 };
 
 /// Throws Error(kInvalidArgument) if a run has taken the points of a source before.

@@ -17,6 +17,7 @@
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
 #include "stream/library/given_crs.h"
+#include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
 namespace spillway::detail {
@@ -161,6 +162,7 @@ FilePoints::FilePoints(const std::vector<std::string>& paths, const PointOptions
     input_ = std::make_unique<detail::PointSource>(context.state().files(), files, std::move(how));
   }
   check_input(options, context);
+  input_->carry(attribute_choice(options.attributes));
 }
 
 PointSourceOptions FilePoints::source_options(const PointOptions& options, const Context& context) {
@@ -212,6 +214,13 @@ void FilePoints::check_input(const PointOptions& options, const Context& context
     throw InvalidArgument(
         "the points have no z to thin them by: keep the first of a cell, or that at its center");
   }
+  if (!options.attributes.empty()) refuse_unknown_names(options.attributes, offered());
+}
+
+AttributeLayout FilePoints::offered() const {
+  std::vector<AttributeLayout> layouts;
+  for (const PointHeader& header : input_->headers()) layouts.push_back(header.attributes);
+  return joined(layouts);
 }
 
 PointsHeader FilePoints::header() const {
@@ -221,14 +230,23 @@ PointsHeader FilePoints::header() const {
   if (const auto& extent = input_->world_extent()) header.extent = Extent{extent->lo, extent->hi};
   header.crs = input_->crs();
   header.lattice = public_lattice(input_->lattice(), input_->heights_on_lattice());
+  header.attributes = input_->attributes().attributes();
   return header;
 }
 
 bool FilePoints::read(std::vector<spillway::Point<3>>& points) {
+  spillway::PointsBlock block;
+  if (!read(block)) return false;
+  points = std::move(block.points);
+  return true;
+}
+
+bool FilePoints::read(spillway::PointsBlock& block) {
   refuse_taken_points(is_taken_);
-  PointBlock block;
-  if (!input_->read(block)) return false;
-  points = public_points(input_->lattice(), block.points);
+  PointBlock own;
+  if (!input_->read(own)) return false;
+  block.points = public_points(input_->lattice(), own.points);
+  block.attributes = columns_of(input_->attributes(), own.attributes);
   return true;
 }
 
@@ -237,6 +255,7 @@ void FilePoints::settle_crs(CrsNeed need) { input_->settle_crs(need); }
 RunPoints FilePoints::begin(RunWatch& watch, bool index) {
   refuse_taken_points(std::exchange(is_taken_, true));
   watch_ = &watch;
+  input_->carry(choice());
   input_->set_index(index || is_shared_);
   return {.stream = input_.get(),
           .files = input_.get(),
@@ -244,6 +263,7 @@ RunPoints FilePoints::begin(RunWatch& watch, bool index) {
           .has_heights = input_->has_heights(),
           .heights_on_lattice = input_->heights_on_lattice(),
           .attributes = input_->attributes(),
+          .offered = offered(),
           .records = input_->count(),
           .leaves_out = input_->leaves_out(),
           .extent = input_->world_extent(),

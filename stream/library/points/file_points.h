@@ -20,9 +20,9 @@ class FilePoints final : public spillway::PointSource, public EnginePoints {
 
   [[nodiscard]] PointsHeader header() const override;
   bool read(std::vector<spillway::Point<3>>& points) override;
+  bool read(spillway::PointsBlock& block) override;
 
   void settle_crs(CrsNeed need) override;
-  void carry(const AttributeChoice& choice) override { input_->carry(choice); }
   RunPoints begin(RunWatch& watch, bool index) override;
 
   [[nodiscard]] detail::PointSource& input() { return *input_; }
@@ -31,6 +31,7 @@ class FilePoints final : public spillway::PointSource, public EnginePoints {
   EnginePoints* engine_points() override { return this; }
   PointSourceOptions source_options(const PointOptions& options, const Context& context);
   void check_input(const PointOptions& options, const Context& context) const;
+  [[nodiscard]] AttributeLayout offered() const;
 
   int dimension_;
   bool is_shared_ = false;  ///< by ranks, who tell points by their index

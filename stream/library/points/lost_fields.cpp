@@ -28,15 +28,16 @@ void add_records(const PointHeader& header, NameList& lost) {
 
 }  // namespace
 
-std::vector<std::string> lost_fields(const std::vector<PointHeader>& headers,
+std::vector<std::string> lost_fields(const AttributeLayout& attributes,
+                                     const std::vector<PointHeader>& headers,
                                      const PointFormat& format, const PointWriterOptions& written) {
   NameList lost;
+  for (const AttributeField& field : attributes.fields()) {
+    const std::string& name = field.attribute.name;
+    const bool dropped = format.drops_waveforms && tells_waveform(name);
+    if (dropped || written.attributes.find(name) == nullptr) lost.add(name);
+  }
   for (const PointHeader& header : headers) {
-    for (const AttributeField& field : header.attributes.fields()) {
-      const std::string& name = field.attribute.name;
-      const bool dropped = format.drops_waveforms && tells_waveform(name);
-      if (dropped || written.attributes.find(name) == nullptr) lost.add(name);
-    }
     if (header.las_metadata && !written.las) add_records(header, lost);
   }
   if (written.las) {

@@ -8,9 +8,10 @@
 
 namespace spillway::detail {
 
-/// What files with these headers have and a file that is written so does not keep, by name:
-/// "intensity", "coordinate system".
-std::vector<std::string> lost_fields(const std::vector<PointHeader>& headers,
+/// What points with these attributes, of files with these headers, have and a file that is written
+/// so does not keep, by name: "intensity", "coordinate system".
+std::vector<std::string> lost_fields(const AttributeLayout& attributes,
+                                     const std::vector<PointHeader>& headers,
                                      const PointFormat& format, const PointWriterOptions& written);
 
 }  // namespace spillway::detail

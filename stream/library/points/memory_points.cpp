@@ -1,8 +1,12 @@
 #include "stream/library/points/memory_points.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "src/error.h"
+#include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
 namespace spillway::detail {
@@ -11,6 +15,13 @@ namespace {
 constexpr std::uint64_t kBlockPoints = 65536;
 
 }  // namespace
+
+template <int D>
+void MemoryPoints<D>::check() const {
+  if (offered_.empty() || offered_.size() == points_.size()) return;
+  throw InvalidArgument(
+      fmt::format("there are {} points, but attributes of {}", points_.size(), offered_.size()));
+}
 
 template <int D>
 spillway::Point<3> MemoryPoints<D>::point(std::uint64_t number) const {
@@ -31,9 +42,24 @@ bool MemoryPoints<D>::read(std::vector<spillway::Point<3>>& points) {
 }
 
 template <int D>
+bool MemoryPoints<D>::read(spillway::PointsBlock& block) {
+  const std::uint64_t first = next_;
+  if (!read(block.points)) return false;
+  const AttributeLayout layout(offered_.attributes());
+  block.attributes = columns_of(layout, records_of(offered_, layout, first, block.points.size()));
+  return true;
+}
+
+template <int D>
 RunPoints MemoryPoints<D>::begin(RunWatch& /*watch*/, bool /*index*/) {
   refuse_taken_points(std::exchange(is_taken_, true));
-  return {.stream = this, .has_heights = D == 3, .name = "the points"};
+  const AttributeLayout offered(offered_.attributes());
+  attributes_ = chosen(offered, choice());
+  return {.stream = this,
+          .has_heights = D == 3,
+          .attributes = attributes_,
+          .offered = offered,
+          .name = "the points"};
 }
 
 template <int D>
@@ -56,6 +82,7 @@ void MemoryPoints<D>::decode(SourcePiece& piece, PointBlock& block) {
     block.points.emplace_back(finite_point(taken, number));
     block.index[i] = number;
   }
+  block.attributes = records_of(offered_, attributes_, piece.raw.first, piece.raw.count);
 }
 
 template <int D>
@@ -72,24 +99,35 @@ template class MemoryPoints<3>;
 namespace spillway {
 
 PointSource::~PointSource() = default;
+bool PointSource::read(PointsBlock& block) {
+  block.attributes = {};
+  return read(block.points);
+}
+
 PointSink::~PointSink() = default;
+std::vector<std::string> PointSink::attributes_wanted() const { return {}; }
 void PointSink::begin(const PointsHeader& /*header*/) {}
+void PointSink::write(std::span<const Point<3>> points, const AttributeColumns& /*attributes*/) {
+  write(points);
+}
 void PointSink::finish() {}
 
-std::unique_ptr<PointSource> points_in_memory(PointView<3> points) {
-  return std::make_unique<detail::MemoryPoints<3>>(points);
+std::unique_ptr<PointSource> points_in_memory(PointView<3> points, AttributeColumns attributes) {
+  return std::make_unique<detail::MemoryPoints<3>>(points, std::move(attributes));
 }
 
-std::unique_ptr<PointSource> points_in_memory(PointView<2> points) {
-  return std::make_unique<detail::MemoryPoints<2>>(points);
+std::unique_ptr<PointSource> points_in_memory(PointView<2> points, AttributeColumns attributes) {
+  return std::make_unique<detail::MemoryPoints<2>>(points, std::move(attributes));
 }
 
-std::unique_ptr<PointSource> points_in_memory(std::vector<Point<3>>&& points) {
-  return std::make_unique<detail::MemoryPoints<3>>(std::move(points));
+std::unique_ptr<PointSource> points_in_memory(std::vector<Point<3>>&& points,
+                                              AttributeColumns attributes) {
+  return std::make_unique<detail::MemoryPoints<3>>(std::move(points), std::move(attributes));
 }
 
-std::unique_ptr<PointSource> points_in_memory(std::vector<Point<2>>&& points) {
-  return std::make_unique<detail::MemoryPoints<2>>(std::move(points));
+std::unique_ptr<PointSource> points_in_memory(std::vector<Point<2>>&& points,
+                                              AttributeColumns attributes) {
+  return std::make_unique<detail::MemoryPoints<2>>(std::move(points), std::move(attributes));
 }
 
 }  // namespace spillway

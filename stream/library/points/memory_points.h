@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "stream/library/points/engine_points.h"
@@ -17,14 +18,20 @@ template <int D>
 class MemoryPoints final : public spillway::PointSource, public EnginePoints, private PointStream {
  public:
   /// What the view refers to must outlive it.
-  explicit MemoryPoints(PointView<D> points) : points_(points) {}
-  explicit MemoryPoints(std::vector<spillway::Point<D>> points)
-      : kept_(std::move(points)), points_(kept_) {}
+  MemoryPoints(PointView<D> points, AttributeColumns attributes)
+      : points_(points), offered_(std::move(attributes)) {
+    check();
+  }
+  MemoryPoints(std::vector<spillway::Point<D>> points, AttributeColumns attributes)
+      : kept_(std::move(points)), points_(kept_), offered_(std::move(attributes)) {
+    check();
+  }
 
   [[nodiscard]] PointsHeader header() const override {
-    return {.coordinates = D, .count = points_.size()};
+    return {.coordinates = D, .count = points_.size(), .attributes = offered_.attributes()};
   }
   bool read(std::vector<spillway::Point<3>>& points) override;
+  bool read(spillway::PointsBlock& block) override;
 
   RunPoints begin(RunWatch& watch, bool index) override;
 
@@ -39,10 +46,13 @@ class MemoryPoints final : public spillway::PointSource, public EnginePoints, pr
   [[nodiscard]] std::uint64_t points_read() const override { return next_; }
   [[nodiscard]] std::optional<double> fraction_read() const override;
 
+  void check() const;
   [[nodiscard]] spillway::Point<3> point(std::uint64_t number) const;
 
   std::vector<spillway::Point<D>> kept_;  ///< or none
   PointView<D> points_;
+  AttributeColumns offered_;
+  AttributeLayout attributes_;           ///< those of them that a run wants
   bool is_taken_ = false;                ///< by a run
   std::atomic<std::uint64_t> next_ = 0;  ///< that is to be read
   const std::optional<Lattice> lattice_;

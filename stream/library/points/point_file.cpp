@@ -16,7 +16,6 @@
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
 #include "src/parallel/parallel.h"
-#include "stream/library/attribute_choice.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/points/lost_fields.h"
 #include "stream/library/points/public_points.h"
@@ -128,7 +127,7 @@ void PointFile::check(const PointFileOptions& options) const {
 
 AttributeChoice PointFile::wanted_attributes() const {
   if (!format_.holds_attributes) return {};
-  if (options_.attributes) return choice_of(*options_.attributes);
+  if (options_.attributes) return attribute_choice(*options_.attributes);
   return {.all = format_.writes_attributes == nullptr || format_.writes_attributes(path_)};
 }
 
@@ -159,7 +158,7 @@ void PointFile::check_attributes(const RunPoints& points) const {
     throw InvalidArgument(fmt::format("{} holds no attributes of points, and {} is {}",
                                       format_.title, path_, format_.title));
   }
-  refuse_unknown(choice_of(*options_.attributes), attributes_of_inputs(points), "the points");
+  refuse_unknown_names(*options_.attributes, points.offered);
 }
 
 void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
@@ -189,7 +188,7 @@ void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
     how_.version = options_.las_version.empty() ? las_version_for(points, how_.las != nullptr)
                                                 : options_.las_version;
   }
-  lost_ = lost_fields(points.headers, format_, how_);
+  lost_ = lost_fields(points.offered, points.headers, format_, how_);
   rounds_ = !options_.scale.empty() || !options_.offset.empty() ||
             (format_.needs_lattice && !how_.lattice && !options_.exact);
   check_overwriting(points);
@@ -275,20 +274,26 @@ void PointFile::begin(const PointsHeader& header) {
   points.crs = header.crs;
   source_ = checked_lattice(header.lattice);
   points.heights_on_lattice = source_ && header.lattice->has_z;
+  told_ = checked_attributes(header.attributes);
+  points.attributes = told_;
+  points.offered = told_;
   start(points, {.at_once = threads_,
                  .run = [threads = threads_](std::size_t count, const WorkSharing::Body& body) {
                    with_threads(threads, [&] { share_out(count, body); });
                  }});
 }
 
-void PointFile::write(std::span<const spillway::Point<3>> points) {
+void PointFile::write(std::span<const spillway::Point<3>> points,
+                      const AttributeColumns& attributes) {
   if (!begun_) throw InvalidArgument("points of a file come between begin and finish");
   for (const spillway::Point<3>& point : points) {
     if (std::ranges::all_of(point, [](double x) { return std::isfinite(x); })) continue;
     throw InvalidArgument(
         fmt::format("a point has a coordinate that is not finite: ({})", fmt::join(point, ", ")));
   }
+  check_columns(attributes, told_, points.size(), "points");
   PointBlock block;
+  block.attributes = records_of(attributes, how_.attributes, 0, points.size());
   block.points = points_without_lattice(points);
   const int axes = how_.coordinates == 3 && how_.lattice ? 3 : 2;
   for (std::size_t i = 0; source_ && i < block.size(); ++i) {

@@ -14,6 +14,7 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/points/common/point_format.h"
 #include "formats/points/common/point_writer.h"
+#include "stream/library/points/attribute_records.h"
 #include "stream/library/points/engine_points.h"
 #include "stream/library/points/lattice_rounding.h"
 #include "stream/tiles/storage/points_view.h"
@@ -33,8 +34,13 @@ class PointFile final : public spillway::PointSink {
             FileSystem& files = disk());
   ~PointFile() override;
 
+  [[nodiscard]] std::vector<std::string> attributes_wanted() const override {
+    return names_of(wanted_attributes());
+  }
   void begin(const PointsHeader& header) override;
-  void write(std::span<const spillway::Point<3>> points) override;
+  void write(std::span<const spillway::Point<3>> points) override { write(points, {}); }
+  void write(std::span<const spillway::Point<3>> points,
+             const AttributeColumns& attributes) override;
   void finish() override;
 
   /// What the format needs of the coordinate system. WKT goes into LAS as it is.
@@ -90,6 +96,7 @@ class PointFile final : public spillway::PointSink {
   bool adds_heights_ = false;
   bool rounds_ = false;
   std::vector<std::string> lost_;
+  AttributeLayout told_;           ///< attributes of the points
   std::optional<Lattice> source_;  ///< on which points come
   std::optional<LatticeRounding> rounding_;
   std::unique_ptr<PointWriter> writer_;  ///< once it is known how

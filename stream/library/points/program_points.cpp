@@ -6,6 +6,7 @@
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
 #include "stream/library/given_crs.h"
+#include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
 namespace spillway::detail {
@@ -13,6 +14,7 @@ namespace spillway::detail {
 ProgramPoints::ProgramPoints(spillway::PointSource& source, int dimension)
     : source_(source),
       header_(source.header()),
+      told_(checked_attributes(header_.attributes)),
       lattice_(checked_lattice(header_.lattice)),
       world_extent_(checked_box(header_)),
       extent_(world_extent_) {
@@ -34,9 +36,12 @@ void ProgramPoints::settle_crs(CrsNeed need) {
 }
 
 RunPoints ProgramPoints::begin(RunWatch& /*watch*/, bool /*index*/) {
+  attributes_ = chosen(told_, choice());
   return {.stream = this,
           .has_heights = header_.coordinates == 3,
           .heights_on_lattice = heights_on_lattice_,
+          .attributes = attributes_,
+          .offered = told_,
           .extent = world_extent_,
           .crs = header_.crs,
           .name = "the points"};
@@ -45,10 +50,14 @@ RunPoints ProgramPoints::begin(RunWatch& /*watch*/, bool /*index*/) {
 bool ProgramPoints::fetch(SourcePiece& piece) {
   PointBlock& block = piece.raw.decoded;
   block.clear();
-  points_.clear();
-  if (!source_.read(points_)) return false;
-  block.points.reserve(points_.size());
-  for (const spillway::Point<3>& point : points_) block.points.emplace_back(point);
+  block_.points.clear();
+  if (!source_.read(block_)) return false;
+  block.points.reserve(block_.points.size());
+  for (const spillway::Point<3>& point : block_.points) block.points.emplace_back(point);
+  if (!attributes_.empty()) {
+    check_columns(block_.attributes, told_, block.size(), "points");
+    block.attributes = records_of(block_.attributes, attributes_, 0, block.size());
+  }
   piece.raw.first = read_;
   read_ += block.size();
   return true;

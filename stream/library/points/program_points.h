@@ -37,7 +37,9 @@ class ProgramPoints final : public PointStream, public EnginePoints {
 
   spillway::PointSource& source_;
   PointsHeader header_;
-  std::vector<spillway::Point<3>> points_;  ///< that were read last
+  AttributeLayout told_;         ///< that each block of the program has
+  AttributeLayout attributes_;   ///< those of them that are wanted
+  spillway::PointsBlock block_;  ///< that was read last
   std::optional<Lattice> lattice_;
   bool heights_on_lattice_ = false;
   std::optional<Box<3>> world_extent_;

@@ -151,6 +151,7 @@ PointsInfo describe_points(const std::string& path, const PointOptions& options,
   }
   if (const auto told = extent_told_by(header)) info.header_box = extent_of(*told);
   info.points_outside = outside.count();
+  info.attributes = header.attributes.attributes();
   return info;
 }
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "tests/tools/command_runner.h"
@@ -28,6 +29,33 @@ TEST(Info, TellsThePointsOfALasFile) {
        {"name", "version", "point_format", "coordinates", "offset", "crs", "software"}) {
     EXPECT_TRUE(info.contains(key)) << key;
   }
+}
+
+TEST(Info, ListsWhatPointsCarry) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 100 -o in.las");
+  const auto las = work.info("in.las")["attributes"];
+  ASSERT_FALSE(las.empty());
+  EXPECT_EQ(las[0], (nlohmann::json{{"name", "intensity"}, {"type", "uint16"}}));
+  work.succeed("spillway convert -q in.las -o new.las --las-version 1.4");
+  const auto extended = work.info("new.las")["attributes"];
+  const auto angle = std::find_if(extended.begin(), extended.end(), [](const auto& attribute) {
+    return attribute["name"] == "scan_angle";
+  });
+  ASSERT_NE(angle, extended.end());
+  EXPECT_EQ((*angle)["type"], "int16");
+  EXPECT_EQ((*angle)["scale"], 0.006);
+  EXPECT_EQ((*angle)["offset"], 0);
+  const std::string text = work.succeed("spillway info -q new.las");
+  EXPECT_THAT(text, HasSubstr("  attributes\n    intensity              uint16\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("    scan_angle +int16  scale 0.006  offset 0"));
+}
+
+TEST(Info, OfPointsWithoutAttributesSaysSo) {
+  const Workspace work;
+  work.write("in.txt", "0 0 7\n10 0 8\n0 5 9\n");
+  EXPECT_EQ(work.info("in.txt")["attributes"], nlohmann::json::array());
+  EXPECT_THAT(work.succeed("spillway info -q in.txt"), testing::ContainsRegex("attributes +-\n"));
 }
 
 TEST(Info, ExtentAndDensityOfTextAreExact) {

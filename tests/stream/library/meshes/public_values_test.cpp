@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -123,6 +124,27 @@ TEST(PublicBlock, CarriesTheInputIndexOfItsVertices) {
   spillway::MeshBlock first = told;
   first.first_vertex = 0;
   EXPECT_THAT(program.next(first).input_index, ElementsAre(8, 3));
+}
+
+TEST(PublicBlock, CarriesWhatItsVerticesDo) {
+  const Attribute depth{.name = "depth", .type = NumberType::kInt16, .scale = 0.1};
+  const Attribute kind{.name = "kind", .type = NumberType::kUint8, .elements = 2};
+  spillway::MeshHeader header{.attributes = {depth, kind}};
+  spillway::MeshBlock block{.vertices = {{0, 0, 0}, {1, 0, 0}},
+                            .attributes = AttributeColumns({depth, kind}, 2)};
+  block.attributes.values<std::int16_t>("depth")[1] = -7;
+  block.attributes.values<std::uint8_t>("kind")[2] = 9;
+  for (const std::vector<Attribute>& kept : {header.attributes, {kind}}) {
+    ProgramBlocks program(header);
+    EXPECT_EQ(program.header().attributes.attributes(), header.attributes);
+    program.keep(AttributeLayout(kept));
+    EXPECT_EQ(public_header(program.header()).attributes, kept);
+    MeshBlock own = program.next(block);
+    EXPECT_EQ(own.attributes.size(), 2 * program.header().attributes.record_size());
+    const spillway::MeshBlock told = public_block(program.header(), std::move(own), 0);
+    EXPECT_EQ(told.attributes.attributes(), kept);
+    EXPECT_THAT(told.attributes.values<std::uint8_t>("kind"), ElementsAre(0, 0, 9, 0));
+  }
 }
 
 /// A square in two blocks, of which the second is spoiled.

@@ -31,7 +31,9 @@ PointHeader las(int point_format) {
 
 std::vector<std::string> lost_in(const std::string& format, const std::vector<PointHeader>& headers,
                                  const PointWriterOptions& written = {}) {
-  return lost_fields(headers, point_format_by_name(format), written);
+  std::vector<AttributeLayout> layouts;
+  for (const PointHeader& header : headers) layouts.push_back(header.attributes);
+  return lost_fields(joined(layouts), headers, point_format_by_name(format), written);
 }
 
 TEST(LostFields, AreTheAttributesThatAreNotWritten) {

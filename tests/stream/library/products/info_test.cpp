@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 #include "tests/stream/library/call_test.h"
 
@@ -54,6 +55,21 @@ TEST_F(Info, OfPointsCountsWhatIsThere) {
   part = {};
   part.bounds = Extent{{0, 0, 0}, {0, 0, 0}};
   EXPECT_FALSE(describe_points(file("hills.las"), part, context).extent.has_value());
+}
+
+TEST_F(Info, OfPointsTellsWhatTheyCarry) {
+  const std::vector<Point<3>> points(3, Point<3>{1, 2, 3});
+  const Attribute depth{.name = "depth",
+                        .type = NumberType::kInt16,
+                        .elements = 2,
+                        .scale = 0.25,
+                        .offset = 7,
+                        .unit = "m",
+                        .description = "below the surface"};
+  const Context context(options());
+  convert(*points_in_memory(points, AttributeColumns({depth}, 3)),
+          *create_points(file("deep.spp"), {}, context), context);
+  EXPECT_THAT(describe_points(file("deep.spp"), {}, context).attributes, ElementsAre(depth));
 }
 
 TEST_F(Info, OfPointsComparesThemWithTheBoxOfTheirHeader) {
