@@ -105,6 +105,7 @@ Report convert(MeshStreamReader& reader, const std::string& name,
   report.dimension = dimension;
   report.triangulate_seconds = watch.end(passage.simplices());
   report.mesh = reader.totals();
+  report.lost = sink.lost_attributes(there, false);
   report.on_lattice = reader.header().lattice.has_value();
   if (sink.is_product() && report.mesh.simplices == 0) {
     throw Error(fmt::format("{}: the mesh has no {}", name, simplices_of(dimension)),

@@ -158,7 +158,9 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   run.stream.record_size = run.points.attributes.record_size();
   check(run.points, options.dimension);
   target->check_attributes(run.points.offered);
-  return executor != nullptr ? executor->triangulate(run) : triangulate_here(run);
+  Report report = executor != nullptr ? executor->triangulate(run) : triangulate_here(run);
+  report.lost = target->lost_attributes(run.points.offered, true);
+  return report;
 }
 
 }  // namespace spillway

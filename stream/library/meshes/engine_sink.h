@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 #include <vector>
+#include <vector>
 
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/vectors/vector_formats.h"
@@ -64,8 +65,14 @@ class EngineSink {
   [[nodiscard]] virtual AttributeChoice wanted_attributes(bool /*triangulated*/) const {
     return {};
   }
-  /// Throws Error(kInvalidArgument) for one that was asked for by name and is not there.
+  /// Throws Error(kInvalidArgument) for one that was asked for by name and is not there, or that it
+  /// does not hold.
   virtual void check_attributes(const AttributeLayout& /*there*/) const {}
+  /// The names of those that would come if it held them.
+  [[nodiscard]] virtual std::vector<std::string> lost_attributes(const AttributeLayout& /*there*/,
+                                                                 bool /*triangulated*/) const {
+    return {};
+  }
   /// Whether what it makes ends with a canonical hash.
   [[nodiscard]] virtual bool tells_hash() const { return false; }
   /// By how many of so many threads it can be fed at a time.

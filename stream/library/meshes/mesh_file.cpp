@@ -5,6 +5,8 @@
 #include "formats/disk/extension.h"
 #include "formats/disk/file_system.h"
 #include "formats/disk/output_check.h"
+#include "formats/bytes/word_list.h"
+#include "formats/meshes/common/colour.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_stream_writer.h"
 #include "formats/meshes/vector/vector_format.h"
@@ -47,13 +49,38 @@ MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, cons
   if (target_.format == &kGpkgMesh) tell_lost_layers(kGeoPackage, target_.path, context);
 }
 
-AttributeChoice MeshFile::wanted_attributes(bool triangulated) const {
+/// As if the format held all.
+AttributeChoice MeshFile::asked_attributes(bool triangulated) const {
   if (attributes_) return attribute_choice(*attributes_);
-  return {.all = !triangulated};
+  if (!triangulated) return {.all = true};
+  return target_.format->takes_colour ? colour_choice() : AttributeChoice{};
+}
+
+AttributeChoice MeshFile::wanted_attributes(bool triangulated) const {
+  const AttributeChoice asked = asked_attributes(triangulated);
+  if (target_.format->held_attributes == HeldAttributes::kAll) return asked;
+  if (target_.format->held_attributes == HeldAttributes::kNone) return {};
+  return asked.empty() ? asked : colour_choice();
 }
 
 void MeshFile::check_attributes(const AttributeLayout& there) const {
-  if (attributes_) refuse_unknown_names(*attributes_, there);
+  if (!attributes_) return;
+  refuse_unknown_names(*attributes_, there);
+  const AttributeChoice named{.names = attribute_choice(*attributes_).names};
+  const std::vector<std::string> lost =
+      detail::lost_attributes(*target_.format, chosen(there, named));
+  if (lost.empty()) return;
+  const auto hold_all = [](const MeshFormat& format) {
+    return format.held_attributes == HeldAttributes::kAll;
+  };
+  throw InvalidArgument(fmt::format("vertices of {} do not hold {}: write {}",
+                                    target_.format->title, word_list(lost, "and"),
+                                    list_of_formats(hold_all, "or")));
+}
+
+std::vector<std::string> MeshFile::lost_attributes(const AttributeLayout& there,
+                                                   bool triangulated) const {
+  return detail::lost_attributes(*target_.format, chosen(there, asked_attributes(triangulated)));
 }
 
 BlockSink& MeshFile::open(const MeshStart& start) {

@@ -36,6 +36,8 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   }
   [[nodiscard]] AttributeChoice wanted_attributes(bool triangulated) const override;
   void check_attributes(const AttributeLayout& there) const override;
+  [[nodiscard]] std::vector<std::string> lost_attributes(const AttributeLayout& there,
+                                                         bool triangulated) const override;
   [[nodiscard]] bool tells_hash() const override { return target_.format->has_totals; }
   /// Blocks are written one after the other, and nothing is done before.
   [[nodiscard]] unsigned feeding_threads(unsigned /*threads*/) const override { return 1; }
@@ -46,6 +48,7 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
 
  private:
   BlockSink& open(const MeshStart& start) override;
+  [[nodiscard]] AttributeChoice asked_attributes(bool triangulated) const;
 
   MeshTarget target_;
   std::optional<std::vector<std::string>> attributes_;  ///< names, if the caller chooses

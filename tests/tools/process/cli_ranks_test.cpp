@@ -182,6 +182,23 @@ TEST_F(RanksOfTheCommand, GiveEachVertexTheSameHeightAndIndexAsOneProcess) {
   }
 }
 
+TEST_F(RanksOfTheCommand, GiveEachVertexTheAttributesThatOneProcessDoes) {
+  work_.succeed(
+      "spillway generate -q duplicates -n 9000 -o p.npy && spillway convert -q p.npy -o p.txt\n"
+      "awk 'BEGIN { print \"x y z number odd\" } "
+      "{ print $1, $2, NR % 50, NR, NR * 0.1 }' p.txt > in.txt");
+  for (const char* how : {"--duplicates highest", "--dim 3", "--tile 500"}) {
+    for (const char* name : {"b.spm", "b.ply", "b.vtu"}) {
+      expect_same_mesh(3, fmt::format("in.txt --id --attributes all {}", how), name);
+      EXPECT_EQ(vertex_lines("a.spm"), vertex_lines(name)) << how << ", " << name;
+    }
+  }
+  work_.succeed(ranks(2, "triangulate -q in.txt -o b.ply --parts --attributes number"));
+  for (const char* part : {"b.0.ply", "b.1.ply"}) {
+    EXPECT_THAT(work_.read(part), HasSubstr("property double number\n")) << part;
+  }
+}
+
 TEST_F(RanksOfTheCommand, WriteOneFileInAnyFormatOrToAPipe) {
   work_.succeed("spillway generate -q terrain -n 100000 -o in.las");
   for (const char* name : {"b.spm", "b.ply", "b.vtu", "b.obj"}) {
