@@ -11,15 +11,14 @@ namespace spillway::detail {
 namespace {
 
 /// Throws InvalidArgument if the format cannot hold the mesh.
-void check_holds(const MeshFormat& format, const std::string& path, int dimension,
-                 bool has_input_index) {
-  if (dimension != 2 && !format.holds_tetrahedra) {
+void check_holds(const MeshFormat& format, const std::string& path, const MeshContents& contents) {
+  if (contents.dimension != 2 && !format.holds_tetrahedra) {
     const auto hold = [](const MeshFormat& other) { return other.holds_tetrahedra; };
     throw InvalidArgument(fmt::format("cannot write {}: {} holds no tetrahedra; choose {}", path,
                                       format.title, list_of_formats(hold, "or")),
                           {.file = path});
   }
-  if (has_input_index && !format.holds_input_index) {
+  if (contents.has_input_index && !format.holds_input_index) {
     const auto hold = [](const MeshFormat& other) { return other.holds_input_index; };
     throw InvalidArgument(
         fmt::format("cannot write {}: {} holds no input index; choose {}, or leave the index out",
@@ -31,8 +30,8 @@ void check_holds(const MeshFormat& format, const std::string& path, int dimensio
 }  // namespace
 
 MeshFiles create_mesh_files(FileSystem& files, const std::string& path, const MeshFormat& format,
-                            int dimension, bool has_input_index) {
-  check_holds(format, path, dimension, has_input_index);
+                            const MeshContents& contents) {
+  check_holds(format, path, contents);
   if (path == "-" && format.needs_regular_file) {
     throw InvalidArgument(
         fmt::format("standard output cannot take {}, whose beginning is written last; name a file",
@@ -41,7 +40,7 @@ MeshFiles create_mesh_files(FileSystem& files, const std::string& path, const Me
   }
   MeshFiles created;
   if (format.file_set != nullptr) {
-    created = format.file_set->create(files, path, has_input_index);
+    created = format.file_set->create(files, path, contents);
   } else if (!format.is_table()) {
     created.main = files.create(path);
   }
@@ -61,8 +60,7 @@ std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshHeader& 
 
 std::unique_ptr<MeshWriter> open_mesh_writer(FileSystem& files, const std::string& path,
                                              const MeshFormat& format, const MeshHeader& header) {
-  return open_mesh_writer(
-      create_mesh_files(files, path, format, header.dimension, header.has_input_index), header);
+  return open_mesh_writer(create_mesh_files(files, path, format, contents_of(header)), header);
 }
 
 }  // namespace spillway::detail

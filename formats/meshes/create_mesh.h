@@ -12,7 +12,7 @@ namespace spillway::detail {
 /// hold it (MeshFormat tells), if it needs two files or one that it can go back in and gets
 /// standard output, or if a file cannot be created.
 MeshFiles create_mesh_files(FileSystem& files, const std::string& path, const MeshFormat& format,
-                            int dimension, bool has_input_index);
+                            const MeshContents& contents);
 
 /// Begins to write to these files. Throws Error for what is written block by block:
 /// open_mesh_stream_writer() does that.

@@ -11,6 +11,7 @@
 #include "formats/bytes/word_list.h"
 #include "formats/disk/extension.h"
 #include "formats/disk/file_system.h"
+#include "formats/meshes/common/colour.h"
 #include "formats/meshes/glb/glb_format.h"
 #include "formats/meshes/landxml/landxml_format.h"
 #include "formats/meshes/npy/npy_format.h"
@@ -128,6 +129,19 @@ std::vector<std::string> names_of_formats(bool (*chosen)(const MeshFormat&), Mes
 std::string list_of_formats(bool (*chosen)(const MeshFormat&), std::string_view last,
                             MeshFormats formats) {
   return word_list(names_of_formats(chosen, formats), last);
+}
+
+std::vector<std::string> lost_attributes(const MeshFormat& format, const AttributeLayout& layout) {
+  std::vector<std::string> lost;
+  if (format.held_attributes == HeldAttributes::kAll) return lost;
+  const std::optional<ColourFields> colour = colour_fields(layout);
+  const bool holds_colour = format.held_attributes == HeldAttributes::kColour && colour;
+  for (const AttributeField& field : layout.fields()) {
+    const auto is_same = [&](const AttributeField& other) { return other.at == field.at; };
+    if (holds_colour && std::ranges::any_of(*colour, is_same)) continue;
+    lost.push_back(field.attribute.name);
+  }
+  return lost;
 }
 
 std::string rounding_note(const MeshFormat& format, const std::string& path) {

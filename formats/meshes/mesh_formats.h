@@ -54,6 +54,9 @@ std::vector<std::string> names_of_formats(bool (*chosen)(const MeshFormat&),
 std::string list_of_formats(bool (*chosen)(const MeshFormat&), std::string_view last,
                             MeshFormats formats = mesh_formats());
 
+/// The names of the attributes, of those of a layout, that a format does not hold.
+std::vector<std::string> lost_attributes(const MeshFormat& format, const AttributeLayout& layout);
+
 /// What is to be said of a mesh that was written to `path` in a format that rounds its coordinates,
 /// or sees them from an origin; empty for others.
 std::string rounding_note(const MeshFormat& format, const std::string& path);

@@ -12,8 +12,7 @@ std::unique_ptr<MeshStreamWriter> open_mesh_stream_writer(FileSystem& files,
                                                           const MeshFormat& format,
                                                           const MeshStreamHeader& header,
                                                           ScratchFolder& scratch) {
-  MeshFiles created =
-      create_mesh_files(files, path, format, header.dimension, header.has_input_index);
+  MeshFiles created = create_mesh_files(files, path, format, contents_of(header));
   if (format.open_block_writer != nullptr) {
     return format.open_block_writer(std::move(created), header);
   }

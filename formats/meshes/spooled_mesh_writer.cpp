@@ -36,7 +36,7 @@ class SpooledMeshWriter : public MeshStreamWriter {
                     std::size_t memory)
       : files_(std::move(files)), spool_(header, files_.main->name(), scratch, memory) {
     for (std::unique_ptr<OutputFile>* const file :
-         {&files_.main, &files_.simplices, &files_.input_index}) {
+         {&files_.main, &files_.simplices, &files_.input_index, &files_.attributes}) {
       if (*file) *file = std::make_unique<CountedOutput>(std::move(*file), bytes_);
     }
   }

@@ -150,8 +150,7 @@ std::unique_ptr<MeshOutput> open_one_file(FileSystem& files, const MeshTarget& t
   std::vector<std::byte> temporary_path;
   // What rank 0 throws finds the others in the broadcast.
   if (ranks.rank() == 0 && at_places) {
-    created = create_mesh_files(files, target.path, *target.format, header.dimension,
-                                header.has_input_index);
+    created = create_mesh_files(files, target.path, *target.format, contents_of(header));
     const std::string path = created.main->temporary_path();
     const std::span<const std::byte> bytes = as_bytes_of(path);
     temporary_path.assign(bytes.begin(), bytes.end());

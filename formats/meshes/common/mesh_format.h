@@ -20,6 +20,26 @@ namespace spillway::detail {
 
 struct MeshFormat;
 
+/// What a mesh has that not all formats hold.
+struct MeshContents {
+  int dimension = 2;
+  bool has_input_index = false;
+  bool has_attributes = false;
+};
+
+/// Those that a header tells: MeshHeader or MeshStreamHeader.
+template <typename Header>
+MeshContents contents_of(const Header& header) {
+  return {header.dimension, header.has_input_index, !header.attributes.empty()};
+}
+
+/// Which attributes of vertices a format holds.
+enum class HeldAttributes {
+  kNone,
+  kColour,  ///< red, green and blue
+  kAll
+};
+
 /// The files of a mesh, created but still empty.
 struct MeshFiles {
   const MeshFormat* format = nullptr;
@@ -27,6 +47,7 @@ struct MeshFiles {
   std::unique_ptr<OutputFile> main;         ///< the vertices, if there are others; none of a table
   std::unique_ptr<OutputFile> simplices;    ///< of a format in several files
   std::unique_ptr<OutputFile> input_index;  ///< likewise, if there is an input index
+  std::unique_ptr<OutputFile> attributes;   ///< likewise, if there are some
 };
 
 /// What a format does whose meshes are several files side by side.
@@ -42,7 +63,7 @@ struct MeshFileSet {
   /// Throws Error unless all files are there.
   Mesh (*read)(FileSystem& files, const std::string& path);
   /// Throws Error for standard output.
-  MeshFiles (*create)(FileSystem& files, const std::string& path, bool has_input_index);
+  MeshFiles (*create)(FileSystem& files, const std::string& path, const MeshContents& contents);
   /// The files that a mesh is written to, in words.
   std::string (*names)(const std::string& path);
 };
@@ -67,6 +88,7 @@ struct MeshFormat {
 
   bool holds_tetrahedra = false;  ///< besides triangles
   bool holds_input_index = false;
+  HeldAttributes held_attributes = HeldAttributes::kNone;
   bool rounds_coordinates = false;  ///< to 32-bit floats
   bool needs_regular_file = false;  ///< its beginning is written last
   bool reads_crs = false;           ///< GDAL is asked about a coordinate system

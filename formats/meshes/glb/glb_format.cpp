@@ -16,6 +16,7 @@ constinit const MeshFormat kGlbMesh = {
     .name = "glb",
     .title = "glTF",
     .extensions = kExtensions,
+    .held_attributes = HeldAttributes::kColour,
     .rounds_coordinates = true,
     .needs_regular_file = true,
     .recognises = [](std::string_view text) { return text.starts_with(glb::kMagic); },

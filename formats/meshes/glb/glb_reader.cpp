@@ -1,12 +1,19 @@
 #include "formats/meshes/glb/glb_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "formats/bytes/bytes.h"
+#include "formats/bytes/number_type.h"
 #include "formats/bytes/whole_file.h"
 #include "formats/meshes/common/mesh_checks.h"
 #include "formats/meshes/glb/glb_format.h"
@@ -37,6 +44,25 @@ std::size_t size_of_component(int type) {
   }
 }
 
+std::size_t components_of(std::string_view type) {
+  if (type == "VEC3") return 3;
+  return type == "VEC4" ? 4 : 1;
+}
+
+using Colour = std::array<std::uint16_t, 3>;
+
+constexpr Colour kWhite = {0xffff, 0xffff, 0xffff};
+/// A step of 8 bits is as many of 16.
+constexpr unsigned kStepsOfByte = 257;
+
+/// A number of a colour, from none to all, in 16 bits.
+std::uint16_t channel_of(const std::byte* at, int type) {
+  if (type == glb::kUint8) return static_cast<std::uint16_t>(load<std::uint8_t>(at) * kStepsOfByte);
+  if (type == glb::kUint16) return load<std::uint16_t>(at);
+  const auto share = load<float>(at);
+  return static_cast<std::uint16_t>(std::lround(share >= 0 ? std::min(share, 1.0F) * 0xffff : 0));
+}
+
 /// y up, as glTF has it, to z up.
 WorldPoint z_up(const Point<3>& p) { return {p[0], -p[2], p[1]}; }
 
@@ -51,6 +77,7 @@ class GlbReader {
     } catch (const Json::exception& error) {
       fail(fmt::format("its JSON is not as glTF has it: {}", error.what()));
     }
+    put_colours();
     mesh_.header.vertices = mesh_.vertices.size();
     mesh_.header.simplices = mesh_.corners.size() / 3;
     return std::move(mesh_);
@@ -138,11 +165,15 @@ class GlbReader {
     }
     const std::uint64_t first = mesh_.vertices.size();
     const std::uint64_t count =
-        read_positions(values(primitive.at("attributes").at("POSITION"), "VEC3"), transform);
+        read_positions(values(primitive.at("attributes").at("POSITION"), {"VEC3"}), transform);
+    if (primitive.at("attributes").contains("COLOR_0")) {
+      read_colours(values(primitive.at("attributes").at("COLOR_0"), {"VEC3", "VEC4"}), first,
+                   count);
+    }
     if (mode == glb::kPoints) return;
     const std::size_t corners = mesh_.corners.size();
     if (primitive.contains("indices")) {
-      read_indices(values(primitive.at("indices"), "SCALAR"), first, count);
+      read_indices(values(primitive.at("indices"), {"SCALAR"}), first, count);
     } else {
       for (std::uint64_t i = 0; i < count; ++i) mesh_.corners.push_back(first + i);
     }
@@ -166,6 +197,45 @@ class GlbReader {
     return positions.count;
   }
 
+  /// Vertices of primitives without colours are white.
+  void read_colours(const Values& colours, std::uint64_t first, std::uint64_t count) {
+    if (colours.count != count) {
+      fail(fmt::format("{} positions have {} colours", count, colours.count));
+    }
+    if (colours.type != glb::kUint8 && colours.type != glb::kUint16 &&
+        colours.type != glb::kFloat32) {
+      fail("colours must be unsigned integers of 8 or 16 bits, or float32");
+    }
+    colours_.resize(first, kWhite);
+    colours_are_bytes_ &= colours.type == glb::kUint8;
+    const std::size_t size = size_of_component(colours.type);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::byte* at = colours.bytes.data() + i * colours.stride;
+      for (std::uint16_t& channel : colours_.emplace_back()) {
+        channel = channel_of(at, colours.type);
+        at += size;
+      }
+    }
+  }
+
+  /// Of 8 bits if all colours are, else of 16.
+  void put_colours() {
+    if (colours_.empty()) return;
+    colours_.resize(mesh_.vertices.size(), kWhite);
+    const NumberType type = colours_are_bytes_ ? NumberType::kUint8 : NumberType::kUint16;
+    mesh_.header.attributes = AttributeLayout({{.name = "red", .type = type},
+                                               {.name = "green", .type = type},
+                                               {.name = "blue", .type = type}});
+    mesh_.attributes.resize(colours_.size() * mesh_.header.attributes.record_size());
+    std::byte* at = mesh_.attributes.data();
+    for (const Colour& colour : colours_) {
+      for (const std::uint16_t channel : colour) {
+        store_number(type, at, colours_are_bytes_ ? channel / kStepsOfByte : channel);
+        at += size_of(type);
+      }
+    }
+  }
+
   void read_indices(const Values& indices, std::uint64_t first, std::uint64_t count) {
     for (std::uint64_t i = 0; i < indices.count; ++i) {
       const std::byte* const at = indices.bytes.data() + i * indices.stride;
@@ -181,11 +251,14 @@ class GlbReader {
   }
 
   /// The values of an accessor, all of them within the binary chunk.
-  [[nodiscard]] Values values(const Json& number, const std::string& type) const {
+  [[nodiscard]] Values values(const Json& number,
+                              std::initializer_list<std::string_view> types) const {
     const Json& accessor = gltf_.at("accessors").at(number.get<std::size_t>());
     if (accessor.contains("sparse")) fail("sparse accessors are not read");
-    if (accessor.at("type").get<std::string>() != type) {
-      fail(fmt::format("accessor {} must have the type {}", number.dump(), type));
+    const auto type = accessor.at("type").get<std::string>();
+    if (std::ranges::find(types, type) == types.end()) {
+      fail(fmt::format("accessor {} must have the type {}", number.dump(),
+                       fmt::join(types, " or ")));
     }
     const Json& view = gltf_.at("bufferViews").at(accessor.at("bufferView").get<std::size_t>());
     const auto buffer = view.at("buffer").get<std::size_t>();
@@ -199,7 +272,7 @@ class GlbReader {
         result.type != glb::kUint32) {
       fail("indices must be unsigned integers");
     }
-    const std::size_t each = size_of_component(result.type) * (type == "VEC3" ? 3 : 1);
+    const std::size_t each = size_of_component(result.type) * components_of(type);
     result.stride = view.value("byteStride", each);
     const auto begin = part(binary_, view.value("byteOffset", std::uint64_t{0}),
                             view.at("byteLength").get<std::uint64_t>());
@@ -237,6 +310,8 @@ class GlbReader {
   Json gltf_;
   std::vector<std::byte> binary_;
   Mesh mesh_;
+  std::vector<Colour> colours_;  // of the vertices so far, the last of which may have none
+  bool colours_are_bytes_ = true;
 };
 
 }  // namespace

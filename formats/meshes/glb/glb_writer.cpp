@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "formats/bytes/buffered_output.h"
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/json.h"
+#include "formats/bytes/number_type.h"
 #include "formats/meshes/common/checked_mesh_writer.h"
+#include "formats/meshes/common/colour.h"
 #include "formats/meshes/common/local_origin.h"
 #include "formats/meshes/glb/glb_format.h"
 
@@ -27,9 +30,12 @@ constexpr std::size_t kRoomForNumbers = 9 * 28;
 class GlbWriter : public CheckedMeshWriter {
  public:
   GlbWriter(std::unique_ptr<OutputFile> file, const MeshHeader& mesh)
-      : CheckedMeshWriter(mesh, file->name()), output_(std::move(file)) {
+      : CheckedMeshWriter(mesh, file->name()),
+        output_(std::move(file)),
+        colour_(colour_fields(mesh.attributes)),
+        channel_(channel_of(mesh, colour_)) {
     constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-    if (mesh.vertices > kMost / sizeof(Position) || mesh.simplices > kMost / kTriangleBytes) {
+    if (mesh.vertices > kMost / vertex_size() || mesh.simplices > kMost / kTriangleBytes) {
       fail_for_size();
     }
     // Padded with blanks to a multiple of four, as the container demands.
@@ -44,9 +50,16 @@ class GlbWriter : public CheckedMeshWriter {
   }
 
  private:
+  /// The type of the colour's numbers in the file.
+  static NumberType channel_of(const MeshHeader& mesh, const std::optional<ColourFields>& colour) {
+    const bool is_wide = colour && colour->front().attribute.type == NumberType::kUint16;
+    return is_wide && !mesh.colours_are_bytes ? NumberType::kUint16 : NumberType::kUint8;
+  }
+
   void put_vertices(std::span<const WorldPoint> vertices,
                     std::span<const std::uint64_t> /*input_index*/,
-                    std::span<const std::byte> /*attributes*/) override {
+                    std::span<const std::byte> attributes) override {
+    const std::size_t record = header().attributes.record_size();
     for (const WorldPoint& vertex : vertices) {
       if (written_ == 0) origin_ = local_origin(vertex);
       const auto position = to_local(vertex, origin_);
@@ -60,11 +73,25 @@ class GlbWriter : public CheckedMeshWriter {
         highest_[axis] =
             written_ == 0 ? (*position)[axis] : std::max(highest_[axis], (*position)[axis]);
       }
-      std::byte* const room = output_.reserve(sizeof(Position));
+      std::byte* const room = output_.reserve(vertex_size());
       store(room, *position);
-      output_.advance_to(room + sizeof(Position));
+      if (colour_) {
+        put_colour(attributes.data(), room + sizeof(Position));
+        attributes = attributes.subspan(record);
+      }
+      output_.advance_to(room + vertex_size());
       ++written_;
     }
+  }
+
+  /// Red, green, blue and full opacity, so that a vertex takes a multiple of four bytes, as the
+  /// specification demands.
+  void put_colour(const std::byte* record, std::byte* at) const {
+    for (const AttributeField& field : *colour_) {
+      store_number(channel_, at, load_number(field.attribute.type, record + field.at));
+      at += size_of(channel_);
+    }
+    store_number(channel_, at, channel_ == NumberType::kUint8 ? 0xff : 0xffff);
   }
 
   void put_simplices(std::span<const std::uint64_t> corners) override {
@@ -80,11 +107,13 @@ class GlbWriter : public CheckedMeshWriter {
     output_.commit();
   }
 
-  [[nodiscard]] std::uint64_t positions_size() const {
-    return header().vertices * sizeof(Position);
+  /// Bytes of a vertex, which are its position and its colour.
+  [[nodiscard]] std::size_t vertex_size() const {
+    return sizeof(Position) + (colour_ ? 4 * size_of(channel_) : 0);
   }
+  [[nodiscard]] std::uint64_t vertices_size() const { return header().vertices * vertex_size(); }
   [[nodiscard]] std::uint64_t binary_size() const {
-    return positions_size() + header().simplices * kTriangleBytes;
+    return vertices_size() + header().simplices * kTriangleBytes;
   }
   [[nodiscard]] std::uint64_t file_size() const {
     const std::uint64_t binary = binary_size() == 0 ? 0 : glb::kChunkHeader + binary_size();
@@ -132,16 +161,22 @@ class GlbWriter : public CheckedMeshWriter {
 
   void add_mesh(Json& json) const {
     const bool has_triangles = header().simplices > 0;
-    Json primitive = {{"attributes", Json{{"POSITION", 0}}},
+    // The accessor of colours comes last.
+    const int colour = has_triangles ? 2 : 1;
+    Json attributes = {{"POSITION", 0}};
+    if (colour_) attributes["COLOR_0"] = colour;
+    Json primitive = {{"attributes", attributes},
                       {"mode", has_triangles ? glb::kTriangles : glb::kPoints}};
     if (has_triangles) primitive["indices"] = 1;
+    if (colour_) primitive["material"] = 0;
     json["meshes"] = Json::array({Json{{"primitives", Json::array({primitive})}}});
     json["buffers"] = Json::array({Json{{"byteLength", binary_size()}}});
-    const Json positions = {{"buffer", 0},
-                            {"byteOffset", 0},
-                            {"byteLength", positions_size()},
-                            {"target", glb::kVertexBuffer}};
-    json["bufferViews"] = Json::array({positions});
+    Json vertices = {{"buffer", 0},
+                     {"byteOffset", 0},
+                     {"byteLength", vertices_size()},
+                     {"target", glb::kVertexBuffer}};
+    if (colour_) vertices["byteStride"] = vertex_size();
+    json["bufferViews"] = Json::array({vertices});
     const Json position = {{"bufferView", 0},
                            {"componentType", glb::kFloat32},
                            {"count", header().vertices},
@@ -149,15 +184,32 @@ class GlbWriter : public CheckedMeshWriter {
                            {"min", lowest_},
                            {"max", highest_}};
     json["accessors"] = Json::array({position});
-    if (!has_triangles) return;
+    if (has_triangles) add_triangles(json);
+    if (colour_) add_colour(json);
+  }
+
+  void add_triangles(Json& json) const {
     json["bufferViews"].push_back({{"buffer", 0},
-                                   {"byteOffset", positions_size()},
+                                   {"byteOffset", vertices_size()},
                                    {"byteLength", header().simplices * kTriangleBytes},
                                    {"target", glb::kIndexBuffer}});
     json["accessors"].push_back({{"bufferView", 1},
                                  {"componentType", glb::kUint32},
                                  {"count", header().simplices * 3},
                                  {"type", "SCALAR"}});
+  }
+
+  /// With a material that is no metal, which what has none would be, and look dark.
+  void add_colour(Json& json) const {
+    const int type = channel_ == NumberType::kUint8 ? glb::kUint8 : glb::kUint16;
+    json["accessors"].push_back({{"bufferView", 0},
+                                 {"byteOffset", sizeof(Position)},
+                                 {"componentType", type},
+                                 {"normalized", true},
+                                 {"count", header().vertices},
+                                 {"type", "VEC4"}});
+    json["materials"] = Json::array(
+        {Json{{"pbrMetallicRoughness", Json{{"metallicFactor", 0}, {"roughnessFactor", 1}}}}});
   }
 
   [[noreturn]] void fail_for_size() const {
@@ -168,6 +220,8 @@ class GlbWriter : public CheckedMeshWriter {
   }
 
   BufferedOutput output_;
+  std::optional<ColourFields> colour_;
+  NumberType channel_;
   std::uint64_t json_size_ = 0;
   std::uint64_t written_ = 0;  // vertices
   WorldPoint origin_{};

@@ -46,12 +46,13 @@ Mesh read(FileSystem& files, const std::string& path) {
                         names.vertices, names.simplices));
 }
 
-MeshFiles create(FileSystem& files, const std::string& path, bool has_input_index) {
-  const NpyMeshNames names = npy_mesh_to_write(files, path, has_input_index);
+MeshFiles create(FileSystem& files, const std::string& path, const MeshContents& contents) {
+  const NpyMeshNames names = npy_mesh_to_write(files, path, contents);
   MeshFiles created;
   created.main = files.create(names.vertices);
   created.simplices = files.create(names.simplices);
-  if (has_input_index) created.input_index = files.create(names.input_index);
+  if (contents.has_input_index) created.input_index = files.create(names.input_index);
+  if (contents.has_attributes) created.attributes = files.create(names.attributes);
   return created;
 }
 
@@ -77,6 +78,7 @@ constinit const MeshFormat kNpyMesh = {
     .name_tells = false,
     .holds_tetrahedra = true,
     .holds_input_index = true,
+    .held_attributes = HeldAttributes::kAll,
     .open_writer = open_npy_mesh_writer,
     .file_set = &kFileSet,
 };

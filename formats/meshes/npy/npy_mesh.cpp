@@ -5,10 +5,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 
 #include "formats/bytes/buffered_input.h"
 #include "formats/bytes/number_type.h"
+#include "formats/points/attributes/record_conversion.h"
 #include "formats/points/npy/npy_header.h"
+#include "formats/points/npy/npy_layout.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -18,6 +21,7 @@ constexpr std::string_view kExtension = ".npy";
 constexpr std::string_view kVertices = "_vertices";
 constexpr std::string_view kSimplices = "_simplices";
 constexpr std::string_view kInputIndex = "_input_index";
+constexpr std::string_view kAttributes = "_attributes";
 
 std::string without(std::string_view path, std::string_view end) {
   return std::string(path.ends_with(end) ? path.substr(0, path.size() - end.size()) : path);
@@ -32,6 +36,22 @@ constexpr std::array kTypes = {
     NamedType{"f8", NumberType::kFloat64}, NamedType{"f4", NumberType::kFloat32},
     NamedType{"i8", NumberType::kInt64},   NamedType{"u8", NumberType::kUint64},
     NamedType{"i4", NumberType::kInt32},   NamedType{"u4", NumberType::kUint32}};
+
+/// Makes sure that the rows of an array, and nothing else, are in the file from where `source`
+/// stands, if its size is known: then it returns true.
+bool check_room(const InputBytes& source, std::uint64_t rows, std::uint64_t each) {
+  const std::optional<std::uint64_t> size = source.size();
+  if (!size) return false;
+  const std::uint64_t room = *size - std::min(*size, source.position());
+  if (rows > room / each || rows * each != room) {
+    throw BadInput(source.name(),
+                   fmt::format("the header says {} rows of {} bytes, but {} bytes follow it; get a "
+                               "complete copy",
+                               rows, each, room),
+                   at_byte(source.position()));
+  }
+  return true;
+}
 
 /// One array of one or two dimensions being read.
 class ArrayInput {
@@ -85,16 +105,7 @@ class ArrayInput {
     const std::uint64_t each = columns * size_of(type_);
     row_size_ = each;
     data_begin_ = source_.position();
-    if (const std::optional<std::uint64_t> size = source_.size()) {
-      const std::uint64_t room = *size - std::min(*size, source_.position());
-      if (rows() > room / each || rows() * each != room) {
-        fail(fmt::format("the header says {} rows of {} bytes, but {} bytes follow it; get a "
-                         "complete copy",
-                         rows(), each, room),
-             at_byte(data_begin_));
-      }
-      reserve(rows());
-    }
+    if (check_room(source_, rows(), each)) reserve(rows());
     BufferedInput input(source_);
     for (row_ = 0; row_ < rows(); ++row_) {
       const std::byte* const bytes = input.take(each);
@@ -218,6 +229,46 @@ void read_input_index(FileSystem& files, const std::string& path, Mesh& mesh) {
       [&](const std::byte* row) { mesh.input_index.push_back(array.index(row, 0)); });
 }
 
+/// Some rows at a time.
+void read_attributes(FileSystem& files, const std::string& path, Mesh& mesh) {
+  constexpr std::size_t kPiece = std::size_t{1} << 20;
+  InputBytes source(files.open(path));
+  const NpyLayout layout = npy_attributes(read_npy_header(source), source.name());
+  const std::uint64_t count = mesh.header.vertices;
+  if (layout.count != count) {
+    throw BadInput(source.name(),
+                   fmt::format("the array has {} elements for {} vertices; it is of another mesh",
+                               layout.count, count));
+  }
+  const std::vector<AttributeField>& fields = layout.row.attributes();
+  std::vector<Attribute> attributes;
+  for (const AttributeField& field : fields) attributes.push_back(field.attribute);
+  mesh.header.attributes = AttributeLayout(std::move(attributes));
+  mesh.notices.insert(mesh.notices.end(), layout.notices.begin(), layout.notices.end());
+  const std::size_t row = layout.row.size();
+  const std::size_t record = mesh.header.attributes.record_size();
+  if (record == 0) return;
+  if (check_room(source, count, row)) mesh.attributes.reserve(count * record);
+  const RecordConversion conversion(fields, mesh.header.attributes.fields());
+  std::vector<std::byte> rows(std::max<std::size_t>(kPiece / row, 1) * row);
+  for (std::uint64_t read = 0; read < count;) {
+    const std::uint64_t some = std::min<std::uint64_t>(rows.size() / row, count - read);
+    const std::span<std::byte> piece = std::span(rows).first(some * row);
+    if (source.read(piece) < piece.size()) {
+      throw BadInput(source.name(),
+                     fmt::format("the file ends at byte {}, within its rows; get a complete copy",
+                                 source.position()),
+                     at_byte(source.position()));
+    }
+    layout.row.make_native(piece);
+    mesh.attributes.resize((read + some) * record);
+    if (conversion.convert(piece.data(), row, &mesh.attributes[read * record], record, some)) {
+      throw std::logic_error("the layout does not hold the numbers of its source");
+    }
+    read += some;
+  }
+}
+
 }  // namespace
 
 NpyMeshNames npy_mesh_names(const std::string& path) {
@@ -225,7 +276,7 @@ NpyMeshNames npy_mesh_names(const std::string& path) {
   const auto name = [&](std::string_view part) {
     return fmt::format("{}{}{}", stem, part, kExtension);
   };
-  return {name(kVertices), name(kSimplices), name(kInputIndex)};
+  return {name(kVertices), name(kSimplices), name(kInputIndex), name(kAttributes)};
 }
 
 std::optional<NpyMeshNames> find_npy_mesh(const FileSystem& files, const std::string& path) {
@@ -236,9 +287,10 @@ std::optional<NpyMeshNames> find_npy_mesh(const FileSystem& files, const std::st
 }
 
 bool is_part_of_npy_mesh(const FileSystem& files, const std::string& path) {
-  const auto names = find_npy_mesh(files, without(without(path, kExtension), kInputIndex));
-  return names &&
-         (path == names->vertices || path == names->simplices || path == names->input_index);
+  const std::string stem = without(without(path, kExtension), kInputIndex);
+  const auto names = find_npy_mesh(files, without(stem, kAttributes));
+  return names && (path == names->vertices || path == names->simplices ||
+                   path == names->input_index || path == names->attributes);
 }
 
 Mesh read_npy_mesh(FileSystem& files, const NpyMeshNames& names) {
@@ -246,6 +298,7 @@ Mesh read_npy_mesh(FileSystem& files, const NpyMeshNames& names) {
   const int coordinates = read_vertices(files, names.vertices, mesh);
   read_simplices(files, names.simplices, coordinates, mesh);
   if (files.exists(names.input_index)) read_input_index(files, names.input_index, mesh);
+  if (files.exists(names.attributes)) read_attributes(files, names.attributes, mesh);
   return mesh;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-// A mesh as npy arrays side by side: X_vertices.npy, X_simplices.npy and, with input indices,
-// X_input_index.npy, for a mesh called X.npy. Layout: docs/formats-meshes.md ("npy").
+// A mesh as npy arrays side by side: X_vertices.npy, X_simplices.npy and, where there are some,
+// X_input_index.npy and X_attributes.npy, for a mesh called X.npy. Layout: docs/formats-meshes.md
+// ("npy").
 
 #include <memory>
 #include <optional>
@@ -20,6 +21,7 @@ struct NpyMeshNames {
   std::string vertices;
   std::string simplices;
   std::string input_index;
+  std::string attributes;
 };
 
 /// The files that `path` stands for when a mesh is written: X.npy or X.
@@ -33,9 +35,9 @@ std::optional<NpyMeshNames> find_npy_mesh(const FileSystem& files, const std::st
 bool is_part_of_npy_mesh(const FileSystem& files, const std::string& path);
 
 /// The names of the files that the mesh `path` is written to. Throws Error for standard output, and
-/// if an input index of an earlier mesh would lie beside a mesh that has none.
+/// if an input index or attributes of an earlier mesh would lie beside a mesh that has none.
 NpyMeshNames npy_mesh_to_write(const FileSystem& files, const std::string& path,
-                               bool has_input_index);
+                               const MeshContents& contents);
 
 /// Writes a mesh to `files`, which create_mesh_files() made.
 std::unique_ptr<MeshWriter> open_npy_mesh_writer(MeshFiles files, const MeshHeader& header);

@@ -7,8 +7,12 @@
 #include "formats/disk/folder_lock.h"
 #include "formats/disk/unfinished_files.h"
 #include "formats/meshes/common/checked_mesh_writer.h"
+#include "formats/meshes/common/vertex_records.h"
 #include "formats/meshes/npy/npy_mesh.h"
+#include "formats/points/attributes/unique_names.h"
+#include "formats/points/npy/npy_fields.h"
 #include "formats/points/npy/npy_header.h"
+#include "formats/points/rows/row_encoder.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -17,12 +21,8 @@ namespace {
 /// One array being written.
 class ArrayOutput {
  public:
-  ArrayOutput(std::unique_ptr<OutputFile> file, std::string type, std::vector<std::uint64_t> shape)
-      : output_(std::move(file)) {
-    NpyHeader header;
-    header.type = std::move(type);
-    header.shape = std::move(shape);
-    header_ = npy_header_bytes(header, output_.name());
+  ArrayOutput(std::unique_ptr<OutputFile> file, const NpyHeader& header)
+      : header_(npy_header_bytes(header, file->name())), output_(std::move(file)) {
     output_.append(header_);
   }
 
@@ -42,24 +42,45 @@ class ArrayOutput {
   BufferedOutput output_;
 };
 
+NpyHeader array_of(std::string type, std::vector<std::uint64_t> shape) {
+  NpyHeader header;
+  header.type = std::move(type);
+  header.shape = std::move(shape);
+  return header;
+}
+
+/// A structured array, whose elements have a field for each attribute.
+NpyHeader array_of_records(const AttributeLayout& layout, std::uint64_t count) {
+  NpyHeader header = array_of("structure", {count});
+  UniqueNames names;
+  append_npy_fields(header.fields, layout, names);
+  return header;
+}
+
 class NpyMeshWriter : public CheckedMeshWriter {
  public:
   NpyMeshWriter(MeshFiles files, const MeshHeader& header)
       : CheckedMeshWriter(header, files.main->name()),
-        vertices_(std::move(files.main), "<f8", {header.vertices, 3}),
-        simplices_(std::move(files.simplices), "<i8", {header.simplices, corners_per_simplex()}) {
+        vertices_(std::move(files.main), array_of("<f8", {header.vertices, 3})),
+        simplices_(std::move(files.simplices),
+                   array_of("<i8", {header.simplices, corners_per_simplex()})),
+        records_(header, without_scales(header.attributes)) {
     if (header.has_input_index) {
-      input_index_.emplace(std::move(files.input_index), "<i8",
-                           std::vector<std::uint64_t>{header.vertices});
+      input_index_.emplace(std::move(files.input_index), array_of("<i8", {header.vertices}));
+    }
+    if (!header.attributes.empty()) {
+      attributes_.emplace(std::move(files.attributes),
+                          array_of_records(records_.layout(), header.vertices));
     }
   }
 
  private:
   void put_vertices(std::span<const WorldPoint> vertices,
                     std::span<const std::uint64_t> input_index,
-                    std::span<const std::byte> /*attributes*/) override {
+                    std::span<const std::byte> attributes) override {
     vertices_.append(vertices);
     if (input_index_) input_index_->append(input_index);
+    if (attributes_) attributes_->append(records_.convert(attributes, 0));
   }
 
   void put_simplices(std::span<const std::uint64_t> corners) override {
@@ -70,9 +91,11 @@ class NpyMeshWriter : public CheckedMeshWriter {
     vertices_.settle();
     simplices_.settle();
     if (input_index_) input_index_->settle();
+    if (attributes_) attributes_->settle();
     const FolderLock lock(name());
     const auto undisturbed = hold_off_end_of_run();
     if (input_index_) input_index_->commit();
+    if (attributes_) attributes_->commit();
     vertices_.commit();
     simplices_.commit();
   }
@@ -80,24 +103,29 @@ class NpyMeshWriter : public CheckedMeshWriter {
   ArrayOutput vertices_;
   ArrayOutput simplices_;
   std::optional<ArrayOutput> input_index_;
+  VertexRecords records_;
+  std::optional<ArrayOutput> attributes_;
 };
 
 }  // namespace
 
 NpyMeshNames npy_mesh_to_write(const FileSystem& files, const std::string& path,
-                               bool has_input_index) {
+                               const MeshContents& contents) {
   if (path == "-") {
     throw InvalidArgument(
         "standard output cannot take an npy mesh, which is two files; choose ply or vtu",
         {.file = path});
   }
   NpyMeshNames names = npy_mesh_names(path);
-  if (!has_input_index && files.exists(names.input_index)) {
+  const auto refuse_earlier = [&](const std::string& file) {
+    if (!files.exists(file)) return;
     throw CannotWrite(names.vertices,
                       fmt::format("{} of an earlier mesh would be taken for part of it; remove it "
                                   "or choose another name",
-                                  names.input_index));
-  }
+                                  file));
+  };
+  if (!contents.has_input_index) refuse_earlier(names.input_index);
+  if (!contents.has_attributes) refuse_earlier(names.attributes);
   return names;
 }
 

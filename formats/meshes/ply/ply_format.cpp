@@ -40,6 +40,7 @@ constinit const MeshFormat kPlyMesh = {
     .extensions = kExtensions,
     .holds_tetrahedra = true,
     .holds_input_index = true,
+    .held_attributes = HeldAttributes::kAll,
     .stands_in_parts = true,
     .recognises = begins_as_ply,
     .has_simplices =
@@ -60,6 +61,7 @@ constinit const MeshFormat kPlyAsciiMesh = {
     .is_variant = true,
     .holds_tetrahedra = true,
     .holds_input_index = true,
+    .held_attributes = HeldAttributes::kAll,
     .read = read_ply,
     .open_writer =
         [](MeshFiles files, const MeshHeader& header) {

@@ -18,6 +18,7 @@ constinit const MeshFormat kSpmMesh = {
     .extensions = kExtensions,
     .holds_tetrahedra = true,
     .holds_input_index = true,
+    .held_attributes = HeldAttributes::kAll,
     .stands_in_parts = true,
     .has_totals = true,
     .recognises = [](std::string_view text) { return text.starts_with(kSpmMagic); },

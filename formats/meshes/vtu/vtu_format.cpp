@@ -20,6 +20,7 @@ constinit const MeshFormat kVtuMesh = {
     .extensions = kExtensions,
     .holds_tetrahedra = true,
     .holds_input_index = true,
+    .held_attributes = HeldAttributes::kAll,
     .stands_in_parts = true,
     .recognises =
         [](std::string_view text) {

@@ -73,7 +73,8 @@ std::string names_of(const std::vector<NpyField>& fields) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-NpyLayout layout_of_fields(const NpyHeader& header, const std::string& file) {
+/// `has_coordinates`: whether fields may be coordinates, or all are attributes.
+NpyLayout layout_of_fields(const NpyHeader& header, const std::string& file, bool has_coordinates) {
   const Shape& shape = header.shape;
   if (shape.empty() || shape.size() > 2 || (shape.size() == 2 && shape[1] != 1)) {
     fail(file, fmt::format("the structured array has shape ({}), but points are in one dimension; "
@@ -90,7 +91,7 @@ NpyLayout layout_of_fields(const NpyHeader& header, const std::string& file) {
     }
     const std::optional<NpyNumber> number = npy_number(field.type);
     const bool is_read = number && field.elements > 0 && !field.name.empty();
-    const bool is_coordinate = coordinate_called(field.name).has_value();
+    const bool is_coordinate = has_coordinates && coordinate_called(field.name).has_value();
     if (is_coordinate && (!is_read || field.elements != 1)) {
       fail(file, fmt::format("the field '{}' is no number (its type is '{}'{}), but a coordinate; "
                              "save it as '<f8'",
@@ -101,14 +102,16 @@ NpyLayout layout_of_fields(const NpyHeader& header, const std::string& file) {
       fail(file, fmt::format("an element of the array has more than {} bytes; save fewer fields",
                              kMostRowBytes));
     }
-    if (is_read) {
+    if (is_read && has_coordinates) {
       layout.row.append(field.name, number->type, field.elements, number->swap);
+    } else if (is_read) {
+      layout.row.append_attribute(field.name, number->type, field.elements, number->swap);
     } else {
       layout.row.pass_over(field.size);
       if (!is_padding(field)) left_out.push_back(field.name);
     }
   }
-  if (!layout.row.has_plane()) {
+  if (has_coordinates && !layout.row.has_plane()) {
     fail(file,
          fmt::format("the array has the fields {}, but none called x or y; name them so, with "
                      "numpy.lib.recfunctions.rename_fields",
@@ -124,7 +127,17 @@ NpyLayout layout_of_fields(const NpyHeader& header, const std::string& file) {
 }  // namespace
 
 NpyLayout npy_layout(const NpyHeader& header, const std::string& name) {
-  return header.fields.empty() ? layout_of_columns(header, name) : layout_of_fields(header, name);
+  return header.fields.empty() ? layout_of_columns(header, name)
+                               : layout_of_fields(header, name, true);
+}
+
+NpyLayout npy_attributes(const NpyHeader& header, const std::string& name) {
+  if (header.fields.empty()) {
+    fail(name, fmt::format("the array has elements of type '{}', but attributes are fields of a "
+                           "structured array",
+                           header.type));
+  }
+  return layout_of_fields(header, name, false);
 }
 
 }  // namespace spillway::detail

@@ -20,4 +20,7 @@ struct NpyLayout {
 /// attributes. Throws Error that says what would be points otherwise.
 NpyLayout npy_layout(const NpyHeader& header, const std::string& name);
 
+/// Likewise of a structured array all fields of which are attributes. Throws Error for any other.
+NpyLayout npy_attributes(const NpyHeader& header, const std::string& name);
+
 }  // namespace spillway::detail

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "formats/points/attributes/unique_names.h"
+#include "formats/points/npy/npy_fields.h"
 #include "formats/points/npy/npy_header.h"
 #include "formats/points/npy/npy_types.h"
 #include "formats/points/rows/row_encoder.h"
@@ -23,11 +24,7 @@ std::vector<NpyField> fields_of(int coordinates, const AttributeLayout& attribut
     fields.push_back({.name = kCoordinates[axis], .type = npy_type(NumberType::kFloat64)});
   }
   UniqueNames names({kCoordinates.begin(), kCoordinates.end()});
-  for (const AttributeField& field : attributes.fields()) {
-    fields.push_back({.name = names.take(field.attribute.name),
-                      .type = npy_type(field.attribute.type),
-                      .elements = field.attribute.elements});
-  }
+  append_npy_fields(fields, attributes, names);
   return fields;
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
@@ -59,7 +58,7 @@ void RowDecoder::carry(const AttributeLayout& wanted) {
 }
 
 void RowDecoder::decode(std::span<std::byte> rows, std::uint64_t first, PointBlock& block) const {
-  make_native(rows);
+  layout_.make_native(rows);
   const std::size_t count = rows.size() / layout_.size();
   block.clear();
   block.points.resize(count);
@@ -75,17 +74,6 @@ void RowDecoder::decode(std::span<std::byte> rows, std::uint64_t first, PointBlo
   if (valid) return;
   block.keep([&](std::size_t i) { return is_point(rows.data() + i * layout_.size()); });
   block.invalid = count - block.size();
-}
-
-void RowDecoder::make_native(std::span<std::byte> rows) const {
-  for (const RowLayout::Swapped& swapped : layout_.swapped()) {
-    for (std::size_t at = swapped.at; at < rows.size(); at += layout_.size()) {
-      std::byte* number = &rows[at];
-      for (std::size_t i = 0; i < swapped.count; ++i, number += swapped.size) {
-        std::reverse(number, number + swapped.size);
-      }
-    }
-  }
 }
 
 template <typename T>

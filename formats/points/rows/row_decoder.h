@@ -33,7 +33,6 @@ class RowDecoder {
 
  private:
   void choose_coordinates();
-  void make_native(std::span<std::byte> rows) const;
   /// Returns whether all are points. T: the type of all coordinates.
   template <typename T>
   bool decode_alike(const std::byte* rows, PointBlock& block) const;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -24,16 +25,11 @@ class RowLayout {
     std::size_t at = 0;
     NumberType type = NumberType::kFloat64;
   };
-  /// Numbers that are of the other byte order.
-  struct Swapped {
-    std::size_t at = 0;
-    std::size_t size = 0;   ///< of a number
-    std::size_t count = 0;  ///< of numbers, one after the other
-  };
-
   /// Appends numbers: the coordinate of that name, if it is one and the first, else an attribute.
   /// `swap`: they are of the other byte order.
   void append(std::string_view name, NumberType type, std::size_t elements, bool swap);
+  /// Appends numbers that are no coordinate, whatever their name.
+  void append_attribute(std::string_view name, NumberType type, std::size_t elements, bool swap);
   /// Appends bytes that are nobody's.
   void pass_over(std::size_t bytes) { size_ += bytes; }
 
@@ -46,9 +42,19 @@ class RowLayout {
   /// Of x, y and z, in this order; z only where there is one.
   [[nodiscard]] const Coordinate& coordinate(int axis) const { return *axes_[axis]; }
   [[nodiscard]] const std::vector<AttributeField>& attributes() const { return attributes_; }
-  [[nodiscard]] const std::vector<Swapped>& swapped() const { return swapped_; }
+  /// Turns numbers of the other byte order in whole rows.
+  void make_native(std::span<std::byte> rows) const;
 
  private:
+  /// Numbers that are of the other byte order.
+  struct Swapped {
+    std::size_t at = 0;
+    std::size_t size = 0;   ///< of a number
+    std::size_t count = 0;  ///< of numbers, one after the other
+  };
+
+  void append_bytes(std::size_t each, std::size_t elements, bool swap);
+
   std::size_t size_ = 0;
   std::array<std::optional<Coordinate>, 3> axes_;
   std::vector<AttributeField> attributes_;

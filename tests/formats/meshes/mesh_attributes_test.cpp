@@ -1,11 +1,18 @@
 // What vertices carry in formats of whole meshes.
 
+#include <fmt/ranges.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
 #include "formats/meshes/npy/npy_format.h"
 #include "formats/meshes/ply/ply_format.h"
 #include "formats/meshes/ply/ply_records.h"
 #include "formats/meshes/spooled_mesh_writer.h"
 #include "formats/meshes/vtu/vtu_format.h"
 #include "formats/meshes/vtu/vtu_writer.h"
+#include "formats/points/npy/npy_header.h"
 #include "tests/formats/meshes/attributed_mesh.h"
 #include "tests/formats/meshes/mesh_writer_helpers.h"
 
@@ -146,8 +153,10 @@ constexpr KeepingFormat kPly{"Ply", &kPlyMesh, "a.ply", true, false};
 constexpr KeepingFormat kPlyAscii{"PlyAscii", &kPlyAsciiMesh, "a.ply", true, false};
 
 constexpr KeepingFormat kVtu{"Vtu", &kVtuMesh, "a.vtu"};
+constexpr KeepingFormat kNpy{"Npy", &kNpyMesh, "a.npy"};
 
-INSTANTIATE_TEST_SUITE_P(All, KeptAttributes, Combine(Values(kPly, kPlyAscii, kVtu), Values(2, 3)),
+INSTANTIATE_TEST_SUITE_P(All, KeptAttributes,
+                         Combine(Values(kPly, kPlyAscii, kVtu, kNpy), Values(2, 3)),
                          [](const auto& tested) {
                            return std::string(std::get<0>(tested.param).name) +
                                   std::to_string(std::get<1>(tested.param));
@@ -320,6 +329,106 @@ TEST(VtuAttributes, IntegersOf64BitsKeepAllOfThem) {
                                   {.name = "second", .type = NumberType::kUint64}}),
                  1, std::numeric_limits<std::uint64_t>::max() - 1);
   expect_equal(read_bytes("a.vtu", written(kVtuMesh, mesh)), mesh);
+}
+
+/// A mesh with all kinds of attributes as npy files.
+FaultyFileSystem npy_files(Mesh& mesh) {
+  mesh = small_mesh(2);
+  add_attributes(mesh, every_type(), 4);
+  FaultyFileSystem files;
+  write_mesh(files, "a.npy", kNpyMesh, mesh);
+  return files;
+}
+
+TEST(NpyAttributes, AreAStructuredArrayInAFileOfTheirOwn) {
+  Mesh mesh;
+  const FaultyFileSystem files = npy_files(mesh);
+  EXPECT_EQ(files.files.size(), 3U);
+  const std::string& bytes = files.files.at("a_attributes.npy");
+  EXPECT_THAT(bytes, AllOf(HasSubstr("('of_int8', '|i1'), ('of_uint8', '|u1')"),
+                           HasSubstr("('three', '<i2', (3,))]"), HasSubstr("'shape': (4,)")));
+  EXPECT_TRUE(bytes.ends_with(as_text(mesh.attributes)));
+}
+
+TEST(NpyAttributes, ThatAreCalledAsCoordinatesAreNone) {
+  Mesh mesh = small_mesh(2);
+  add_attributes(mesh, AttributeLayout({{.name = "x"}, {.name = "Z"}}), 4);
+  FaultyFileSystem files;
+  write_mesh(files, "a.npy", kNpyMesh, mesh);
+  expect_equal(read_mesh(files, "a.npy"), mesh);
+}
+
+TEST(NpyAttributes, IntegersOf64BitsKeepAllOfThem) {
+  Mesh mesh = small_mesh(2);
+  add_attributes(mesh, AttributeLayout({{.name = "id", .type = NumberType::kUint64}}), 1,
+                 std::numeric_limits<std::uint64_t>::max() - 1);
+  FaultyFileSystem files;
+  write_mesh(files, "a.npy", kNpyMesh, mesh);
+  expect_equal(read_mesh(files, "a.npy"), mesh);
+}
+
+TEST(NpyAttributes, OfAnEarlierMeshAreNotMixedWithOneThatHasNone) {
+  Mesh mesh;
+  FaultyFileSystem files = npy_files(mesh);
+  EXPECT_THAT(error_of([&] { write_mesh(files, "a.npy", kNpyMesh, small_mesh(2)); }),
+              HasSubstr("a_attributes.npy of an earlier mesh"));
+  expect_equal(read_mesh(files, "a.npy"), mesh);
+}
+
+TEST(NpyAttributes, OfAnotherMeshOrCutShortAreRefused) {
+  Mesh mesh;
+  const FaultyFileSystem good = npy_files(mesh);
+  const std::string bytes = good.files.at("a_attributes.npy");
+  FaultyFileSystem files = good;
+  const auto error = [&](const std::string& content, bool seekable = true) {
+    files.seekable = seekable;
+    files.files["a_attributes.npy"] = content;
+    return error_of([&] { read_mesh(files, "a.npy"); });
+  };
+  EXPECT_THAT(error(replaced(bytes, "(4,)", "(5,)")),
+              HasSubstr("5 elements for 4 vertices; it is of another mesh"));
+  EXPECT_THAT(error(good.files.at("a_vertices.npy")), HasSubstr("fields of a structured array"));
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    error(bytes.substr(0, size));
+    error(bytes.substr(0, size), false);
+  }
+  error(bytes + "x");
+}
+
+TEST(NpyAttributes, OfOtherProgramsAreReadInTheirByteOrder) {
+  Mesh mesh;
+  FaultyFileSystem files = npy_files(mesh);
+  NpyHeader header;
+  header.fields = {{.name = "Intensity", .type = ">u2"},
+                   {.name = "note", .type = "|S3"},
+                   {.name = "Pair", .type = ">f4", .elements = 2}};
+  header.shape = {4};
+  std::string bytes = npy_header_bytes(header, "a");
+  for (int i = 0; i < 4; ++i) {
+    bytes += std::string("\x01", 1) + static_cast<char>(i) + "abc";
+    bytes += std::string("\x3f\x80\0\0\x40\0\0\0", 8);
+  }
+  files.files["a_attributes.npy"] = bytes;
+  const Mesh read = read_mesh(files, "a.npy");
+  EXPECT_EQ(numbers_of(read, "intensity"), (std::vector<double>{256, 257, 258, 259}));
+  EXPECT_EQ(numbers_of(read, "Pair"), (std::vector<double>{1, 2, 1, 2, 1, 2, 1, 2}));
+  EXPECT_THAT(read.notices,
+              ::testing::ElementsAre("fields that are no numbers are not read: note"));
+}
+
+TEST(NpyAttributes, AreReadByNumPy) {
+  if (std::system("python3 -c 'import numpy' 2>/dev/null") != 0) GTEST_SKIP() << "no NumPy";
+  Mesh mesh;
+  const FaultyFileSystem files = npy_files(mesh);
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "numpy_attributes.npy";
+  std::ofstream(file, std::ios::binary) << files.files.at("a_attributes.npy");
+  const std::string program = fmt::format(
+      "import numpy; a = numpy.load('{}'); assert a['three'].shape == (4, 3); "
+      "assert list(a['of_uint16']) == [{}]",
+      file.string(), fmt::join(numbers_of(mesh, "of_uint16"), ", "));
+  EXPECT_EQ(std::system(("python3 -c \"" + program + '"').c_str()), 0);
+  std::filesystem::remove(file);
 }
 
 TEST(PlyAttributes, AreInRecordsOfRanksAsInAFileOfOneProcess) {

@@ -11,6 +11,7 @@
 #include "formats/meshes/glb/glb_format.h"
 #include "formats/meshes/landxml/landxml_format.h"
 #include "formats/meshes/mesh_formats.h"
+#include "tests/formats/meshes/attributed_mesh.h"
 #include "tests/formats/meshes/export_test_helpers.h"
 #include "tests/formats/meshes/mesh_writer_helpers.h"
 
@@ -84,6 +85,106 @@ TEST(Glb, ContainerAndAccessorsAreAsTheSpecificationHasThem) {
     EXPECT_EQ(positions["min"][axis].get<float>(), lowest);
     EXPECT_EQ(positions["max"][axis].get<float>(), highest);
   }
+}
+
+/// A strip with colours, and with attributes that glTF does not hold.
+StreamedMesh coloured_strip(std::uint64_t most) {
+  StreamedMesh mesh = strip(2, 100, 8);
+  std::vector<Attribute> all = colours().attributes();
+  all.insert(all.begin() + 1, {.name = "intensity", .type = NumberType::kFloat32});
+  add_attributes(mesh, AttributeLayout(all), 5, most);
+  return mesh;
+}
+
+TEST(Glb, ColoursAreNormalizedIntegersBesideThePositions) {
+  for (const bool wide : {true, false}) {
+    const StreamedMesh mesh = coloured_strip(wide ? 65535 : 255);
+    const Mesh expected = read_bytes("a.spm", stream_bytes(mesh, mesh_format("", "spm")));
+    const std::string glb = bytes_as("tin.glb", mesh);
+    const nlohmann::json json = json_of(glb);
+    const std::size_t stride = wide ? 20 : 16;
+    const auto& primitive = json["meshes"][0]["primitives"][0];
+    const auto& colour = json["accessors"][primitive["attributes"]["COLOR_0"].get<std::size_t>()];
+    EXPECT_EQ(colour, (nlohmann::json{{"bufferView", 0},
+                                      {"byteOffset", 12},
+                                      {"componentType", wide ? 5123 : 5121},
+                                      {"normalized", true},
+                                      {"count", 100},
+                                      {"type", "VEC4"}}));
+    EXPECT_EQ(json["bufferViews"][0]["byteStride"], stride);
+    EXPECT_EQ(json["bufferViews"][1]["byteOffset"], 100 * stride);
+    EXPECT_EQ(json["accessors"][primitive["indices"].get<std::size_t>()]["bufferView"], 1);
+    const auto material = primitive["material"].get<std::size_t>();
+    EXPECT_EQ(json["materials"][material]["pbrMetallicRoughness"]["metallicFactor"], 0);
+    const std::size_t data = 28 + at<std::uint32_t>(glb, 12);
+    const std::vector<std::vector<double>> channels = {
+        numbers_of(expected, "red"), numbers_of(expected, "green"), numbers_of(expected, "blue"),
+        std::vector<double>(100, wide ? 65535 : 255)};
+    for (std::size_t i = 0; i < 100; ++i) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        const std::size_t begin = data + i * stride + 12;
+        const double number =
+            wide ? at<std::uint16_t>(glb, begin + 2 * c) : at<std::uint8_t>(glb, begin + c);
+        EXPECT_EQ(number, channels[c][i]) << i;
+      }
+    }
+  }
+}
+
+TEST(Glb, ColoursComeBack) {
+  for (const std::uint64_t most : {255U, 65535U}) {
+    const StreamedMesh mesh = coloured_strip(most);
+    const Mesh expected = read_bytes("a.spm", stream_bytes(mesh, mesh_format("", "spm")));
+    const Mesh read = read_bytes("tin.glb", bytes_as("tin.glb", mesh));
+    EXPECT_EQ(read.header.attributes.attributes().size(), 3U);
+    for (const char* name : {"red", "green", "blue"}) {
+      EXPECT_EQ(numbers_of(read, name), numbers_of(expected, name)) << name;
+    }
+    EXPECT_EQ(read.vertices, read_bytes("tin.glb", bytes_as("tin.glb", strip(2, 100, 8))).vertices);
+    EXPECT_EQ(read.corners, expected.corners);
+  }
+}
+
+TEST(Glb, ColoursOfPointsWithoutTrianglesAreHeld) {
+  StreamedMesh mesh;
+  mesh.blocks.emplace_back().vertices = {{1, 2, 3}, {4, 5, 6.5}};
+  mesh.totals.vertices = 2;
+  add_attributes(mesh, colours(), 1, 65535);
+  const Mesh read = read_bytes("a.glb", bytes_as("a.glb", mesh));
+  EXPECT_EQ(read.attributes, mesh.blocks[0].attributes);
+}
+
+TEST(Glb, ColoursOfOtherProgramsAreRead) {
+  const std::string good = mesh_bytes(kGlbMesh, small_mesh(2));
+  // The positions, taken for colours, and vertices without any.
+  const std::string other = with_json(good, [](nlohmann::json& json) {
+    auto& primitives = json["meshes"][0]["primitives"];
+    primitives.push_back(primitives[0]);
+    primitives[0]["attributes"]["COLOR_0"] = 0;
+  });
+  const Mesh read = read_bytes("a.glb", other);
+  // x, y and z of (0, 0, 0), (1, 0, 0.5), (0, 1, -2) and (1, 1, 0.001), cut to 0 and 1.
+  EXPECT_EQ(numbers_of(read, "red"),
+            (std::vector<double>{0, 65535, 0, 65535, 65535, 65535, 65535, 65535}));
+  EXPECT_EQ(numbers_of(read, "blue"),
+            (std::vector<double>{0, 32768, 0, 66, 65535, 65535, 65535, 65535}));
+}
+
+TEST(Glb, ColoursThatAreNotThoseOfTheVerticesAreRefused) {
+  const std::string good = bytes_as("tin.glb", coloured_strip(255));
+  using Json = nlohmann::json;
+  const auto error = [&](const std::function<void(Json&)>& change) {
+    return error_of_bytes("a.glb", with_json(good, change));
+  };
+  EXPECT_THAT(error([](Json& j) { j["accessors"][2]["count"] = 99; }),
+              HasSubstr("100 positions have 99 colours"));
+  EXPECT_THAT(
+      error([](Json& j) {
+        j["accessors"][2].update({{"componentType", 5125}, {"type", "VEC3"}, {"byteOffset", 0}});
+      }),
+      HasSubstr("colours must be"));
+  EXPECT_THAT(error([](Json& j) { j["accessors"][2]["type"] = "SCALAR"; }),
+              HasSubstr("must have the type VEC3 or VEC4"));
 }
 
 TEST(Glb, NodesTurnUprightAndKeepTheOffsetInDouble) {
@@ -298,12 +399,12 @@ TEST(ExportFormats, TetrahedraInputIndicesAndPipesAreRefused) {
   FaultyFileSystem files;
   for (const char* const name : {"glb", "stl", "landxml", "gpkg", "shp"}) {
     const MeshFormat& format = mesh_format("a", name);
-    EXPECT_THAT(error_of([&] { create_mesh_files(files, "a", format, 3, false); }),
+    EXPECT_THAT(error_of([&] { create_mesh_files(files, "a", format, {.dimension = 3}); }),
                 HasSubstr("holds no tetrahedra"));
-    EXPECT_THAT(error_of([&] { create_mesh_files(files, "a", format, 2, true); }),
+    EXPECT_THAT(error_of([&] { create_mesh_files(files, "a", format, {.has_input_index = true}); }),
                 HasSubstr("holds no input index"));
     if (format == kLandXmlMesh) continue;
-    EXPECT_THAT(error_of([&] { create_mesh_files(files, "-", format, 2, false); }),
+    EXPECT_THAT(error_of([&] { create_mesh_files(files, "-", format, {}); }),
                 HasSubstr("standard output cannot take"));
   }
   files.seekable = false;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -13,6 +14,7 @@
 #include "formats/inputs/input_kind.h"
 #include "formats/inputs/open_mesh.h"
 #include "formats/meshes/common/checked_mesh_writer.h"
+#include "formats/meshes/glb/glb_format.h"
 #include "formats/meshes/ply/ply_format.h"
 #include "formats/meshes/spm/spm_format.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
@@ -61,6 +63,39 @@ TEST(MeshFormatTable, EachFormatCanBeFoundOut) {
                 format->file_set != nullptr)
         << format->name;
   }
+}
+
+TEST(MeshFormatTable, EachFormatTellsWhichAttributesItHolds) {
+  const AttributeLayout layout({{.name = "red", .type = NumberType::kUint16},
+                                {.name = "intensity", .type = NumberType::kUint16},
+                                {.name = "green", .type = NumberType::kUint16},
+                                {.name = "blue", .type = NumberType::kUint16}});
+  using Names = std::vector<std::string>;
+  std::map<std::string_view, Names> lost;
+  for (const MeshFormat* const format : mesh_formats()) {
+    lost[format->name] = lost_attributes(*format, layout);
+  }
+  const Names all = {"red", "intensity", "green", "blue"};
+  EXPECT_EQ(lost, (std::map<std::string_view, Names>{{"spm", {}},
+                                                     {"ply", {}},
+                                                     {"ply-ascii", {}},
+                                                     {"vtu", {}},
+                                                     {"npy", {}},
+                                                     {"glb", {"intensity"}},
+                                                     {"obj", all},
+                                                     {"off", all},
+                                                     {"sma", all},
+                                                     {"stl", all},
+                                                     {"landxml", all},
+                                                     {"gpkg", all},
+                                                     {"shp", all}}));
+}
+
+TEST(MeshFormatTable, AColourThatIsNotWholeIsLostWhereOnlyColoursAreHeld) {
+  const AttributeLayout layout({{.name = "red", .type = NumberType::kUint16},
+                                {.name = "green", .type = NumberType::kUint16},
+                                {.name = "blue", .type = NumberType::kFloat64}});
+  EXPECT_EQ(lost_attributes(kGlbMesh, layout), (std::vector<std::string>{"red", "green", "blue"}));
 }
 
 TEST(MeshFormatTable, ListsForMessagesBeginWithSpillwaysOwn) {
@@ -152,10 +187,11 @@ TEST(AnotherMeshFormat, TakesBlocks) {
 
 TEST(AnotherMeshFormat, RefusesWhatItDoesNotHold) {
   FaultyFileSystem files;
-  EXPECT_THAT(error_of([&] { create_mesh_files(files, "a.toy", kToyMesh, 3, false); }),
+  EXPECT_THAT(error_of([&] { create_mesh_files(files, "a.toy", kToyMesh, {.dimension = 3}); }),
               HasSubstr("TOY holds no tetrahedra; choose spm, ply, vtu or npy"));
-  EXPECT_THAT(error_of([&] { create_mesh_files(files, "a.toy", kToyMesh, 2, true); }),
-              HasSubstr("TOY holds no input index"));
+  EXPECT_THAT(
+      error_of([&] { create_mesh_files(files, "a.toy", kToyMesh, {.has_input_index = true}); }),
+      HasSubstr("TOY holds no input index"));
 }
 
 }  // namespace

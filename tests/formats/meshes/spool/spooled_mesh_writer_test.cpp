@@ -25,9 +25,9 @@ std::map<std::string, std::string> spooled(const StreamedMesh& mesh, const MeshF
                                            std::size_t memory, bool expect_disk) {
   FaultyFileSystem files;
   const auto scratch = make_scratch_folder("", std::nullopt);
-  const auto writer = open_spooled_mesh_writer(
-      create_mesh_files(files, "a.x", format, mesh.header.dimension, mesh.header.has_input_index),
-      mesh.header, *scratch, memory);
+  const auto writer =
+      open_spooled_mesh_writer(create_mesh_files(files, "a.x", format, contents_of(mesh.header)),
+                               mesh.header, *scratch, memory);
   EXPECT_FALSE(files.parts.empty()) << "a folder that cannot be written to is to be noticed early";
   write_blocks(*writer, mesh);
   EXPECT_EQ(scratch->bytes_written() > 0, expect_disk);
@@ -109,8 +109,8 @@ TEST(SpooledMeshWriter, AFullDiskIsReported) {
   const StreamedMesh mesh = strip(2, 500, 60);
   const auto scratch = make_scratch_folder("", std::uint64_t{1000});
   FaultyFileSystem files;
-  const auto writer = open_spooled_mesh_writer(
-      create_mesh_files(files, "a.ply", kPlyMesh, 2, false), mesh.header, *scratch, 100);
+  const auto writer = open_spooled_mesh_writer(create_mesh_files(files, "a.ply", kPlyMesh, {}),
+                                               mesh.header, *scratch, 100);
   EXPECT_EQ(facts_of([&] { write_blocks(*writer, mesh); }).remedy, Remedy::kScratchLimit);
 }
 
