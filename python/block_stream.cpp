@@ -20,6 +20,9 @@ class BlockStream::Sink final : public MeshSink {
  public:
   explicit Sink(BlockStream& stream) : stream_(stream) {}
 
+  [[nodiscard]] std::vector<std::string> attributes_wanted() const override {
+    return stream_.attributes_;
+  }
   void begin(const MeshHeader& header) override { stream_.header_ = header; }
   void write(const MeshBlock& block) override { stream_.put(block); }
 
@@ -27,10 +30,12 @@ class BlockStream::Sink final : public MeshSink {
   BlockStream& stream_;
 };
 
-BlockStream::BlockStream(std::shared_ptr<Run> run, std::shared_ptr<const MeshOrigin> origin)
+BlockStream::BlockStream(std::shared_ptr<Run> run, std::shared_ptr<const MeshOrigin> origin,
+                         std::vector<std::string> attributes)
     : process_(::getpid()),
       run_(std::move(run)),
       origin_(std::move(origin)),
+      attributes_(std::move(attributes)),
       worker_([this] { work(); }) {}
 
 BlockStream::~BlockStream() { close(); }

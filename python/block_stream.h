@@ -8,7 +8,9 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "python/mesh_origin.h"
 #include "python/run.h"
@@ -20,7 +22,9 @@ namespace spillway::python {
 /// wait.
 class BlockStream {
  public:
-  BlockStream(std::shared_ptr<Run> run, std::shared_ptr<const MeshOrigin> origin);
+  /// Vertices have the attributes of these names, where there are any.
+  BlockStream(std::shared_ptr<Run> run, std::shared_ptr<const MeshOrigin> origin,
+              std::vector<std::string> attributes);
   BlockStream(const BlockStream&) = delete;
   BlockStream& operator=(const BlockStream&) = delete;
   /// As close().
@@ -53,6 +57,7 @@ class BlockStream {
   const int process_;
   const std::shared_ptr<Run> run_;
   const std::shared_ptr<const MeshOrigin> origin_;
+  const std::vector<std::string> attributes_;
   MeshHeader header_;             // of the worker, until there is a block
   std::optional<Report> report_;  // of the worker, until it has ended
   std::mutex mutex_;

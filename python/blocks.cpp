@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "python/attributes.h"
 #include "python/bindings.h"
 #include "python/block_stream.h"
 #include "python/figures.h"
@@ -28,7 +29,8 @@ py::array row_of_numbers(std::vector<std::uint64_t> numbers) {
   return rows_of_numbers(std::move(numbers), 1).reshape({-1});
 }
 
-/// A block as (first_vertex, vertices, simplices, finalized, input_index), or None at the end.
+/// A block as (first_vertex, vertices, simplices, finalized, input_index, attributes), or None at
+/// the end.
 py::object next_block(BlockStream& stream) {
   std::optional<MeshBlock> block = stream.next();
   if (!block) return py::none();
@@ -37,15 +39,16 @@ py::object next_block(BlockStream& stream) {
   if (header.has_input_index) index = row_of_numbers(std::move(block->input_index));
   return py::make_tuple(block->first_vertex, array_of(std::move(block->vertices)),
                         rows_of_numbers(std::move(block->corners), header.dimension + 1),
-                        row_of_numbers(std::move(block->finalized)), index);
+                        row_of_numbers(std::move(block->finalized)), index,
+                        arrays_of(std::move(block->attributes)));
 }
 
 }  // namespace
 
 void bind_blocks(py::module_& module) {
   py::class_<BlockStream, std::unique_ptr<BlockStream, StreamEnd>>(module, "BlockStream")
-      .def(py::init<std::shared_ptr<Run>, std::shared_ptr<MeshOrigin>>(), py::arg("run"),
-           py::arg("origin"))
+      .def(py::init<std::shared_ptr<Run>, std::shared_ptr<MeshOrigin>, std::vector<std::string>>(),
+           py::arg("run"), py::arg("origin"), py::arg("attributes"))
       .def("next", next_block)
       .def("close", &BlockStream::close)
       .def_property_readonly("report", [](const BlockStream& stream) -> py::object {

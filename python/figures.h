@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <spillway/attribute.h>
 #include <spillway/extent.h>
 #include <spillway/report.h>
 
@@ -18,6 +19,9 @@ pybind11::dict figures_of(const Report& report, const Run& run);
 pybind11::dict figures_of(const PointCounts& counts);
 /// The path and the message of each.
 pybind11::list figures_of(const std::vector<SkippedFile>& files);
+
+/// As the JSON of `spillway info`: what says nothing is left out.
+pybind11::dict figures_of(const Attribute& attribute);
 
 /// (lowest, highest corner), or None.
 pybind11::object extent_of(const std::optional<Extent>& extent);

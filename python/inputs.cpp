@@ -23,25 +23,28 @@ class PointsInSystem final : public PointSource {
   }
 
   bool read(std::vector<Point<3>>& points) override { return points_->read(points); }
+  bool read(PointsBlock& block) override { return points_->read(block); }
 
  private:
   std::unique_ptr<PointSource> points_;
   std::string crs_;
 };
 
-std::unique_ptr<PointSource> open_array(const Coordinates& rows) {
-  if (rows.ndim() == 2 && rows.shape(1) == 2) return points_in_memory(point_view<2>(rows));
-  return points_in_memory(point_view<3>(rows));
+std::unique_ptr<PointSource> open_array(const Coordinates& rows, AttributeColumns attributes) {
+  if (rows.ndim() == 2 && rows.shape(1) == 2) {
+    return points_in_memory(point_view<2>(rows), std::move(attributes));
+  }
+  return points_in_memory(point_view<3>(rows), std::move(attributes));
 }
 
 }  // namespace
 
 std::unique_ptr<PointSource> open_inputs(const Inputs& inputs, const PointOptions& options,
-                                         const Context& context) {
+                                         const Context& context, AttributeColumns attributes) {
   if (const auto* const paths = std::get_if<std::vector<std::string>>(&inputs)) {
     return open_points(*paths, options, context);
   }
-  auto points = open_array(std::get<Coordinates>(inputs));
+  auto points = open_array(std::get<Coordinates>(inputs), std::move(attributes));
   if (options.crs.empty()) return points;
   return std::make_unique<PointsInSystem>(std::move(points), options.crs);
 }

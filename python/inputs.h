@@ -16,9 +16,10 @@ namespace spillway::python {
 using Inputs = std::variant<Coordinates, std::vector<std::string>>;
 
 /// Opens them; of the options an array has but the coordinate system. An array must stay where it
-/// is while the source is read. To be called without the interpreter's lock, too.
+/// is while the source is read; `attributes` are what its points carry. To be called without the
+/// interpreter's lock, too.
 std::unique_ptr<PointSource> open_inputs(const Inputs& inputs, const PointOptions& options,
-                                         const Context& context);
+                                         const Context& context, AttributeColumns attributes = {});
 
 /// Whether the inputs are one file of a mesh: as its first bytes and its name tell, unless
 /// `mesh_format` or `point_format` does.

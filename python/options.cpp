@@ -81,6 +81,7 @@ void bind_point_options(py::module_& module) {
       .def_readwrite("crs", &PointOptions::crs)
       .def_readwrite("foreign_crs", &PointOptions::foreign_crs)
       .def_readwrite("metadata", &PointOptions::metadata)
+      .def_readwrite("attributes", &PointOptions::attributes)
       .def("set_returns",
            [](PointOptions& options, bool first, bool last, bool single, std::vector<int> numbers) {
              options.returns = Returns{first, last, single, std::move(numbers)};

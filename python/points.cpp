@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "python/attributes.h"
 #include "python/bindings.h"
 #include "python/figures.h"
 #include "python/inputs.h"
@@ -44,12 +45,14 @@ py::dict figures_of(const PointConversion& done, const Run& run) {
 }
 
 py::dict convert_points(Run& run, const Inputs& inputs, const PointOptions& options,
-                        const std::string& output, const PointFileOptions& how) {
+                        const std::string& output, const PointFileOptions& how,
+                        const py::dict& attributes) {
   PointConversion done;
+  AttributeColumns columns = columns_of(attributes);
   run.expect(how.sorted ? Phases(kPhasesOfSorting) : Phases(kPhasesOfConversion));
   run.work([&] {
     const auto file = create_points(output, how, run.context());
-    const auto points = open_inputs(inputs, options, run.context());
+    const auto points = open_inputs(inputs, options, run.context(), std::move(columns));
     done = convert(*points, *file, run.context());
   });
   return figures_of(done, run);
@@ -77,16 +80,23 @@ py::dict generate_survey(Run& run, const GenerateOptions& options, const std::st
                   py::arg("seconds") = run.seconds());
 }
 
-/// Keeps points as rows of `columns` coordinates.
+/// Keeps points as rows of `columns` coordinates, and of what they carry what is wanted.
 class Rows final : public PointSink {
  public:
+  explicit Rows(std::vector<std::string> wanted = {}) : wanted_(std::move(wanted)) {}
+
+  [[nodiscard]] std::vector<std::string> attributes_wanted() const override { return wanted_; }
+
   /// Memory that is too little is told before the work.
   void begin(const PointsHeader& header) override {
     columns_ = header.coordinates;
     numbers_.reserve(header.count.value_or(0) * columns_);
+    attributes_ = AttributeColumns(header.attributes);
   }
 
-  void write(std::span<const Point<3>> points) override {
+  void write(std::span<const Point<3>> points) override { write(points, {}); }
+  void write(std::span<const Point<3>> points, const AttributeColumns& attributes) override {
+    attributes_.append(attributes);
     for (const Point<3>& point : points) {
       numbers_.insert(numbers_.end(), point.begin(), point.begin() + columns_);
     }
@@ -98,10 +108,37 @@ class Rows final : public PointSink {
     return array_of(std::move(numbers_)).reshape({rows, static_cast<py::ssize_t>(columns_)});
   }
 
+  /// Likewise; by name what the numbers mean, as they are stored unless they are scaled.
+  py::dict take_attributes() {
+    py::dict scaled;
+    for (const Attribute& attribute : attributes_.attributes()) {
+      if (attribute.scale == 1 && attribute.offset == 0) continue;
+      std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(attributes_.size())};
+      if (attribute.elements != 1) shape.push_back(static_cast<py::ssize_t>(attribute.elements));
+      scaled[py::str(attribute.name)] = array_of(attributes_.meant(attribute.name)).reshape(shape);
+    }
+    py::dict all = arrays_of(std::move(attributes_));
+    for (const auto& [name, numbers] : scaled) all[name] = numbers;
+    return all;
+  }
+
  private:
+  std::vector<std::string> wanted_;
   int columns_ = 3;
   std::vector<double> numbers_;
+  AttributeColumns attributes_;
 };
+
+/// Coordinates as rows, and by name what points carry.
+py::tuple read_points(Run& run, const Inputs& inputs, const PointOptions& options) {
+  Rows rows(options.attributes);
+  run.expect(kPhasesOfConversion);
+  run.work([&] {
+    const auto points = open_inputs(inputs, options, run.context());
+    convert(*points, rows, run.context());
+  });
+  return py::make_tuple(rows.take(), rows.take_attributes());
+}
 
 py::array_t<double> generate_in_memory(Run& run, const GenerateOptions& options) {
   Rows rows;
@@ -117,7 +154,8 @@ py::array_t<double> generate_in_memory(Run& run, const GenerateOptions& options)
 
 void bind_points(py::module_& module) {
   module.def("convert_points", convert_points, py::arg("run"), py::arg("inputs"),
-             py::arg("options"), py::arg("output"), py::arg("how"));
+             py::arg("options"), py::arg("output"), py::arg("how"), py::arg("attributes"));
+  module.def("read_points", read_points, py::arg("run"), py::arg("inputs"), py::arg("options"));
   module.def("generate", generate, py::arg("run"), py::arg("options"), py::arg("output"),
              py::arg("how"));
   module.def("generate_survey", generate_survey, py::arg("run"), py::arg("options"),

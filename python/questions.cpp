@@ -61,6 +61,9 @@ py::dict points_info(Run& run, const std::string& path, const PointOptions& opti
   figures["crs_note"] = text_or_none(info.crs_note);
   figures["software"] = text_or_none(info.software);
   figures["cells"] = info.cells;
+  py::list attributes;
+  for (const Attribute& attribute : info.attributes) attributes.append(figures_of(attribute));
+  figures["attributes"] = attributes;
   return figures;
 }
 

@@ -11,7 +11,7 @@ import os as _os
 from . import _spillway
 from ._blocks import Block, Blocks, blocks
 from ._delaunay import Delaunay
-from ._files import check, convert, generate, info, triangulate
+from ._files import check, convert, generate, info, read_points, triangulate
 from ._products import Raster, contour, dem, render
 from ._reports import (
     CheckReport,
@@ -50,6 +50,7 @@ __all__ = [
     "dem",
     "generate",
     "info",
+    "read_points",
     "render",
     "triangulate",
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from typing import Any, TypeVar
+from typing import Any, Mapping, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,60 @@ def as_rows(points: Any, name: str) -> Floats:
             f"{name} has the shape {array.shape}; give rows of 2 or 3 coordinates, as (n, 2)"
         )
     return array
+
+
+def fields_of(points: Any) -> Mapping[str, Any] | None:
+    """What a structured array, or a dict of arrays, has by name; None for others."""
+    if isinstance(points, Mapping):
+        return points
+    if isinstance(points, np.ndarray) and points.dtype.names is not None:
+        return {name: points[name] for name in points.dtype.names}
+    return None
+
+
+def rows_of_fields(fields: Mapping[str, Any], name: str) -> Floats:
+    """The fields x, y and, if there is one, z as rows of coordinates."""
+    missing = [axis for axis in "xy" if axis not in fields]
+    if missing:
+        raise InvalidArgumentError(
+            f"{name} has no field {missing[0]}; give x, y and, where there are heights, z"
+        )
+    columns = [as_floats(fields[axis], f"{name}[{axis!r}]") for axis in "xyz" if axis in fields]
+    if any(column.ndim != 1 or len(column) != len(columns[0]) for column in columns):
+        raise InvalidArgumentError(
+            f"{name} has coordinates of the shapes {[column.shape for column in columns]}; give "
+            "one number a point"
+        )
+    return np.column_stack(columns)
+
+
+def attributes_of(points: Any, name: str) -> dict[str, NDArray[Any]]:
+    """What points carry besides x, y and z, by name."""
+    fields = fields_of(points) or {}
+    return {
+        field: _as_attribute(values, f"{name}[{field!r}]", len(fields["x"]))
+        for field, values in fields.items()
+        if field not in ("x", "y", "z")
+    }
+
+
+def _as_attribute(values: Any, name: str, count: int) -> NDArray[Any]:
+    if _has_masked(values):
+        raise InvalidArgumentError(f"{name} has masked elements; leave them out")
+    array = np.asarray(values)
+    if array.dtype == bool:
+        array = array.astype(np.uint8)
+    if array.dtype.kind not in "iuf" or array.dtype.itemsize not in (1, 2, 4, 8):
+        raise InvalidArgumentError(
+            f"{name} has elements of type {array.dtype}; give integers or float32 or float64"
+        )
+    if array.dtype == np.float16:
+        array = array.astype(np.float32)
+    if array.ndim not in (1, 2) or len(array) != count:
+        raise InvalidArgumentError(
+            f"{name} has the shape {array.shape}; give a row for each of the {count} points"
+        )
+    return array.astype(array.dtype.newbyteorder("="), copy=False)
 
 
 def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from typing import TYPE_CHECKING, Any, Iterator, NamedTuple
+from typing import TYPE_CHECKING, Any, Iterator, NamedTuple, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from . import _spillway
 from ._arrays import Floats
 from ._inputs import mesh_origin
-from ._options import TriangulateOptions, make_run, takes
+from ._options import TriangulateOptions, as_names, make_run, takes
 from ._reports import RunReport
 
 if TYPE_CHECKING:
@@ -38,6 +38,8 @@ class Block(NamedTuple):
     """Numbers of vertices that are used no more, shape (k,)."""
     input_index: NDArray[np.int64] | None
     """The index of each of `vertices` in the input, shape (n,); None unless that was asked for."""
+    attributes: dict[str, NDArray[Any]]
+    """What `vertices` carry, of what was asked for, as it is stored: shape (n,) or (n, elements)."""
 
     def __repr__(self) -> str:
         return (
@@ -97,6 +99,7 @@ def blocks(
     *,
     dim: int = 2,
     id: bool = False,
+    attributes: str | Sequence[str] | None = None,
     mesh_format: str | None = None,
     **options: Unpack[TriangulateOptions],
 ) -> Blocks:
@@ -113,6 +116,8 @@ def blocks(
         2: triangles over x and y, z is carried along. 3: tetrahedra.
     id : bool, optional
         Tell each vertex's index in the input.
+    attributes : str or sequence of str, optional
+        Names of attributes that blocks have of the vertices, where there are any, or "all".
     mesh_format : str, optional
         Format of a mesh, where neither first bytes nor name tell.
     {options}
@@ -120,7 +125,8 @@ def blocks(
     Returns
     -------
     Blocks
-        An iterator over `Block`: ``(first_vertex, vertices, simplices, finalized, input_index)``.
+        An iterator over `Block`: ``(first_vertex, vertices, simplices, finalized, input_index,
+        attributes)``.
 
     Raises
     ------
@@ -145,4 +151,4 @@ def blocks(
     """
     run = make_run(options)
     origin = mesh_origin(run, inputs, dim, mesh_format, options, id)
-    return Blocks(_spillway.BlockStream(run, origin))
+    return Blocks(_spillway.BlockStream(run, origin, as_names(attributes, "attributes")))

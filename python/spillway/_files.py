@@ -5,8 +5,11 @@ from __future__ import annotations
 import functools
 from typing import TYPE_CHECKING, Any, Iterable, Sequence, overload
 
+import numpy as np
+from numpy.typing import NDArray
+
 from . import _spillway
-from ._arrays import Floats
+from ._arrays import Floats, attributes_of
 from ._inputs import (
     as_dimension,
     as_inputs,
@@ -22,6 +25,7 @@ from ._options import (
     PathLike,
     RunOptions,
     TriangulateOptions,
+    as_names,
     as_path,
     as_reals,
     as_word,
@@ -125,7 +129,8 @@ def convert(
     Parameters
     ----------
     inputs : path, sequence of paths, or array_like of shape (n, 2) or (n, 3)
-        Points, as `triangulate` takes them, or one file of a mesh.
+        Points, as `triangulate` takes them, or one file of a mesh. A structured array, or a dict of
+        arrays, has x, y and, where there are heights, z; all else is what points carry.
     output : path
         In the format of its extension.
     output_format : str, optional
@@ -186,8 +191,7 @@ def convert(
     put(how, "scale", scale, attribute("scale", _as_axes))
     put(how, "offset", offset, attribute("offset", _as_axes))
     if attributes is not None:
-        names = [attributes] if isinstance(attributes, str) else list(attributes)
-        how.attributes = [as_word(name, "attributes") for name in names]
+        how.attributes = as_names(attributes, "attributes")
     how.force = bool(force)
     if sorted:
         dimension = as_dimension(2 if dim is None else dim, source)
@@ -196,7 +200,61 @@ def convert(
         refuse(cells, cells, "without sorted=True")
     which = point_options(options, 2 if sorted else 0)
     which.metadata = True
-    return ConvertReport(**_spillway.convert_points(run, source, which, path, how))
+    carried = attributes_of(inputs, "inputs")
+    return ConvertReport(**_spillway.convert_points(run, source, which, path, how, carried))
+
+
+@takes(ConvertOptions)
+def read_points(
+    inputs: Any,
+    *,
+    attributes: str | Sequence[str] | None = None,
+    **options: Unpack[ConvertOptions],
+) -> NDArray[Any]:
+    """Read points into memory, and what they carry.
+
+    Parameters
+    ----------
+    inputs : path or sequence of paths
+        Points, as `triangulate` takes them.
+    attributes : str or sequence of str, optional
+        Names of attributes that are wanted, as ``"intensity"``, or "all". By default none.
+    {options}
+
+    Returns
+    -------
+    ndarray
+        Without `attributes` float64 of shape (n, 2) or (n, 3). With them a structured array of
+        shape (n,): the fields x, y and, if there are heights, z, and a field for each attribute, in
+        its type, or float64 where that is scaled. `convert` takes it, too.
+
+    Raises
+    ------
+    spillway.Error
+        As `triangulate`; ``"invalid argument"`` for an attribute that no file has.
+
+    Examples
+    --------
+    >>> import spillway
+    >>> report = spillway.generate("terrain", 1000, "hills.las")
+    >>> points = spillway.read_points("hills.las", attributes="intensity")
+    >>> points.dtype.names
+    ('x', 'y', 'z', 'intensity')
+    """
+    source = as_inputs(inputs)
+    if not isinstance(source, list):
+        raise InvalidArgumentError("inputs are points in memory already; give paths")
+    which = point_options(options, 0)
+    which.attributes = as_names(attributes, "attributes")
+    rows, carried = _spillway.read_points(make_run(options), source, which)
+    if attributes is None:
+        return rows
+    columns = {**dict(zip("xyz", rows.T)), **carried}
+    fields = [(name, numbers.dtype, numbers.shape[1:]) for name, numbers in columns.items()]
+    points = np.empty(len(rows), fields)
+    for name, numbers in columns.items():
+        points[name] = numbers
+    return points
 
 
 @overload

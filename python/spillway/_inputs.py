@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Iterable, Mapping, Sequence
 
 from . import _spillway
-from ._arrays import Floats, as_rows, is_dimension
+from ._arrays import Floats, as_rows, fields_of, is_dimension, rows_of_fields
 from ._options import (
     PATHS,
     as_path,
@@ -21,6 +21,9 @@ from .errors import InvalidArgumentError
 
 def as_inputs(inputs: Any, name: str = "inputs") -> list[bytes] | Floats:
     """Paths as bytes, or rows of coordinates."""
+    fields = fields_of(inputs)
+    if fields is not None:
+        return rows_of_fields(fields, name)
     if isinstance(inputs, PATHS):
         return [as_path(inputs, name)]
     if isinstance(inputs, (list, tuple)):

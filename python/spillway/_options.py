@@ -193,6 +193,13 @@ def as_word(word: Any, name: str) -> str:
     return word or ""
 
 
+def as_names(names: str | Sequence[str] | None, name: str) -> list[str]:
+    """A word or several; none for None."""
+    if names is None:
+        return []
+    return [as_word(word, name) for word in ([names] if isinstance(names, str) else names)]
+
+
 def as_crs(crs: Any) -> str:
     """A coordinate system as text; a path stands for what is in the file."""
     if not isinstance(crs, os.PathLike):

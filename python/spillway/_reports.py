@@ -217,7 +217,11 @@ class CheckReport(_Report):
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class PointsInfo(_Report):
-    """What a point file holds. What it does not tell is None; boxes are (lowest, highest) corners."""
+    """What a point file holds. What it does not tell is None; boxes are (lowest, highest) corners.
+
+    `attributes` is what points carry, as in the JSON of ``spillway info``: dicts with "name" and
+    "type", and what else there is to say.
+    """
 
     format: str
     version: Optional[str]
@@ -234,6 +238,7 @@ class PointsInfo(_Report):
     crs_note: Optional[str]
     software: Optional[str]
     cells: Optional[int]
+    attributes: list[dict[str, Any]]
 
     def _summary(self) -> str:
         return f"{self.points} points, {self.format}"

@@ -440,6 +440,28 @@ TEST_P(LazDamage, AnyByteFlipped) {
   }
 }
 
+TEST_P(LazDamage, AnyByteFlippedGivesAnErrorOrPointsWithAllTheirAttributes) {
+  const PointBlock sound = read_laz(bytes_, true, LazCarried::kAll);
+  ASSERT_GT(sound.record_size(), sound_.record_size());
+  for (std::size_t at = 0; at < bytes_.size(); ++at) {
+    for (const int mask : {0xff, 1 << at % 8}) {
+      std::string damaged = bytes_;
+      damaged[at] = static_cast<char>(damaged[at] ^ mask);
+      ASSERT_NO_THROW(read_damaged_laz(damaged, true, sound, LazCarried::kAll)) << at;
+    }
+  }
+  EXPECT_EQ(read_damaged_laz(bytes_, true, sound, LazCarried::kAll), DamageOutcome::kRight);
+}
+
+TEST_P(LazDamage, CutOffAtAnyByteIsAnErrorWithAllAttributesToo) {
+  const PointBlock sound = read_laz(bytes_, true, LazCarried::kAll);
+  for (std::size_t size = 0; size < bytes_.size(); ++size) {
+    ASSERT_EQ(read_damaged_laz(bytes_.substr(0, size), true, sound, LazCarried::kAll),
+              DamageOutcome::kError)
+        << size;
+  }
+}
+
 TEST_P(LazDamage, ExcerptsHaveTheBytesAndThePointsOfTheirChunk) {
   const LazExcerpts excerpts(bytes_);
   EXPECT_EQ(excerpts.size(), is_table_there_ ? 3U : 0U);

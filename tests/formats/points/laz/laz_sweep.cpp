@@ -1,7 +1,7 @@
-// laz_sweep FILE... [--truncate 97] [--flip 89] [--pipe] [--whole]: cuts each LAZ file off at every
-// 97th byte and flips its every 89th byte, and tells what reading it gives. Exit code 1 if that is
-// ever anything but points or an Error. Built with sanitizers it is the full trial of hostile
-// input.
+// laz_sweep FILE... [--truncate 97] [--flip 89] [--pipe] [--attributes] [--whole]: cuts each LAZ
+// file off at every 97th byte and flips its every 89th byte, and tells what reading it gives. Exit
+// code 1 if that is ever anything but points or an Error. Built with sanitizers it is the full
+// trial of hostile input.
 //
 // Chunks are independent, so damage to a chunk is done to a file of this chunk alone; all other
 // bytes are damaged in the whole file. Files that are cut off have lost their chunk table and so
@@ -30,6 +30,7 @@ namespace {
 
 using spillway::detail::PointBlock;
 using spillway::detail::testing::DamageOutcome;
+using spillway::detail::testing::LazCarried;
 
 struct Settings {
   std::vector<std::string> files;
@@ -39,9 +40,14 @@ struct Settings {
   unsigned mask = 255;
   unsigned threads = 1;
   bool pipe = false;
+  bool all_attributes = false;
   bool whole = false;
   bool list = false;
   bool progress = false;
+
+  [[nodiscard]] LazCarried carried() const {
+    return all_attributes ? LazCarried::kAll : LazCarried::kFlags;
+  }
 };
 
 /// How many runs ended in each way.
@@ -82,8 +88,8 @@ void sweep(const Settings& settings, const Target& target, const Damage& damage,
       std::string damaged = target.bytes;
       damage(damaged, place);
       try {
-        const DamageOutcome outcome =
-            spillway::detail::testing::read_damaged_laz(damaged, !settings.pipe, target.sound);
+        const DamageOutcome outcome = spillway::detail::testing::read_damaged_laz(
+            damaged, !settings.pipe, target.sound, settings.carried());
         if (settings.list && outcome == DamageOutcome::kOther) report(place, "other points");
         ++(outcome == DamageOutcome::kError   ? counts.errors
            : outcome == DamageOutcome::kRight ? counts.right
@@ -105,7 +111,7 @@ class Sweep {
       : settings_(settings),
         name_(std::filesystem::path(name).filename().string()),
         bytes_(content_of(name)),
-        sound_(spillway::detail::testing::read_laz(bytes_, !settings.pipe)),
+        sound_(spillway::detail::testing::read_laz(bytes_, !settings.pipe, settings.carried())),
         excerpts_(bytes_) {}
 
   /// Damages every `step`-th byte, in the file of its chunk if `in_chunks`; returns how many runs
@@ -183,6 +189,7 @@ int main(int argc, char** argv) {
   app.add_option("--thin", settings.thin, "only every Nth of these")->check(CLI::PositiveNumber);
   app.add_option("--threads", settings.threads, "runs at a time")->check(CLI::PositiveNumber);
   app.add_flag("--pipe", settings.pipe, "read as from a pipe");
+  app.add_flag("--attributes", settings.all_attributes, "decode all attributes of points");
   app.add_flag("--whole", settings.whole, "damage chunks in the whole file, which takes hours");
   app.add_flag("--list", settings.list, "name the places that give other points");
   app.add_flag("--progress", settings.progress, "name each chunk that is done");

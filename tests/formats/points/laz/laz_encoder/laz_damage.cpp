@@ -15,14 +15,14 @@ constexpr const char* kName = "a.laz";
 
 /// Calls `take` with each block.
 template <typename F>
-void for_each_block(const std::string& content, bool seekable, F&& take) {
+void for_each_block(const std::string& content, bool seekable, LazCarried carried, F&& take) {
   FaultyFileSystem files;
   files.seekable = seekable;
   files.files[kName] = content;
   PointReaderOptions options;
   options.keep_withheld = true;
   const auto reader = open_point_reader(files, kName, options);
-  reader->carry(flags_layout());
+  reader->carry(carried == LazCarried::kAll ? reader->header().attributes : flags_layout());
   PointBlock block;
   while (reader->read(block)) take(block);
 }
@@ -35,9 +35,9 @@ bool continues(const std::vector<T>& part, const std::vector<T>& whole, std::siz
 
 }  // namespace
 
-PointBlock read_laz(const std::string& content, bool seekable) {
+PointBlock read_laz(const std::string& content, bool seekable, LazCarried carried) {
   PointBlock all;
-  for_each_block(content, seekable, [&](const PointBlock& block) {
+  for_each_block(content, seekable, carried, [&](const PointBlock& block) {
     all.points.insert(all.points.end(), block.points.begin(), block.points.end());
     all.index.insert(all.index.end(), block.index.begin(), block.index.end());
     all.attributes.insert(all.attributes.end(), block.attributes.begin(), block.attributes.end());
@@ -45,12 +45,13 @@ PointBlock read_laz(const std::string& content, bool seekable) {
   return all;
 }
 
-DamageOutcome read_damaged_laz(const std::string& content, bool seekable, const PointBlock& sound) {
+DamageOutcome read_damaged_laz(const std::string& content, bool seekable, const PointBlock& sound,
+                               LazCarried carried) {
   const std::size_t endless = 1000 * sound.size() + 10000000;
   std::size_t count = 0;
   bool same = true;
   try {
-    for_each_block(content, seekable, [&](const PointBlock& block) {
+    for_each_block(content, seekable, carried, [&](const PointBlock& block) {
       same = same && continues(block.points, sound.points, count) &&
              continues(block.attributes, sound.attributes, count * block.record_size());
       count += block.size();

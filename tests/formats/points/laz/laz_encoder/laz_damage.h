@@ -11,12 +11,16 @@ namespace spillway::detail::testing {
 /// others, which is right only where no check of the format can tell.
 enum class DamageOutcome { kError, kRight, kOther };
 
-/// Reads `content` as a LAZ file (through a pipe if not seekable), all attributes and withheld
-/// points included.
-PointBlock read_laz(const std::string& content, bool seekable = true);
+/// What is decoded of points besides coordinates: flags_layout(), or all that the file has.
+enum class LazCarried { kFlags, kAll };
+
+/// Reads `content` as a LAZ file (through a pipe if not seekable), withheld points included.
+PointBlock read_laz(const std::string& content, bool seekable = true,
+                    LazCarried carried = LazCarried::kFlags);
 
 /// Reads likewise what was the file of `sound` before. Throws std::logic_error if the Error is not
 /// one line that begins with the name of the file, or if the file gives points without end.
-DamageOutcome read_damaged_laz(const std::string& content, bool seekable, const PointBlock& sound);
+DamageOutcome read_damaged_laz(const std::string& content, bool seekable, const PointBlock& sound,
+                               LazCarried carried = LazCarried::kFlags);
 
 }  // namespace spillway::detail::testing
