@@ -38,6 +38,10 @@ std::optional<ColourFields> colour_fields(const AttributeLayout& layout) {
   return fields;
 }
 
+AttributeChoice colour_choice() {
+  return {.names = std::vector<std::string>(kNames.begin(), kNames.end())};
+}
+
 AttributeLayout with_byte_colours(const AttributeLayout& layout) {
   if (!colours_of_16_bits(layout)) return layout;
   std::vector<Attribute> attributes = layout.attributes();

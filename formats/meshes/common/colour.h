@@ -17,6 +17,9 @@ using ColourFields = std::array<AttributeField, 3>;
 /// Those of a layout; nothing unless all three are there, one number each, of the same type.
 std::optional<ColourFields> colour_fields(const AttributeLayout& layout);
 
+/// The choice of these, whatever else there is.
+AttributeChoice colour_choice();
+
 /// The layout with a colour of 8 bits instead of one of 16.
 AttributeLayout with_byte_colours(const AttributeLayout& layout);
 

@@ -89,6 +89,7 @@ struct MeshFormat {
   bool holds_tetrahedra = false;  ///< besides triangles
   bool holds_input_index = false;
   HeldAttributes held_attributes = HeldAttributes::kNone;
+  bool takes_colour = false;        ///< unasked: vertices get the colour of their points
   bool rounds_coordinates = false;  ///< to 32-bit floats
   bool needs_regular_file = false;  ///< its beginning is written last
   bool reads_crs = false;           ///< GDAL is asked about a coordinate system

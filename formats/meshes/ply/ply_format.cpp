@@ -41,6 +41,7 @@ constinit const MeshFormat kPlyMesh = {
     .holds_tetrahedra = true,
     .holds_input_index = true,
     .held_attributes = HeldAttributes::kAll,
+    .takes_colour = true,
     .stands_in_parts = true,
     .recognises = begins_as_ply,
     .has_simplices =
@@ -62,6 +63,7 @@ constinit const MeshFormat kPlyAsciiMesh = {
     .holds_tetrahedra = true,
     .holds_input_index = true,
     .held_attributes = HeldAttributes::kAll,
+    .takes_colour = true,
     .read = read_ply,
     .open_writer =
         [](MeshFiles files, const MeshHeader& header) {

@@ -56,9 +56,9 @@ TEST(Settle, VerticesCarryTheirAttributes) {
     merged.attributes.push_back(static_cast<std::byte>(b));
   }
   const auto numbers = [](const std::vector<std::byte>& bytes) {
-    std::vector<int> numbers;
-    for (const std::byte b : bytes) numbers.push_back(std::to_integer<int>(b));
-    return numbers;
+    std::vector<int> values;
+    for (const std::byte b : bytes) values.push_back(std::to_integer<int>(b));
+    return values;
   };
   const Settled<2> result = settled(merged, {Fate::kFinal, Fate::kKept, Fate::kKept},
                                     {.record_size = 2, .imported_vertices = true});

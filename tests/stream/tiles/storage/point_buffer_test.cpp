@@ -46,7 +46,9 @@ void expect_all_come_back(bool indexed, std::size_t record_size, bool in_chunks)
     EXPECT_LE(some.size(), in_chunks ? kPiece : PointBuffer::kPagePoints);
     for (std::size_t i = 0; i < some.size(); ++i, ++next) {
       ASSERT_EQ(some.points[i][0], static_cast<double>(next));
-      if (indexed) ASSERT_EQ(some.index[i], 2 * next);
+      if (indexed) {
+        ASSERT_EQ(some.index[i], 2 * next);
+      }
       for (std::size_t b = 0; b < record_size; ++b) {
         ASSERT_EQ(some.attributes[i * record_size + b], byte_of(next, b));
       }
