@@ -328,6 +328,11 @@ TEST(VtuAttributes, ThatDidNotAllComeAreAnError) {
   writer->write_vertices(mesh.vertices, {}, mesh.attributes);
   EXPECT_THAT(error_of([&] { writer->write_simplices(mesh.corners); }),
               HasSubstr("did not come again"));
+  Mesh without_simplices = mesh;
+  without_simplices.header.simplices = 0;
+  const auto other = open_vtu_writer(files.create("b"), without_simplices.header, 0);
+  other->write_vertices(mesh.vertices, {}, mesh.attributes);
+  EXPECT_THAT(error_of([&] { other->finish(); }), HasSubstr("did not come again"));
   EXPECT_TRUE(writer->begin_vertices_again());
 }
 
