@@ -34,15 +34,23 @@ class SpooledMeshWriter : public MeshStreamWriter {
  public:
   SpooledMeshWriter(MeshFiles files, const MeshStreamHeader& header, ScratchFolder& scratch,
                     std::size_t memory)
-      : files_(std::move(files)), spool_(header, files_.main->name(), scratch, memory) {
+      : files_(std::move(files)),
+        holds_attributes_(files_.format->held_attributes != HeldAttributes::kNone),
+        spool_(held(header), files_.main->name(), scratch, memory) {
     for (std::unique_ptr<OutputFile>* const file :
          {&files_.main, &files_.simplices, &files_.input_index, &files_.attributes}) {
       if (*file) *file = std::make_unique<CountedOutput>(std::move(*file), bytes_);
     }
   }
 
-  void absorb(MeshBlock& block) override { spool_.absorb(block); }
-  void write(MeshBlock&& block) override { spool_.write(std::move(block)); }
+  void absorb(MeshBlock& block) override {
+    if (!holds_attributes_) block.attributes = {};
+    spool_.absorb(block);
+  }
+  void write(MeshBlock&& block) override {
+    if (!holds_attributes_) block.attributes = {};
+    spool_.write(std::move(block));
+  }
 
   void finish(const MeshTotals& totals) override {
     spool_.finish(totals);
@@ -56,7 +64,14 @@ class SpooledMeshWriter : public MeshStreamWriter {
   [[nodiscard]] std::uint64_t bytes_written() const override { return bytes_; }
 
  private:
+  /// Without attributes that would only be spooled.
+  [[nodiscard]] MeshStreamHeader held(MeshStreamHeader header) const {
+    if (!holds_attributes_) header.attributes = {};
+    return header;
+  }
+
   MeshFiles files_;
+  bool holds_attributes_;
   MeshSpool spool_;
   std::uint64_t bytes_ = 0;
 };

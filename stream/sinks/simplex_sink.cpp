@@ -51,6 +51,7 @@ std::vector<std::uint32_t> RestOfBlock::divide(MeshBlock& block, std::size_t cor
   block.corners = std::move(rest);
   block.finalized = std::move(finalized);
   block.input_index = {};
+  block.attributes = {};
   return inner;
 }
 

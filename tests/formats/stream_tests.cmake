@@ -1,5 +1,6 @@
 spillway_test(mesh_streams_test unit
   SOURCES
+    formats/meshes/common/divided_block_test.cpp
     formats/meshes/common/stream_vertices_test.cpp
     formats/meshes/common/probing_table_test.cpp
     formats/meshes/common/stream_numbers_test.cpp

@@ -49,7 +49,7 @@ void CheckedMeshWriter::write_simplices(std::span<const std::uint64_t> corners) 
     fail(fmt::format("{} vertices were promised, but {} came before the first simplex",
                      header_.vertices, vertices_));
   }
-  if (wants_vertices_again()) fail("the vertices did not come again, as was asked for");
+  check_vertices_again();
   const std::size_t count = corners.size() / corners_per_simplex();
   if (corners.size() % corners_per_simplex() != 0 || count > header_.simplices - simplices_) {
     fail(fmt::format("{} corners came where {} simplices of {} were left to write", corners.size(),
@@ -70,7 +70,12 @@ void CheckedMeshWriter::finish() {
     fail(fmt::format("{} vertices and {} simplices were promised, but {} and {} came",
                      header_.vertices, header_.simplices, vertices_, simplices_));
   }
+  check_vertices_again();
   complete();
+}
+
+void CheckedMeshWriter::check_vertices_again() const {
+  if (wants_vertices_again()) fail("the vertices did not come again, as was asked for");
 }
 
 void CheckedMeshWriter::fail(const std::string& what, ErrorCode code) const {

@@ -44,6 +44,8 @@ class CheckedMeshWriter : public MeshWriter {
                          ErrorCode code = ErrorCode::kInvalidArgument) const;
 
  private:
+  void check_vertices_again() const;
+
   MeshHeader header_;
   std::string name_;
   std::uint64_t vertices_ = 0;   // written so far, since they began to come (again)

@@ -242,6 +242,7 @@ void read_attributes(FileSystem& files, const std::string& path, Mesh& mesh) {
   }
   const std::vector<AttributeField>& fields = layout.row.attributes();
   std::vector<Attribute> attributes;
+  attributes.reserve(fields.size());
   for (const AttributeField& field : fields) attributes.push_back(field.attribute);
   mesh.header.attributes = AttributeLayout(std::move(attributes));
   mesh.notices.insert(mesh.notices.end(), layout.notices.begin(), layout.notices.end());

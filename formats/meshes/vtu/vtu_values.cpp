@@ -217,6 +217,11 @@ bool VtuValues::put(NumberType type, std::byte* at) const {
   const std::span<std::byte> bytes = std::span(number).first(size_of_one_);
   std::copy_n(buffer_.begin() + static_cast<std::ptrdiff_t>(at_), size_of_one_, bytes.begin());
   if (swaps_) std::ranges::reverse(bytes);
+  if (type == type_) {
+    std::ranges::copy(bytes, at);
+    return true;
+  }
+  if (!is_integer(type)) return store_number(type, at, load_number(type_, number.data()));
   return NumberConversion{.from = type_, .to = type}.convert(number.data(), at);
 }
 

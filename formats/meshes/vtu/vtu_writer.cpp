@@ -178,7 +178,7 @@ class VtuWriter : public CheckedMeshWriter {
     for (; end_ < arrays_.size(); ++end_) {
       held += bytes_of(arrays_[end_]);
       if (held > memory_) break;
-      held_.emplace_back();
+      held_.emplace_back().reserve(bytes_of(arrays_[end_]));
     }
     if (header().global_ids) ids_.emplace(*header().global_ids);
     append_value(bytes_of(arrays_[first_]));

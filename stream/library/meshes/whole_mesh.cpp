@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "formats/blocks/block.h"
+#include "formats/meshes/common/divided_block.h"
 #include "formats/meshes/common/mesh_block.h"
 #include "src/error.h"
 #include "stream/checker/checker.h"
@@ -70,6 +72,24 @@ std::vector<LatticePoint> stream_vertices(const Mesh& mesh, std::optional<Lattic
   return vertices_without_lattice(mesh);
 }
 
+/// The mesh as one block, which keeps its simplices together as the file has them; with attributes
+/// as several, where they might make it larger than a block can be.
+std::vector<MeshBlock> blocks_of(MeshBlock whole, std::size_t corners,
+                                 const AttributeLayout& attributes) {
+  constexpr std::size_t kMostVertices = 65536;  // of one of several
+  // Columns take at most so much of a vertex, and of a corner.
+  const std::size_t vertex = 5 * sizeof(double) + 2 * attributes.record_size();
+  const std::size_t corner = 2 * sizeof(std::uint32_t);
+  const std::size_t most = whole.vertices.size() * vertex + whole.corners.size() * corner;
+  std::vector<MeshBlock> blocks;
+  if (attributes.empty() || most <= kLargestBlock) {
+    blocks.push_back(std::move(whole));
+    return blocks;
+  }
+  const std::size_t size = std::clamp<std::size_t>(kLargestBlock / 8 / vertex, 1, kMostVertices);
+  return divided(whole, corners, attributes.record_size(), size);
+}
+
 MeshTotals totals_of(const Mesh& mesh) {
   MeshTotals totals;
   totals.vertices = totals.points = mesh.vertices.size();
@@ -106,15 +126,17 @@ WholeMesh::WholeMesh(Mesh mesh, const std::string& name, bool all_totals)
   header_.lattice = mesh.header.lattice;
   header_.crs = mesh.header.crs;
   header_.attributes = mesh.header.attributes;
-  block_.vertices = stream_vertices(mesh, header_.lattice);
-  for (const LatticePoint& vertex : block_.vertices) {
+  MeshBlock block;
+  block.vertices = stream_vertices(mesh, header_.lattice);
+  for (const LatticePoint& vertex : block.vertices) {
     extent_.expand(Point<2>{vertex[0], vertex[1]});
   }
-  block_.input_index = std::move(mesh.input_index);
-  block_.attributes = std::move(mesh.attributes);
-  block_.corners.assign(mesh.corners.begin(), mesh.corners.end());
-  block_.finalized.resize(block_.vertices.size());
-  std::iota(block_.finalized.begin(), block_.finalized.end(), 0U);
+  block.input_index = std::move(mesh.input_index);
+  block.attributes = std::move(mesh.attributes);
+  block.corners.assign(mesh.corners.begin(), mesh.corners.end());
+  block.finalized.resize(block.vertices.size());
+  std::iota(block.finalized.begin(), block.finalized.end(), 0U);
+  blocks_ = blocks_of(std::move(block), mesh.corners_per_simplex(), header_.attributes);
 }
 
 void WholeMesh::refuse_crowded_facet(const std::string& name) const {
@@ -129,8 +151,8 @@ void WholeMesh::refuse_crowded_facet(const std::string& name) const {
 }
 
 bool WholeMesh::read(MeshBlock& block) {
-  if (std::exchange(is_read_, true)) return false;
-  block = std::move(block_);
+  if (read_ == blocks_.size()) return false;
+  block = std::move(blocks_[read_++]);
   return true;
 }
 

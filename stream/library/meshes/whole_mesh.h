@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -17,11 +18,11 @@ std::uint64_t count_boundary_facets(const Mesh& mesh);
 /// The lattice on which a stream of the mesh is: that of its file, if all vertices lie on it.
 std::optional<Lattice> stream_lattice(const Mesh& mesh);
 
-/// A mesh in memory, read as a stream of one block.
+/// A mesh in memory, read as a stream: of one block, unless that would be too large.
 class WholeMesh final : public MeshStreamReader {
  public:
   /// `name` is for messages. Hull facets and hash are counted if `all_totals`. Throws Error
-  /// (kTooLarge) for more vertices than a block can have.
+  /// (kTooLarge) for more vertices than short numbers tell apart.
   WholeMesh(Mesh mesh, const std::string& name, bool all_totals);
 
   [[nodiscard]] const MeshStreamHeader& header() const override { return header_; }
@@ -39,12 +40,12 @@ class WholeMesh final : public MeshStreamReader {
 
  private:
   bool all_totals_;
-  bool is_read_ = false;
   MeshStreamHeader header_;
   MeshTotals totals_;
   std::vector<std::uint64_t> crowded_;  ///< vertices of a facet of more than two simplices
   Box<2> extent_;
-  MeshBlock block_;
+  std::vector<MeshBlock> blocks_;
+  std::size_t read_ = 0;  ///< of these
 };
 
 }  // namespace spillway::detail

@@ -102,6 +102,29 @@ TEST_P(KeptAttributes, ScaledOnesAreWhatIsMeant) {
   expect_meant(read_again(mesh), mesh);
 }
 
+TEST_P(KeptAttributes, KeepNegativeZerosAndWhatIsNotFinite) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<double> values = {-0.0, infinity, -infinity, std::nan(""), 5e-324};
+  Mesh mesh = awkward_mesh(dimension());
+  mesh.header.attributes =
+      AttributeLayout({{.name = "single", .type = NumberType::kFloat32}, {.name = "double"}});
+  for (const double value : values) {
+    const std::size_t at = mesh.attributes.size();
+    mesh.attributes.resize(at + 12);
+    store(&mesh.attributes[at], static_cast<float>(value));
+    store(&mesh.attributes[at + 4], value);
+  }
+  const Mesh read = read_again(mesh);
+  for (const char* name : {"single", "double"}) {
+    const std::vector<double> numbers = numbers_of(read, name);
+    EXPECT_TRUE(numbers[0] == 0 && std::signbit(numbers[0])) << name;
+    EXPECT_EQ(numbers[1], infinity) << name;
+    EXPECT_EQ(numbers[2], -infinity) << name;
+    EXPECT_TRUE(std::isnan(numbers[3])) << name;
+  }
+  EXPECT_EQ(numbers_of(read, "double")[4], 5e-324);
+}
+
 TEST_P(KeptAttributes, LeaveTheRestOfTheMeshAsItWas) {
   Mesh mesh = mesh_with(every_type());
   Mesh read = read_again(mesh);
@@ -305,6 +328,11 @@ TEST(VtuAttributes, ThatDidNotAllComeAreAnError) {
   writer->write_vertices(mesh.vertices, {}, mesh.attributes);
   EXPECT_THAT(error_of([&] { writer->write_simplices(mesh.corners); }),
               HasSubstr("did not come again"));
+  Mesh without_simplices = mesh;
+  without_simplices.header.simplices = 0;
+  const auto other = open_vtu_writer(files.create("b"), without_simplices.header, 0);
+  other->write_vertices(mesh.vertices, {}, mesh.attributes);
+  EXPECT_THAT(error_of([&] { other->finish(); }), HasSubstr("did not come again"));
   EXPECT_TRUE(writer->begin_vertices_again());
 }
 

@@ -10,7 +10,7 @@
 #include "formats/meshes/vtu/vtu_format.h"
 
 #include "tests/error_facts.h"
-#include "tests/formats/meshes/stream_test_helpers.h"
+#include "tests/formats/meshes/attributed_mesh.h"
 
 namespace spillway::detail::testing {
 namespace {
@@ -60,6 +60,33 @@ TEST(SpooledMeshWriter, WritesWhatTheMeshWriterDoes) {
       EXPECT_EQ(spooled(mesh, *format, 0, true), expected);
     }
   }
+}
+
+TEST(SpooledMeshWriter, WritesAttributesAsTheMeshWriterDoes) {
+  for (const MeshFormat* const format : kAll) {
+    StreamedMesh mesh = strip(2, 500, 60);
+    add_attributes(mesh, every_type(), 2);
+    const auto expected = direct(mesh, *format);
+    EXPECT_EQ(spooled(mesh, *format, kSpoolMemory, false), expected) << format->name;
+    EXPECT_EQ(spooled(mesh, *format, 0, true), expected) << format->name;
+  }
+}
+
+TEST(SpooledMeshWriter, SpoolsNoAttributesThatTheFormatDoesNotHold) {
+  const auto spooled_bytes = [](const StreamedMesh& mesh, bool absorb) {
+    FaultyFileSystem files;
+    const auto scratch = make_scratch_folder("", std::nullopt);
+    const auto writer = open_spooled_mesh_writer(
+        create_mesh_files(files, "a.obj", kObjMesh, contents_of(mesh.header)), mesh.header,
+        *scratch, 0);
+    write_blocks(*writer, mesh, absorb);
+    return scratch->bytes_written();
+  };
+  StreamedMesh mesh = strip(2, 500, 60);
+  const std::uint64_t expected = spooled_bytes(mesh, false);
+  add_attributes(mesh, every_type(), 2);
+  EXPECT_EQ(spooled_bytes(mesh, false), expected);
+  EXPECT_EQ(spooled_bytes(mesh, true), expected);
 }
 
 TEST(SpooledMeshWriter, NothingAtAll) {

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 namespace spillway::detail {
 namespace {
 
@@ -16,6 +19,40 @@ TEST(WholeMesh, CountsFacetsThatOneSimplexHasAlone) {
   tetrahedra.header.dimension = 3;
   tetrahedra.corners = {0, 1, 2, 3, 1, 2, 3, 4};
   EXPECT_EQ(count_boundary_facets(tetrahedra), 6U);
+}
+
+TEST(WholeMesh, GivesWhatItsVerticesCarry) {
+  Mesh mesh;
+  mesh.header.attributes = AttributeLayout({{.name = "height", .type = NumberType::kUint8}});
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.corners = {0, 1, 2};
+  mesh.attributes = {std::byte{7}, std::byte{8}, std::byte{9}};
+  const std::vector<std::byte> expected = mesh.attributes;
+  WholeMesh stream(std::move(mesh), "a", false);
+  EXPECT_NE(stream.header().attributes.find("height"), nullptr);
+  MeshBlock block;
+  ASSERT_TRUE(stream.read(block));
+  EXPECT_EQ(block.attributes, expected);
+  EXPECT_FALSE(stream.read(block));
+}
+
+TEST(WholeMesh, ComesInSeveralBlocksWhereOneWouldBeTooLarge) {
+  // Each vertex carries a page, and all together more than a block holds.
+  constexpr std::size_t kVertices = 40'000;
+  Mesh mesh;
+  mesh.header.attributes =
+      AttributeLayout({{.name = "page", .type = NumberType::kUint8, .elements = 4096}});
+  for (std::size_t i = 0; i < kVertices; ++i) mesh.vertices.push_back({double(i), 0, 0});
+  mesh.corners = {0, 20'000, 39'999};
+  mesh.attributes.resize(kVertices * mesh.header.attributes.record_size());
+  WholeMesh stream(std::move(mesh), "a", false);
+  MeshBlock block;
+  std::size_t vertices = 0;
+  std::size_t blocks = 0;
+  for (; stream.read(block); ++blocks) vertices += block.vertices.size();
+  EXPECT_EQ(vertices, kVertices);
+  EXPECT_GT(blocks, 1U);
+  EXPECT_EQ(block.corners.size(), 3U) << "the last block has the triangle";
 }
 
 }  // namespace
