@@ -91,9 +91,9 @@ class IntegerCheck {
       throw CannotWrite(
           file_,
           fmt::format("point {} has {} for {}, and PLY, without integers of 64 bits, holds none "
-                      "beyond 2^53; leave it out with --attributes",
+                      "beyond 2^53; write spp",
                       point, value, attribute.name),
-          ErrorCode::kTooLarge, at_record(point));
+          ErrorCode::kTooLarge, at_record(point), Remedy::kAttributes);
     }
   }
 
