@@ -53,6 +53,8 @@ std::string advice(const ErrorFacts& facts) {
       return ", or take what is whole of it with salvage=True";
     case Remedy::kForce:
       return ", or give force=True";
+    case Remedy::kAttributes:
+      return ", or leave attributes out, with attributes=[...]";
     case Remedy::kNone:
     case Remedy::kOneFile:  // of runs over several processes, as the next one
     case Remedy::kRanks:

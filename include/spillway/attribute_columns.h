@@ -43,8 +43,8 @@ class SPILLWAY_API AttributeColumns {
   /// No attributes, of no points.
   AttributeColumns() = default;
   /// Columns of these attributes for so many points, all 0. Throws Error(kInvalidArgument) for
-  /// attributes that cannot be: without a name, with that of another one, of no elements, with a
-  /// scale that is 0 or not finite, or an offset that is not finite.
+  /// attributes that cannot be: without a name, with that of another one, of no elements or more
+  /// than 1,000,000, with a scale that is 0 or not finite, or an offset that is not finite.
   explicit AttributeColumns(std::vector<Attribute> attributes, std::size_t points = 0);
 
   [[nodiscard]] const std::vector<Attribute>& attributes() const { return attributes_; }

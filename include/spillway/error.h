@@ -46,6 +46,7 @@ enum class Remedy {
   kGroundScale,      ///< saying how heights relate to x and y, or which system these are in
   kSalvage,          ///< taking the points that are whole of a file that is cut off or damaged
   kForce,            ///< replacing an input by what holds less, if that is meant
+  kAttributes,       ///< leaving out attributes of points
 };
 
 /// What a place in a file is counted in.

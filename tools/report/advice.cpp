@@ -73,6 +73,8 @@ std::string advice(const ErrorFacts& facts) {
              "what heights are to be multiplied by";
     case Remedy::kForce:
       return ", or add --force";
+    case Remedy::kAttributes:
+      return ", or leave attributes out with --attributes";
     case Remedy::kSalvage:
       return ", or take what is whole of it with --salvage";
     case Remedy::kPointLattice:

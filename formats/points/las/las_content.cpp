@@ -224,9 +224,9 @@ void LasContent::put_attributes(std::span<const std::byte> attributes, std::size
       fmt::format("point {} has {} {}, and records of LAS 1.{}, point format {}, hold {}{}",
                   count_ + misfit->record, misfit->from.attribute.name, misfit->value,
                   target_.minor_version, target_.point_format, range_text(misfit->to),
-                  more_in_14 ? "" : "; leave it out with --attributes, or write spp"),
+                  more_in_14 ? "" : "; write spp"),
       ErrorCode::kInvalidArgument, at_record(count_ + misfit->record),
-      more_in_14 ? Remedy::kLas14 : Remedy::kNone);
+      more_in_14 ? Remedy::kLas14 : Remedy::kAttributes);
 }
 
 void LasContent::count_returns(const std::byte* records, std::size_t count) {

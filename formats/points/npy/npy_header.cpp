@@ -263,9 +263,9 @@ std::string npy_header_bytes(const NpyHeader& header, const std::string& name) {
     throw CannotWrite(
         name,
         fmt::format("the names of the attributes take {} bytes in an npy header, which "
-                    "has {}; choose fewer with --attributes",
+                    "has {}; write spp",
                     dictionary.size(), kLongestDictionary - 1),
-        ErrorCode::kTooLarge);
+        ErrorCode::kTooLarge, {}, Remedy::kAttributes);
   }
   std::string bytes(kNpyMagic);
   bytes += {is_ascii ? '\x01' : '\x03', '\x00', static_cast<char>(dictionary.size() & 0xff),

@@ -65,9 +65,9 @@ void PlyIntegerCheck::check(const Attribute& attribute, const std::byte* numbers
     throw CannotWrite(
         file_,
         fmt::format("{} {} has {} for {}, and PLY, without integers of 64 bits, holds none "
-                    "beyond 2^53; leave it out with --attributes",
-                    item_, item, value, attribute.name),
-        ErrorCode::kTooLarge, at_record(item));
+                    "beyond 2^53; write {}",
+                    item_, item, value, attribute.name, item_ == "point" ? "spp" : "spm"),
+        ErrorCode::kTooLarge, at_record(item), Remedy::kAttributes);
   }
 }
 

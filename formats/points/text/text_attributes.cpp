@@ -71,8 +71,7 @@ std::string TextAttributes::fault(std::string_view row) const {
     if (read(fields, target, record.data())) continue;
     const auto column = std::ranges::find(columns_, target.column, &Column::number);
     return fmt::format(
-        "column {} (\"{}\") is not a number: {}, where the first row has one; correct it, or leave "
-        "the column out with --attributes",
+        "column {} (\"{}\") is not a number: {}, where the first row has one; correct it",
         target.column + 1, column->name,
         quoted(target.column < fields.size() ? fields[target.column] : std::string_view()));
   }

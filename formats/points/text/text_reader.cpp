@@ -136,7 +136,8 @@ class TextReader : public PointReader {
     }
     if (attributes_.carries() && !attributes_.append(line_, block.attributes)) {
       if (skips_invalid_) return leave_out(block);
-      fail(fmt::format("{}, {}", lines_.line_name(), attributes_.fault(line_)), lines_.place());
+      fail(fmt::format("{}, {}", lines_.line_name(), attributes_.fault(line_)), lines_.place(),
+           Remedy::kAttributes);
     }
     block.points.push_back(point);
     block.index.push_back(next_++);
@@ -146,8 +147,9 @@ class TextReader : public PointReader {
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
   }
 
-  [[noreturn]] void fail(const std::string& what, FilePlace place) const {
-    throw BadInput(source_->name(), what, place);
+  [[noreturn]] void fail(const std::string& what, FilePlace place,
+                         Remedy remedy = Remedy::kNone) const {
+    throw BadInput(source_->name(), what, place, remedy);
   }
 
   std::unique_ptr<InputBytes> source_;

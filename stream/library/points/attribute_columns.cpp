@@ -17,12 +17,15 @@ namespace {
 
 using detail::InvalidArgument;
 
+/// No file has more, and sizes in bytes do not overflow.
+constexpr std::size_t kMostElements = 1'000'000;
+
 void check(const Attribute& attribute) {
   if (attribute.name.empty()) throw InvalidArgument("an attribute of points has no name");
   detail::check_choice(attribute.type, NumberType::kFloat64, "type of numbers");
-  if (attribute.elements == 0) {
-    throw InvalidArgument(
-        fmt::format("attribute \"{}\" has 0 elements: give 1 or more", attribute.name));
+  if (attribute.elements == 0 || attribute.elements > kMostElements) {
+    throw InvalidArgument(fmt::format("attribute \"{}\" has {} elements: give 1 to {}",
+                                      attribute.name, attribute.elements, kMostElements));
   }
   if (!std::isfinite(attribute.scale) || attribute.scale == 0 || !std::isfinite(attribute.offset)) {
     throw InvalidArgument(

@@ -8,13 +8,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
+#include <cstddef>
 #include <fstream>
 #include <iterator>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "formats/bytes/number_type.h"
 #include "tests/stream/library/call_test.h"
 #include "tests/test_paths.h"
 
@@ -52,31 +52,12 @@ std::string type_text(const Attribute& attribute) {
 /// Small whole numbers, which every type holds.
 AttributeColumns numbers_of(const Attribute& attribute, std::size_t points) {
   AttributeColumns columns({attribute}, points);
-  const auto fill = [&](auto number) {
+  detail::with_number_type(attribute.type, [&](auto number) {
     const auto values = columns.values<decltype(number)>(attribute.name);
     for (std::size_t i = 0; i < values.size(); ++i) {
       values[i] = static_cast<decltype(number)>(i % 20);
     }
-  };
-  switch (attribute.type) {
-    case NumberType::kUint8:
-      fill(std::uint8_t{});
-      break;
-    case NumberType::kInt16:
-      fill(std::int16_t{});
-      break;
-    case NumberType::kInt32:
-      fill(std::int32_t{});
-      break;
-    case NumberType::kInt64:
-      fill(std::int64_t{});
-      break;
-    case NumberType::kFloat32:
-      fill(float{});
-      break;
-    default:
-      fill(double{});
-  }
+  });
   return columns;
 }
 

@@ -310,6 +310,7 @@ TEST_F(Attributes, ThatAFormatCannotHoldNameThePoint) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("intensity"));
     EXPECT_THAT(error.what(), HasSubstr("-5"));
+    EXPECT_EQ(error.facts().remedy, Remedy::kAttributes) << "programs have no options of a command";
   }
 }
 

@@ -46,7 +46,8 @@ TEST(Advice, IsAnotherForEachRemedy) {
         Remedy::kOneFile,      Remedy::kLas14,        Remedy::kRanks,
         Remedy::kRasterExtent, Remedy::kPointLattice, Remedy::kDistrustHeaders,
         Remedy::kUnknownCrs,   Remedy::kWrongCrs,     Remedy::kGroundScale,
-        Remedy::kColumns,      Remedy::kSalvage,      Remedy::kForce}) {
+        Remedy::kColumns,      Remedy::kSalvage,      Remedy::kForce,
+        Remedy::kAttributes}) {
     EXPECT_TRUE(texts.insert(advice({.remedy = remedy})).second);
   }
 }

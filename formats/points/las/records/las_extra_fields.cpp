@@ -143,15 +143,15 @@ std::vector<AttributeField> las_extra_fields_for(std::span<const Attribute> attr
     const bool bytes = attribute.type == kUint8 && attribute.elements <= kMostBytes;
     if (attribute.elements > kMostElements && !bytes) {
       throw Error(fmt::format("LAS holds at most {} numbers of an attribute, and \"{}\" has {} of "
-                              "a point; choose others with --attributes, or write spp",
+                              "a point; write spp",
                               kMostElements, attribute.name, attribute.elements),
-                  ErrorCode::kInvalidArgument);
+                  ErrorCode::kInvalidArgument, {.remedy = Remedy::kAttributes});
     }
     if (attribute.name.size() > kText) {
       throw Error(fmt::format("names of attributes in LAS have at most {} bytes, and \"{}\" has "
-                              "{}; choose others with --attributes, or write spp",
+                              "{}; write spp",
                               kText, attribute.name, attribute.name.size()),
-                  ErrorCode::kInvalidArgument);
+                  ErrorCode::kInvalidArgument, {.remedy = Remedy::kAttributes});
     }
     fields.push_back({.attribute = attribute, .at = at});
     at += size_of(attribute);

@@ -110,11 +110,14 @@ LasTarget las_target(const std::string& file, const PointWriterOptions& options,
   try {
     target.extra = las_extra_fields_for(others, kLasRecordLengths.at(target.point_format));
   } catch (const Error& error) {
-    throw CannotWrite(file, error.what(), error.code());
+    throw CannotWrite(file, error.what(), error.code(), {}, error.facts().remedy);
   }
   if (target.record_length() > kMostRecordBytes) {
-    throw CannotWrite(file, fmt::format("the attributes of a point take {} bytes, and LAS holds {}",
-                                        target.record_length(), kMostRecordBytes));
+    throw CannotWrite(file,
+                      fmt::format("the attributes of a point take {} bytes, and LAS holds {}; "
+                                  "write spp",
+                                  target.record_length(), kMostRecordBytes),
+                      ErrorCode::kInvalidArgument, {}, Remedy::kAttributes);
   }
   return target;
 }

@@ -214,7 +214,7 @@ TEST(NpyAttributes, WhoseNamesDoNotFitTheHeaderAreAnError) {
   EXPECT_THAT(error_of([&] {
                 open_point_writer(files, "a.npy", {.attributes = AttributeLayout(attributes)});
               }),
-              HasSubstr("choose fewer with --attributes"));
+              HasSubstr("; write spp"));
 }
 
 }  // namespace

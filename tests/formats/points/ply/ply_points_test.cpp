@@ -285,7 +285,7 @@ TEST(PlyPoints, AreWrittenWithoutHeightsWhereThereAreNone) {
 TEST(PlyPointErrors, IntegersThatAreNoDoublesAreNotWritten) {
   const AttributeLayout layout({{.name = "big", .type = NumberType::kInt64}});
   EXPECT_THAT(error_of([&] { written(layout, bytes_of((std::int64_t{1} << 53) + 1), true); }),
-              AllOf(HasSubstr("point 0"), HasSubstr("big"), HasSubstr("--attributes")));
+              AllOf(HasSubstr("point 0"), HasSubstr("big"), HasSubstr("write spp")));
 }
 
 }  // namespace

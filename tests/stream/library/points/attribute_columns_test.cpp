@@ -84,6 +84,8 @@ TEST(AttributeColumns, RefuseAttributesThatCannotBe) {
   EXPECT_THAT(error_of({kClass, kAngle, kClass}), HasSubstr("called \"classification\""));
   EXPECT_THAT(error_of({Attribute{.name = ""}}), HasSubstr("no name"));
   EXPECT_THAT(error_of({Attribute{.name = "a", .elements = 0}}), HasSubstr("0 elements"));
+  EXPECT_THAT(error_of({Attribute{.name = "a", .elements = std::size_t{1} << 60}}),
+              HasSubstr("give 1 to 1000000"));
   EXPECT_THAT(error_of({Attribute{.name = "a", .scale = 0}}), HasSubstr("scale 0"));
   EXPECT_THAT(error_of({Attribute{.name = "a", .offset = std::nan("")}}), HasSubstr("offset nan"));
   EXPECT_THAT(error_of({Attribute{.name = "a", .type = static_cast<NumberType>(10)}}),
