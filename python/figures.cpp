@@ -34,6 +34,7 @@ void add_mesh(const Report& report, py::dict& figures) {
   figures["on_lattice"] = report.on_lattice;
   figures["filters"] = figures_of(report.points);
   figures["skipped_files"] = figures_of(report.skipped_files);
+  figures["lost"] = report.lost;
   figures["output_format"] = report.output_format;
   figures["output_bytes"] = report.output_bytes;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "python/attributes.h"
 #include "python/bindings.h"
 
 namespace spillway::python {
@@ -19,8 +20,9 @@ void refuse_choice_of_heights(const TriangulateOptions& how, const PointsHeader&
 
 }  // namespace
 
-MeshOrigin::MeshOrigin(Inputs inputs, PointOptions options, TriangulateOptions how)
-    : from_(Points{std::move(inputs), std::move(options), std::move(how)}) {}
+MeshOrigin::MeshOrigin(Inputs inputs, PointOptions options, TriangulateOptions how,
+                       AttributeColumns attributes)
+    : from_(Points{std::move(inputs), std::move(options), std::move(how), std::move(attributes)}) {}
 
 MeshOrigin::MeshOrigin(std::string path, MeshOptions options)
     : from_(File{std::move(path), std::move(options)}) {}
@@ -32,17 +34,21 @@ Report MeshOrigin::send(MeshSink& sink, Run& run) const {
     const auto mesh = open_mesh(file->path, file->options, context);
     return convert(*mesh, sink, context);
   }
-  const auto& [inputs, options, how] = std::get<Points>(from_);
+  const auto& [inputs, options, how, attributes] = std::get<Points>(from_);
   run.expect(kPhasesOfPoints);
-  const auto points = open_inputs(inputs, options, context);
+  const auto points = open_inputs(inputs, options, context, attributes);
   refuse_choice_of_heights(how, points->header());
   return triangulate(*points, sink, how, context);
 }
 
 void bind_mesh_origin(py::module_& module) {
   py::class_<MeshOrigin, std::shared_ptr<MeshOrigin>>(module, "MeshOrigin")
-      .def(py::init<Inputs, PointOptions, TriangulateOptions>(), py::arg("inputs"),
-           py::arg("options"), py::arg("how"))
+      .def(py::init([](Inputs inputs, PointOptions options, TriangulateOptions how,
+                       const py::dict& attributes) {
+             return std::make_shared<MeshOrigin>(std::move(inputs), std::move(options),
+                                                 std::move(how), columns_of(attributes));
+           }),
+           py::arg("inputs"), py::arg("options"), py::arg("how"), py::arg("attributes"))
       .def(py::init<std::string, MeshOptions>(), py::arg("path"), py::arg("options"));
   module.def(
       "is_mesh",

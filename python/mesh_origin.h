@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spillway/attribute_columns.h>
 #include <spillway/mesh.h>
 #include <spillway/totals.h>
 #include <spillway/triangulate.h>
@@ -15,7 +16,9 @@ namespace spillway::python {
 /// What a mesh comes from: points, which are triangulated on the way, or a file of a mesh.
 class MeshOrigin {
  public:
-  MeshOrigin(Inputs inputs, PointOptions options, TriangulateOptions how);
+  /// `attributes` is what points of an array carry.
+  MeshOrigin(Inputs inputs, PointOptions options, TriangulateOptions how,
+             AttributeColumns attributes);
   MeshOrigin(std::string path, MeshOptions options);
 
   /// Gives the mesh to a sink. To be called without the interpreter's lock.
@@ -26,6 +29,7 @@ class MeshOrigin {
     Inputs inputs;
     PointOptions options;
     TriangulateOptions how;
+    AttributeColumns attributes;
   };
   struct File {
     std::string path;

@@ -95,6 +95,12 @@ void bind_point_options(py::module_& module) {
         options.thin = Thin{
             cell, choice_of<ThinChoice>(choice, {"first", "lowest", "highest", "center"}, "thin")};
       });
+
+  py::class_<MeshFileOptions>(module, "MeshFileOptions")
+      .def(py::init())
+      .def_readwrite("format", &MeshFileOptions::format)
+      .def_readwrite("attributes", &MeshFileOptions::attributes);
+
   py::class_<MeshOptions>(module, "MeshOptions")
       .def(py::init())
       .def_readwrite("format", &MeshOptions::format)

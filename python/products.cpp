@@ -30,9 +30,8 @@ auto send(Run& run, const MeshOrigin& origin, const Make& make) {
 }
 
 py::dict mesh(Run& run, const MeshOrigin& origin, const std::string& output,
-              const std::string& format) {
-  return send(run, origin, [&] { return create_mesh(output, {.format = format}, run.context()); })
-      .second;
+              const MeshFileOptions& options) {
+  return send(run, origin, [&] { return create_mesh(output, options, run.context()); }).second;
 }
 
 void add_raster(const DemReport& raster, py::dict& figures) {
@@ -91,7 +90,8 @@ py::dict picture(Run& run, const MeshOrigin& origin, const std::string& output,
 }  // namespace
 
 void bind_products(py::module_& module) {
-  module.def("mesh", mesh, py::arg("run"), py::arg("origin"), py::arg("output"), py::arg("format"));
+  module.def("mesh", mesh, py::arg("run"), py::arg("origin"), py::arg("output"),
+             py::arg("options"));
   module.def("dem", dem, py::arg("run"), py::arg("origin"), py::arg("output"), py::arg("options"));
   module.def("dem_in_memory", dem_in_memory, py::arg("run"), py::arg("origin"), py::arg("options"));
   module.def("contours", contours, py::arg("run"), py::arg("origin"), py::arg("output"),

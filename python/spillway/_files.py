@@ -31,6 +31,7 @@ from ._options import (
     as_word,
     attribute,
     make_run,
+    mesh_file_options,
     mesh_options,
     names_for,
     point_options,
@@ -53,6 +54,7 @@ def triangulate(
     *,
     dim: int = 2,
     id: bool = False,
+    attributes: str | Sequence[str] | None = None,
     output_format: str | None = None,
     **options: Unpack[TriangulateOptions],
 ) -> RunReport:
@@ -73,6 +75,10 @@ def triangulate(
         2: triangles over x and y, z is carried along, also that of an array. 3: tetrahedra.
     id : bool, optional
         Write each vertex's index in the input.
+    attributes : str or sequence of str, optional
+        Names of what points carry and vertices keep, or "all"; an empty sequence for none. By
+        default none, but the colour of points in PLY. Of an array with fields, or a dict of arrays,
+        it is all but x, y and z.
     output_format : str, optional
         The format, where the name does not tell, as ``"ply"`` or ``"spm"``.
     {options}
@@ -98,11 +104,12 @@ def triangulate(
         ``"spillway"`` at the level INFO.
     """
     source = as_inputs(inputs)
-    origin = points_origin(source, as_dimension(dim, source), options, id)
+    carried = attributes_of(inputs, "inputs")
+    origin = points_origin(source, as_dimension(dim, source), options, id, carried)
     path = as_path(output, "output")
-    form = as_word(output_format, "output_format")
+    how = mesh_file_options(output_format, attributes)
     run = make_run(options)
-    return RunReport(**_spillway.mesh(run, origin, path, form))
+    return RunReport(**_spillway.mesh(run, origin, path, how))
 
 
 @takes(ConvertOptions)
@@ -144,8 +151,8 @@ def convert(
     offset : float or sequence of 3 floats, optional
         Where these multiples are counted from.
     attributes : str or sequence of str, optional
-        Names of the attributes of points that are written, or "all". By default all that the format
-        holds, but none in text, unless it is CSV.
+        Names of the attributes that are written, or "all"; an empty sequence for none. By default
+        all that the format holds, but of points none in text, unless it is CSV.
     force : bool, optional
         Replace a file that is an input also by one that holds less than it.
     sorted : bool, optional
@@ -173,7 +180,6 @@ def convert(
         "las_version": las_version,
         "scale": scale,
         "offset": offset,
-        "attributes": attributes,
         "force": force,
         "sorted": sorted,
     }
@@ -181,10 +187,10 @@ def convert(
     if is_mesh(run, source, mesh_format, options):
         check_mesh_options(options)
         refuse({**of_points, **cells}, [*of_points, *cells], "on a mesh")
+        written = mesh_file_options(output_format, attributes)
         assert isinstance(source, list)
         origin = _spillway.MeshOrigin(source[0], mesh_options(options, mesh_format))
-        form = as_word(output_format, "output_format")
-        return RunReport(**_spillway.mesh(run, origin, path, form))
+        return RunReport(**_spillway.mesh(run, origin, path, written))
     check_array(source, options)
     how = _spillway.PointFileOptions()
     put_all(how, {"output_format": output_format, "las_version": las_version})

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Iterable, Mapping, Sequence
 
+from numpy.typing import NDArray
+
 from . import _spillway
-from ._arrays import Floats, as_rows, fields_of, is_dimension, rows_of_fields
+from ._arrays import Floats, as_rows, attributes_of, fields_of, is_dimension, rows_of_fields
 from ._options import (
     PATHS,
     as_path,
@@ -81,15 +83,19 @@ def check_mesh_options(options: Mapping[str, Any], *, keeps: tuple[str, ...] = (
 
 
 def points_origin(
-    inputs: list[bytes] | Floats, dim: int, options: Mapping[str, Any], id: bool = False
+    inputs: list[bytes] | Floats,
+    dim: int,
+    options: Mapping[str, Any],
+    id: bool,
+    carried: dict[str, NDArray[Any]],
 ) -> _spillway.MeshOrigin:
-    """A mesh that is made of points."""
+    """A mesh that is made of points, and what these carry if they are an array."""
     check_array(inputs, options)
     if dim == 3:
         refuse(options, ["duplicates"], "with dim=3, as it chooses a height")
     how = triangulate_options(options, dim)
     how.input_index = bool(id)
-    return _spillway.MeshOrigin(inputs, point_options(options, dim), how)
+    return _spillway.MeshOrigin(inputs, point_options(options, dim), how, carried)
 
 
 def mesh_origin(
@@ -107,4 +113,4 @@ def mesh_origin(
         check_mesh_options({**options, "id": id})
         assert isinstance(source, list)
         return _spillway.MeshOrigin(source[0], mesh_options(options, mesh_format))
-    return points_origin(source, dim, options, id)
+    return points_origin(source, dim, options, id, attributes_of(inputs, "inputs"))

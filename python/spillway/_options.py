@@ -529,6 +529,17 @@ def mesh_options(options: Mapping[str, Any], mesh_format: str | None) -> _spillw
     return made
 
 
+def mesh_file_options(
+    output_format: str | None, attributes: str | Sequence[str] | None
+) -> _spillway.MeshFileOptions:
+    """How a file of a mesh is written."""
+    made = _spillway.MeshFileOptions()
+    made.format = as_word(output_format, "output_format")
+    if attributes is not None:
+        made.attributes = as_names(attributes, "attributes")
+    return made
+
+
 def make_run(options: Mapping[str, Any]) -> _spillway.Run:
     """The settings of a run."""
     progress = options.get("progress")

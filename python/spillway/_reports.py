@@ -66,6 +66,7 @@ class RunReport(_Report):
     on_lattice: bool
     filters: dict[str, int]
     skipped_files: list[dict[str, str]]
+    lost: list[str]
     output_format: str
     output_bytes: int
     threads: int

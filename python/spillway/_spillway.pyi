@@ -73,6 +73,10 @@ class PointOptions:
     def set_bounds(self, low: list[float], high: list[float]) -> None: ...
     def set_thin(self, cell: float, choice: str) -> None: ...
 
+class MeshFileOptions:
+    format: str
+    attributes: list[str] | None
+
 class MeshOptions:
     format: str
     crs: str
@@ -154,10 +158,11 @@ class MeshOrigin:
         inputs: _Inputs | bytes,
         options: PointOptions | MeshOptions,
         how: TriangulateOptions = ...,
+        attributes: dict[str, NDArray[Any]] = ...,
     ) -> None: ...
 
 def is_mesh(run: Run, inputs: _Inputs, mesh_format: str, point_format: str) -> bool: ...
-def mesh(run: Run, origin: MeshOrigin, output: bytes, format: str) -> _Figures: ...
+def mesh(run: Run, origin: MeshOrigin, output: bytes, options: MeshFileOptions) -> _Figures: ...
 def dem(run: Run, origin: MeshOrigin, output: bytes, options: DemOptions) -> _Figures: ...
 def dem_in_memory(
     run: Run, origin: MeshOrigin, options: DemOptions

@@ -1,5 +1,6 @@
 """What points carry besides coordinates, in and out of NumPy."""
 
+import pathlib
 import unittest
 
 import numpy as np
@@ -70,6 +71,32 @@ class Attributes(InFolder):
     def test_blocks_have_attributes_by_name(self):
         for block in spillway.blocks(survey(100)):
             self.assertEqual(block.attributes, {})
+        points = survey(100)
+        vertices = 0
+        for block in spillway.blocks(points, id=True, attributes="all"):
+            for name in points.dtype.names:
+                if name not in "xyz":
+                    np.testing.assert_array_equal(
+                        block.attributes[name], points[name][block.input_index]
+                    )
+            vertices += len(block.vertices)
+        self.assertEqual(vertices, 100)
+
+    def test_vertices_of_files_keep_what_points_carry(self):
+        points = survey(100)
+        spillway.triangulate(points, "mesh.npy", id=True, attributes="all")
+        index = np.load("mesh_input_index.npy")
+        carried = np.load("mesh_attributes.npy")
+        self.assertEqual(set(carried.dtype.names), set(points.dtype.names) - set("xyz"))
+        for name in carried.dtype.names:
+            np.testing.assert_array_equal(carried[name], points[name][index])
+        spillway.triangulate(points, "mesh.spm", attributes="all")
+        spillway.convert("mesh.spm", "none.ply", attributes=[])
+        spillway.convert("mesh.spm", "all.ply")
+        sizes = [pathlib.Path(name).stat().st_size for name in ("none.ply", "all.ply")]
+        self.assertLess(*sizes)
+        with self.assertRaisesRegex(ValueError, 'no attribute "colour"'):
+            spillway.triangulate(points, "mesh.spm", attributes="colour")
 
     def test_what_cannot_be_an_attribute_is_named(self):
         x = np.arange(4.0)

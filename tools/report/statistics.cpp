@@ -132,6 +132,7 @@ Json to_json(const TracedReport& report, const RunFacts& facts) {
   json["points"] = mesh.points;
   json["withheld"] = report.points.withheld;
   json["skipped_files"] = to_json(report.skipped_files);
+  json["lost"] = report.lost;
   json["filters"] = to_json(report.points);
   json["duplicates"] = mesh.duplicates;
   json["vertices"] = mesh.vertices;

@@ -85,7 +85,8 @@ TEST(VertexAttributes, GoThroughEveryFormatThatHoldsThem) {
         fmt::format("spillway convert -q there.{} -o back.ply --output-format ply-ascii", format));
     expect_numbers_are_indices(work, "back.ply");
   }
-  work.succeed("spillway convert -q m.spm -o some.ply --output-format ply-ascii --attributes tenth");
+  work.succeed(
+      "spillway convert -q m.spm -o some.ply --output-format ply-ascii --attributes tenth");
   EXPECT_EQ(vertices_of(work.read("some.ply")).front().size(), 5U);
   work.succeed("spillway convert -q m.spm -o none.ply --output-format ply-ascii --attributes none");
   EXPECT_EQ(vertices_of(work.read("none.ply")).front().size(), 4U);
@@ -101,14 +102,14 @@ TEST(VertexAttributes, OfPlyAreTheColourUnlessAskedOtherwise) {
              "0 0 1 10 20 30 0.5\n1 0 2 11 21 31 0.5\n0 1 3 12 22 32 0.5\n1 1 4 13 23 33 0.5\n");
   const std::string ascii = " --output-format ply-ascii";
   work.succeed("spillway triangulate -q in.ply -o m.ply" + ascii);
-  EXPECT_THAT(work.read("m.ply"), AllOf(HasSubstr("property uchar red\n"),
-                                        HasSubstr("\n1 1 4 13 23 33\n"),
-                                        Not(HasSubstr("curvature"))));
+  EXPECT_THAT(work.read("m.ply"),
+              AllOf(HasSubstr("property uchar red\n"), HasSubstr("\n1 1 4 13 23 33\n"),
+                    Not(HasSubstr("curvature"))));
   work.succeed("spillway triangulate -q in.ply -o m.ply --attributes none" + ascii);
   EXPECT_THAT(work.read("m.ply"), Not(HasSubstr("red")));
   work.succeed("spillway triangulate -q in.ply -o m.ply --attributes curvature" + ascii);
-  EXPECT_THAT(work.read("m.ply"), AllOf(HasSubstr("property float curvature\n"),
-                                        Not(HasSubstr("red"))));
+  EXPECT_THAT(work.read("m.ply"),
+              AllOf(HasSubstr("property float curvature\n"), Not(HasSubstr("red"))));
   work.succeed("spillway triangulate -q in.ply -o m.spm");
   work.succeed("spillway convert -q m.spm -o m.ply" + ascii);
   EXPECT_THAT(work.read("m.ply"), Not(HasSubstr("red")));
@@ -123,7 +124,10 @@ TEST(VertexAttributes, ThatAFormatDoesNotHoldAreNamed) {
   EXPECT_EQ(named.exit_code, 2);
   EXPECT_THAT(named.err,
               HasSubstr("vertices of OBJ do not hold number: write spm, ply, vtu or npy"));
-  const Result all = work.run("spillway triangulate in.csv -o m.obj --attributes all");
+  const Result all =
+      work.run("spillway triangulate in.csv -o m.obj --attributes all --stats stats.json");
+  EXPECT_EQ(nlohmann::json::parse(work.read("stats.json"))["lost"],
+            (std::vector<std::string>{"number", "tenth"}));
   EXPECT_EQ(all.exit_code, 0);
   EXPECT_THAT(all.err, HasSubstr("not kept: number, tenth"));
   EXPECT_THAT(work.run("spillway triangulate -q in.csv -o m.obj").err, IsEmpty());
