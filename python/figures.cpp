@@ -91,18 +91,22 @@ py::list figures_of(const std::vector<SkippedFile>& files) {
   return figures;
 }
 
-py::dict figures_of(const Attribute& attribute) {
-  py::dict figures;
-  figures["name"] = attribute.name;
-  figures["type"] = to_string(attribute.type);
-  if (attribute.elements != 1) figures["elements"] = attribute.elements;
-  if (attribute.scale != 1 || attribute.offset != 0) {
-    figures["scale"] = attribute.scale;
-    figures["offset"] = attribute.offset;
+py::list figures_of(const std::vector<Attribute>& attributes) {
+  py::list all;
+  for (const Attribute& attribute : attributes) {
+    py::dict figures;
+    figures["name"] = attribute.name;
+    figures["type"] = to_string(attribute.type);
+    if (attribute.elements != 1) figures["elements"] = attribute.elements;
+    if (attribute.scale != 1 || attribute.offset != 0) {
+      figures["scale"] = attribute.scale;
+      figures["offset"] = attribute.offset;
+    }
+    if (!attribute.unit.empty()) figures["unit"] = attribute.unit;
+    if (!attribute.description.empty()) figures["description"] = attribute.description;
+    all.append(figures);
   }
-  if (!attribute.unit.empty()) figures["unit"] = attribute.unit;
-  if (!attribute.description.empty()) figures["description"] = attribute.description;
-  return figures;
+  return all;
 }
 
 py::object extent_of(const std::optional<Extent>& extent) {

@@ -21,7 +21,7 @@ pybind11::dict figures_of(const PointCounts& counts);
 pybind11::list figures_of(const std::vector<SkippedFile>& files);
 
 /// As the JSON of `spillway info`: what says nothing is left out.
-pybind11::dict figures_of(const Attribute& attribute);
+pybind11::list figures_of(const std::vector<Attribute>& attributes);
 
 /// (lowest, highest corner), or None.
 pybind11::object extent_of(const std::optional<Extent>& extent);

@@ -61,9 +61,7 @@ py::dict points_info(Run& run, const std::string& path, const PointOptions& opti
   figures["crs_note"] = text_or_none(info.crs_note);
   figures["software"] = text_or_none(info.software);
   figures["cells"] = info.cells;
-  py::list attributes;
-  for (const Attribute& attribute : info.attributes) attributes.append(figures_of(attribute));
-  figures["attributes"] = attributes;
+  figures["attributes"] = figures_of(info.attributes);
   return figures;
 }
 
@@ -86,6 +84,7 @@ py::dict mesh_info(Run& run, const std::string& path, const MeshOptions& options
   figures["input_index"] = info.has_input_index;
   figures["crs"] = text_or_none(info.crs);
   figures["peak_live_vertices"] = info.peak_live_vertices;
+  figures["attributes"] = figures_of(info.attributes);
   return figures;
 }
 

@@ -63,6 +63,7 @@ struct MeshInfo {
   std::string crs{};
   /// The most vertices that a reader holds at a time, of formats of streams.
   std::optional<std::uint64_t> peak_live_vertices{};
+  std::vector<Attribute> attributes{};  ///< what vertices carry
 };
 
 /// Reads a whole mesh; of formats of streams no more is held than their open border. Throws Error

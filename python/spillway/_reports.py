@@ -263,6 +263,7 @@ class MeshInfo(_Report):
     input_index: bool
     crs: Optional[str]
     peak_live_vertices: Optional[int]
+    attributes: list[dict[str, Any]]
 
     def _summary(self) -> str:
         return f"{_counts(self)}, {self.format}, hash {self.canonical_hash}"

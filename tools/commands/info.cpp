@@ -133,6 +133,7 @@ Json mesh_json(const std::string& path, const MeshInfo& info) {
     json["duplicates"] = info.totals.duplicates;
   }
   if (info.peak_live_vertices) json["peak_live_vertices"] = *info.peak_live_vertices;
+  json["attributes"] = attributes_json(info.attributes);
   return json;
 }
 

@@ -72,6 +72,7 @@ MeshInfo describe_whole(OpenedMesh& file, RunWatch& watch) {
   info.extent = extent_of(box_around(mesh.vertices));
   info.lattice = lattice_info(mesh.header.lattice);
   info.crs = mesh.header.crs;
+  info.attributes = mesh.header.attributes.attributes();
   return info;
 }
 
@@ -100,6 +101,7 @@ MeshInfo describe_stream(OpenedMesh& file, RunWatch& watch) {
   info.extent = extent_of(box);
   info.lattice = lattice_info(reader.header().lattice);
   info.crs = reader.header().crs;
+  info.attributes = reader.header().attributes.attributes();
   info.peak_live_vertices = found.peak_live_vertices;
   return info;
 }
