@@ -85,6 +85,9 @@ TEST(VertexAttributes, GoThroughEveryFormatThatHoldsThem) {
         fmt::format("spillway convert -q there.{} -o back.ply --output-format ply-ascii", format));
     expect_numbers_are_indices(work, "back.ply");
   }
+  const nlohmann::json number = {{"name", "number"}, {"type", "float64"}};
+  EXPECT_EQ(work.info("m.spm")["attributes"][0], number);
+  EXPECT_EQ(work.info("there.vtu")["attributes"][0], number);
   work.succeed(
       "spillway convert -q m.spm -o some.ply --output-format ply-ascii --attributes tenth");
   EXPECT_EQ(vertices_of(work.read("some.ply")).front().size(), 5U);
