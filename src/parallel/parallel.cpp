@@ -157,6 +157,8 @@ unsigned available_threads() { return static_cast<unsigned>(tbb::info::default_c
 void with_threads(unsigned threads, const std::function<void()>& work) {
   const ThreadDemand demand(threads);
   tbb::task_arena arena(static_cast<int>(threads));
+  // An observer that does this itself, and finds no memory, is left in a state that it cannot end.
+  arena.initialize();
   const RunOfThreads run(arena, RunMemory::current());
   arena.execute([&] {
     start_threads(threads);

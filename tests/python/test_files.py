@@ -361,7 +361,7 @@ class Options(unittest.TestCase):
             set(inspect.signature(call).parameters)
             for call in (spillway.blocks, spillway.triangulate)
         )
-        self.assertEqual(found - expected, {"mesh_format", "attributes"})
+        self.assertEqual(found - expected, {"mesh_format"})
         self.assertEqual(expected - found, {"output", "output_format"})
 
 

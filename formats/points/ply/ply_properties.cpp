@@ -15,13 +15,22 @@ namespace {
 
 constexpr double kLargestExact = 0x1p53;
 
-/// Readers take names for one word, and do not tell X from x.
+/// Readers take names for one word.
 std::string property_name(std::string name) {
   for (char& c : name) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f) c = '_';
   }
   return name.empty() ? "_" : name;
+}
+
+/// Readers do not tell X from x.
+std::string unique_name(const std::string& name, UniqueNames& names) {
+  std::string lower = name;
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  const std::string taken = names.take(lower);
+  return taken == lower ? name : taken;
 }
 
 }  // namespace
@@ -41,7 +50,7 @@ std::string ply_property_lines(const AttributeLayout& attributes, UniqueNames& n
     for (std::size_t e = 0; e < attribute.elements; ++e) {
       std::string name = property_name(attribute.name);
       if (attribute.elements > 1) name += fmt::format("_{}", e + 1);
-      lines += fmt::format("property {} {}\n", *ply_type(attribute.type), names.take(name));
+      lines += fmt::format("property {} {}\n", *ply_type(attribute.type), unique_name(name, names));
     }
   }
   return lines;

@@ -244,7 +244,7 @@ TEST(PlyAttributes, HaveNamesOfTheirOwn) {
                  1);
   EXPECT_THAT(written(kPlyAsciiMesh, mesh),
               HasSubstr("property double input_index\nproperty double x_2\n"
-                        "property double input_index_2\nproperty double pulse_width\n"
+                        "property double input_index_2\nproperty double Pulse_width\n"
                         "property double pulse_width_2\nelement face"));
 }
 

@@ -255,7 +255,7 @@ TEST(PlyPoints, AreWrittenWithTheirAttributesAsProperties) {
   const AttributeLayout layout({{.name = "red", .type = NumberType::kUint16},
                                 {.name = "X", .type = NumberType::kInt8},
                                 {.name = "angle", .type = NumberType::kInt16, .scale = 0.006},
-                                {.name = "big one", .type = NumberType::kUint64},
+                                {.name = "big One", .type = NumberType::kUint64},
                                 {.name = "v", .type = NumberType::kFloat32, .elements = 2}});
   const std::string record = bytes_of(std::uint16_t{65535}) + bytes_of(std::int8_t{-1}) +
                              bytes_of(std::int16_t{1000}) + bytes_of(std::uint64_t{1} << 52) +
@@ -265,14 +265,14 @@ TEST(PlyPoints, AreWrittenWithTheirAttributesAsProperties) {
   EXPECT_THAT(file, HasSubstr("comment crs EPSG:2056\n"));
   EXPECT_THAT(file, HasSubstr("element vertex 1\nproperty double x\nproperty double y\nproperty "
                               "double z\nproperty ushort red\nproperty char x_2\nproperty double "
-                              "angle\nproperty double big_one\nproperty float v_1\nproperty float "
+                              "angle\nproperty double big_One\nproperty float v_1\nproperty float "
                               "v_2\nend_header\n"));
   const Carried all = read_carried("a.ply", file);
   EXPECT_EQ(all.header.crs, "EPSG:2056");
   EXPECT_THAT(all.points, ElementsAre(LatticePoint{1, 2, 3}));
   EXPECT_THAT(all.values("red"), ElementsAre(65535));
   EXPECT_THAT(all.values("angle"), ElementsAre(6));
-  EXPECT_THAT(all.values("big_one"), ElementsAre(0x1p52));
+  EXPECT_THAT(all.values("big_One"), ElementsAre(0x1p52));
   EXPECT_THAT(all.values("v_2"), ElementsAre(1.5));
 }
 
