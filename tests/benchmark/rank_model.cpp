@@ -17,8 +17,8 @@ constexpr double kPaperPoints = 1e6;  ///< of a rank
 struct Figures {
   double point_seconds = 0;        ///< of one core
   double imbalance = 0;            ///< points of the largest rank over the mean
-  double exchange_seconds = 0;     ///< of a point that moves
-  double exchange_bytes = 0;       ///< likewise
+  double exchange_seconds = 0;     ///< of each point of a rank
+  double exchange_bytes = 0;       ///< of a point that moves
   double messages_per_point = 0;   ///< of a rank to each other, by the rank's points
   std::vector<double> borders;     ///< simplices over N^((D - 1) / D), the root's first
   double merge_seconds = 0;        ///< of a border simplex
@@ -37,7 +37,7 @@ Figures figures_of(const std::vector<RankRun>& runs) {
   Figures figures;
   figures.point_seconds = alone.cpu_seconds / alone.points;
   figures.imbalance = many.imbalance;
-  figures.exchange_seconds = few.exchange_seconds / few.points_sent;
+  figures.exchange_seconds = few.exchange_seconds / few.points;
   figures.exchange_bytes = many.point_bytes_sent / many.points_sent;
   figures.messages_per_point = many.messages / many.ranks / (many.points / many.ranks);
   for (auto level = many.levels.rbegin(); level != many.levels.rend(); ++level) {
@@ -75,8 +75,8 @@ void print_figures(const Plan& plan, const std::vector<RankRun>& runs, const Fig
       "1 rank, processor time without its start");
   row("points of the largest rank over the mean", fmt::format("{:.3f}", figures.imbalance),
       ranks(most));
-  row("a rank for a point that moves, ns", fmt::format("{:.0f}", 1e9 * figures.exchange_seconds),
-      ranks(runs[1].ranks) + ", stage `exchange`");
+  row("a rank to exchange a point, ns", fmt::format("{:.0f}", 1e9 * figures.exchange_seconds),
+      ranks(runs[1].ranks) + ", waiting included");
   row("bytes of a point that moves", fmt::format("{:.2f}", figures.exchange_bytes), ranks(most));
   row("messages of a rank to each other, for a million points",
       fmt::format("{:.1f}", 1e6 * figures.messages_per_point), ranks(most));
@@ -110,9 +110,9 @@ Estimate estimate(const Plan& plan, const Figures& figures, const Network& netwo
   const double moved = n * (ranks - 1.0) / ranks;
   Estimate result;
   result.tiles = n * figures.point_seconds * figures.imbalance;
-  result.exchange =
-      moved * (figures.exchange_seconds + figures.exchange_bytes / network.bytes_per_second) +
-      n * figures.messages_per_point * ranks * network.latency;
+  result.exchange = n * figures.exchange_seconds +
+                    moved * figures.exchange_bytes / network.bytes_per_second +
+                    n * figures.messages_per_point * ranks * network.latency;
   double largest = 0;
   std::size_t depth = 0;
   for (int below = ranks; below >= 2; below /= 2, ++depth) {
