@@ -127,7 +127,7 @@ Estimate estimate(const Plan& plan, const Figures& figures, const Network& netwo
   const double tiles_mib =
       n > static_cast<double>(plan.points_per_rank) ? memory_mib : figures.tiles_mib;
   result.largest_mib =
-      std::max(tiles_mib, figures.start_mib + largest * figures.merge_memory / kMiB);
+      std::ceil(std::max(tiles_mib, figures.start_mib + largest * figures.merge_memory / kMiB));
   return result;
 }
 
