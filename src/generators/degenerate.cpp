@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "src/generators/families.h"
+#include "src/generators/grid_side.h"
 #include "src/generators/random.h"
 
 namespace spillway::detail {
@@ -23,19 +24,6 @@ struct Grid {
     return {x, static_cast<double>(row % side), static_cast<double>(layer)};
   }
 };
-
-/// The smallest side with side^dimension >= count.
-std::uint64_t grid_side(std::uint64_t count, int dimension) {
-  const auto n = static_cast<double>(count);
-  auto side = static_cast<std::uint64_t>(dimension == 2 ? std::sqrt(n) : std::cbrt(n));
-  side = side > 2 ? side - 2 : 1;  // the rounded root may be too large by one
-  const auto holds_all = [&](std::uint64_t s) {
-    const auto square = static_cast<unsigned __int128>(s) * s;
-    return (dimension == 2 ? square : square * s) >= count;
-  };
-  while (!holds_all(side)) ++side;
-  return side;
-}
 
 /// A Gaussian integer.
 struct Gaussian {

@@ -48,4 +48,7 @@ std::unique_ptr<PointGenerator> make_degenerate(const GeneratorOptions& options)
 /// terrain.
 std::unique_ptr<PointGenerator> make_terrain(const GeneratorOptions& options);
 
+/// packing.
+std::unique_ptr<PointGenerator> make_packing(const GeneratorOptions& options);
+
 }  // namespace spillway::detail

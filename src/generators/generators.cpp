@@ -11,9 +11,9 @@
 namespace spillway::detail {
 namespace {
 
-constexpr std::array<const char*, 13> kNames = {
-    "uniform", "normal",   "bubbles",    "ellipsoid", "lines",    "lattice", "circle",
-    "terrain", "clusters", "duplicates", "collinear", "coplanar", "utm"};
+constexpr std::array<const char*, 14> kNames = {
+    "uniform", "normal",  "bubbles",  "ellipsoid",  "lines",     "lattice",  "circle",
+    "terrain", "packing", "clusters", "duplicates", "collinear", "coplanar", "utm"};
 static_assert(kNames.size() == static_cast<std::size_t>(Family::kUtm) + 1);
 
 }  // namespace
@@ -35,6 +35,7 @@ std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options) 
         fmt::format("cannot generate points of dimension {}; choose 2 or 3", options.dimension));
   }
   if (options.family == Family::kTerrain) return make_terrain(options);
+  if (options.family == Family::kPacking) return make_packing(options);
   auto generator = make_distribution(options);
   return generator ? std::move(generator) : make_degenerate(options);
 }

@@ -27,6 +27,7 @@ enum class Family {
   kLattice,
   kCircle,
   kTerrain,
+  kPacking,
   kClusters,
   kDuplicates,
   kCollinear,

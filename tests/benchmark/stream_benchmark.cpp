@@ -5,8 +5,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -21,6 +19,7 @@
 #include "src/delaunay/common/schedule.h"
 #include "src/generators/generators.h"
 #include "tests/benchmark/cgal_timing.h"
+#include "tests/benchmark/child_process.h"
 
 namespace spillway::detail {
 namespace {
@@ -41,42 +40,6 @@ struct Plan {
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
-}
-
-struct ProcessFigures {
-  double seconds = 0;
-  double cpu_seconds = 0;
-  double peak_mib = 0;
-};
-
-/// Runs a program to its end; ends this one if that fails.
-ProcessFigures run(const std::vector<std::string>& words) {
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  ProcessFigures figures;
-  rusage usage{};
-  int status = 0;
-  {
-    const Stopwatch watch(figures.seconds);
-    const pid_t child = ::fork();
-    if (child == 0) {
-      ::execv(arguments[0], arguments.data());
-      ::_exit(127);
-    }
-    ::wait4(child, &status, 0, &usage);
-  }
-  if (status != 0) {
-    fmt::print(stderr, "{} failed\n", fmt::join(words, " "));
-    std::exit(1);
-  }
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
-  };
-  figures.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  figures.peak_mib = static_cast<double>(usage.ru_maxrss) / 1024;
-  return figures;
 }
 
 /// Seconds of a plain copy: reads `bytes` from `from` in pieces of a megabyte (nothing if empty)
@@ -115,7 +78,7 @@ void compare(const Plan& plan, std::uint64_t count, const std::string& memory) {
   if (!terrain) {  // which always has z
     generate.insert(generate.end(), {"--dim", std::to_string(plan.dimension)});
   }
-  run(generate);
+  run_program(generate);
   std::vector<double> reference;
   std::vector<double> ours;
   std::vector<double> disk;
@@ -132,7 +95,7 @@ void compare(const Plan& plan, std::uint64_t count, const std::string& memory) {
         "--memory",   memory,        "--threads", std::to_string(plan.threads),
         "--stats",    stats,         "--tmpdir",  plan.folder};
     words.insert(words.end(), plan.more.begin(), plan.more.end());
-    const ProcessFigures figures = run(words);
+    const ProcessFigures figures = run_program(words);
     ours.push_back(figures.seconds / static_cast<double>(count));
     peak = std::max(peak, figures.peak_mib);
     cpu = figures.cpu_seconds;

@@ -103,7 +103,7 @@ TEST_P(EveryFamily, IsTheSameOnEveryMachineAndInEveryVersion) {
       {"circle", 0x45cb18f4f86f7e33ULL},    {"terrain", 0xdb49bc6000000000ULL},
       {"clusters", 0x9fe1114c6cb00ba1ULL},  {"duplicates", 0x432eac0a00000000ULL},
       {"collinear", 0xbf5c572f78400000ULL}, {"coplanar", 0xc9b80b67f8000000ULL},
-      {"utm", 0x3089ad458dcf5fa3ULL},
+      {"utm", 0x3089ad458dcf5fa3ULL},       {"packing", 0x132d0f9a523dfbe3ULL},
   };
   EXPECT_EQ(fingerprint(in_blocks_of(999, options(10000, 3, 5))), fingerprints.at(GetParam()));
 }

@@ -3,6 +3,7 @@ spillway_test(generators_test unit
     generators/distributions_test.cpp
     generators/degenerate_test.cpp
     generators/every_family_test.cpp
+    generators/packing_test.cpp
     generators/survey_grid_test.cpp
     generators/terrain_test.cpp
   LIBS spillway_generators)

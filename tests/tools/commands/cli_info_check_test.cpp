@@ -256,8 +256,8 @@ std::string dimension_option(const std::string& family, const std::string& dimen
 
 TEST(Generate, EveryFamilyComesInBothDimensionsAndAsManyAsAskedFor) {
   const Workspace work;
-  for (const std::string family :
-       {"uniform", "normal", "bubbles", "ellipsoid", "lines", "lattice", "circle", "terrain"}) {
+  for (const std::string family : {"uniform", "normal", "bubbles", "ellipsoid", "lines", "lattice",
+                                   "circle", "terrain", "packing"}) {
     for (const std::string dimension : {"2", "3"}) {
       const std::string name = family + dimension + ".npy";
       work.succeed(fmt::format("spillway generate -q {} -n 777 {} -o {}", family,
@@ -269,8 +269,8 @@ TEST(Generate, EveryFamilyComesInBothDimensionsAndAsManyAsAskedFor) {
 
 TEST(Check, AcceptsTheTriangulationOfEveryFamily) {
   const Workspace work;
-  for (const std::string family :
-       {"uniform", "normal", "bubbles", "ellipsoid", "lines", "lattice", "circle", "terrain"}) {
+  for (const std::string family : {"uniform", "normal", "bubbles", "ellipsoid", "lines", "lattice",
+                                   "circle", "terrain", "packing"}) {
     for (const std::string dimension : {"2", "3"}) {
       work.succeed(
           fmt::format("spillway generate -q {} -n 700 {} -o points.npy\n"
