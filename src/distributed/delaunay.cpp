@@ -9,9 +9,10 @@
 #include <utility>
 
 #include "src/delaunay/delaunay.h"
+#include "src/distributed/box_tree.h"
+#include "src/distributed/growing_share.h"
 #include "src/distributed/halving.h"
 #include "src/distributed/items.h"
-#include "src/distributed/view_builder.h"
 #include "src/error.h"
 
 namespace spillway::detail::distributed {
@@ -44,11 +45,11 @@ class Run {
  public:
   Run(const Ranks& ranks, const DistributedOptions& options) : ranks_(ranks), options_(options) {}
 
-  View<D> triangulate(std::vector<NamedPoint<D>> points) {
+  Share<D> triangulate(std::vector<NamedPoint<D>> points) {
     triangulate_group({ranks_, 0}, std::move(points));
-    builder_->compact();
-    ask_for_origins();
-    return std::move(builder_->view);
+    Share<D> share = growing_->take();
+    ask_for_origins(share);
+    return share;
   }
 
  private:
@@ -73,36 +74,49 @@ class Run {
     std::vector<Point<D>> positions(points.size());
     std::transform(points.begin(), points.end(), positions.begin(),
                    [](const NamedPoint<D>& point) { return point.position; });
-    builder_.emplace(ranks_.rank(),
+    growing_.emplace(ranks_.rank(),
                      spillway::detail::delaunay<D>(positions, {.threads = options_.threads}),
                      points);
     Box<D> box;
     for (const Point<D>& position : positions) box.expand(position);
     boxes_ = gather_item(ranks_, box);
+    settle({ranks_, ranks_.rank()}, 1);
+  }
+
+  /// What no rank outside of `count` ones of the group can change stays as it is.
+  void settle(const Group& group, int count) {
+    const std::span boxes(boxes_);
+    const auto after = static_cast<std::size_t>(group.first + count);
+    std::vector<BoxTree<D>> outside;
+    if (group.first > 0) outside.push_back(BoxTree<D>::of(boxes.first(group.first)));
+    if (after < boxes.size()) outside.push_back(BoxTree<D>::of(boxes.subspan(after)));
+    std::vector<const BoxTree<D>*> trees;
+    for (const BoxTree<D>& tree : outside) trees.push_back(&tree);
+    growing_->settle(trees);
   }
 
   /// From the triangulations of a group's halves to that of the group. The upper half begins at
   /// rank `middle`.
   void merge(const Group& group, int middle) {
-    View<D>& view = builder_->view;
     const int end = group.first + group.ranks.size();
     const bool high = ranks_.rank() >= middle;
     std::array<std::uint64_t, 2> own_dimension{};  // plus 1: 0 without points
-    own_dimension[high] = static_cast<std::uint64_t>(view.dimension) + 1;
+    own_dimension[high] = static_cast<std::uint64_t>(growing_->share().dimension) + 1;
     const auto dimensions = reduced(own_dimension, Reduction::kMost, group.ranks);
-    view.dimension = static_cast<int>(*std::max_element(dimensions.begin(), dimensions.end())) - 1;
-    const bool open = dimensions[high] <= D;
+    const auto most = std::max(dimensions[0], dimensions[1]);
+    growing_->set_dimension(static_cast<int>(most) - 1);
     if (dimensions[0] == 0 || dimensions[1] == 0) return;  // one half has no points
 
+    const std::array open = {dimensions[0] <= D, dimensions[1] <= D};
     const std::span boxes(boxes_);
-    const BoxTree<D> others =
-        tree_of_boxes<D>(high ? boxes.subspan(group.first, middle - group.first)
-                              : boxes.subspan(middle, end - middle));
-    const View<D> border = triangulate_border(group, complete_border(group, others, open));
+    const BoxTree<D> others = BoxTree<D>::of(high ? boxes.subspan(group.first, middle - group.first)
+                                                  : boxes.subspan(middle, end - middle));
+    const Share<D> border = triangulate_border(group, complete_border(group, others, open[high]));
     const auto dimension = reduced<1>({static_cast<std::uint64_t>(border.dimension) + 1},
                                       Reduction::kMost, group.ranks);
-    view.dimension = std::max(view.dimension, static_cast<int>(dimension[0]) - 1);
-    take_over(group, border, high ? middle : group.first, high ? end : middle, open);
+    growing_->set_dimension(static_cast<int>(std::max(most, dimension[0])) - 1);
+    take_over(group, border, middle, open);
+    settle(group, group.ranks.size());
   }
 
   /// The own vertices of the group's border: those that this rank finds, and those that others find
@@ -110,7 +124,7 @@ class Run {
   std::vector<VertexId> complete_border(const Group& group, const BoxTree<D>& others, bool open) {
     std::vector<VertexId> border;
     ItemsByRank<VertexId> elsewhere;
-    for (const RankIndex name : builder_->find_border(others)) {
+    for (const RankIndex name : growing_->expose(others)) {
       const auto owner = static_cast<int>(name.rank);
       (owner == ranks_.rank() ? border : elsewhere[owner]).push_back(name.index);
     }
@@ -118,7 +132,7 @@ class Run {
       border.insert(border.end(), some.begin(), some.end());
     }
     if (open) {
-      border.resize(builder_->view.own);
+      border.resize(growing_->share().own);
       std::iota(border.begin(), border.end(), VertexId{0});
     }
     std::sort(border.begin(), border.end());
@@ -127,15 +141,15 @@ class Run {
   }
 
   /// Triangulates a group's border by its first ranks: by half of them, or by one if it is small.
-  /// Its points' origins are the names of vertices in this run. An empty view at the other ranks.
-  View<D> triangulate_border(const Group& group, const std::vector<VertexId>& border) {
+  /// Its points' origins are the names of vertices in this run. An empty share at the other ranks.
+  Share<D> triangulate_border(const Group& group, const std::vector<VertexId>& border) {
     const int size = group.ranks.size();
     const auto [whole] = reduced<1>({border.size()}, Reduction::kSum, group.ranks);
     const int workers = whole < options_.gather_below ? 1 : size / 2;
     ItemsByRank<NamedPoint<D>> moving;
     const int worker = group.ranks.rank() * workers / size;
     for (const VertexId v : border) {
-      moving[worker].push_back({builder_->view.points[v], builder_->view.names[v]});
+      moving[worker].push_back({growing_->share().points[v], growing_->share().names[v]});
     }
     std::vector<NamedPoint<D>> points;
     for (const auto& [rank, some] : exchange_items(group.ranks, moving)) {
@@ -143,32 +157,25 @@ class Run {
     }
     const bool works = group.ranks.rank() < workers;
     const Ranks split = group.ranks.split(works ? 0 : 1);
-    return works ? Run(split, options_).triangulate(std::move(points)) : View<D>{};
+    return works ? Run(split, options_).triangulate(std::move(points)) : Share<D>{};
   }
 
-  /// Sends the simplices of the border's triangulation, each by the owner of its least vertex
-  /// there, to those who own their vertices here, and makes them part of the views.
-  void take_over(const Group& group, const View<D>& border, int first_rank, int end_rank,
-                 bool open) {
+  /// Sends the simplices of the border's triangulation to those whose shares they may belong to:
+  /// each to the owner of its vertex of the least name.
+  void take_over(const Group& group, const Share<D>& border, int middle,
+                 const std::array<bool, 2>& open) {
     ItemsByRank<NamedSimplex<D>> simplices;
     std::vector<std::pair<std::uint32_t, VertexId>> unknown;  // at a rank, a vertex of `border`
-    for (const Simplex<D>& simplex : border.simplices) {
-      if (!tells(border, simplex)) continue;
+    for (const auto& corners : border.simplices) {
       NamedSimplex<D> named;
-      std::vector<std::uint32_t> owners;
+      std::ranges::transform(corners, named.begin(), [&](VertexId v) {
+        return v == kInfiniteVertex ? kInfiniteName : border.origins[v];
+      });
+      const std::uint32_t holder = std::ranges::min(named).rank;
+      simplices[static_cast<int>(holder)].push_back(named);
       for (int i = 0; i <= D; ++i) {
-        const VertexId v = simplex.vertices[i];
-        named[i] = v == kInfiniteVertex ? kInfiniteName : border.origins[v];
-        if (v != kInfiniteVertex) owners.push_back(named[i].rank);
-      }
-      std::sort(owners.begin(), owners.end());
-      owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
-      for (const std::uint32_t owner : owners) {
-        simplices[static_cast<int>(owner)].push_back(named);
-        for (int i = 0; i <= D; ++i) {
-          if (named[i] != kInfiniteName && named[i].rank != owner) {
-            unknown.emplace_back(owner, simplex.vertices[i]);
-          }
+        if (named[i] != kInfiniteName && named[i].rank != holder) {
+          unknown.emplace_back(holder, corners[i]);
         }
       }
     }
@@ -180,52 +187,40 @@ class Run {
     }
     const auto simplices_here = exchange_within(group, std::move(simplices));
     const auto points_here = exchange_within(group, std::move(points));
-    builder_->accept(simplices_here, points_here, first_rank, end_rank, open);
-    builder_->apply(exchange_within(group, builder_->link()));
+    growing_->accept(simplices_here, points_here, middle, open);
   }
 
-  /// Whether this rank is the one that tells others of a simplex of its view.
-  static bool tells(const View<D>& view, const Simplex<D>& simplex) {
-    VertexId least = kInfiniteVertex;
-    for (const VertexId v : simplex.vertices) {
-      if (v == kInfiniteVertex) continue;
-      if (least == kInfiniteVertex || view.names[v] < view.names[least]) least = v;
-    }
-    return least < view.own;
-  }
-
-  /// Completes the view by the origins of vertices elsewhere, which only their owners know.
-  void ask_for_origins() {
-    View<D>& view = builder_->view;
-    view.origins.resize(view.points.size());
+  /// Completes the share by the origins of vertices elsewhere, which only their owners know.
+  void ask_for_origins(Share<D>& share) {
+    share.origins.resize(share.points.size());
     ItemsByRank<std::uint32_t> questions;
     ItemsByRank<VertexId> asked_for;
-    for (auto v = static_cast<VertexId>(view.own); v < view.points.size(); ++v) {
-      questions[static_cast<int>(view.names[v].rank)].push_back(view.names[v].index);
-      asked_for[static_cast<int>(view.names[v].rank)].push_back(v);
+    for (auto v = static_cast<VertexId>(share.own); v < share.points.size(); ++v) {
+      questions[static_cast<int>(share.names[v].rank)].push_back(share.names[v].index);
+      asked_for[static_cast<int>(share.names[v].rank)].push_back(v);
     }
     ItemsByRank<RankIndex> answers;
     for (const auto& [rank, indices] : exchange_items(ranks_, questions)) {
-      for (const std::uint32_t index : indices) answers[rank].push_back(view.origins[index]);
+      for (const std::uint32_t index : indices) answers[rank].push_back(share.origins[index]);
     }
     for (const auto& [rank, origins] : exchange_items(ranks_, answers)) {
       for (std::size_t i = 0; i < origins.size(); ++i) {
-        view.origins[asked_for[rank][i]] = origins[i];
+        share.origins[asked_for[rank][i]] = origins[i];
       }
     }
   }
 
   const Ranks& ranks_;
   const DistributedOptions& options_;
-  std::optional<ViewBuilder<D>> builder_;
+  std::optional<GrowingShare<D>> growing_;
   std::vector<Box<D>> boxes_;  ///< of each rank's points
 };
 
 }  // namespace
 
 template <int D>
-View<D> delaunay(const std::vector<Point<D>>& local_points, const Ranks& ranks,
-                 const DistributedOptions& options) {
+Share<D> delaunay(const std::vector<Point<D>>& local_points, const Ranks& ranks,
+                  const DistributedOptions& options) {
   if (local_points.size() > kMaxVertices) {
     throw Error("rank " + std::to_string(ranks.rank()) + " has more than " +
                     std::to_string(kMaxVertices) + " points: use more ranks",
@@ -239,7 +234,9 @@ View<D> delaunay(const std::vector<Point<D>>& local_points, const Ranks& ranks,
   return Run<D>(ranks, options).triangulate(std::move(points));
 }
 
-template View<2> delaunay<2>(const std::vector<Point<2>>&, const Ranks&, const DistributedOptions&);
-template View<3> delaunay<3>(const std::vector<Point<3>>&, const Ranks&, const DistributedOptions&);
+template Share<2> delaunay<2>(const std::vector<Point<2>>&, const Ranks&,
+                              const DistributedOptions&);
+template Share<3> delaunay<3>(const std::vector<Point<3>>&, const Ranks&,
+                              const DistributedOptions&);
 
 }  // namespace spillway::detail::distributed

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "src/distributed/ranks.h"
-#include "src/distributed/view.h"
+#include "src/distributed/share.h"
 
 namespace spillway::detail::distributed {
 
@@ -22,11 +22,11 @@ struct DistributedOptions {
 /// Points are finite and may be anywhere: none at some ranks, fewer than ranks, equal ones at
 /// several. Equal points become one vertex.
 ///
-/// Collective. Returns this rank's view; about as many vertices are its own as any other's. Throws
+/// Collective. Returns this rank's share; about as many vertices are its own as any other's. Throws
 /// Error if points or simplices of one rank are too many for 32-bit numbers; the other ranks then
 /// wait in vain, so the job has to be aborted (abort_job).
 template <int D>
-View<D> delaunay(const std::vector<Point<D>>& local_points, const Ranks& ranks,
-                 const DistributedOptions& options = {});
+Share<D> delaunay(const std::vector<Point<D>>& local_points, const Ranks& ranks,
+                  const DistributedOptions& options = {});
 
 }  // namespace spillway::detail::distributed

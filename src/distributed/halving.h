@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "src/distributed/ranks.h"
-#include "src/distributed/view.h"
+#include "src/distributed/share.h"
 
 namespace spillway::detail::distributed {
 

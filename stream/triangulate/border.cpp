@@ -1,12 +1,11 @@
 #include "stream/triangulate/border.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <utility>
 
 #include "src/delaunay/border/acceptance.h"
-#include "src/delaunay/border/region_batch.h"
+#include "src/delaunay/border/exposure.h"
 #include "src/delaunay/common/schedule.h"
 #include "src/delaunay/delaunay.h"
 #include "src/delaunay/division/divide.h"
@@ -146,18 +145,13 @@ class Merge {
   [[nodiscard]] std::vector<Exposure> exposure_to_siblings(const Border<D>& child,
                                                            std::size_t c) const {
     const std::vector<Point<D>> points = child.positions();
+    std::vector<const Tree*> siblings;
+    for (std::size_t other = 0; other < trees_.size(); ++other) {
+      if (other != c) siblings.push_back(trees_[other]);
+    }
     std::vector<Exposure> exposure(child.simplices.size());
-    parallel_for(exposure.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-      for_each_region_batch<D>(
-          end - begin, [&](std::size_t s) { return child.simplices[begin + s]; }, points,
-          [&](std::size_t first, const RegionBatch<D>& regions) {
-            std::uint64_t met = 0;
-            for (std::size_t other = 0; other < trees_.size(); ++other) {
-              if (other != c) met |= regions.may_meet_leaf(*trees_[other], regions.all() & ~met);
-            }
-            for (; met != 0; met &= met - 1) exposure[begin + first + std::countr_zero(met)] = 1;
-          });
-    });
+    find_exposed<D, Tree>(child.simplices, points, siblings,
+                          [&exposure](std::size_t s) { exposure[s] = 1; });
     return exposure;
   }
 

@@ -1,5 +1,5 @@
-// The contract over several ranks: each rank's view is exactly what it should hold of the one
-// triangulation that a single process computes, neighbours and all.
+// The contract over several ranks: their shares together are the one triangulation that a single
+// process computes, each simplex once, at the rank that owns its vertex of the least name.
 
 #include "src/distributed/delaunay.h"
 
@@ -74,22 +74,17 @@ struct Deal {
   [[nodiscard]] VertexId number(RankIndex name) const { return first[name.rank] + name.index; }
 };
 
-/// A simplex by the numbers of its points, sorted, with what it has beyond each facet, in the same
-/// order, and its orientation.
+/// A simplex by the numbers of its points, sorted, and its orientation.
 template <int D>
 struct KnownSimplex {
   std::array<VertexId, D + 1> corners;
-  std::array<VertexId, D + 1> beyond;
   bool even = true;
 
-  KnownSimplex(const std::array<VertexId, D + 1>& unsorted,
-               const std::array<VertexId, D + 1>& unsorted_beyond)
-      : corners(unsorted), beyond(unsorted_beyond) {
+  explicit KnownSimplex(const std::array<VertexId, D + 1>& unsorted) : corners(unsorted) {
     for (int i = 0; i <= D; ++i) {
       for (int j = D; j > i; --j) {
         if (corners[j - 1] <= corners[j]) continue;
         std::swap(corners[j - 1], corners[j]);
-        std::swap(beyond[j - 1], beyond[j]);
         even = !even;
       }
     }
@@ -113,21 +108,15 @@ struct Expected {
       return v == kInfiniteVertex ? v : triangulation.input_index[v];
     };
     CanonicalHash<D> canonical;
-    triangulation.for_each_simplex([&](SimplexId id, const Simplex<D>& simplex) {
+    triangulation.for_each_simplex([&](SimplexId, const Simplex<D>& simplex) {
       std::array<VertexId, D + 1> corners;
-      std::array<VertexId, D + 1> beyond;
       std::array<Point<D>, D + 1> positions;
       for (int i = 0; i <= D; ++i) {
         corners[i] = number(simplex.vertices[i]);
-        for (const VertexId v : triangulation.simplex(triangulation.neighbour(id, i)).vertices) {
-          if (std::ranges::find(simplex.vertices, v) == simplex.vertices.end()) {
-            beyond[i] = number(v);
-          }
-        }
         if (!simplex.infinite()) positions[i] = points[corners[i]];
       }
       if (!simplex.infinite()) canonical.add(positions);
-      simplices.emplace(corners, beyond);
+      simplices.emplace(corners);
     });
     for (const Duplicate& duplicate : triangulation.duplicates) {
       duplicates[number(duplicate.dropped)] = number(duplicate.kept);
@@ -136,12 +125,12 @@ struct Expected {
   }
 };
 
-/// What is wrong with this rank's view, one line a kind of fault.
+/// What is wrong with this rank's share, one line a kind of fault.
 template <int D>
-class ViewCheck {
+class ShareCheck {
  public:
-  ViewCheck(const View<D>& view, const Deal<D>& deal, const Expected<D>& expected)
-      : view_(view), deal_(deal), expected_(expected) {}
+  ShareCheck(const Share<D>& share, const Deal<D>& deal, const Expected<D>& expected)
+      : share_(share), deal_(deal), expected_(expected) {}
 
   std::set<std::string> faults() {
     check_vertices();
@@ -155,15 +144,15 @@ class ViewCheck {
     if (!holds) faults_.insert(what);
   }
   [[nodiscard]] VertexId number(VertexId v) const {
-    return v == kInfiniteVertex ? v : deal_.number(view_.origins[v]);
+    return v == kInfiniteVertex ? v : deal_.number(share_.origins[v]);
   }
 
   void check_vertices() {
-    require(view_.dimension == expected_.triangulation.dimension, "another dimension");
-    require(view_.names.size() == view_.points.size() &&
-                view_.origins.size() == view_.points.size() && view_.own <= view_.points.size(),
+    require(share_.dimension == expected_.triangulation.dimension, "another dimension");
+    require(share_.names.size() == share_.points.size() &&
+                share_.origins.size() == share_.points.size() && share_.own <= share_.points.size(),
             "lists of vertices of different lengths");
-    std::vector<VertexId> own(view_.own);
+    std::vector<VertexId> own(share_.own);
     for (VertexId v = 0; v < own.size(); ++v) own[v] = number(v);
     std::vector<std::vector<VertexId>> owned;
     std::set<VertexId> all;
@@ -175,110 +164,83 @@ class ViewCheck {
     }
     require(all.size() == total, "a vertex with two owners");
     require(total == expected_.triangulation.vertex_count(), "vertices without an owner");
-    for (VertexId v = 0; v < view_.points.size(); ++v) {
-      const RankIndex name = view_.names[v];
+    for (VertexId v = 0; v < share_.points.size(); ++v) {
+      const RankIndex name = share_.names[v];
       const bool is_own = name.rank == static_cast<std::uint32_t>(world().rank());
-      require(is_own == (v < view_.own), "own and foreign vertices mixed");
+      require(is_own == (v < share_.own), "own and foreign vertices mixed");
       require(!is_own || name.index == v, "an own vertex with another number as its name");
       require(name.rank < owned.size() && name.index < owned[name.rank].size() &&
                   owned[name.rank][name.index] == number(v),
               "a vertex whose owner knows it as another one");
-      require(view_.points[v] == deal_.points[number(v)], "a vertex at another position");
+      require(share_.points[v] == deal_.points[number(v)], "a vertex at another position");
       require(!expected_.duplicates.contains(number(v)), "a duplicate as a vertex");
     }
-    std::array<std::uint64_t, 1> duplicates{view_.duplicates.size()};
+    std::array<std::uint64_t, 1> duplicates{share_.duplicates.size()};
     world().reduce(duplicates, Reduction::kSum);
     require(duplicates[0] == expected_.duplicates.size(), "another number of duplicates");
-    for (const auto& [dropped, kept] : view_.duplicates) {
+    for (const auto& [dropped, kept] : share_.duplicates) {
       const auto found = expected_.duplicates.find(deal_.number(dropped));
       require(found != expected_.duplicates.end() && found->second == deal_.number(kept),
               "another duplicate");
     }
-    own_.insert(own.begin(), own.end());
   }
 
+  /// Of all shares together each is there once, and where it belongs.
   void check_simplices() {
     std::set<KnownSimplex<D>> seen;
-    std::vector<bool> occurs(view_.points.size());
-    const auto occurring = [&](VertexId v) {
-      if (v != kInfiniteVertex) occurs[v] = true;
-    };
-    for (const Simplex<D>& simplex : view_.simplices) {
+    std::vector<bool> occurs(share_.points.size());
+    for (const auto& simplex : share_.simplices) {
       std::array<VertexId, D + 1> corners;
-      std::array<VertexId, D + 1> beyond;
+      RankIndex least = kInfiniteName;
       for (int i = 0; i <= D; ++i) {
-        corners[i] = number(simplex.vertices[i]);
-        beyond[i] = number(view_.beyond(simplex, i));
-        occurring(simplex.vertices[i]);
-        occurring(view_.beyond(simplex, i));
-        check_neighbour(simplex, i);
+        corners[i] = number(simplex[i]);
+        if (simplex[i] == kInfiniteVertex) continue;
+        occurs[simplex[i]] = true;
+        least = std::min(least, share_.names[simplex[i]]);
       }
-      seen.emplace(corners, beyond);
+      require(least.rank == static_cast<std::uint32_t>(world().rank()),
+              "a simplex that another rank should hold");
+      require(expected_.simplices.contains(KnownSimplex<D>(corners)), "a simplex too many");
+      seen.emplace(corners);
     }
-    require(seen.size() == view_.simplices.size(), "a simplex twice");
-    std::set<KnownSimplex<D>> wanted;
-    for (const KnownSimplex<D>& simplex : expected_.simplices) {
-      if (std::ranges::any_of(simplex.corners, [&](VertexId v) { return own_.contains(v); })) {
-        wanted.insert(simplex);
-      }
-    }
-    require(seen == wanted, "other simplices or neighbours than expected");
-    require(std::all_of(occurs.begin() + static_cast<std::ptrdiff_t>(view_.own), occurs.end(),
+    require(seen.size() == share_.simplices.size(), "a simplex twice");
+    std::array<std::uint64_t, 1> all{seen.size()};
+    world().reduce(all, Reduction::kSum);
+    require(all[0] == expected_.simplices.size(), "another number of simplices");
+    require(std::all_of(occurs.begin() + static_cast<std::ptrdiff_t>(share_.own), occurs.end(),
                         [](bool occurs_somewhere) { return occurs_somewhere; }),
             "a foreign vertex that occurs nowhere");
   }
 
-  /// A neighbour in the view points back; one elsewhere has no own vertex.
-  void check_neighbour(const Simplex<D>& simplex, int i) {
-    if (View<D>::local(simplex, i)) {
-      const Simplex<D>& other = view_.simplices[simplex.neighbours[i]];
-      const auto back = std::ranges::find_if(other.neighbours, [&](std::uint32_t n) {
-        return n < Simplex<D>::kLink && &view_.simplices[n] == &simplex;
-      });
-      require(back != other.neighbours.end(), "a neighbour that does not point back");
-      return;
-    }
-    for (int k = 0; k <= D; ++k) {
-      const VertexId v = k == i ? view_.beyond(simplex, i) : simplex.vertices[k];
-      require(v >= view_.own, "a neighbour said to be elsewhere that has an own vertex");
-    }
-  }
-
-  /// Each simplex counted by the owner of its vertex of the least name.
   void check_hash() {
     CanonicalHash<D> hash;
-    for (const Simplex<D>& simplex : view_.simplices) {
-      if (simplex.infinite()) continue;
+    for (const auto& simplex : share_.simplices) {
+      if (std::ranges::find(simplex, kInfiniteVertex) != simplex.end()) continue;
       std::array<Point<D>, D + 1> positions;
-      RankIndex least = view_.names[simplex.vertices[0]];
-      for (int i = 0; i <= D; ++i) {
-        positions[i] = view_.points[simplex.vertices[i]];
-        least = std::min(least, view_.names[simplex.vertices[i]]);
-      }
-      if (least.rank == static_cast<std::uint32_t>(world().rank())) hash.add(positions);
+      for (int i = 0; i <= D; ++i) positions[i] = share_.points[simplex[i]];
+      hash.add(positions);
     }
     std::array<std::uint64_t, 1> sum{hash.value()};
     world().reduce(sum, Reduction::kSum);
     require(sum[0] == expected_.hash, "another canonical hash");
   }
 
-  const View<D>& view_;
+  const Share<D>& share_;
   const Deal<D>& deal_;
   const Expected<D>& expected_;
-  std::set<VertexId> own_;
   std::set<std::string> faults_;
 };
 
 template <int D>
-void expect_views_of_sequential(const std::vector<Point<D>>& points, Dealing dealing,
-                                std::size_t gather_below) {
+void expect_shares_of_sequential(const std::vector<Point<D>>& points, Dealing dealing,
+                                 std::size_t gather_below) {
   SCOPED_TRACE(testing::Message() << points.size() << " points, dealing "
                                   << static_cast<int>(dealing) << ", gathered below "
                                   << gather_below);
   const Deal<D> deal(points, dealing);
-  const View<D> view = delaunay<D>(deal.own(), world(), {.gather_below = gather_below});
+  const Share<D> share = delaunay<D>(deal.own(), world(), {.gather_below = gather_below});
   const Expected<D> expected(deal.points);
-  ASSERT_THAT(ViewCheck<D>(view, deal, expected).faults(), testing::IsEmpty());
+  ASSERT_THAT(ShareCheck<D>(share, deal, expected).faults(), testing::IsEmpty());
 }
 
 constexpr std::size_t kAlwaysRecursive = 0;
@@ -291,13 +253,13 @@ class DistributedFamily : public testing::TestWithParam<FamilyCase> {
     const auto points = [&](std::uint64_t n, std::uint64_t seed) {
       return generate_points<D>({GetParam().family, n, D, seed});
     };
-    expect_views_of_sequential<D>(points(count, 1), Dealing::kAtRandom, kAlwaysRecursive);
-    expect_views_of_sequential<D>(points(count, 2), Dealing::kSkewed, count / 8);
-    expect_views_of_sequential<D>(points(count / 5, 3), Dealing::kLastRank, kAlwaysGathered);
+    expect_shares_of_sequential<D>(points(count, 1), Dealing::kAtRandom, kAlwaysRecursive);
+    expect_shares_of_sequential<D>(points(count, 2), Dealing::kSkewed, count / 8);
+    expect_shares_of_sequential<D>(points(count / 5, 3), Dealing::kLastRank, kAlwaysGathered);
   }
 };
 
-TEST_P(DistributedFamily, GivesTheViewsOfTheSequentialTriangulation) {
+TEST_P(DistributedFamily, GivesSharesOfTheSequentialTriangulation) {
   const bool dense = GetParam().family == Family::kLines;  // in space n^2/4 tetrahedra
   if (GetParam().dimension == 2) {
     expect_same<2>(1500);
@@ -332,7 +294,7 @@ TYPED_TEST(DistributedDelaunay, TakesFewerPointsThanRanksAndNoneAtAll) {
   for (const std::size_t n : {0, 1, 2, 3, 4, 5, 7, 9, 12}) {
     const auto points = TestFixture::random_integers(n, {100, 100, 100}, n);
     for (const Dealing dealing : {Dealing::kShares, Dealing::kLastRank}) {
-      expect_views_of_sequential<TestFixture::kD>(points, dealing, kAlwaysRecursive);
+      expect_shares_of_sequential<TestFixture::kD>(points, dealing, kAlwaysRecursive);
     }
   }
 }
@@ -341,8 +303,8 @@ TYPED_TEST(DistributedDelaunay, MakesEqualPointsOfDifferentRanksOneVertex) {
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     const unsigned side = 1 + static_cast<unsigned>(seed % 6);
     const auto points = TestFixture::random_integers(10 + 6 * seed, {side, side, side}, seed);
-    expect_views_of_sequential<TestFixture::kD>(points, Dealing::kAtRandom,
-                                                seed % 2 == 0 ? kAlwaysRecursive : 10);
+    expect_shares_of_sequential<TestFixture::kD>(points, Dealing::kAtRandom,
+                                                 seed % 2 == 0 ? kAlwaysRecursive : 10);
   }
 }
 
@@ -350,8 +312,8 @@ TYPED_TEST(DistributedDelaunay, TakesPartsThatAreSingleLinesOrPlanes) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     for (const auto extent : {std::array{3U, 40U, 40U}, {2U, 2U, 300U}, {40U, 2U, 1U}}) {
       const auto points = TestFixture::random_integers(200, extent, seed);
-      expect_views_of_sequential<TestFixture::kD>(points, Dealing::kAtRandom,
-                                                  seed % 2 == 0 ? kAlwaysRecursive : 60);
+      expect_shares_of_sequential<TestFixture::kD>(points, Dealing::kAtRandom,
+                                                   seed % 2 == 0 ? kAlwaysRecursive : 60);
     }
   }
 }
@@ -359,7 +321,7 @@ TYPED_TEST(DistributedDelaunay, TakesPartsThatAreSingleLinesOrPlanes) {
 TYPED_TEST(DistributedDelaunay, RecursesThroughSeveralLevelsOfBorders) {
   const auto points = generate_points<TestFixture::kD>(
       {Family::kUniform, TestFixture::kD == 2 ? 12'000U : 2'000U, TestFixture::kD, 9});
-  expect_views_of_sequential<TestFixture::kD>(points, Dealing::kAtRandom, kAlwaysRecursive);
+  expect_shares_of_sequential<TestFixture::kD>(points, Dealing::kAtRandom, kAlwaysRecursive);
 }
 
 TYPED_TEST(DistributedDelaunay, GivesEveryRankAboutAsManyVertices) {
@@ -367,9 +329,9 @@ TYPED_TEST(DistributedDelaunay, GivesEveryRankAboutAsManyVertices) {
   const auto points =
       generate_points<TestFixture::kD>({Family::kUniform, kCount, TestFixture::kD, 9});
   const Deal<TestFixture::kD> deal(points, Dealing::kLastRank);
-  const auto view = delaunay<TestFixture::kD>(deal.own(), world());
-  const double share = static_cast<double>(kCount) / world().size();
-  EXPECT_NEAR(static_cast<double>(view.own), share, 0.05 * share);
+  const auto share = delaunay<TestFixture::kD>(deal.own(), world());
+  const double wanted = static_cast<double>(kCount) / world().size();
+  EXPECT_NEAR(static_cast<double>(share.own), wanted, 0.05 * wanted);
 }
 
 }  // namespace
