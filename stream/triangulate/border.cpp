@@ -150,8 +150,8 @@ class Merge {
       if (other != c) siblings.push_back(trees_[other]);
     }
     std::vector<Exposure> exposure(child.simplices.size());
-    find_exposed<D, Tree>(child.simplices, points, siblings,
-                          [&exposure](std::size_t s) { exposure[s] = 1; });
+    detail::find_exposed<D, Tree>(child.simplices, points, siblings,
+                                  [&exposure](std::size_t s) { exposure[s] = 1; });
     return exposure;
   }
 
