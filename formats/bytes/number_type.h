@@ -50,6 +50,12 @@ constexpr std::size_t size_of(NumberType type) {
   return type != NumberType::kFloat32 && type != NumberType::kFloat64;
 }
 
+[[nodiscard]] constexpr bool is_signed_integer(NumberType type) {
+  return with_number_type(type, [](auto number) {
+    return std::is_integral_v<decltype(number)> && std::is_signed_v<decltype(number)>;
+  });
+}
+
 /// "int8", "uint16", "float64", ...
 std::string_view name_of(NumberType type);
 

@@ -6,16 +6,37 @@
 namespace spillway::detail {
 namespace {
 
-bool same_numbers(const Attribute& a, const Attribute& b) {
-  return a.type == b.type && a.scale == b.scale && a.offset == b.offset;
+bool same_scale(const Attribute& a, const Attribute& b) {
+  return a.scale == b.scale && a.offset == b.offset;
 }
 
-/// What holds the numbers of both: doubles of what is meant, unless both are the same.
+/// The least type that holds all numbers of both; doubles if no integer does.
+NumberType common_type(NumberType a, NumberType b) {
+  if (a == b) return a;
+  if (!is_integer(a) || !is_integer(b)) return NumberType::kFloat64;
+  const bool is_signed = is_signed_integer(a) || is_signed_integer(b);
+  std::size_t bytes = 0;
+  for (const NumberType type : {a, b}) {
+    const bool grows = is_signed && !is_signed_integer(type);
+    bytes = std::max(bytes, size_of(type) * (grows ? 2 : 1));
+  }
+  for (const NumberType type :
+       {NumberType::kInt8, NumberType::kUint8, NumberType::kInt16, NumberType::kUint16,
+        NumberType::kInt32, NumberType::kUint32, NumberType::kInt64, NumberType::kUint64}) {
+    if (is_signed_integer(type) == is_signed && size_of(type) == bytes) return type;
+  }
+  return NumberType::kFloat64;
+}
+
+/// What holds the numbers of both: doubles of what is meant, unless both mean the same by them.
 Attribute common_attribute(Attribute a, const Attribute& b) {
   a.elements = std::max(a.elements, b.elements);
   if (a.unit != b.unit) a.unit.clear();
   if (a.description != b.description) a.description.clear();
-  if (same_numbers(a, b)) return a;
+  if (same_scale(a, b)) {
+    a.type = common_type(a.type, b.type);
+    return a;
+  }
   a.type = NumberType::kFloat64;
   a.scale = 1;
   a.offset = 0;

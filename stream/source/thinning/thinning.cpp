@@ -15,19 +15,30 @@ namespace {
 
 /// Most files that the points of a pass are put aside to.
 constexpr std::size_t kBuckets = 16;
-constexpr std::size_t kBuffers =
-    kBuckets * PointBuffer::kChunk * (sizeof(LatticePoint) + sizeof(std::uint64_t));
+constexpr std::size_t kBytesOfWaiting = sizeof(LatticePoint) + sizeof(std::uint64_t);
+/// Share of the memory that points have which wait for a file, at most, and fewest of a file.
+constexpr std::uint64_t kWaitingShare = 4;
+constexpr std::size_t kFewestWaiting = 64;
 /// A candidate, and its share of a table that is a quarter to half full.
 constexpr std::size_t kBytesPerCell = 64;
 constexpr std::size_t kFewestCells = 1024;
 constexpr std::size_t kMostCells = std::size_t{1} << 30;
 constexpr std::size_t kFewestSlots = 1024;
 constexpr std::size_t kBlockPoints = 65536;
+constexpr std::size_t kBlockBytes = std::size_t{4} << 20U;
 constexpr double kLargestCell = 4503599627370496.0;  // 2^52: numbers of cells are exact
+
+/// How many points of a bucket wait in memory.
+std::size_t chunk_in(std::uint64_t memory, std::size_t record_size) {
+  return std::clamp<std::size_t>(
+      memory / kWaitingShare / (kBuckets * (kBytesOfWaiting + record_size)), kFewestWaiting,
+      PointBuffer::kChunk);
+}
 
 /// How many cells a memory has room for.
 std::size_t cells_in(std::uint64_t memory, std::size_t record_size) {
-  const std::uint64_t buffers = kBuffers + kBuckets * PointBuffer::kChunk * record_size;
+  const std::uint64_t buffers =
+      kBuckets * chunk_in(memory, record_size) * (kBytesOfWaiting + record_size);
   return std::clamp<std::size_t>(
       (memory - std::min<std::uint64_t>(memory, buffers)) / (kBytesPerCell + record_size),
       kFewestCells, kMostCells);
@@ -46,6 +57,8 @@ std::uint64_t hash_of(const std::array<double, 3>& cell) {
 Thinning::Thinning(const ThinningOptions& options, ScratchFolder& scratch)
     : options_(options),
       scratch_(scratch),
+      chunk_(chunk_in(options.memory, 0)),
+      block_points_(kBlockPoints),
       capacity_(cells_in(options.memory, 0)),
       slots_(kFewestSlots),
       buckets_(kBuckets) {
@@ -58,6 +71,8 @@ Thinning::Thinning(const ThinningOptions& options, ScratchFolder& scratch)
 void Thinning::carry(const AttributeLayout& attributes) {
   record_size_ = attributes.record_size();
   refuse_large_records(record_size_);
+  chunk_ = chunk_in(options_.memory, record_size_);
+  block_points_ = std::min(kBlockPoints, kBlockBytes / (kBytesOfWaiting + record_size_));
   capacity_ = cells_in(options_.memory, record_size_);
   attributes_.reserve(capacity_ * record_size_);
 }
@@ -157,7 +172,7 @@ void Thinning::put_aside(const Candidate& candidate, const std::byte* attributes
   Bucket& bucket = buckets_[mix64(hash + level_) % buckets_.size()];
   bucket.buffer.append(
       {std::span(&candidate.point, 1), std::span(&candidate.index, 1), {attributes, record_size_}});
-  if (bucket.buffer.size() == PointBuffer::kChunk) write(bucket);
+  if (bucket.buffer.size() == chunk_) write(bucket);
 }
 
 void Thinning::write(Bucket& bucket) {
@@ -274,8 +289,8 @@ bool Thinning::has_more() {
 bool Thinning::next(PointBlock& block) {
   block.clear();
   if (passing_) end_pass();
-  while (block.size() < kBlockPoints && has_more()) {
-    const std::size_t end = std::min(candidates_.size(), given_ + kBlockPoints - block.size());
+  while (block.size() < block_points_ && has_more()) {
+    const std::size_t end = std::min(candidates_.size(), given_ + block_points_ - block.size());
     for (; given_ < end; ++given_) {
       const Candidate& candidate = candidates_[given_];
       block.points.push_back(candidate.point);

@@ -104,13 +104,15 @@ class Thinning {
 
   ThinningOptions options_;
   ScratchFolder& scratch_;
-  std::size_t record_size_ = 0;        ///< bytes of a point's attributes
-  std::size_t capacity_;               ///< cells in memory
-  std::vector<Candidate> candidates_;  ///< in the order in which their cells were met
-  std::vector<std::byte> attributes_;  ///< of these
-  std::vector<std::uint64_t> met_;     ///< of points from files: the first index of each cell
-  std::vector<Slot> slots_;            ///< as many as a power of 2, half full at most
-  std::vector<Bucket> buckets_;        ///< of the pass that is going on
+  std::size_t record_size_ = 0;              ///< bytes of a point's attributes
+  std::size_t chunk_ = PointBuffer::kChunk;  ///< points that are put aside to a file at a time
+  std::size_t block_points_;                 ///< of those that are given
+  std::size_t capacity_;                     ///< cells in memory
+  std::vector<Candidate> candidates_;        ///< in the order in which their cells were met
+  std::vector<std::byte> attributes_;        ///< of these
+  std::vector<std::uint64_t> met_;           ///< of points from files: the first index of each cell
+  std::vector<Slot> slots_;                  ///< as many as a power of 2, half full at most
+  std::vector<Bucket> buckets_;              ///< of the pass that is going on
   std::vector<Bucket> waiting_;
   std::optional<PointRuns> kept_;  ///< of the points from files
   std::unique_ptr<ScratchFile> kept_attributes_;

@@ -89,6 +89,21 @@ TEST(RecordConversion, PacksBitsBesideOthersAndNamesWhatDoesNotFit) {
   }
 }
 
+TEST(AttributeLayout, OfTwoIntegersIsTheLeastThatHoldsBoth) {
+  const auto common = [](NumberType a, NumberType b) {
+    const std::vector<AttributeLayout> layouts = {AttributeLayout({{"n", a}}),
+                                                  AttributeLayout({{"n", b}})};
+    return joined(layouts).find("n")->attribute.type;
+  };
+  EXPECT_EQ(common(kInt32, kInt64), kInt64);
+  EXPECT_EQ(common(kUint8, kUint16), kUint16);
+  EXPECT_EQ(common(kUint16, kInt8), kInt32);
+  EXPECT_EQ(common(kUint8, kInt16), kInt16);
+  EXPECT_EQ(common(kInt64, kUint32), kInt64);
+  EXPECT_EQ(common(kInt8, kUint64), kFloat64);
+  EXPECT_EQ(common(kFloat32, kUint8), kFloat64);
+}
+
 TEST(AttributeLayout, OfSeveralSourcesHasTheAttributesOfAllAndHoldsTheNumbersOfEach) {
   const AttributeLayout one({{.name = "intensity", .type = kUint16}, {"angle", kInt8}});
   const AttributeLayout two({{"angle", kInt16, 1, 0.006}, {"time", kFloat64}});

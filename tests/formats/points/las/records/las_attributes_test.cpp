@@ -186,6 +186,25 @@ TEST(LasExtraBytes, ThatLasCannotHoldAreRefusedByName) {
                         "to 65535"));
 }
 
+TEST(LasExtraBytes, AreAsManyAsTheirRecordDescribes) {
+  const auto write = [](std::size_t count) {
+    FaultyFileSystem files;
+    PointWriterOptions options;
+    options.lattice = Lattice{{1, 1, 1}, {0, 0, 0}};
+    std::vector<Attribute> attributes;
+    for (std::size_t a = 0; a < count; ++a) {
+      attributes.push_back({.name = "n" + std::to_string(a), .type = NumberType::kUint8});
+    }
+    options.attributes = AttributeLayout(std::move(attributes));
+    const auto writer = open_point_writer(files, "a.laz", options);
+    writer->write(std::vector<LatticePoint>{{1, 2, 3}}, std::vector<std::byte>(count));
+  };
+  EXPECT_NO_THROW(write(341));
+  EXPECT_THAT(error_of([&] { write(342); }),
+              HasSubstr("points have 342 attributes of which LAS has no fields of its own, and it "
+                        "describes 341 at most; write spp"));
+}
+
 TEST(LasMetadata, OfSeveralFilesIsWhatTheyTellAlike) {
   LasMetadata one;
   one.point_format = 1;
