@@ -16,8 +16,6 @@ namespace {
 /// Most files that the points of a pass are put aside to.
 constexpr std::size_t kBuckets = 16;
 constexpr std::size_t kBytesOfWaiting = sizeof(LatticePoint) + sizeof(std::uint64_t);
-/// Share of the memory that points have which wait for a file, at most, and fewest of a file.
-constexpr std::uint64_t kWaitingShare = 4;
 constexpr std::size_t kFewestWaiting = 64;
 /// A candidate, and its share of a table that is a quarter to half full.
 constexpr std::size_t kBytesPerCell = 64;
@@ -28,17 +26,15 @@ constexpr std::size_t kBlockPoints = 65536;
 constexpr std::size_t kBlockBytes = std::size_t{4} << 20U;
 constexpr double kLargestCell = 4503599627370496.0;  // 2^52: numbers of cells are exact
 
-/// How many points of a bucket wait in memory.
-std::size_t chunk_in(std::uint64_t memory, std::size_t record_size) {
-  return std::clamp<std::size_t>(
-      memory / kWaitingShare / (kBuckets * (kBytesOfWaiting + record_size)), kFewestWaiting,
-      PointBuffer::kChunk);
+/// How many points of a bucket wait in memory: as many bytes, whatever they carry.
+std::size_t chunk_for(std::size_t record_size) {
+  return std::max(kFewestWaiting,
+                  PointBuffer::kChunk * kBytesOfWaiting / (kBytesOfWaiting + record_size));
 }
 
 /// How many cells a memory has room for.
 std::size_t cells_in(std::uint64_t memory, std::size_t record_size) {
-  const std::uint64_t buffers =
-      kBuckets * chunk_in(memory, record_size) * (kBytesOfWaiting + record_size);
+  const std::uint64_t buffers = kBuckets * chunk_for(record_size) * (kBytesOfWaiting + record_size);
   return std::clamp<std::size_t>(
       (memory - std::min<std::uint64_t>(memory, buffers)) / (kBytesPerCell + record_size),
       kFewestCells, kMostCells);
@@ -57,7 +53,6 @@ std::uint64_t hash_of(const std::array<double, 3>& cell) {
 Thinning::Thinning(const ThinningOptions& options, ScratchFolder& scratch)
     : options_(options),
       scratch_(scratch),
-      chunk_(chunk_in(options.memory, 0)),
       block_points_(kBlockPoints),
       capacity_(cells_in(options.memory, 0)),
       slots_(kFewestSlots),
@@ -71,7 +66,7 @@ Thinning::Thinning(const ThinningOptions& options, ScratchFolder& scratch)
 void Thinning::carry(const AttributeLayout& attributes) {
   record_size_ = attributes.record_size();
   refuse_large_records(record_size_);
-  chunk_ = chunk_in(options_.memory, record_size_);
+  chunk_ = chunk_for(record_size_);
   block_points_ = std::min(kBlockPoints, kBlockBytes / (kBytesOfWaiting + record_size_));
   capacity_ = cells_in(options_.memory, record_size_);
   attributes_.reserve(capacity_ * record_size_);
