@@ -4,11 +4,10 @@
 
 #include <cstddef>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
-#include "formats/points/attributes/record_conversion.h"
+#include "formats/points/attributes/record_selection.h"
 #include "src/error.h"
 #include "src/geometry/simplex_name.h"
 #include "src/parallel/parallel.h"
@@ -27,11 +26,7 @@ class MeshPassage {
  public:
   MeshPassage(MeshStreamReader& reader, const AttributeLayout& kept, BlockSink& blocks,
               RunWatch& watch)
-      : reader_(reader),
-        blocks_(blocks),
-        watch_(watch),
-        kept_(kept),
-        conversion_(reader.header().attributes.fields(), kept.fields()) {}
+      : reader_(reader), blocks_(blocks), watch_(watch), kept_(reader.header().attributes, kept) {}
 
   /// Several blocks are absorbed at a time.
   void run(unsigned threads) {
@@ -41,8 +36,9 @@ class MeshPassage {
         {.in_order = false,
          .work =
              [&](std::size_t slot) {
-               drop_attributes(slots[slot].block);
-               blocks_.absorb(slots[slot].block);
+               MeshBlock& block = slots[slot].block;
+               kept_.apply(block.attributes, block.vertices.size());
+               blocks_.absorb(block);
              }},
         {.in_order = true, .work = [&](std::size_t slot) { write(slots[slot]); }}};
     with_threads(threads, [&] { run_pipeline(slots.size(), source, steps); });
@@ -63,17 +59,6 @@ class MeshPassage {
     return more;
   }
 
-  /// All but those that are kept.
-  void drop_attributes(MeshBlock& block) const {
-    const std::size_t size = reader_.header().attributes.record_size();
-    if (kept_.record_size() == size) return;
-    std::vector<std::byte> records(block.vertices.size() * kept_.record_size());
-    // Numbers stay as they are, so all fit.
-    std::ignore = conversion_.convert(block.attributes.data(), size, records.data(),
-                                      kept_.record_size(), block.vertices.size());
-    block.attributes = std::move(records);
-  }
-
   void write(Slot& slot) {
     blocks_.write(std::move(slot.block));
     watch_.tell(simplices_ += slot.simplices, reader_.fraction_read());
@@ -82,8 +67,7 @@ class MeshPassage {
   MeshStreamReader& reader_;
   BlockSink& blocks_;
   RunWatch& watch_;
-  AttributeLayout kept_;
-  RecordConversion conversion_;
+  RecordSelection kept_;
   std::uint64_t simplices_ = 0;
 };
 

@@ -1,7 +1,6 @@
 #include "stream/source/point_source.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "stream/source/ordered_blocks.h"
@@ -171,7 +170,7 @@ void PointSource::carry(const AttributeChoice& choice) {
   read.names.insert(read.names.end(), filtered.begin(), filtered.end());
   attributes_ = chosen(facts_.attributes(), choice);
   read_attributes_ = chosen(facts_.attributes(), read);
-  without_filtered_ = RecordConversion(read_attributes_.fields(), attributes_.fields());
+  without_filtered_ = RecordSelection(read_attributes_, attributes_);
   pieces_.carry(read_attributes_);
   if (thinning_) thinning_->carry(attributes_);
 }
@@ -218,7 +217,7 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
   counts.read = block.size() + block.invalid + block.withheld;
   if (options_.filter.active()) {
     apply_filter(options_.filter, lattice(), read_attributes_, block, counts);
-    drop_filtered_attributes(block);
+    without_filtered_.apply(block.attributes, block.size());
   }
   if (!positions_.empty()) {
     regions_.check(block, regions_.number(piece.input, piece.raw.region));
@@ -235,17 +234,6 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
       untold_.push_back(std::move(notice));
     }
   }
-}
-
-/// Those that only the filter looks at.
-void PointSource::drop_filtered_attributes(PointBlock& block) const {
-  const std::size_t size = attributes_.record_size();
-  if (size == read_attributes_.record_size()) return;
-  std::vector<std::byte> records(block.size() * size);
-  // Numbers stay as they are, so all fit.
-  std::ignore = without_filtered_.convert(block.attributes.data(), read_attributes_.record_size(),
-                                          records.data(), size, block.size());
-  block.attributes = std::move(records);
 }
 
 /// The points of all inputs reach the cells in their order.

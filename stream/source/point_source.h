@@ -11,7 +11,7 @@
 
 #include "formats/disk/file_system.h"
 #include "formats/disk/scratch_folder.h"
-#include "formats/points/attributes/record_conversion.h"
+#include "formats/points/attributes/record_selection.h"
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
@@ -152,7 +152,6 @@ class PointSource : public PointStream {
 
   [[nodiscard]] std::optional<Box<3>> find_world_extent() const;
   void decode_input(SourcePiece& piece, PointBlock& block);
-  void drop_filtered_attributes(PointBlock& block) const;
   void thin_inputs();
 
   PointSourceOptions options_;
@@ -167,8 +166,8 @@ class PointSource : public PointStream {
   std::optional<Box<3>> world_extent_;
   std::optional<Box<3>> extent_;
   AttributeLayout attributes_;
-  AttributeLayout read_attributes_;    ///< these, and what the filter looks at
-  RecordConversion without_filtered_;  ///< from records as they are read
+  AttributeLayout read_attributes_;  ///< these, and what the filter looks at
+  RecordSelection without_filtered_;
   std::optional<Thinning> thinning_;
   bool thinned_ = false;
   bool tells_ = true;                ///< this process looked at the files first

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -19,6 +21,8 @@ namespace {
 using enum NumberType;
 
 constexpr std::size_t kDescriptor = 192;
+/// One record of at most 64 KiB has the descriptors of all.
+constexpr std::size_t kMostDescriptors = std::numeric_limits<std::uint16_t>::max() / kDescriptor;
 constexpr std::size_t kType = 2;
 constexpr std::size_t kOptions = 3;
 constexpr std::size_t kName = 4;
@@ -138,6 +142,12 @@ std::vector<AttributeField> las_extra_fields(std::span<const std::byte> descript
 
 std::vector<AttributeField> las_extra_fields_for(std::span<const Attribute> attributes,
                                                  std::size_t at) {
+  if (attributes.size() > kMostDescriptors) {
+    throw Error(fmt::format("points have {} attributes of which LAS has no fields of its own, and "
+                            "it describes {} at most; write spp",
+                            attributes.size(), kMostDescriptors),
+                ErrorCode::kInvalidArgument, {.remedy = Remedy::kAttributes});
+  }
   std::vector<AttributeField> fields;
   for (const Attribute& attribute : attributes) {
     const bool bytes = attribute.type == kUint8 && attribute.elements <= kMostBytes;

@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::uint64_t kMostLegacyPoints = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kMostRecordBytes = std::numeric_limits<std::uint16_t>::max();
-/// A record of 64 KiB describes them, with 192 bytes each.
-constexpr std::size_t kMostExtraFields = std::numeric_limits<std::uint16_t>::max() / 192;
 
 void check_version(const std::string& file, const PointWriterOptions& options) {
   if (!options.version.empty() && options.version != "1.2" && options.version != "1.4") {
@@ -113,14 +111,6 @@ LasTarget las_target(const std::string& file, const PointWriterOptions& options,
     target.extra = las_extra_fields_for(others, kLasRecordLengths.at(target.point_format));
   } catch (const Error& error) {
     throw CannotWrite(file, error.what(), error.code(), {}, error.facts().remedy);
-  }
-  if (target.extra.size() > kMostExtraFields) {
-    throw CannotWrite(
-        file,
-        fmt::format("points have {} attributes of which LAS has no fields of its own, "
-                    "and it describes {} at most; write spp",
-                    target.extra.size(), kMostExtraFields),
-        ErrorCode::kInvalidArgument, {}, Remedy::kAttributes);
   }
   if (target.record_length() > kMostRecordBytes) {
     throw CannotWrite(file,
