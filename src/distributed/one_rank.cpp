@@ -1,31 +1,16 @@
 // The seam to MPI in a build without it: a group is this one process.
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 #include "src/distributed/ranks.h"
 #include "src/error.h"
 
 namespace spillway::detail::distributed {
-
-namespace {
-
-[[noreturn]] void fail(const char* activity, const std::string& where, const std::string& file,
-                       int error) {
-  throw SystemRefusal(
-      fmt::format("cannot {} {}: {}", activity, where, std::generic_category().message(error)),
-      file, error);
-}
-
-}  // namespace
 
 struct Ranks::Group {};
 
@@ -79,42 +64,6 @@ std::vector<std::byte> Ranks::receive(int /*from*/) const {
 }
 
 Traffic traffic() { return {}; }
-
-struct SharedFile::File {
-  ~File() {
-    if (descriptor >= 0) ::close(descriptor);
-  }
-  int descriptor = -1;
-};
-
-SharedFile::SharedFile(const Ranks& /*ranks*/, const std::string& path, std::string name)
-    : name_(name.empty() ? path : std::move(name)), file_(std::make_unique<File>()) {
-  file_->descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file_->descriptor < 0) {
-    fail("create", name_, name_, errno);
-  }
-}
-
-SharedFile::~SharedFile() = default;
-
-void SharedFile::write(std::uint64_t offset, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written =
-        ::pwrite(file_->descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      fail("write", fmt::format("{}, byte {}", name_, offset), name_, written < 0 ? errno : ENOSPC);
-    }
-    offset += static_cast<std::uint64_t>(written);
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-}
-
-void SharedFile::close() {
-  if (::close(std::exchange(file_->descriptor, -1)) != 0) {
-    fail("close", name_, name_, errno);
-  }
-}
 
 void set_largest_piece(std::size_t /*bytes*/) {}
 

@@ -7,12 +7,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <numeric>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -47,15 +45,6 @@ std::string reason(int code) {
     return fmt::format("error {}", code);
   }
   return {text, static_cast<std::size_t>(length)};
-}
-
-/// Of a fault of MPI-IO, which often gives no reason, but leaves the system's behind in errno.
-std::string reason_of_file(int code, int system_code) {
-  int error_class = MPI_ERR_UNKNOWN;
-  const bool told = MPI_Error_class(code, &error_class) == MPI_SUCCESS &&
-                    error_class != MPI_ERR_OTHER && error_class != MPI_ERR_UNKNOWN &&
-                    error_class != MPI_ERR_IO;
-  return told || system_code == 0 ? reason(code) : std::generic_category().message(system_code);
 }
 
 std::string fault(int code, const char* activity) {
@@ -363,74 +352,6 @@ std::vector<std::byte> Ranks::receive(int from) const {
 }
 
 Traffic traffic() { return {.messages = messages_sent, .bytes = bytes_sent}; }
-
-struct SharedFile::File {
-  explicit File(MPI_Comm communicator) : comm(communicator) {}
-
-  /// Runs the call at all ranks; throws at all of them if one has seen a fault.
-  template <class Call>
-  void together(const char* activity, const std::string& name, Call call) {
-    errno = 0;
-    const int code = call();
-    int codes[] = {code, code == MPI_SUCCESS ? 0 : errno};
-    check(MPI_Allreduce(MPI_IN_PLACE, codes, 2, MPI_INT, MPI_MAX, comm), "reducing");
-    if (codes[0] != MPI_SUCCESS) {
-      throw SystemRefusal(
-          fmt::format("cannot {} {}: {}", activity, name, reason_of_file(codes[0], codes[1])), name,
-          codes[1]);
-    }
-  }
-
-  MPI_Comm comm;
-  MPI_File file = MPI_FILE_NULL;
-};
-
-SharedFile::SharedFile(const Ranks& ranks, const std::string& path, std::string name)
-    : name_(name.empty() ? path : std::move(name)),
-      file_(std::make_unique<File>(ranks.group_->comm)) {
-  // What one rank alone could open stays open: to close it takes all, and the job is ending.
-  file_->together("create", name_, [&] {
-    return MPI_File_open(file_->comm, path.c_str(), MPI_MODE_CREATE | MPI_MODE_WRONLY,
-                         MPI_INFO_NULL, &file_->file);
-  });
-  file_->together("empty", name_, [&] { return MPI_File_set_size(file_->file, 0); });
-}
-
-SharedFile::~SharedFile() {
-  if (file_->file != MPI_FILE_NULL && std::uncaught_exceptions() == 0) {
-    end_unless(MPI_File_close(&file_->file), "closing a file");
-  }
-}
-
-void SharedFile::write(std::uint64_t offset, std::span<const std::byte> bytes) {
-  in_pieces(bytes.size(), [&](std::size_t first, int length) {
-    errno = 0;
-    MPI_Status status;
-    const auto place = static_cast<MPI_Offset>(offset) + static_cast<MPI_Offset>(first);
-    const int code =
-        MPI_File_write_at(file_->file, place, bytes.data() + first, length, MPI_BYTE, &status);
-    const int system_code = errno;
-    if (code != MPI_SUCCESS) {
-      throw SystemRefusal(fmt::format("cannot write {}, byte {}: {}", name_, place,
-                                      reason_of_file(code, system_code)),
-                          name_, system_code);
-    }
-    int written = 0;
-    check(MPI_Get_count(&status, MPI_BYTE, &written), "writing");
-    if (written != length) {
-      throw SystemRefusal(
-          fmt::format(
-              "cannot write {}, byte {}: only {} of {} bytes went to the disk, which may be "
-              "full; free some space",
-              name_, place, written, length),
-          name_, ENOSPC);
-    }
-  });
-}
-
-void SharedFile::close() {
-  file_->together("close", name_, [&] { return MPI_File_close(&file_->file); });
-}
 
 void set_largest_piece(std::size_t bytes) { largest_piece = bytes; }
 

@@ -88,7 +88,6 @@ class Ranks {
   [[nodiscard]] std::vector<std::byte> receive(int from) const;
 
  private:
-  friend class SharedFile;
   struct Group;
   explicit Ranks(std::unique_ptr<Group> group);
   std::unique_ptr<Group> group_;
@@ -97,30 +96,7 @@ class Ranks {
 /// What this process has sent; not collective.
 Traffic traffic();
 
-/// A file that all ranks of a group write to, each at places of its own (MPI-IO). It replaces what
-/// has the name. The group must outlive it.
-class SharedFile {
- public:
-  /// `name` is for messages; the path if empty. Collective. Throws Error at all ranks if it cannot
-  /// be created.
-  SharedFile(const Ranks& ranks, const std::string& path, std::string name = "");
-  ~SharedFile();
-  SharedFile(const SharedFile&) = delete;
-  SharedFile& operator=(const SharedFile&) = delete;
-
-  /// Writes all bytes from `offset` on; not collective. Throws Error with the system's reason.
-  void write(std::uint64_t offset, std::span<const std::byte> bytes);
-
-  /// Collective: closes the file, which then has all that was written. Throws Error.
-  void close();
-
- private:
-  struct File;
-  std::string name_;
-  std::unique_ptr<File> file_;
-};
-
-/// For tests: in how long pieces messages and writes go, 1 GiB if not called. All ranks must set
+/// For tests: in how long pieces messages go, 1 GiB if not called. All ranks must set
 /// the same; at least 1.
 void set_largest_piece(std::size_t bytes);
 

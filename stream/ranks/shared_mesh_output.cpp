@@ -12,6 +12,7 @@
 #include "formats/meshes/common/mesh_block.h"
 #include "formats/meshes/spm/spm_block.h"
 #include "formats/meshes/spm/spm_encoding.h"
+#include "src/distributed/shared_file.h"
 #include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/stream_sections.h"
 
@@ -60,8 +61,6 @@ class SharedMeshOutput : public MeshOutput {
         ranks_(ranks),
         created_(std::move(created)) {
     if (!created_) unfinished_.emplace(temporary_path);
-    // Open MPI tries locks on a file of this name while it opens ours.
-    const OthersUnfinishedFile lock_test(temporary_path + ".locktest.0");
     run_collective_step(ranks, [&] { file_.emplace(ranks, temporary_path, target_.path); });
   }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "src/distributed/ranks.h"
+#include "src/distributed/shared_file.h"
 #include "src/error.h"
 
 namespace spillway::detail::distributed {

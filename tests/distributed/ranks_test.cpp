@@ -2,6 +2,7 @@
 // run by all ranks; cases that need a second rank are skipped by one alone.
 
 #include "src/distributed/ranks.h"
+#include "src/distributed/shared_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -377,8 +378,8 @@ TEST(Send, InManyPieces) {
   expect_messages_in_order();
 }
 
-/// The file is cut into stretches that the ranks write in turn, last first.
-void expect_shared_file() {
+// The file is cut into stretches that the ranks write in turn, last first.
+TEST(SharedFile, HoldsWhatAllRanksWroteAndNothingOfTheOldFile) {
   const Ranks& all = world();
   const SharedFolder folder;
   const std::string path = folder.file("together");
@@ -405,13 +406,6 @@ void expect_shared_file() {
   file.write(0, {});
   file.close();
   EXPECT_EQ(content_of(path), expected);
-}
-
-TEST(SharedFile, HoldsWhatAllRanksWroteAndNothingOfTheOldFile) { expect_shared_file(); }
-
-TEST(SharedFile, InManyPieces) {
-  const SmallPieces pieces;
-  expect_shared_file();
 }
 
 TEST(SharedFile, IsEmptyIfNobodyWrites) {
