@@ -3,53 +3,32 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "src/delaunay/delaunay.h"
+#include "src/delaunay/border/exposure.h"
 #include "src/distributed/box_tree.h"
+#include "src/distributed/group.h"
 #include "src/distributed/growing_share.h"
-#include "src/distributed/halving.h"
-#include "src/distributed/items.h"
+#include "src/distributed/merge_halves.h"
 #include "src/error.h"
 
 namespace spillway::detail::distributed {
 namespace {
 
-/// A group of ranks and the number of its first one in the run.
-struct Group {
-  const Ranks& ranks;
-  int first;
-};
-
-/// exchange_items() within a group, of items by their rank in the run.
-template <typename T>
-ItemsByRank<T> exchange_within(const Group& group, ItemsByRank<T> items) {
-  ItemsByRank<T> shifted;
-  for (auto& [rank, some] : items) shifted[rank - group.first] = std::move(some);
-  return exchange_items(group.ranks, shifted);
-}
-
-template <std::size_t N>
-std::array<std::uint64_t, N> reduced(std::array<std::uint64_t, N> values, Reduction reduction,
-                                     const Ranks& ranks) {
-  ranks.reduce(values, reduction);
-  return values;
-}
-
 /// One triangulation: of the input, or of the border of two groups.
 template <int D>
 class Run {
+  using Corners = std::array<VertexId, D + 1>;
+
  public:
-  Run(const Ranks& ranks, const DistributedOptions& options) : ranks_(ranks), options_(options) {}
+  Run(const Ranks& ranks, const DistributedOptions<D>& options)
+      : ranks_(ranks), options_(options) {}
 
   Share<D> triangulate(std::vector<NamedPoint<D>> points) {
     triangulate_group({ranks_, 0}, std::move(points));
-    Share<D> share = growing_->take();
-    ask_for_origins(share);
-    return share;
+    return complete_share();
   }
 
  private:
@@ -60,9 +39,9 @@ class Run {
       return;
     }
     const int low_ranks = ranks.size() / 2;
-    points = move_to_half(std::move(points), ranks, low_ranks);
-    const bool high = ranks.rank() >= low_ranks;
+    points = move_to_half(std::move(points), ranks, low_ranks, options_.limits);
     const int middle = group.first + low_ranks;
+    const bool high = group.own() >= middle;
     {
       const Ranks half = ranks.split(high ? 1 : 0);
       triangulate_group({half, high ? middle : group.first}, std::move(points));
@@ -70,124 +49,110 @@ class Run {
     merge(group, middle);
   }
 
-  void triangulate_own(std::vector<NamedPoint<D>> points) {
-    std::vector<Point<D>> positions(points.size());
-    std::transform(points.begin(), points.end(), positions.begin(),
-                   [](const NamedPoint<D>& point) { return point.position; });
-    growing_.emplace(ranks_.rank(),
-                     spillway::detail::delaunay<D>(positions, {.threads = options_.threads}),
-                     points);
+  void triangulate_own(std::vector<NamedPoint<D>> named) {
+    std::vector<Point<D>> points(named.size());
+    std::ranges::transform(named, points.begin(), &NamedPoint<D>::position);
     Box<D> box;
-    for (const Point<D>& position : positions) box.expand(position);
+    for (const Point<D>& point : points) box.expand(point);
+    begin_share(options_.triangulate(std::move(points)), named);
+    named = {};
     boxes_ = gather_item(ranks_, box);
-    settle({ranks_, ranks_.rank()}, 1);
+    settle({ranks_, ranks_.rank()}, 1, 0);
   }
 
-  /// What no rank outside of `count` ones of the group can change stays as it is.
-  void settle(const Group& group, int count) {
-    const std::span boxes(boxes_);
-    const auto after = static_cast<std::size_t>(group.first + count);
-    std::vector<BoxTree<D>> outside;
-    if (group.first > 0) outside.push_back(BoxTree<D>::of(boxes.first(group.first)));
-    if (after < boxes.size()) outside.push_back(BoxTree<D>::of(boxes.subspan(after)));
+  /// The share begins with the triangulation of the own points, equal ones made one.
+  void begin_share(const Triangulation<D>& triangulation, std::span<const NamedPoint<D>> named) {
+    std::vector<VertexId> renumbered(triangulation.points.size());
+    std::vector<Point<D>> points;
+    auto duplicate = triangulation.duplicates.begin();
+    const auto origin = [&](VertexId v) { return named[triangulation.input_index[v]].name; };
+    for (VertexId v = 0; v < renumbered.size(); ++v) {
+      if (duplicate != triangulation.duplicates.end() && duplicate->dropped == v) {
+        duplicates_.push_back({origin(v), origin(duplicate->kept)});
+        ++duplicate;
+        continue;
+      }
+      renumbered[v] = static_cast<VertexId>(points.size());
+      points.push_back(triangulation.points[v]);
+      origins_.push_back(origin(v));
+    }
+    std::ranges::sort(duplicates_, {}, &Share<D>::Duplicate::dropped);
+    std::vector<Corners> simplices;
+    triangulation.for_each_simplex([&](SimplexId, const Simplex<D>& simplex) {
+      Corners& corners = simplices.emplace_back(simplex.vertices);
+      for (VertexId& v : corners) v = v == kInfiniteVertex ? v : renumbered[v];
+    });
+    growing_.emplace(ranks_.rank(), std::move(points), std::move(simplices),
+                     triangulation.dimension);
+  }
+
+  /// The boxes of ranks from `begin` to `end`.
+  [[nodiscard]] BoxTree<D> boxes_of(int begin, int end) const {
+    return BoxTree<D>::of(std::span(boxes_).subspan(begin, end - begin));
+  }
+
+  /// Marks the simplices from `first` on that a point in one of the boxes may change.
+  [[nodiscard]] std::vector<std::uint8_t> marks_of_exposed(std::size_t first,
+                                                           std::span<const BoxTree<D>> boxes) const {
     std::vector<const BoxTree<D>*> trees;
-    for (const BoxTree<D>& tree : outside) trees.push_back(&tree);
-    growing_->settle(trees);
+    for (const BoxTree<D>& tree : boxes) trees.push_back(&tree);
+    const std::span<const Corners> simplices = growing_->simplices().subspan(first);
+    std::vector<std::uint8_t> marks(simplices.size());
+    find_exposed<D, BoxTree<D>>(simplices, growing_->points(), trees,
+                                [&marks](std::size_t s) { marks[s] = 1; });
+    return marks;
+  }
+
+  /// What no rank outside of `count` ones of the group can change, of what is new, stays as it is.
+  void settle(const Group& group, int count, std::size_t first) {
+    const int after = group.first + count;
+    std::vector<BoxTree<D>> outside;
+    if (group.first > 0) outside.push_back(boxes_of(0, group.first));
+    if (after < ranks_.size()) outside.push_back(boxes_of(after, ranks_.size()));
+    const auto settled = growing_->settle(first, marks_of_exposed(first, outside));
+    settled_.insert(settled_.end(), settled.begin(), settled.end());
   }
 
   /// From the triangulations of a group's halves to that of the group. The upper half begins at
   /// rank `middle`.
   void merge(const Group& group, int middle) {
-    const int end = group.first + group.ranks.size();
-    const bool high = ranks_.rank() >= middle;
-    std::array<std::uint64_t, 2> own_dimension{};  // plus 1: 0 without points
-    own_dimension[high] = static_cast<std::uint64_t>(growing_->share().dimension) + 1;
-    const auto dimensions = reduced(own_dimension, Reduction::kMost, group.ranks);
-    const auto most = std::max(dimensions[0], dimensions[1]);
-    growing_->set_dimension(static_cast<int>(most) - 1);
-    if (dimensions[0] == 0 || dimensions[1] == 0) return;  // one half has no points
-
-    const std::array open = {dimensions[0] <= D, dimensions[1] <= D};
-    const std::span boxes(boxes_);
-    const BoxTree<D> others = BoxTree<D>::of(high ? boxes.subspan(group.first, middle - group.first)
-                                                  : boxes.subspan(middle, end - middle));
-    const Share<D> border = triangulate_border(group, complete_border(group, others, open[high]));
-    const auto dimension = reduced<1>({static_cast<std::uint64_t>(border.dimension) + 1},
-                                      Reduction::kMost, group.ranks);
-    growing_->set_dimension(static_cast<int>(std::max(most, dimension[0])) - 1);
-    take_over(group, border, middle, open);
-    settle(group, group.ranks.size());
+    const bool high = group.own() >= middle;
+    const std::array others = {high ? boxes_of(group.first, middle) : boxes_of(middle, group.end())};
+    const HalvesMerged merged =
+        merge_halves(*growing_, group, middle, marks_of_exposed(0, others), options_);
+    options_.inner_merge(merged.border);
+    settle(group, group.ranks.size(), merged.before);
   }
 
-  /// The own vertices of the group's border: those that this rank finds, and those that others find
-  /// in simplices that they share with it.
-  std::vector<VertexId> complete_border(const Group& group, const BoxTree<D>& others, bool open) {
-    std::vector<VertexId> border;
-    ItemsByRank<VertexId> elsewhere;
-    for (const RankIndex name : growing_->expose(others)) {
-      const auto owner = static_cast<int>(name.rank);
-      (owner == ranks_.rank() ? border : elsewhere[owner]).push_back(name.index);
-    }
-    for (const auto& [rank, some] : exchange_within(group, std::move(elsewhere))) {
-      border.insert(border.end(), some.begin(), some.end());
-    }
-    if (open) {
-      border.resize(growing_->share().own);
-      std::iota(border.begin(), border.end(), VertexId{0});
-    }
-    std::sort(border.begin(), border.end());
-    border.erase(std::unique(border.begin(), border.end()), border.end());
-    return border;
-  }
-
-  /// Triangulates a group's border by its first ranks: by half of them, or by one if it is small.
-  /// Its points' origins are the names of vertices in this run. An empty share at the other ranks.
-  Share<D> triangulate_border(const Group& group, const std::vector<VertexId>& border) {
-    const int size = group.ranks.size();
-    const auto [whole] = reduced<1>({border.size()}, Reduction::kSum, group.ranks);
-    const int workers = whole < options_.gather_below ? 1 : size / 2;
-    ItemsByRank<NamedPoint<D>> moving;
-    const int worker = group.ranks.rank() * workers / size;
-    for (const VertexId v : border) {
-      moving[worker].push_back({growing_->share().points[v], growing_->share().names[v]});
-    }
-    std::vector<NamedPoint<D>> points;
-    for (const auto& [rank, some] : exchange_items(group.ranks, moving)) {
-      points.insert(points.end(), some.begin(), some.end());
-    }
-    const bool works = group.ranks.rank() < workers;
-    const Ranks split = group.ranks.split(works ? 0 : 1);
-    return works ? Run(split, options_).triangulate(std::move(points)) : Share<D>{};
-  }
-
-  /// Sends the simplices of the border's triangulation to those whose shares they may belong to:
-  /// each to the owner of its vertex of the least name.
-  void take_over(const Group& group, const Share<D>& border, int middle,
-                 const std::array<bool, 2>& open) {
-    ItemsByRank<NamedSimplex<D>> simplices;
-    std::vector<std::pair<std::uint32_t, VertexId>> unknown;  // at a rank, a vertex of `border`
-    for (const auto& corners : border.simplices) {
-      NamedSimplex<D> named;
-      std::ranges::transform(corners, named.begin(), [&](VertexId v) {
-        return v == kInfiniteVertex ? kInfiniteName : border.origins[v];
-      });
-      const std::uint32_t holder = std::ranges::min(named).rank;
-      simplices[static_cast<int>(holder)].push_back(named);
-      for (int i = 0; i <= D; ++i) {
-        if (named[i] != kInfiniteName && named[i].rank != holder) {
-          unknown.emplace_back(holder, corners[i]);
-        }
+  /// What this rank holds in the end, of vertices only those that occur.
+  Share<D> complete_share() {
+    const std::span<const Corners> rest = growing_->simplices();
+    settled_.insert(settled_.end(), rest.begin(), rest.end());
+    Share<D> share;
+    share.dimension = growing_->dimension();
+    share.duplicates = std::move(duplicates_);
+    share.origins = std::move(origins_);
+    share.own = growing_->own_points();
+    std::vector<std::uint8_t> used(growing_->points().size());
+    for (const Corners& corners : settled_) {
+      for (const VertexId v : corners) {
+        if (v != kInfiniteVertex) used[v] = 1;
       }
     }
-    std::sort(unknown.begin(), unknown.end());
-    unknown.erase(std::unique(unknown.begin(), unknown.end()), unknown.end());
-    ItemsByRank<NamedPoint<D>> points;
-    for (const auto& [rank, v] : unknown) {
-      points[static_cast<int>(rank)].push_back({border.points[v], border.origins[v]});
+    std::vector<VertexId> number(used.size());
+    for (VertexId v = 0; v < used.size(); ++v) {
+      if (v >= share.own && used[v] == 0) continue;
+      number[v] = static_cast<VertexId>(share.points.size());
+      share.points.push_back(growing_->points()[v]);
+      share.names.push_back(growing_->names()[v]);
     }
-    const auto simplices_here = exchange_within(group, std::move(simplices));
-    const auto points_here = exchange_within(group, std::move(points));
-    growing_->accept(simplices_here, points_here, middle, open);
+    for (Corners& corners : settled_) {
+      for (VertexId& v : corners) v = v == kInfiniteVertex ? v : number[v];
+    }
+    share.simplices = std::move(settled_);
+    growing_.reset();
+    ask_for_origins(share);
+    return share;
   }
 
   /// Completes the share by the origins of vertices elsewhere, which only their owners know.
@@ -200,10 +165,12 @@ class Run {
       asked_for[static_cast<int>(share.names[v].rank)].push_back(v);
     }
     ItemsByRank<RankIndex> answers;
-    for (const auto& [rank, indices] : exchange_items(ranks_, questions)) {
+    for (const auto& [rank, indices] :
+         exchange_items(ranks_, std::move(questions), options_.limits)) {
       for (const std::uint32_t index : indices) answers[rank].push_back(share.origins[index]);
     }
-    for (const auto& [rank, origins] : exchange_items(ranks_, answers)) {
+    for (const auto& [rank, origins] :
+         exchange_items(ranks_, std::move(answers), options_.limits)) {
       for (std::size_t i = 0; i < origins.size(); ++i) {
         share.origins[asked_for[rank][i]] = origins[i];
       }
@@ -211,32 +178,30 @@ class Run {
   }
 
   const Ranks& ranks_;
-  const DistributedOptions& options_;
+  const DistributedOptions<D>& options_;
   std::optional<GrowingShare<D>> growing_;
-  std::vector<Box<D>> boxes_;  ///< of each rank's points
+  std::vector<RankIndex> origins_;  ///< of its own points
+  std::vector<typename Share<D>::Duplicate> duplicates_;
+  std::vector<Corners> settled_;  ///< simplices that no merge to come can change
+  std::vector<Box<D>> boxes_;     ///< of each rank's points
 };
 
 }  // namespace
 
 template <int D>
-Share<D> delaunay(const std::vector<Point<D>>& local_points, const Ranks& ranks,
-                  const DistributedOptions& options) {
-  if (local_points.size() > kMaxVertices) {
+Share<D> delaunay(std::vector<NamedPoint<D>> points, const Ranks& ranks,
+                  const DistributedOptions<D>& options) {
+  if (points.size() > kMaxVertices) {
     throw Error("rank " + std::to_string(ranks.rank()) + " has more than " +
                     std::to_string(kMaxVertices) + " points: use more ranks",
                 ErrorCode::kTooLarge);
   }
-  std::vector<NamedPoint<D>> points(local_points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i] = {local_points[i],
-                 {static_cast<std::uint32_t>(ranks.rank()), static_cast<std::uint32_t>(i)}};
-  }
   return Run<D>(ranks, options).triangulate(std::move(points));
 }
 
-template Share<2> delaunay<2>(const std::vector<Point<2>>&, const Ranks&,
-                              const DistributedOptions&);
-template Share<3> delaunay<3>(const std::vector<Point<3>>&, const Ranks&,
-                              const DistributedOptions&);
+template Share<2> delaunay<2>(std::vector<NamedPoint<2>>, const Ranks&,
+                              const DistributedOptions<2>&);
+template Share<3> delaunay<3>(std::vector<NamedPoint<3>>, const Ranks&,
+                              const DistributedOptions<3>&);
 
 }  // namespace spillway::detail::distributed

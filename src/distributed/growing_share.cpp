@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "src/delaunay/border/acceptance.h"
-#include "src/delaunay/border/exposure.h"
 #include "src/error.h"
 
 namespace spillway::detail::distributed {
@@ -16,30 +16,15 @@ std::uint64_t key(RankIndex name) { return (std::uint64_t{name.rank} << 32U) | n
 }  // namespace
 
 template <int D>
-GrowingShare<D>::GrowingShare(int rank, const Triangulation<D>& triangulation,
-                              std::span<const NamedPoint<D>> points)
-    : rank_(rank) {
-  share_.dimension = triangulation.dimension;
-  std::vector<VertexId> renumbered(triangulation.points.size());
-  auto duplicate = triangulation.duplicates.begin();
-  const auto origin = [&](VertexId v) { return points[triangulation.input_index[v]].name; };
-  for (VertexId v = 0; v < renumbered.size(); ++v) {
-    if (duplicate != triangulation.duplicates.end() && duplicate->dropped == v) {
-      share_.duplicates.push_back({origin(v), origin(duplicate->kept)});
-      ++duplicate;
-      continue;
-    }
-    renumbered[v] = static_cast<VertexId>(share_.points.size());
-    share_.names.push_back({static_cast<std::uint32_t>(rank), renumbered[v]});
-    share_.points.push_back(triangulation.points[v]);
-    share_.origins.push_back(origin(v));
-  }
-  share_.own = share_.points.size();
-  std::ranges::sort(share_.duplicates, {}, &Share<D>::Duplicate::dropped);
-  triangulation.for_each_simplex([&](SimplexId, const Simplex<D>& simplex) {
-    Corners& corners = open_.emplace_back(simplex.vertices);
-    for (VertexId& v : corners) v = v == kInfiniteVertex ? v : renumbered[v];
-  });
+GrowingShare<D>::GrowingShare(int rank, std::vector<Point<D>> points,
+                              std::vector<Corners> simplices, int dimension)
+    : rank_(rank),
+      own_(static_cast<VertexId>(points.size())),
+      dimension_(dimension),
+      points_(std::move(points)),
+      simplices_(std::move(simplices)) {
+  names_.reserve(own_);
+  for (VertexId v = 0; v < own_; ++v) names_.push_back({static_cast<std::uint32_t>(rank), v});
 }
 
 template <int D>
@@ -54,55 +39,54 @@ VertexId GrowingShare<D>::vertex_named(RankIndex name) const {
 }
 
 template <int D>
-void GrowingShare<D>::add_vertex(const NamedPoint<D>& point) {
-  const auto number = static_cast<VertexId>(share_.points.size());
+void GrowingShare<D>::add_point(const NamedPoint<D>& point) {
+  const auto number = static_cast<VertexId>(points_.size());
   if (!foreign_.emplace(key(point.name), number).second) return;
   if (number >= kMaxVertices) {
     throw Error("one rank's share of the triangulation has " + std::to_string(number) +
                     " vertices, more than it can number: use more ranks",
                 ErrorCode::kTooLarge);
   }
-  share_.points.push_back(point.position);
-  share_.names.push_back(point.name);
+  points_.push_back(point.position);
+  names_.push_back(point.name);
 }
 
 template <int D>
-std::vector<RankIndex> GrowingShare<D>::expose(const BoxTree<D>& others) {
-  std::vector<std::uint8_t> exposed(open_.size());
-  const std::array trees = {&others};
-  find_exposed<D, BoxTree<D>>(open_, share_.points, trees,
-                              [&exposed](std::size_t s) { exposed[s] = 1; });
-  std::vector<RankIndex> names;
+std::vector<RankIndex> GrowingShare<D>::put_apart(std::span<const std::uint8_t> marks) {
+  std::vector<std::uint8_t> used(points_.size());
   std::size_t kept = 0;
   apart_.clear();
-  for (std::size_t s = 0; s < open_.size(); ++s) {
-    if (exposed[s] == 0) {
-      open_[kept++] = open_[s];
+  for (std::size_t s = 0; s < simplices_.size(); ++s) {
+    if (marks[s] == 0) {
+      simplices_[kept++] = simplices_[s];
       continue;
     }
-    apart_.push_back(open_[s]);
-    for (const VertexId v : open_[s]) {
-      if (v != kInfiniteVertex) names.push_back(share_.names[v]);
+    apart_.push_back(simplices_[s]);
+    for (const VertexId v : simplices_[s]) {
+      if (v != kInfiniteVertex) used[v] = 1;
     }
   }
-  open_.resize(kept);
+  simplices_.resize(kept);
+  std::vector<RankIndex> names;
+  for (VertexId v = 0; v < used.size(); ++v) {
+    if (used[v] != 0) names.push_back(names_[v]);
+  }
   std::ranges::sort(names);
-  names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }
 
 template <int D>
-void GrowingShare<D>::accept(const ItemsByRank<NamedSimplex<D>>& simplices,
-                             const ItemsByRank<NamedPoint<D>>& points, int middle,
-                             const std::array<bool, 2>& open) {
+std::size_t GrowingShare<D>::accept(const ItemsByRank<NamedSimplex<D>>& simplices,
+                                    const ItemsByRank<NamedPoint<D>>& points,
+                                    const Halves& halves) {
   for (const auto& [sender, some] : points) {
-    for (const NamedPoint<D>& point : some) add_vertex(point);
+    for (const NamedPoint<D>& point : some) add_point(point);
   }
   // Acceptance wants the vertices of the lower side before those of the other one.
   std::vector<VertexId> by_side;
-  const auto is_low = [&](VertexId v) { return static_cast<int>(share_.names[v].rank) < middle; };
+  const auto is_low = [&](VertexId v) { return static_cast<int>(names_[v].rank) < halves.middle; };
   for (const bool low : {true, false}) {
-    for (VertexId v = 0; v < share_.points.size(); ++v) {
+    for (VertexId v = 0; v < points_.size(); ++v) {
       if (is_low(v) == low) by_side.push_back(v);
     }
   }
@@ -115,63 +99,72 @@ void GrowingShare<D>::accept(const ItemsByRank<NamedSimplex<D>>& simplices,
   };
   for (Corners& corners : apart_) corners = renumbered(corners, number);
   const std::array ends = {static_cast<VertexId>(low_end), static_cast<VertexId>(by_side.size())};
-  const Acceptance<D> acceptance(ends, {open[0], open[1]}, apart_);
+  const Acceptance<D> acceptance(ends, {halves.open[0], halves.open[1]}, apart_);
   typename Acceptance<D>::template Questions<> questions(acceptance);
+  const std::size_t before = simplices_.size();
   const auto found = [&](const Corners& corners, std::monostate, std::uint32_t) {
-    open_.push_back(renumbered(corners, by_side));
+    simplices_.push_back(renumbered(corners, by_side));
   };
   for (const auto& [sender, some] : simplices) {
     for (const NamedSimplex<D>& named : some) {
       Corners corners;
       std::ranges::transform(named, corners.begin(),
                              [this](RankIndex name) { return vertex_named(name); });
-      if (questions.is_new(renumbered(corners, number), {}, found)) open_.push_back(corners);
+      if (questions.is_new(renumbered(corners, number), {}, found)) simplices_.push_back(corners);
     }
   }
   questions.answer(found);
-  apart_.clear();
+  apart_ = {};
+  return before;
 }
 
 template <int D>
-void GrowingShare<D>::settle(std::span<const BoxTree<D>* const> outside) {
-  std::vector<std::uint8_t> exposed(open_.size());
-  find_exposed<D, BoxTree<D>>(open_, share_.points, outside,
-                              [&exposed](std::size_t s) { exposed[s] = 1; });
-  std::size_t kept = 0;
-  for (std::size_t s = 0; s < open_.size(); ++s) {
-    if (exposed[s] != 0) {
-      open_[kept++] = open_[s];
+std::vector<std::array<VertexId, D + 1>> GrowingShare<D>::settle(
+    std::size_t first, std::span<const std::uint8_t> marks) {
+  std::vector<Corners> settled;
+  std::size_t kept = first;
+  for (std::size_t s = first; s < simplices_.size(); ++s) {
+    if (marks[s - first] != 0) {
+      simplices_[kept++] = simplices_[s];
     } else {
-      share_.simplices.push_back(open_[s]);
+      settled.push_back(simplices_[s]);
     }
   }
-  open_.resize(kept);
+  simplices_.resize(kept);
+  return settled;
 }
 
 template <int D>
-Share<D> GrowingShare<D>::take() {
-  share_.simplices.insert(share_.simplices.end(), open_.begin(), open_.end());
-  std::vector<bool> used(share_.points.size());
-  for (const Corners& corners : share_.simplices) {
+void GrowingShare<D>::drop_unused_points() {
+  std::vector<std::uint8_t> used(points_.size());
+  for (const Corners& corners : simplices_) {
     for (const VertexId v : corners) {
-      if (v != kInfiniteVertex) used[v] = true;
+      if (v != kInfiniteVertex) used[v] = 1;
     }
   }
-  std::vector<VertexId> number(share_.points.size());
-  auto vertices = static_cast<VertexId>(share_.own);
-  for (VertexId v = 0; v < share_.points.size(); ++v) {
-    const bool is_own = v < share_.own;
-    if (!is_own && !used[v]) continue;
-    number[v] = is_own ? v : vertices++;
-    share_.points[number[v]] = share_.points[v];
-    share_.names[number[v]] = share_.names[v];
+  std::vector<VertexId> number(points_.size());
+  VertexId next = own_;
+  foreign_.clear();
+  for (VertexId v = 0; v < points_.size(); ++v) {
+    number[v] = v < own_ ? v : next;
+    if (v < own_ || used[v] == 0) continue;
+    points_[next] = points_[v];
+    names_[next] = names_[v];
+    foreign_.emplace(key(names_[next]), next);
+    ++next;
   }
-  share_.points.resize(vertices);
-  share_.names.resize(vertices);
-  for (Corners& corners : share_.simplices) {
+  points_.resize(next);
+  names_.resize(next);
+  for (Corners& corners : simplices_) {
     for (VertexId& v : corners) v = v == kInfiniteVertex ? v : number[v];
   }
-  return std::move(share_);
+}
+
+template <int D>
+std::uint64_t GrowingShare<D>::bytes() const {
+  constexpr std::uint64_t kForeignBytes = 48;  // of the table of names
+  return points_.size() * (sizeof(Point<D>) + sizeof(RankIndex)) +
+         simplices_.size() * sizeof(Corners) + (points_.size() - own_) * kForeignBytes;
 }
 
 template class GrowingShare<2>;

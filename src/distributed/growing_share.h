@@ -1,16 +1,17 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
-#include "src/distributed/box_tree.h"
+#include "src/delaunay/common/triangulation.h"
 #include "src/distributed/halving.h"
 #include "src/distributed/items.h"
 #include "src/distributed/share.h"
+#include "src/geometry/point.h"
 
 namespace spillway::detail::distributed {
 
@@ -18,52 +19,68 @@ namespace spillway::detail::distributed {
 template <int D>
 using NamedSimplex = std::array<RankIndex, D + 1>;
 
-/// The share of one rank while it grows: from the triangulation of the rank's own points to the
-/// share of larger and larger groups. A merge of two groups calls expose(), then accept(), and then
-/// settle().
+/// Two groups of ranks that are merged: names of ranks below `middle` are of the lower half.
+struct Halves {
+  int middle = 0;
+  std::array<bool, 2> open{};  ///< whether it has no simplices
+};
+
+/// What one rank holds of a triangulation that grows, from that of the rank's own points to that of
+/// larger and larger groups: those simplices that may still change. A merge of two groups calls
+/// put_apart(), then accept(), and then settle().
 template <int D>
 class GrowingShare {
  public:
-  /// Starts with the triangulation of the rank's points, whose names are by input index.
-  GrowingShare(int rank, const Triangulation<D>& triangulation,
-               std::span<const NamedPoint<D>> points);
+  using Corners = std::array<VertexId, D + 1>;
 
-  /// Puts apart the simplices that a point in these boxes may change, and returns the names of
-  /// their vertices, sorted.
-  std::vector<RankIndex> expose(const BoxTree<D>& others);
+  /// Starts with the triangulation of the rank's points, none of them equal, and the dimension of
+  /// their affine hull. A point's name is the rank's number and its place.
+  GrowingShare(int rank, std::vector<Point<D>> points, std::vector<Corners> simplices,
+               int dimension);
 
-  /// Ends a merge of the ranks below `middle` with those from there on, of which `open` are without
-  /// simplices. Of the simplices of the border's triangulation whose vertex of the least name is
-  /// this rank's, the new ones become part of the share, and of those put apart the ones that came
-  /// back. `points` are those of their vertices that are owned elsewhere.
-  void accept(const ItemsByRank<NamedSimplex<D>>& simplices,
-              const ItemsByRank<NamedPoint<D>>& points, int middle,
-              const std::array<bool, 2>& open);
+  [[nodiscard]] std::span<const Corners> simplices() const { return simplices_; }
+  /// The first are the rank's own, the others those of other ranks in its simplices.
+  [[nodiscard]] std::span<const Point<D>> points() const { return points_; }
+  [[nodiscard]] std::span<const RankIndex> names() const { return names_; }
+  [[nodiscard]] VertexId own_points() const { return own_; }
 
-  /// Simplices that no point in the boxes of `outside` may change are not looked at again.
-  void settle(std::span<const BoxTree<D>* const> outside);
-
-  /// The share, without vertices that occur nowhere; once, at the end.
-  Share<D> take();
-
-  [[nodiscard]] const Share<D>& share() const { return share_; }
   /// Of the affine hull of the points of all ranks that have been merged.
-  void set_dimension(int dimension) { share_.dimension = dimension; }
+  [[nodiscard]] int dimension() const { return dimension_; }
+  void set_dimension(int dimension) { dimension_ = dimension; }
+
+  /// Puts apart the simplices that the other half may change, which are marked, and returns the
+  /// names of their vertices, sorted.
+  std::vector<RankIndex> put_apart(std::span<const std::uint8_t> marks);
+
+  /// Ends a merge. Of the simplices of the border's triangulation whose vertex of the least name is
+  /// this rank's, the new ones become part of the share, and of those put apart the ones that came
+  /// back. `points` are those of their vertices that are owned elsewhere. Returns how many
+  /// simplices are in front that the share had before.
+  std::size_t accept(const ItemsByRank<NamedSimplex<D>>& simplices,
+                     const ItemsByRank<NamedPoint<D>>& points, const Halves& halves);
+
+  /// Takes out the simplices from `first` on that are not marked, by their place behind it, and
+  /// returns them.
+  std::vector<Corners> settle(std::size_t first, std::span<const std::uint8_t> marks);
+
+  /// Forgets points of other ranks that its simplices do not have any more.
+  void drop_unused_points();
+
+  /// That it takes of memory.
+  [[nodiscard]] std::uint64_t bytes() const;
 
  private:
-  using Corners = typename Share<D>::Corners;
-
-  [[nodiscard]] RankIndex name_of(VertexId v) const {
-    return v == kInfiniteVertex ? kInfiniteName : share_.names[v];
-  }
   [[nodiscard]] VertexId vertex_named(RankIndex name) const;
-  void add_vertex(const NamedPoint<D>& point);
+  void add_point(const NamedPoint<D>& point);
 
   int rank_;
-  Share<D> share_;              ///< its simplices are those that are settled
-  std::vector<Corners> open_;   ///< the others
+  VertexId own_;
+  int dimension_;
+  std::vector<Point<D>> points_;
+  std::vector<RankIndex> names_;
+  std::vector<Corners> simplices_;
   std::vector<Corners> apart_;  ///< exposed to the merge that goes on
-  std::unordered_map<std::uint64_t, VertexId> foreign_;  ///< vertices of other ranks by name
+  std::unordered_map<std::uint64_t, VertexId> foreign_;  ///< points of other ranks by name
 };
 
 }  // namespace spillway::detail::distributed

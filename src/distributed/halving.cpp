@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "src/delaunay/common/hash.h"
 #include "src/distributed/items.h"
@@ -69,7 +70,7 @@ double cut_value(const std::vector<NamedPoint<D>>& points, const Stretch& stretc
 
 template <int D>
 std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const Ranks& group,
-                                        int low_ranks) {
+                                        int low_ranks, const ItemLimits& limits) {
   const auto [all] = stretches<1>({points.size()}, group);
   if (all.whole == 0) return points;
   const Box<D> box = box_of_all(points, group);
@@ -91,14 +92,16 @@ std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const
     const std::uint64_t to = halves[high].begin++ * ranks[high] / halves[high].whole;
     moving[static_cast<int>(first_rank[high] + to)].push_back(point);
   }
-  points.clear();
-  for (const auto& [rank, some] : exchange_items(group, moving)) {
+  points = {};
+  for (const auto& [rank, some] : exchange_items(group, std::move(moving), limits)) {
     points.insert(points.end(), some.begin(), some.end());
   }
   return points;
 }
 
-template std::vector<NamedPoint<2>> move_to_half(std::vector<NamedPoint<2>>, const Ranks&, int);
-template std::vector<NamedPoint<3>> move_to_half(std::vector<NamedPoint<3>>, const Ranks&, int);
+template std::vector<NamedPoint<2>> move_to_half(std::vector<NamedPoint<2>>, const Ranks&, int,
+                                             const ItemLimits&);
+template std::vector<NamedPoint<3>> move_to_half(std::vector<NamedPoint<3>>, const Ranks&, int,
+                                             const ItemLimits&);
 
 }  // namespace spillway::detail::distributed

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "src/distributed/items.h"
 #include "src/distributed/ranks.h"
 #include "src/distributed/share.h"
 
@@ -19,6 +20,6 @@ struct NamedPoint {
 /// of a side keep their order. Returns this rank's. Collective.
 template <int D>
 std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const Ranks& group,
-                                        int low_ranks);
+                                        int low_ranks, const ItemLimits& limits);
 
 }  // namespace spillway::detail::distributed

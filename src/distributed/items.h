@@ -1,13 +1,17 @@
 #pragma once
 // Lists of plain values as messages between ranks.
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <map>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "src/distributed/ranks.h"
+#include "src/runtime/memory_budget.h"
 
 namespace spillway::detail::distributed {
 
@@ -22,18 +26,41 @@ std::vector<T> items_of(std::span<const std::byte> bytes) {
   return items;
 }
 
-/// Sends each rank its items; returns what this rank was sent, by the rank that sent it.
+/// How items go from rank to rank.
+struct ItemLimits {
+  std::size_t largest_message = std::size_t{16} << 20U;  ///< bytes; the same at all ranks
+  ShrinkingLease* received = nullptr;                    ///< takes what comes, if there is one
+};
+
+/// Sends each rank its items, in as many rounds as it takes for no message to be larger than it
+/// may, or one item; returns what this rank was sent, by the rank that sent it, in order.
 /// Collective.
 template <typename T>
-ItemsByRank<T> exchange_items(const Ranks& ranks, const ItemsByRank<T>& items) {
-  std::vector<Message> messages;
+ItemsByRank<T> exchange_items(const Ranks& ranks, ItemsByRank<T> items, const ItemLimits& limits) {
+  const std::size_t at_once = std::max<std::size_t>(1, limits.largest_message / sizeof(T));
+  std::uint64_t rounds = 0;
   for (const auto& [rank, some] : items) {
-    const auto bytes = std::as_bytes(std::span(some));
-    messages.push_back({rank, {bytes.begin(), bytes.end()}});
+    rounds = std::max<std::uint64_t>(rounds, (some.size() + at_once - 1) / at_once);
   }
+  ranks.reduce(std::span(&rounds, 1), Reduction::kMost);
   ItemsByRank<T> received;
-  for (const Message& message : ranks.exchange(std::move(messages))) {
-    received[message.rank] = items_of<T>(message.bytes);
+  for (std::uint64_t round = 0; round < rounds; ++round) {
+    std::vector<Message> messages;
+    for (auto& [rank, some] : items) {
+      const std::size_t begin = std::min(some.size(), round * at_once);
+      const auto bytes =
+          std::as_bytes(std::span(some).subspan(begin, std::min(at_once, some.size() - begin)));
+      if (!bytes.empty()) messages.push_back({rank, {bytes.begin(), bytes.end()}});
+      if (begin + at_once >= some.size()) some = {};
+    }
+    for (const Message& message : ranks.exchange(std::move(messages))) {
+      if (limits.received != nullptr) {
+        limits.received->take(message.bytes.size(), "the border between ranks");
+      }
+      const std::vector<T> some = items_of<T>(message.bytes);
+      std::vector<T>& all = received[message.rank];
+      all.insert(all.end(), some.begin(), some.end());
+    }
   }
   return received;
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -15,6 +16,7 @@
 #include <utility>
 
 #include "src/error.h"
+#include "src/runtime/stage_times.h"
 
 namespace spillway::detail::distributed {
 namespace {
@@ -37,6 +39,25 @@ int open_groups = 0;
 int rank_in_job = 0;
 std::atomic<std::uint64_t> messages_sent = 0;
 std::atomic<std::uint64_t> bytes_sent = 0;
+std::atomic<double> call_seconds = 0;
+std::atomic<double> call_processor_seconds = 0;
+
+/// Counts the time of a call.
+class CallTimer {
+ public:
+  CallTimer() = default;
+  ~CallTimer() {
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
+    call_seconds += seconds.count();
+    call_processor_seconds += process_processor_seconds() - processor_start_;
+  }
+  CallTimer(const CallTimer&) = delete;
+  CallTimer& operator=(const CallTimer&) = delete;
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double processor_start_ = process_processor_seconds();
+};
 
 std::string reason(int code) {
   char text[MPI_MAX_ERROR_STRING];
@@ -209,24 +230,31 @@ int Ranks::rank() const { return group_->rank; }
 int Ranks::size() const { return group_->size; }
 
 Ranks Ranks::split(int group) const {
+  const CallTimer timer;
   MPI_Comm comm = MPI_COMM_NULL;
   check(MPI_Comm_split(group_->comm, group, group_->rank, &comm), "splitting a group");
   return Ranks(std::make_unique<Group>(comm));
 }
 
-void Ranks::barrier() const { check(MPI_Barrier(group_->comm), "waiting for all ranks"); }
+void Ranks::barrier() const {
+  const CallTimer timer;
+  check(MPI_Barrier(group_->comm), "waiting for all ranks");
+}
 
 void Ranks::reduce(std::span<std::uint64_t> values, Reduction reduction) const {
+  const CallTimer timer;
   count_traffic(size(), values.size_bytes());
   reduce_values(group_->comm, values, MPI_UINT64_T, reduction);
 }
 
 void Ranks::reduce(std::span<double> values, Reduction reduction) const {
+  const CallTimer timer;
   count_traffic(size(), values.size_bytes());
   reduce_values(group_->comm, values, MPI_DOUBLE, reduction);
 }
 
 void Ranks::broadcast(std::vector<std::byte>& bytes, int root) const {
+  const CallTimer timer;
   std::uint64_t length = bytes.size();
   check(MPI_Bcast(&length, 1, MPI_UINT64_T, root, group_->comm), "broadcasting");
   bytes.resize(length);
@@ -237,6 +265,7 @@ void Ranks::broadcast(std::vector<std::byte>& bytes, int root) const {
 }
 
 std::vector<std::vector<std::byte>> Ranks::gather(std::span<const std::byte> bytes) const {
+  const CallTimer timer;
   const auto sizes = gather_sizes(group_->comm, size(), bytes.size());
   std::vector<std::vector<std::byte>> parts(sizes.size());
   std::uint64_t total = 0;
@@ -268,6 +297,7 @@ std::vector<std::vector<std::byte>> Ranks::gather(std::span<const std::byte> byt
 
 std::vector<std::vector<std::byte>> Ranks::gather(std::span<const std::byte> bytes,
                                                   int root) const {
+  const CallTimer timer;
   const auto sizes = gather_sizes(group_->comm, size(), bytes.size());
   if (rank() != root) {
     count_traffic(size(), bytes.size());
@@ -292,6 +322,7 @@ std::vector<std::vector<std::byte>> Ranks::gather(std::span<const std::byte> byt
 // may announce messages of its next exchange to one that has not noticed yet, hence the two tags in
 // turn.
 std::vector<Message> Ranks::exchange(std::vector<Message> messages) const {
+  const CallTimer timer;
   MPI_Comm comm = group_->comm;
   const int announcement = kAnnouncements + static_cast<int>(group_->exchanges++ % 2);
   std::vector<Message> received;
@@ -341,6 +372,7 @@ std::vector<Message> Ranks::exchange(std::vector<Message> messages) const {
 }
 
 void Ranks::send(int to, std::span<const std::byte> bytes) const {
+  const CallTimer timer;
   const std::uint64_t size_of_message = bytes.size();
   count_traffic(size(), bytes.size());
   check(MPI_Send(&size_of_message, 1, MPI_UINT64_T, to, kDirect, group_->comm), "sending");
@@ -348,10 +380,16 @@ void Ranks::send(int to, std::span<const std::byte> bytes) const {
 }
 
 std::vector<std::byte> Ranks::receive(int from) const {
+  const CallTimer timer;
   return receive_message(group_->comm, from, kDirect, kDirect);
 }
 
-Traffic traffic() { return {.messages = messages_sent, .bytes = bytes_sent}; }
+Traffic traffic() {
+  return {.messages = messages_sent,
+          .bytes = bytes_sent,
+          .seconds = call_seconds,
+          .processor_seconds = call_processor_seconds};
+}
 
 void set_largest_piece(std::size_t bytes) { largest_piece = bytes; }
 

@@ -37,6 +37,8 @@ struct Message {
 struct Traffic {
   std::uint64_t messages = 0;
   std::uint64_t bytes = 0;
+  double seconds = 0;            ///< in calls of groups, waiting included
+  double processor_seconds = 0;  ///< of the process, meanwhile
 };
 
 enum class Reduction : std::uint8_t { kSum, kLeast, kMost };

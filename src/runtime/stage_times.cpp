@@ -4,11 +4,19 @@
 
 namespace spillway::detail {
 
-double processor_seconds() {
+namespace {
+
+double seconds_of(clockid_t clock) {
   timespec now{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  ::clock_gettime(clock, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
+
+}  // namespace
+
+double processor_seconds() { return seconds_of(CLOCK_THREAD_CPUTIME_ID); }
+
+double process_processor_seconds() { return seconds_of(CLOCK_PROCESS_CPUTIME_ID); }
 
 void StageTimes::tell(StageStep step) {
   const std::lock_guard lock(tell_mutex_);

@@ -32,6 +32,8 @@ inline constexpr std::array kStageNames = {"read",  "exchange", "deal",   "spill
 
 /// Processor time that the calling thread has had.
 double processor_seconds();
+/// The same of all threads of the process.
+double process_processor_seconds();
 
 /// Whether many threads may do steps of a kind at the same time, or one after the other.
 enum class StepOrder : std::uint8_t { kAny, kInOrder };

@@ -50,15 +50,20 @@ struct RunLimits {
   unsigned threads = 0;             ///< for which there is memory
 };
 
-/// A merge between two ranks.
+/// What one rank had of a merge between ranks.
 struct RankMerge {
   std::uint32_t level = 0;
-  std::uint64_t received_bytes = 0;
-  std::uint64_t received_simplices = 0;  ///< of the border that came from the other rank
-  std::uint64_t border_simplices = 0;    ///< of both borders
-  std::uint64_t retriangulated = 0;      ///< points
-  double wait_seconds = 0;               ///< for that border
-  double seconds = 0;                    ///< of the merge
+  int ranks = 0;                          ///< that have taken part
+  std::uint64_t border_simplices = 0;     ///< of its share, before
+  std::uint64_t exposed_simplices = 0;    ///< of these, that the other half might change
+  std::uint64_t border_points = 0;        ///< that had to be triangulated again, by all
+  std::uint64_t retriangulated = 0;       ///< of these, by this rank
+  std::uint64_t inner_merges = 0;         ///< of parts of these, of which this rank had one
+  std::uint64_t inner_border_points = 0;  ///< of the borders of those merges, together
+  std::uint64_t sent_bytes = 0;
+  double seconds = 0;
+  double wait_seconds = 0;       ///< of these, in exchanges
+  double processor_seconds = 0;  ///< that it worked, exchanges excluded
 };
 
 /// What one of several processes did.
@@ -70,8 +75,6 @@ struct RankFigures {
   std::uint64_t bytes_sent = 0;
   std::uint64_t points_sent = 0;
   std::uint64_t point_bytes_sent = 0;
-  std::uint64_t border_simplices_sent = 0;
-  std::uint64_t border_bytes_sent = 0;
   std::vector<RankMerge> merges{};
 };
 

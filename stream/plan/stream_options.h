@@ -24,6 +24,8 @@ struct StreamOptions {
   Division division = Division::kLeastBorder;
   unsigned children = 2;  ///< parts of a tile that are merged at a time
   Kernel kernel = Kernel::kSpillway;
+  /// Points of a border between ranks below which one rank triangulates it; none: chosen by D.
+  std::optional<std::size_t> gather_below{};
   Heights heights = Heights::kFirst;
   std::optional<double> max_edge{};  ///< leave out simplices with a longer edge, in output units
   bool input_index = false;

@@ -16,6 +16,7 @@
 #include "stream/ranks/exchange/piece_table.h"
 #include "stream/ranks/exchange/point_exchange.h"
 #include "stream/ranks/exchange/rank_division.h"
+#include "stream/ranks/merges/rank_merges.h"
 #include "stream/ranks/rank_tree.h"
 #include "stream/triangulate/tile_engine.h"
 
@@ -37,16 +38,6 @@ constexpr std::uint64_t kUsualPieces = 4;
 
 /// Enough for what merges between ranks make final of a point, if all points are in borders.
 constexpr std::uint64_t kMergedBytes = 300;
-
-/// From a rank's border to the stream of all ranks, where a vertex is named by a section of the
-/// stream (as the slot) and its 64-bit number there.
-StreamPlace shared_place(std::uint32_t section, std::uint64_t number) {
-  return {{section, static_cast<std::uint32_t>(number >> 32)}, static_cast<std::uint32_t>(number)};
-}
-
-std::uint64_t number_in_section(const StreamPlace& place) {
-  return (std::uint64_t{place.block.block} << 32) | place.vertex;
-}
 
 template <int D>
 class RankRun {
@@ -76,7 +67,8 @@ class RankRun {
         budget_.set_enough(enough_memory<D>(all.points, options_.record_size) +
                            all.points * (kMergedBytes + options_.record_size));
       }
-      if (tree.own_node()) triangulate(tree);
+      RankMerges<D> merges(tree, engine_, budget_, options_, ranks_);
+      if (tree.own_node()) triangulate(tree, merges);
       collect(tree);
       options_.end_phase(result_.totals.points);
     });
@@ -183,76 +175,19 @@ class RankRun {
     });
   }
 
-  /// This rank's tiles, and those merges that it leads.
-  void triangulate(const RankTree<D>& tree) {
+  /// This rank's tiles, and its part in merges.
+  void triangulate(const RankTree<D>& tree, RankMerges<D>& merges) {
     const std::uint32_t own = *tree.own_node();
-    Border<D> border = engine_.triangulate(*tree.nodes()[own].tiles, tree.nodes()[own].outside);
+    const auto& node = tree.nodes()[own];
+    Border<D> border = engine_.triangulate(*node.tiles, node.outside);
     for (BorderVertex<D>& vertex : border.vertices) {
       if (vertex.place.announced()) {
-        vertex.place = shared_place(own, engine_.number_of(vertex.place));
+        vertex.place = shared_place(node.first_section, engine_.number_of(vertex.place));
       }
     }
-    for (std::uint32_t n = 0; n < tree.nodes().size(); ++n) {
-      const auto& node = tree.nodes()[n];
-      if (!node.is_merge()) continue;
-      const int receiver = node.leader;
-      const int sender = tree.nodes()[node.below[1]].leader;
-      if (sender == ranks_.rank()) {
-        send(border, receiver);
-        return;
-      }
-      if (receiver == ranks_.rank()) border = merge(tree, n, std::move(border), sender);
-    }
-  }
-
-  void send(const Border<D>& border, int receiver) {
-    Packer message;
-    pack(message, border, options_.input_index);
-    ranks_.send(receiver, message.bytes());
-    result_.border_bytes_sent += message.bytes().size();
-    result_.border_simplices_sent += border.simplices.size();
-    engine_.hand_over(border);
-  }
-
-  Border<D> merge(const RankTree<D>& tree, std::uint32_t number, Border<D> own, int sender) {
-    const auto& node = tree.nodes()[number];
-    RankMerge& figures = result_.merges.emplace_back();
-    figures.level = node.level;
-    std::vector<Border<D>> borders;
-    borders.push_back(std::move(own));
-    {
-      const Stopwatch watch(figures.wait_seconds);
-      const std::vector<std::byte> bytes = ranks_.receive(sender);
-      figures.received_bytes = bytes.size();
-      Unpacker message(bytes);
-      borders.push_back(unpack_border<D>(message, options_.input_index));
-    }
-    engine_.take_in(borders[1]);
-    figures.received_simplices = borders[1].simplices.size();
-    figures.border_simplices = borders[0].simplices.size() + borders[1].simplices.size();
-    const Stopwatch watch(figures.seconds);
-    Task steps{.points = node.tiles->size()};
-    Settled<D> settled = engine_.merge(borders, *node.tiles, node.outside, {number, 0}, steps);
-    engine_.count_rank_merge(node.level, steps);
-    for (const Task& step : steps.after) {
-      if (step.kind == TaskKind::kBorder) figures.retriangulated = step.points;
-    }
-    MergedSection section;
-    section.section = number;
-    section.canonical_hash = settled.hash.value();
-    section.mesh = std::move(settled.mesh);
-    section.imported_vertices = std::move(settled.imported_vertices);
-    section.imported_index = std::move(settled.imported_index);
-    section.imported_attributes = std::move(settled.imported_attributes);
-    imported_.push_back(std::move(settled.imported));
-    merged_bytes_ +=
-        section.mesh.bytes() + section.imported_vertices.size() * sizeof(LatticePoint) +
-        section.imported_index.size() * sizeof(std::uint64_t) + section.imported_attributes.size() +
-        imported_.back().size() * (sizeof(StreamPlace) + sizeof(std::uint64_t));
-    merged_lease_ = {};
-    merged_lease_ = MemoryLease(budget_, merged_bytes_, "what merges between ranks made final");
-    result_.merged.push_back(std::move(section));
-    return std::move(settled.border);
+    merges.run(std::move(border));
+    result_.merges = merges.take_figures();
+    drafts_ = merges.take_sections();
   }
 
   /// Puts together what all ranks have: the sections of the stream, and the totals.
@@ -260,9 +195,9 @@ class RankRun {
     result_.task_sums = engine_.task_sums();
     result_.figures = engine_.figures();
     number_sections(tree);
-    for (std::size_t m = 0; m < result_.merged.size(); ++m) {
-      MergedSection& merged = result_.merged[m];
-      for (const StreamPlace& place : imported_[m]) {
+    for (SectionDraft& draft : drafts_) {
+      MergedSection& merged = result_.merged.emplace_back(std::move(draft.section));
+      for (const StreamPlace& place : std::exchange(draft.imported, {})) {
         merged.mesh.imported.push_back(result_.sections[place.block.slot].first_vertex +
                                        number_in_section(place));
       }
@@ -284,22 +219,28 @@ class RankRun {
   }
 
   void number_sections(const RankTree<D>& tree) {
-    std::vector<std::uint64_t> sizes(2 * tree.nodes().size());
-    result_.own_section = tree.own_node();
+    std::vector<std::uint64_t> sizes(2 * std::size_t{tree.sections()});
     if (const auto own = tree.own_node()) {
-      sizes[2 * *own] = result_.figures.mesh.vertices;
-      sizes[2 * *own + 1] = result_.figures.mesh.simplices;
+      const std::uint32_t section = tree.nodes()[*own].first_section;
+      result_.own_section = section;
+      sizes[2 * section] = result_.figures.mesh.vertices;
+      sizes[2 * section + 1] = result_.figures.mesh.simplices;
     }
-    for (const MergedSection& merged : result_.merged) {
-      sizes[2 * merged.section] = merged.mesh.vertices.size();
-      sizes[2 * merged.section + 1] = merged.mesh.corners.size() / (D + 1);
+    for (const SectionDraft& draft : drafts_) {
+      const MeshBlock& mesh = draft.section.mesh;
+      sizes[2 * draft.section.section] = mesh.vertices.size();
+      sizes[2 * draft.section.section + 1] = mesh.corners.size() / (D + 1);
     }
     ranks_.reduce(sizes, Reduction::kSum);
     std::uint64_t first = 0;
-    for (std::size_t n = 0; n < tree.nodes().size(); ++n) {
-      const auto& node = tree.nodes()[n];
-      result_.sections.push_back({node.leader, node.level, first, sizes[2 * n], sizes[2 * n + 1]});
-      first += sizes[2 * n];
+    for (const auto& node : tree.nodes()) {
+      for (std::uint32_t s = 0; s < node.sections(); ++s) {
+        const std::size_t number = node.first_section + s;
+        const int member = node.first + static_cast<int>(s) % (node.end - node.first);
+        result_.sections.push_back({tree.members()[static_cast<std::size_t>(member)], node.level,
+                                    first, sizes[2 * number], sizes[2 * number + 1]});
+        first += sizes[2 * number];
+      }
     }
   }
 
@@ -336,9 +277,7 @@ class RankRun {
   const StreamOptions& options_;
   const Ranks& ranks_;
   TileEngine<D> engine_;
-  std::vector<std::vector<StreamPlace>> imported_;  ///< of result_.merged, before numbers are known
-  std::uint64_t merged_bytes_ = 0;
-  MemoryLease merged_lease_;
+  std::vector<SectionDraft> drafts_;  ///< before numbers are known
   RankMesh result_;
 };
 

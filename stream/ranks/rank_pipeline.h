@@ -18,7 +18,8 @@
 namespace spillway::detail {
 
 /// A section of the stream that all ranks make together: what the tiles of one rank gave, or a
-/// merge between ranks. Sections follow each other as tiles and merges do in a stream.
+/// step of a merge between ranks at one of them. Sections follow each other as tiles and merges do in
+/// a stream.
 struct StreamSection {
   int rank = 0;                    ///< that has it
   std::uint32_t level = 0;         ///< 0: a rank's tiles; merges of ranks are above
@@ -27,7 +28,7 @@ struct StreamSection {
   std::uint64_t simplices = 0;
 };
 
-/// What a merge between ranks made final, as one block of its section of the stream.
+/// What this rank gives in a step of a merge between ranks: the one block of a section.
 struct MergedSection {
   std::uint32_t section = 0;                    ///< of RankMesh::sections
   MeshBlock mesh;                               ///< `imported` are numbers in the whole stream
@@ -49,13 +50,11 @@ struct RankMesh {
   std::vector<RankMerge> merges;             ///< of this rank
   std::uint64_t exchanged_points = 0;        ///< that it sent to other ranks
   std::uint64_t exchanged_bytes = 0;         ///< and as how many bytes
-  std::uint64_t border_bytes_sent = 0;
-  std::uint64_t border_simplices_sent = 0;
 };
 
 /// The pipeline over ranks: they share the reading of `source`, whose points have an index; each
 /// gets the points of its part of space and triangulates them against the boxes of all tiles
-/// everywhere; what is left at the borders between them is merged by fewer and fewer ranks.
+/// everywhere; what is left at the borders between them they merge together.
 /// `sink` takes what the tiles of this rank make final, and is not finished yet; `scratch` and
 /// `budget` are those of the rank. Collective. Errors that all ranks share are thrown by rank 0,
 /// while the others wait to be ended.

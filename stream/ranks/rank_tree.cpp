@@ -56,15 +56,18 @@ std::uint32_t RankTree<D>::add_node(const TileNode<D>& tiles, const Shape& shape
   Node node;
   node.tiles = &tiles;
   node.outside = outside;
-  node.leader = shape.rank;
+  node.first = static_cast<int>(members_.size());
+  if (shape.sides.empty()) members_.push_back(shape.rank);
   for (std::size_t side = 0; side < shape.sides.size(); ++side) {
     Outside<D> others = outside;
     others.push_back(&tiles.children[1 - side]);
     const std::uint32_t below = add_node(tiles.children[side], shape.sides[side], others, own_rank);
     node.below[side] = below;
-    if (side == 0) node.leader = nodes_[below].leader;
     node.level = std::max(node.level, nodes_[below].level + 1);
   }
+  node.end = static_cast<int>(members_.size());
+  node.first_section = sections_;
+  sections_ += node.sections();
   const auto number = static_cast<std::uint32_t>(nodes_.size());
   if (shape.rank == own_rank) own_ = number;
   nodes_.push_back(std::move(node));

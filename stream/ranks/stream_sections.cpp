@@ -42,7 +42,7 @@ bool StreamSections::next(std::uint32_t section, std::vector<std::byte>& chunk) 
   } else {
     const auto merged = std::find_if(merged_.begin(), merged_.end(),
                                      [section](const Merged& m) { return m.section == section; });
-    std::swap(chunk, merged->bytes);
+    if (merged != merged_.end()) std::swap(chunk, merged->bytes);
   }
   return !chunk.empty();
 }

@@ -30,7 +30,7 @@ class StreamSections {
   [[nodiscard]] std::vector<std::uint32_t> own() const;
 
   /// Replaces `chunk` by the next bytes of a section of this rank, about kOutputChunk unless it is
-  /// the last; false if there is none. Each section can be had once.
+  /// the last; false if there is none: many sections are empty. Each can be had once.
   bool next(std::uint32_t section, std::vector<std::byte>& chunk);
 
  private:

@@ -8,6 +8,7 @@
 
 #include "src/delaunay/base_case/base_case.h"
 #include "src/delaunay/division/point_tree.h"
+#include "src/geometry/framed_point.h"
 #include "src/geometry/point.h"
 #include "src/runtime/work_lease.h"
 #include "stream/output/stream_place.h"
@@ -23,6 +24,16 @@ struct BorderVertex {
   std::uint64_t input_index = 0;  ///< if vertices carry it
   StreamPlace place;
 };
+
+/// The vertex as a mesh has it, on the lattice.
+template <int D>
+LatticePoint output_point(const BorderVertex<D>& vertex) {
+  if constexpr (D == 2) {
+    return {vertex.position[0], vertex.position[1], vertex.height};
+  } else {
+    return LatticePoint(vertex.position);
+  }
+}
 
 /// Which merges above, within the same tile, may change a simplex: bit l is set if a sibling of the
 /// part may, where l = 0, or of the l-th node above it.

@@ -32,12 +32,6 @@ void BorderGrowth<D>::add_tile(std::uint64_t points, const Border<D>& border) {
 }
 
 template <int D>
-void BorderGrowth<D>::add(const Border<D>& border) {
-  const std::lock_guard lock(mutex_);
-  most_bytes_ = std::max(most_bytes_, bytes_ += border.bytes());
-}
-
-template <int D>
 void BorderGrowth<D>::begin_merge(std::uint64_t points, std::span<const Border<D>> children) {
   Merge merge{.thread = std::this_thread::get_id(), .points = points};
   std::uint64_t vertices = 0;

@@ -29,9 +29,6 @@ class BorderGrowth {
   /// A tile of so many points is done.
   void add_tile(std::uint64_t points, const Border<D>& border);
 
-  /// A border that came from elsewhere.
-  void add(const Border<D>& border);
-
   /// This thread begins a merge of borders, of so many points below; and it has ended the same,
   /// which has triangulated some points of them.
   void begin_merge(std::uint64_t points, std::span<const Border<D>> children);

@@ -234,14 +234,6 @@ class Settlement {
     if (!part_.exposure.empty()) result_.border.exposure.push_back(part_.exposure[place]);
   }
 
-  [[nodiscard]] static LatticePoint output_point(const BorderVertex<D>& vertex) {
-    if constexpr (D == 2) {
-      return {vertex.position[0], vertex.position[1], vertex.height};
-    } else {
-      return LatticePoint(vertex.position);
-    }
-  }
-
   /// In output coordinates.
   [[nodiscard]] Point<D> world(Point<D> position) const {
     if (!output_.lattice) return position;

@@ -193,6 +193,7 @@ Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& 
   tells_progress_ = true;
   Node* const top = add_nodes(root, outside, nullptr);
   lanes_.work_off();
+  left_border_ = {top->border.simplices.size(), top->border.bytes()};
   return std::move(top->border);
 }
 
@@ -390,31 +391,12 @@ void TileEngine<D>::tell_done(const Node& node, Task task) {
   options_.trace->node(told);
 }
 
-/// Nothing of this is for the sequencer: `place` is one of a stream of many processes.
 template <int D>
-Settled<D> TileEngine<D>::merge(std::span<Border<D>> children, const TileNode<D>& node,
-                                const Outside<D>& outside, BlockPlace place, Task& task) {
-  growth_.begin_merge(node.size(), children);
-  Settled<D> settled = merge_borders_of<D>(context_,
-                                           {.children = children,
-                                            .node = node,
-                                            .outside = outside,
-                                            .place = place,
-                                            .imported_vertices = true},
-                                           task);
-  growth_.end_merge(task.after.front().points, settled.border);
-  return settled;
-}
-
-template <int D>
-void TileEngine<D>::take_in(const Border<D>& border) {
-  counts_.borders.add(border.simplices.size(), border.bytes());
-  growth_.add(border);
-}
-
-template <int D>
-void TileEngine<D>::hand_over(const Border<D>& border) {
-  counts_.borders.remove(border.simplices.size(), border.bytes());
+void TileEngine<D>::hold_border(std::uint64_t simplices, std::uint64_t bytes) {
+  counts_.borders.remove(left_border_[0], left_border_[1]);
+  left_border_ = {};
+  counts_.borders.add(simplices, bytes);
+  left_border_ = {simplices, bytes};
 }
 
 template <int D>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 #include <future>
@@ -85,19 +86,17 @@ class TileEngine {
   /// The same with a plan, for all that is left. Nothing remains. Returns how many points that was.
   std::uint64_t triangulate_rest();
 
-  /// Merges borders of children of `node`, which need not be tiles of this process, as block
-  /// `place` of a stream. Counts what has been settled, but writes nothing.
-  Settled<D> merge(std::span<Border<D>> children, const TileNode<D>& node,
-                   const Outside<D>& outside, BlockPlace place, Task& task);
+  [[nodiscard]] const OutputOptions& output() const { return context_.options.output; }
 
-  /// Counts the task of a merge between ranks.
+  /// What merges between ranks hold of borders, in place of the border that triangulate() has
+  /// returned, or of what was told before; and what they count.
+  void hold_border(std::uint64_t simplices, std::uint64_t bytes);
   void count_rank_merge(std::uint32_t level, const Task& task) {
     tasks_.add_merge(TaskScope::kBetweenRanks, level, task);
   }
-
-  /// A border that came from elsewhere, for merge(); and one that goes elsewhere.
-  void take_in(const Border<D>& border);
-  void hand_over(const Border<D>& border);
+  void count_retriangulated(std::uint64_t points) { counts_.retriangulated += points; }
+  void count_hull_facets(std::uint64_t facets) { counts_.hull_facets += facets; }
+  void count_left_out(std::uint64_t simplices) { counts_.left_out += simplices; }
 
   /// The number in the sink's stream of a vertex that has been announced there.
   [[nodiscard]] std::uint64_t number_of(const StreamPlace& place) const {
@@ -169,6 +168,8 @@ class TileEngine {
   Node* top_ = nullptr;  ///< the part that was added last: at the end that of all points
   std::atomic<bool> tells_progress_ = false;  ///< of triangulating: reading has ended
   std::uint64_t points_before_ = 0;           ///< triangulated while points were read
+  /// Simplices and bytes of the border that is left at the end, as they are counted.
+  std::array<std::uint64_t, 2> left_border_{};
   std::function<void(std::span<std::uint64_t>)> replace_indices_;
   std::mutex load_mutex_;  ///< guards the next one
   std::future<StoredTile> reading_ahead_;

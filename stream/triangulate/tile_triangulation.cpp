@@ -435,7 +435,8 @@ Border<D> triangulate_tile(const TileContext<D>& context, TileInput<D> tile, Tas
 }
 
 template <int D>
-Settled<D> merge_borders_of(const TileContext<D>& context, const MergeInput<D>& input, Task& task) {
+MergedTiles<D> merge_tiles(const TileContext<D>& context, const MergeInput<D>& input, Task& task) {
+  context.sequencer.open_slot(input.place.slot, 1);
   MergedBorder<D> merged = merge_resident<D>(context, input.children, input.node, task);
   if (input.outside_shrank) merged.tested = 0;
   // The largest merges are more than leaves.
@@ -445,28 +446,16 @@ Settled<D> merge_borders_of(const TileContext<D>& context, const MergeInput<D>& 
   if (merged.border.open()) {
     settled.border = std::move(merged.border);
   } else {
-    OutputOptions output = context.options.output;
-    output.imported_vertices = input.imported_vertices;
-    settled = settle_merged<D>(merged, input.place, output,
+    settled = settle_merged<D>(merged, input.place, context.options.output,
                                {.levels = {}, .outside = input.outside}, context.counts.times);
   }
   merged.memory = {};
-  count_settled(settled, context.counts);
-  return settled;
-}
-
-template <int D>
-MergedTiles<D> merge_tiles(const TileContext<D>& context, const MergeInput<D>& input, Task& task) {
-  context.sequencer.open_slot(input.place.slot, 1);
-  Settled<D> settled = merge_borders_of(context, input, task);
   const std::uint64_t final_simplices = settled.final_simplices;
-  return {submit(std::move(settled), input.place, context.sequencer), final_simplices};
+  return {pass_on(context, std::move(settled), input.place), final_simplices};
 }
 
 template Border<2> triangulate_tile(const TileContext<2>&, TileInput<2>, Task&);
 template Border<3> triangulate_tile(const TileContext<3>&, TileInput<3>, Task&);
-template Settled<2> merge_borders_of(const TileContext<2>&, const MergeInput<2>&, Task&);
-template Settled<3> merge_borders_of(const TileContext<3>&, const MergeInput<3>&, Task&);
 template MergedTiles<2> merge_tiles(const TileContext<2>&, const MergeInput<2>&, Task&);
 template MergedTiles<3> merge_tiles(const TileContext<3>&, const MergeInput<3>&, Task&);
 

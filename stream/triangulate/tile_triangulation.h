@@ -115,8 +115,6 @@ struct MergeInput {
   /// Whether boxes outside are tighter now than when the children were settled: then what they have
   /// kept may be final, though no sibling touches it.
   bool outside_shrank = false;
-  /// Whether to tell what the vertices are that the block imports.
-  bool imported_vertices = false;
 };
 
 /// What a merge leaves.
@@ -132,12 +130,8 @@ struct MergedTiles {
 template <int D>
 Border<D> triangulate_tile(const TileContext<D>& context, TileInput<D> tile, Task& task);
 
-/// Merges the borders of a node of the tree over tiles and settles what is final now, as a block of
-/// the stream; counts it, but writes nothing.
-template <int D>
-Settled<D> merge_borders_of(const TileContext<D>& context, const MergeInput<D>& input, Task& task);
-
-/// The same, and sends what is final to the sequencer, as the one block of its slot.
+/// Merges the borders of a node of the tree over tiles; what is final now goes to the sequencer, as
+/// the one block of the node's slot.
 template <int D>
 MergedTiles<D> merge_tiles(const TileContext<D>& context, const MergeInput<D>& input, Task& task);
 

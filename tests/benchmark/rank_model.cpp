@@ -41,10 +41,10 @@ Figures figures_of(const std::vector<RankRun>& runs) {
   figures.exchange_bytes = many.point_bytes_sent / many.points_sent;
   figures.messages_per_point = many.messages / many.ranks / (many.points / many.ranks);
   for (auto level = many.levels.rbegin(); level != many.levels.rend(); ++level) {
-    figures.borders.push_back(level->simplices_per_power);
+    figures.borders.push_back(level->per_power(level->simplices, 3));
   }
-  figures.merge_seconds = root.seconds / root.simplices;
-  figures.merge_bytes_sent = root.received_bytes / root.simplices;
+  figures.merge_seconds = root.processor_seconds / root.simplices;
+  figures.merge_bytes_sent = root.sent_bytes / root.simplices;
   figures.start_mib = many.start_peak_mib;
   figures.tiles_mib = *std::min_element(many.peaks_mib.begin(), many.peaks_mib.end());
   const double largest = *std::max_element(many.peaks_mib.begin(), many.peaks_mib.end());

@@ -36,27 +36,36 @@ std::vector<std::string> triangulate(const Plan& plan, int threads) {
 /// Points of a rank with which a run is little but its start.
 constexpr std::uint64_t kFewPoints = 1000;
 
-void add_merges(RankRun& run, const Json& each, int dimension) {
+void add_merges(RankRun& run, const Json& each) {
   std::map<int, MergeLevel> levels;
   for (const Json& rank : each) {
     for (const Json& merge : rank.at("merges")) {
+      const auto figure = [&](const char* key) { return merge.at(key).get<double>(); };
       const int number = merge.at("level").get<int>();
       MergeLevel& level = levels[number];
+      const double share = 1 / figure("ranks");
       level.level = number;
-      ++level.merges;
-      level.simplices += merge.at("border_simplices").get<double>();
-      level.received_bytes += merge.at("received_bytes").get<double>();
-      level.retriangulated += merge.at("retriangulated_points").get<double>();
-      level.seconds += merge.at("seconds").get<double>();
+      level.merges += share;
+      level.simplices += figure("border_simplices");
+      level.points += figure("border_points") * share;
+      level.inner_merges = std::max(level.inner_merges, figure("inner_merges"));
+      level.inner_points = std::max(level.inner_points, figure("inner_border_points"));
+      level.sent_bytes += figure("sent_bytes");
+      level.processor_seconds += figure("processor_seconds");
+      level.longest_seconds = std::max(level.longest_seconds, figure("processor_seconds"));
     }
   }
   std::vector<MergeLevel> all;
   for (auto& [number, level] : levels) {
     level.below = run.points / level.merges;
-    level.simplices_per_power =
-        level.simplices / level.merges / std::pow(level.below, (dimension - 1.0) / dimension);
+    for (double* const sum : {&level.simplices, &level.points, &level.sent_bytes,
+                              &level.processor_seconds}) {
+      *sum /= level.merges;
+    }
     if (!run.levels.empty()) {
-      level.seconds = std::min(level.seconds, run.levels.at(all.size()).seconds);
+      const MergeLevel& before = run.levels.at(all.size());
+      level.processor_seconds = std::min(level.processor_seconds, before.processor_seconds);
+      level.longest_seconds = std::min(level.longest_seconds, before.longest_seconds);
     }
     all.push_back(level);
   }
@@ -64,6 +73,10 @@ void add_merges(RankRun& run, const Json& each, int dimension) {
 }
 
 }  // namespace
+
+double MergeLevel::per_power(double figure, int dimension) const {
+  return figure / std::pow(below, (dimension - 1.0) / dimension);
+}
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -137,7 +150,7 @@ RankRun measure(const Plan& plan, int ranks) {
     run.point_bytes_sent = sum(each, "point_bytes_sent");
     run.messages = most(each, "messages_sent");
     run.imbalance = most(each, "points") * ranks / sum(each, "points");
-    add_merges(run, each, plan.dimension);
+    add_merges(run, each);
   }
   run.cpu_seconds = median(cpu_seconds);
   return run;

@@ -26,16 +26,22 @@ struct Plan {
   unsigned turns = 3;
 };
 
-/// Merges between ranks of one level, one being the lowest: all together.
+/// Merges between ranks of one level, one being the lowest. Means over them.
 struct MergeLevel {
   int level = 0;
-  int merges = 0;
-  double below = 0;                ///< points below one of them
-  double simplices = 0;            ///< of the borders of both sides
-  double received_bytes = 0;       ///< of one side's
-  double retriangulated = 0;       ///< points
-  double seconds = 0;              ///< of the turn that took least
-  double simplices_per_power = 0;  ///< of one merge, by below^((D - 1) / D)
+  double merges = 0;
+  double below = 0;              ///< points
+  double simplices = 0;          ///< of the borders of both sides
+  double points = 0;             ///< of the border, which are triangulated again
+  double inner_merges = 0;       ///< of a rank that has most of them
+  double inner_points = 0;       ///< of the borders of these
+  double sent_bytes = 0;         ///< by all ranks of a merge
+  double processor_seconds = 0;  ///< of all ranks of a merge
+  /// Of the rank that works longest at this level, in the turn that took least.
+  double longest_seconds = 0;
+
+  /// Of a figure, by below^((D - 1) / D).
+  [[nodiscard]] double per_power(double figure, int dimension) const;
 };
 
 /// What one number of ranks showed. Sizes are those of the last turn.

@@ -29,12 +29,17 @@ Json stages(const RunFigures& figures) {
 
 Json to_json(const RankMerge& merge) {
   return {{"level", merge.level},
+          {"ranks", merge.ranks},
           {"border_simplices", merge.border_simplices},
-          {"received_simplices", merge.received_simplices},
-          {"received_bytes", merge.received_bytes},
+          {"exposed_simplices", merge.exposed_simplices},
+          {"border_points", merge.border_points},
           {"retriangulated_points", merge.retriangulated},
+          {"inner_merges", merge.inner_merges},
+          {"inner_border_points", merge.inner_border_points},
+          {"sent_bytes", merge.sent_bytes},
+          {"seconds", merge.seconds},
           {"wait_seconds", merge.wait_seconds},
-          {"seconds", merge.seconds}};
+          {"processor_seconds", merge.processor_seconds}};
 }
 
 Json to_json(const RankFigures& rank, std::size_t number) {
@@ -54,9 +59,7 @@ Json to_json(const RankFigures& rank, std::size_t number) {
                {"messages_sent", rank.messages_sent},
                {"bytes_sent", rank.bytes_sent},
                {"points_sent", rank.points_sent},
-               {"point_bytes_sent", rank.point_bytes_sent},
-               {"border_simplices_sent", rank.border_simplices_sent},
-               {"border_bytes_sent", rank.border_bytes_sent}};
+               {"point_bytes_sent", rank.point_bytes_sent}};
   json["stages"] = stages(run);
   json["merges"] = Json::array();
   for (const RankMerge& merge : rank.merges) json["merges"].push_back(to_json(merge));
@@ -92,20 +95,23 @@ Json to_json(const std::vector<SkippedFile>& files) {
 /// "ranks": what all of them have sent, and what each has done.
 Json ranks(const TracedReport& report) {
   RankFigures sent;
+  RankMerge merges;
   Json each = Json::array();
   std::size_t number = 0;
   for (const RankFigures& rank : report.sums.ranks) {
     sent.points_sent += rank.points_sent;
     sent.point_bytes_sent += rank.point_bytes_sent;
-    sent.border_simplices_sent += rank.border_simplices_sent;
-    sent.border_bytes_sent += rank.border_bytes_sent;
+    for (const RankMerge& merge : rank.merges) {
+      merges.border_simplices += merge.border_simplices;
+      merges.sent_bytes += merge.sent_bytes;
+    }
     each.push_back(to_json(rank, number++));
   }
   return {{"count", report.sums.ranks.size()},
           {"point_bytes_sent_per_point", ratio(sent.point_bytes_sent, report.mesh.points)},
           {"points_sent_share", ratio(sent.points_sent, report.mesh.points)},
           {"border_bytes_sent_per_border_simplex",
-           ratio(sent.border_bytes_sent, sent.border_simplices_sent)},
+           ratio(merges.sent_bytes, merges.border_simplices)},
           {"each", std::move(each)}};
 }
 

@@ -1,5 +1,5 @@
-// The tree over the tiles of all ranks: the same at all of them, with each merge led by the first
-// rank below it and everything else outside.
+// The tree over the tiles of all ranks: the same at all of them, with the ranks below each node as
+// its members and everything else outside.
 
 #include "stream/ranks/rank_tree.h"
 
@@ -67,31 +67,42 @@ TEST(RankTree, CoversAllTilesOfAllRanks) {
   EXPECT_EQ(nodes.back().tiles->box.lo[0], 0.1);
   EXPECT_EQ(nodes.back().tiles->box.hi[0], tiles_of(ranks - 1).box.hi[0]);
   EXPECT_THAT(nodes.back().outside, IsEmpty());
-  std::vector<int> leaders_of_tiles;
+  std::vector<int> members_of_tiles;
+  std::uint32_t sections = 0;
   for (std::uint32_t n = 0; n < nodes.size(); ++n) {
     EXPECT_EQ(points_around(nodes[n]), root_points) << "node " << n;
+    EXPECT_EQ(nodes[n].first_section, sections) << "sections follow each other";
+    sections += nodes[n].sections();
     if (!nodes[n].is_merge()) {
-      leaders_of_tiles.push_back(nodes[n].leader);
+      EXPECT_EQ(nodes[n].end, nodes[n].first + 1);
+      EXPECT_EQ(nodes[n].section(nodes[n].first), nodes[n].first_section);
+      members_of_tiles.push_back(nodes[n].first);
       continue;
     }
     const auto& low = nodes[nodes[n].below[0]];
     const auto& high = nodes[nodes[n].below[1]];
     EXPECT_LT(nodes[n].below[0], nodes[n].below[1]);
     EXPECT_LT(nodes[n].below[1], n) << "children come before parents";
-    EXPECT_EQ(nodes[n].leader, low.leader);
-    EXPECT_LT(low.leader, high.leader);
+    EXPECT_EQ(nodes[n].first, low.first);
+    EXPECT_EQ(low.end, high.first);
+    EXPECT_EQ(nodes[n].end, high.end);
+    EXPECT_EQ(nodes[n].section(nodes[n].end - 1, MergeStep::kFinalize), sections - 1);
+    EXPECT_EQ(nodes[n].section(nodes[n].first, MergeStep::kEmit),
+              nodes[n].section(nodes[n].end - 1, MergeStep::kAnnounce) + 1);
     EXPECT_EQ(nodes[n].level, std::max(low.level, high.level) + 1);
     EXPECT_EQ(nodes[n].tiles->points, low.tiles->points + high.tiles->points);
   }
-  EXPECT_TRUE(std::is_sorted(leaders_of_tiles.begin(), leaders_of_tiles.end()));
-  EXPECT_EQ(leaders_of_tiles.size(), static_cast<std::size_t>(ranks));
+  EXPECT_TRUE(std::is_sorted(members_of_tiles.begin(), members_of_tiles.end()));
+  EXPECT_EQ(members_of_tiles.size(), static_cast<std::size_t>(ranks));
+  EXPECT_EQ(tree.sections(), sections);
 }
 
 TEST(RankTree, IsTheSameAtAllRanks) {
   const RankTree<2> tree(division_of(world().size()), tiles_of(world().rank()), world());
   Packer packer;
   for (const auto& node : tree.nodes()) {
-    packer.put(node.leader);
+    packer.put(node.first);
+    packer.put(node.end);
     packer.put(node.level);
     packer.put(node.tiles->box);
     packer.put(std::uint64_t{node.outside.size()});
@@ -108,7 +119,7 @@ TEST(RankTree, KnowsHowTheOwnTilesAreStoredAndNoOthers) {
   for (std::uint32_t n = 0; n < tree.nodes().size(); ++n) {
     const auto& node = tree.nodes()[n];
     if (node.is_merge()) continue;
-    EXPECT_EQ(n == *tree.own_node(), node.leader == world().rank());
+    EXPECT_EQ(n == *tree.own_node(), tree.members()[node.first] == world().rank());
     if (n == *tree.own_node()) {
       EXPECT_THAT(node.tiles->children[1].stored, ElementsAre(2));
     } else {
@@ -125,7 +136,7 @@ TEST(RankTree, LeavesOutRanksWithoutPoints) {
   const int with_points = (world().size() + 1) / 2;
   EXPECT_EQ(tree.nodes().size(), static_cast<std::size_t>(2 * with_points - 1));
   EXPECT_EQ(tree.own_node().has_value(), own.has_value());
-  for (const auto& node : tree.nodes()) EXPECT_EQ(node.leader % 2, 0);
+  for (const int member : tree.members()) EXPECT_EQ(member % 2, 0);
 }
 
 TEST(RankTree, OfNoPointsIsEmpty) {

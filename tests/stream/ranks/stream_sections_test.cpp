@@ -48,6 +48,16 @@ TEST(StreamSections, AreWhatTheRankHasInAscendingOrder) {
   EXPECT_THAT(made.mesh.merged, IsEmpty()) << "used up";
 }
 
+TEST(StreamSections, HaveNoBytesWhereAMergeGaveNothing) {
+  Made made;
+  const auto empty = static_cast<std::uint32_t>(made.mesh.sections.size());
+  made.mesh.sections.push_back({.rank = world().rank()});
+  StreamSections parts(made.spool, made.mesh);
+  EXPECT_EQ(parts.sizes(world()).back(), 0U);
+  std::vector<std::byte> chunk;
+  EXPECT_FALSE(parts.next(empty, chunk));
+}
+
 TEST(StreamSections, OfARankWithoutTilesAreNone) {
   Made made;
   made.mesh.own_section.reset();

@@ -194,49 +194,6 @@ TYPED_TEST(TileEngineTest, PutsOtherIndicesInPlaceOfThoseThatCame) {
   EXPECT_EQ(std::set(run.mesh.index.begin(), run.mesh.index.end()).size(), 1500U);
 }
 
-/// As two ranks do it: each its tiles, one of them the merge.
-TYPED_TEST(TileEngineTest, MergesABorderOfAnotherProcess) {
-  constexpr int kD = TypeParam::value;
-  auto points = random_points<kD>(3000, 3);
-  const auto middle = std::stable_partition(points.begin(), points.end(),
-                                            [](const Point<kD>& p) { return p[0] < 0.4; });
-  const std::vector<Point<kD>> low(points.begin(), middle);
-  const std::vector<Point<kD>> high(middle, points.end());
-  EngineRun<kD> here;
-  EngineRun<kD> there;
-  here.spill(low);
-  there.spill(high, low.size());
-  TileNode<kD> root;
-  root.points = points.size();
-  for (EngineRun<kD>* run : {&here, &there}) {
-    root.children.push_back(*run->root);
-    root.box.expand(root.children.back().box);
-  }
-  std::vector<Border<kD>> borders;
-  borders.push_back(here.triangulate({&root.children[1]}));
-  borders.push_back(there.triangulate({&root.children[0]}));
-  EXPECT_FALSE(borders[1].simplices.empty());
-  there.engine.hand_over(borders[1]);
-  here.engine.take_in(borders[1]);
-  Task task;
-  Settled<kD> settled;
-  with_threads(2, [&] { settled = here.engine.merge(borders, root, {}, {0, 0}, task); });
-  EXPECT_THAT(settled.border.simplices, IsEmpty());
-  IndexedSimplices<kD> all = simplices_of<kD>(here.mesh);
-  for (const auto& simplex : simplices_of<kD>(there.mesh)) all.push_back(simplex);
-  std::vector<std::uint64_t> index = settled.mesh.input_index;
-  index.insert(index.end(), settled.imported_index.begin(), settled.imported_index.end());
-  for (std::size_t c = 0; c < settled.mesh.corners.size(); c += kD + 1) {
-    auto& simplex = all.emplace_back();
-    for (int i = 0; i <= kD; ++i) {
-      simplex[i] = static_cast<VertexId>(index.at(settled.mesh.corners[c + i]));
-    }
-    std::sort(simplex.begin(), simplex.end());
-  }
-  std::sort(all.begin(), all.end());
-  EXPECT_EQ(all, triangulated<kD>(points));
-}
-
 TEST(TileEngine, DividesTilesAgainThatBecameTooLarge) {
   const std::vector<Point<2>> points = random_points<2>(300'000, 4);
   EngineRun<2> run({.threads = 2,

@@ -167,31 +167,6 @@ TYPED_TEST(TileTriangulation, OfTwoTilesAndTheirMergeIsAll) {
   EXPECT_GT(bench.counts.borders.most_simplices(), 0U);
 }
 
-TYPED_TEST(TileTriangulation, AMergeForAnotherStreamWritesNothing) {
-  constexpr int kD = TypeParam::value;
-  const TwoTiles<kD> tiles(random_points<kD>(600, 3));
-  Bench<kD> bench;
-  std::vector<Border<kD>> borders;
-  borders.push_back(bench.tile(0, tiles.low, 0, {&tiles.root.children[1]}));
-  borders.push_back(bench.tile(1, tiles.high, tiles.low.size(), {&tiles.root.children[0]}));
-  const std::size_t written = bench.mesh.corner_list.size();
-  Task task;
-  Settled<kD> settled;
-  with_threads(1, [&] {
-    settled = merge_borders_of<kD>(bench.context,
-                                   {.children = borders,
-                                    .node = tiles.root,
-                                    .outside = {},
-                                    .place = {9, 0},
-                                    .imported_vertices = true},
-                                   task);
-  });
-  EXPECT_EQ(bench.mesh.corner_list.size(), written);
-  EXPECT_EQ(settled.imported_vertices.size(), settled.imported.size());
-  EXPECT_EQ(settled.imported_index.size(), settled.imported.size());
-  EXPECT_EQ((written + settled.mesh.corners.size()) / (kD + 1), triangulated<kD>(tiles.all).size());
-}
-
 TYPED_TEST(TileTriangulation, ATileWithoutSimplicesGivesAllItsPointsOn) {
   constexpr int kD = TypeParam::value;
   std::vector<Point<kD>> line(50);

@@ -275,14 +275,20 @@ TEST_F(RanksOfTheCommand, TellWhatWasSentAndMergedByEach) {
   EXPECT_GT(ranks_of_run.at("point_bytes_sent_per_point"), 0);
   EXPECT_GT(ranks_of_run.at("border_bytes_sent_per_border_simplex"), 0);
   ASSERT_EQ(ranks_of_run.at("each").size(), 4U);
-  std::size_t merges = 0;
   std::uint64_t points = 0;
+  std::uint64_t triangulated = 0;
   for (const auto& rank : ranks_of_run.at("each")) {
-    merges += rank.at("merges").size();
     points += rank.at("points").get<std::uint64_t>();
+    ASSERT_EQ(rank.at("merges").size(), 2U) << "of two ranks, and of all";
+    EXPECT_EQ(rank.at("merges")[0].at("ranks"), 2);
+    const auto& root = rank.at("merges")[1];
+    EXPECT_EQ(root.at("ranks"), 4);
+    EXPECT_GT(root.at("exposed_simplices"), 0);
+    EXPECT_LE(root.at("exposed_simplices"), root.at("border_simplices"));
+    triangulated += root.at("retriangulated_points").get<std::uint64_t>();
   }
-  EXPECT_EQ(merges, 3U);
   EXPECT_EQ(points, 300'000U);
+  EXPECT_EQ(triangulated, ranks_of_run.at("each")[0].at("merges")[1].at("border_points"));
 }
 
 /// What mpirun itself adds is not looked at: the message comes once, and nothing is left.

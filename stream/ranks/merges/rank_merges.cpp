@@ -1,0 +1,302 @@
+#include "stream/ranks/merges/rank_merges.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+#include "src/delaunay/border/exposure.h"
+#include "src/delaunay/delaunay.h"
+#include "src/distributed/group.h"
+#include "src/parallel/parallel.h"
+#include "src/runtime/packing.h"
+#include "src/runtime/work_lease.h"
+#include "stream/ranks/exchange/messages.h"
+#include "stream/triangulate/settle.h"
+
+namespace spillway::detail {
+namespace {
+
+using distributed::Group;
+using distributed::GrowingShare;
+using distributed::HalvesMerged;
+using distributed::ItemLimits;
+using distributed::ItemsByRank;
+using distributed::RankIndex;
+using distributed::Ranks;
+
+/// A border of fewer points is triangulated by one rank: it takes no longer there than by half of
+/// them.
+template <int D>
+constexpr std::size_t kGatherBelow = D == 2 ? 200'000 : 40'000;
+
+/// No message of a merge takes a larger share of the limit of the rank that has the least.
+constexpr std::uint64_t kMessageShare = 32;
+constexpr std::uint64_t kLeastMessage = std::uint64_t{64} << 10U;
+
+/// Memory for each point of a border that ranks triangulate, beside that of a triangulation: names,
+/// and the share of it.
+constexpr std::uint64_t kNamedPointBytes = 150;
+
+}  // namespace
+
+template <int D>
+RankMerges<D>::RankMerges(const RankTree<D>& tree, TileEngine<D>& engine, MemoryBudget& budget,
+                          const StreamOptions& options, const Ranks& ranks)
+    : tree_(tree),
+      engine_(engine),
+      budget_(budget),
+      options_(options),
+      output_(engine.output()),
+      kept_(budget) {
+  output_.imported_vertices = true;
+  const auto own = tree.own_node();
+  Ranks group = ranks.split(own ? 0 : 1);
+  if (!own) return;
+  member_ = tree.nodes()[*own].first;
+  const Node* node = &tree.nodes().back();
+  while (node->is_merge()) {
+    const Node& low = tree.nodes()[node->below[0]];
+    const Node& high = tree.nodes()[node->below[1]];
+    const bool is_high = member_ >= high.first;
+    Ranks half = group.split(is_high ? 1 : 0);
+    steps_.push_back({node, std::move(group)});
+    group = std::move(half);
+    node = is_high ? &high : &low;
+  }
+}
+
+template <int D>
+void RankMerges<D>::run(Border<D> border) {
+  std::vector<Point<D>> points = border.positions();
+  const int dimension = border.dimension;
+  share_.emplace(member_, std::move(points), border.simplices, dimension);
+  held_.assign(border.vertices.size(), 0);
+  for (const Corners& corners : border.simplices) {
+    for (const VertexId v : corners) {
+      if (v != kInfiniteVertex) held_[v] = 1;
+    }
+  }
+  owned_.emplace(std::move(border), output_);
+  hold();
+  for (; !steps_.empty(); steps_.pop_back()) merge(steps_.back());
+  engine_.hold_border(0, 0);
+}
+
+/// Tells the budget what this rank holds of borders.
+template <int D>
+void RankMerges<D>::hold() {
+  engine_.hold_border(share_->simplices().size(),
+                      share_->bytes() + owned_->bytes() + held_.size());
+}
+
+/// Marks the simplices from `first` on that something in the trees may change.
+template <int D>
+std::vector<std::uint8_t> RankMerges<D>::exposed(std::size_t first, const Outside<D>& trees) const {
+  const std::span<const Corners> simplices = share_->simplices().subspan(first);
+  std::vector<std::uint8_t> marks(simplices.size());
+  find_exposed<D, TileNode<D>>(simplices, share_->points(), trees,
+                               [&marks](std::size_t s) { marks[s] = 1; });
+  return marks;
+}
+
+template <int D>
+void RankMerges<D>::merge(const Step& step) {
+  RankMerge figures;
+  figures.level = step.node->level;
+  figures.ranks = step.ranks.size();
+  figures.border_simplices = share_->simplices().size();
+  Task task{.points = step.node->tiles->size()};
+  task.after.resize(3);
+  const distributed::Traffic before = distributed::traffic();
+  const double processor_before = process_processor_seconds();
+  {
+    const Stopwatch watch(figures.seconds);
+    ShrinkingLease received(budget_);
+    std::array most = {std::max(kLeastMessage, budget_.limit() / kMessageShare)};
+    step.ranks.reduce(most, distributed::Reduction::kLeast);
+    const ItemLimits limits{.largest_message = most[0], .received = &received};
+    merge_halves(step, limits, task, figures);
+    if (share_->dimension() == D) settle(step, limits, task);
+    hold();
+  }
+  const distributed::Traffic after = distributed::traffic();
+  figures.sent_bytes = after.bytes - before.bytes;
+  figures.wait_seconds = after.seconds - before.seconds;
+  figures.processor_seconds = process_processor_seconds() - processor_before -
+                              (after.processor_seconds - before.processor_seconds);
+  engine_.count_rank_merge(step.node->level, task);
+  figures_.push_back(figures);
+}
+
+template <int D>
+void RankMerges<D>::merge_halves(const Step& step, ItemLimits limits, Task& task,
+                                 RankMerge& figures) {
+  const Node& low = tree_.nodes()[step.node->below[0]];
+  const Node& high = tree_.nodes()[step.node->below[1]];
+  std::vector<std::uint8_t> marks;
+  {
+    task.after[0].kind = TaskKind::kBorder;
+    const Stopwatch watch(task.after[0].seconds);
+    marks = exposed(0, {member_ >= high.first ? low.tiles : high.tiles});
+  }
+  WorkLease lease;
+  distributed::DistributedOptions<D> options;
+  options.gather_below = options_.gather_below.value_or(kGatherBelow<D>);
+  options.limits = limits;
+  options.inner_merge = [&figures](std::uint64_t border) {
+    ++figures.inner_merges;
+    figures.inner_border_points += border;
+  };
+  options.triangulate = [&](std::vector<Point<D>> points) {
+    const std::uint64_t bytes =
+        merge_bytes<D>(points.size(), step.node->tiles->size()) + points.size() * kNamedPointBytes;
+    lease = {};
+    release_base_case_memory();
+    budget_.give_back_freed(bytes);
+    lease = WorkLease(budget_, bytes, "the triangulation of a border");
+    SlabArray<Point<D>> slab(points.size());
+    std::ranges::copy(std::exchange(points, {}), slab.begin());
+    Triangulation<D> mesh;
+    const StageTimer timer(engine_.times(), Stage::kMerge);
+    isolated([&] {
+      mesh = border_delaunay<D>(std::move(slab), options_.kernel, &lease, task.after[1]);
+    });
+    return mesh;
+  };
+  const HalvesMerged merged = distributed::merge_halves<D>(
+      *share_, {step.ranks, step.node->first}, high.first, std::move(marks), options);
+  figures.exposed_simplices = merged.put_apart;
+  figures.border_points = merged.border;
+  figures.retriangulated = merged.triangulated;
+  task.after[0].points = merged.triangulated;
+  engine_.count_retriangulated(merged.triangulated);
+  // At the root nothing is outside, and all is final.
+  untested_ = step.node->outside.empty() ? 0 : merged.before;
+}
+
+/// Finds out which simplices are final. Their vertices are announced by those who
+/// own them, then they are emitted, and then owners finalize vertices.
+template <int D>
+void RankMerges<D>::settle(const Step& step, const ItemLimits& limits, Task& task) {
+  task.after[2].kind = TaskKind::kAccept;
+  const Group group{step.ranks, step.node->first};
+  std::vector<Corners> finals = share_->settle(untested_, exposed(untested_, step.node->outside));
+  const std::size_t all = finals.size();
+  std::erase_if(finals, [](const Corners& corners) {
+    return std::ranges::find(corners, kInfiniteVertex) != corners.end();
+  });
+  engine_.count_hull_facets(all - finals.size());
+  Told told = news_of(finals);
+  const News asked = exchange_within(group, std::move(told.news), limits);
+  for (const auto& [rank, news] : asked) owned_->note(news);
+  keep(owned_->announce(step.node->section(member_, MergeStep::kAnnounce)));
+  Border<D> used = fetch_used(group, asked, limits);
+  // Vertices of `used` are those that were asked for, owner by owner.
+  std::vector<VertexId> number(share_->points().size());
+  VertexId next = 0;
+  for (const auto& [rank, vertices] : told.used) {
+    for (const VertexId v : vertices) number[v] = next++;
+  }
+  for (Corners& corners : finals) {
+    for (VertexId& v : corners) v = number[v];
+  }
+  used.dimension = D;
+  used.simplices = std::move(finals);
+  keep(emit(std::move(used), step.node->section(member_, MergeStep::kEmit)));
+  keep(owned_->finalize(step.node->section(member_, MergeStep::kFinalize)));
+  share_->drop_unused_points();
+  told.held.resize(share_->own_points());
+  held_ = std::move(told.held);
+  held_.resize(share_->points().size(), 1);
+}
+
+/// What the owners of vertices are to know of this merge, in which these simplices became final.
+template <int D>
+typename RankMerges<D>::Told RankMerges<D>::news_of(const std::vector<Corners>& finals) {
+  const std::size_t count = share_->points().size();
+  std::vector<std::uint8_t> is_used(count);
+  for (const Corners& corners : finals) {
+    for (const VertexId v : corners) is_used[v] = 1;
+  }
+  Told told;
+  told.held.resize(count);
+  for (const Corners& corners : share_->simplices()) {
+    for (const VertexId v : corners) {
+      if (v != kInfiniteVertex) told.held[v] = 1;
+    }
+  }
+  held_.resize(count);
+  for (VertexId v = 0; v < count; ++v) {
+    std::uint32_t bits = is_used[v] != 0 ? VertexNews::kUsed : 0;
+    if (told.held[v] != held_[v]) {
+      bits |= told.held[v] != 0 ? VertexNews::kGained : VertexNews::kLost;
+    }
+    if (bits == 0) continue;
+    const RankIndex name = share_->names()[v];
+    const auto owner = static_cast<int>(name.rank);
+    told.news[owner].push_back({name.index, bits});
+    if (is_used[v] != 0) told.used[owner].push_back(v);
+  }
+  return told;
+}
+
+/// The used vertices of what this rank has told, owner by owner; and answers what it was asked.
+template <int D>
+Border<D> RankMerges<D>::fetch_used(const Group& group, const News& asked,
+                                    const ItemLimits& limits) const {
+  ItemsByRank<std::byte> answers;
+  for (const auto& [rank, news] : asked) {
+    const Border<D> used = owned_->used(news);
+    if (used.vertices.empty()) continue;
+    Packer packer;
+    pack(packer, used, output_.input_index);
+    answers[rank] = packer.take();
+  }
+  Border<D> used;
+  for (const auto& [rank, bytes] : exchange_within(group, std::move(answers), limits)) {
+    Unpacker unpacker(bytes);
+    const Border<D> some = unpack_border<D>(unpacker, output_.input_index);
+    used.vertices.insert(used.vertices.end(), some.vertices.begin(), some.vertices.end());
+    used.attributes.insert(used.attributes.end(), some.attributes.begin(), some.attributes.end());
+  }
+  return used;
+}
+
+/// The section of final simplices, all of whose vertices are in the stream.
+template <int D>
+std::optional<SectionDraft> RankMerges<D>::emit(Border<D> finals, std::uint32_t section) {
+  if (finals.simplices.empty()) return std::nullopt;
+  const StageTimer timer(engine_.times(), Stage::kFinality);
+  const std::vector<Fate> fates(finals.simplices.size(), Fate::kFinal);
+  Settled<D> settled =
+      detail::settle<D>(MergeToSettle<D>{.block = {}, .merged = finals, .fates = fates}, output_);
+  engine_.count_left_out(settled.left_out);
+  SectionDraft draft;
+  draft.section.section = section;
+  draft.section.canonical_hash = settled.hash.value();
+  draft.section.mesh = std::move(settled.mesh);
+  draft.section.mesh.finalized = {};  // that is for their owners to say
+  draft.section.imported_vertices = std::move(settled.imported_vertices);
+  draft.section.imported_index = std::move(settled.imported_index);
+  draft.section.imported_attributes = std::move(settled.imported_attributes);
+  draft.imported = std::move(settled.imported);
+  return draft;
+}
+
+template <int D>
+void RankMerges<D>::keep(std::optional<SectionDraft> draft) {
+  if (!draft) return;
+  const MergedSection& section = draft->section;
+  kept_.take(section.mesh.bytes() + section.imported_vertices.size() * sizeof(LatticePoint) +
+                 section.imported_index.size() * sizeof(std::uint64_t) +
+                 section.imported_attributes.size() +
+                 draft->imported.size() * (sizeof(StreamPlace) + sizeof(std::uint64_t)),
+             "what merges between ranks made final");
+  sections_.push_back(std::move(*draft));
+}
+
+template class RankMerges<2>;
+template class RankMerges<3>;
+
+}  // namespace spillway::detail
