@@ -35,35 +35,60 @@ std::array<Stretch, N> stretches(const std::array<std::uint64_t, N>& counts, con
   return result;
 }
 
+/// The least coordinate of all points.
 template <int D>
-Box<D> box_of_all(const std::vector<NamedPoint<D>>& points, const Ranks& group) {
+double least_of_all(const std::vector<NamedPoint<D>>& points, int axis, const Ranks& group) {
   Box<D> box;
   for (const auto& point : points) box.expand(point.position);
-  group.reduce(box.lo, Reduction::kLeast);
-  group.reduce(box.hi, Reduction::kMost);
-  return box;
+  double least = box.lo[axis];
+  group.reduce(std::span(&least, 1), Reduction::kLeast);
+  return least;
 }
 
-/// The coordinate below which about share/whole of all points are.
+/// Every so many points one, the same at all ranks.
 template <int D>
-double cut_value(const std::vector<NamedPoint<D>>& points, const Stretch& stretch, int axis,
-                 int share, const Ranks& group) {
+std::vector<Point<D>> sample_of_all(const std::vector<NamedPoint<D>>& points,
+                                    const Stretch& stretch, const Ranks& group) {
   const std::uint64_t stride = std::max<std::uint64_t>(1, stretch.whole / kSampleSize);
-  std::vector<double> own;
+  std::vector<Point<D>> own;
   for (std::uint64_t i = stretch.begin / stride; i * stride < stretch.begin + points.size(); ++i) {
     const std::uint64_t number = i * stride + mix64(i) % stride;
     if (number < stretch.begin || number >= stretch.begin + points.size()) continue;
-    own.push_back(points[number - stretch.begin].position[axis]);
+    own.push_back(points[number - stretch.begin].position);
   }
-  std::vector<double> sample;
+  std::vector<Point<D>> sample;
   for (const auto& bytes : group.gather(std::as_bytes(std::span(own)))) {
-    const std::vector<double> some = items_of<double>(bytes);
+    const std::vector<Point<D>> some = items_of<Point<D>>(bytes);
     sample.insert(sample.end(), some.begin(), some.end());
   }
+  return sample;
+}
+
+/// The coordinate below which the share of a sample is.
+template <int D>
+double value_at(std::vector<Point<D>>& sample, int axis, double share) {
   const auto place =
-      sample.begin() + static_cast<std::ptrdiff_t>(sample.size() * share / group.size());
-  std::nth_element(sample.begin(), place, sample.end());
-  return *place;
+      sample.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sample.size() - 1));
+  std::ranges::nth_element(sample, place, {}, [axis](const Point<D>& p) { return p[axis]; });
+  return (*place)[axis];
+}
+
+/// The axis along which most of the points lie farthest apart. A border is a thin layer of points
+/// and some far from it, which shall not have it cut along the layer: the halves would be all
+/// border.
+template <int D>
+int axis_of_most(std::vector<Point<D>>& sample) {
+  constexpr double kFar = 0.1;
+  int longest = 0;
+  double most = -1;
+  for (int axis = 0; axis < D; ++axis) {
+    const double length = value_at<D>(sample, axis, 1 - kFar) - value_at<D>(sample, axis, kFar);
+    if (length > most) {
+      most = length;
+      longest = axis;
+    }
+  }
+  return longest;
 }
 
 }  // namespace
@@ -73,11 +98,12 @@ std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const
                                         int low_ranks, const ItemLimits& limits) {
   const auto [all] = stretches<1>({points.size()}, group);
   if (all.whole == 0) return points;
-  const Box<D> box = box_of_all(points, group);
-  const int axis = box.longest_axis();
-  const double value = cut_value(points, all, axis, low_ranks, group);
+  std::vector<Point<D>> sample = sample_of_all(points, all, group);
+  const int axis = axis_of_most<D>(sample);
+  const double value = value_at<D>(sample, axis, static_cast<double>(low_ranks) / group.size());
+  const double least = least_of_all(points, axis, group);
   // Points on the cut go up, unless nothing is below it.
-  const auto is_high = [&, nothing_below = value <= box.lo[axis]](const NamedPoint<D>& point) {
+  const auto is_high = [&, nothing_below = value <= least](const NamedPoint<D>& point) {
     return nothing_below ? point.position[axis] > value : point.position[axis] >= value;
   };
 
@@ -100,8 +126,8 @@ std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const
 }
 
 template std::vector<NamedPoint<2>> move_to_half(std::vector<NamedPoint<2>>, const Ranks&, int,
-                                             const ItemLimits&);
+                                                 const ItemLimits&);
 template std::vector<NamedPoint<3>> move_to_half(std::vector<NamedPoint<3>>, const Ranks&, int,
-                                             const ItemLimits&);
+                                                 const ItemLimits&);
 
 }  // namespace spillway::detail::distributed

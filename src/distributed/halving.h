@@ -14,7 +14,7 @@ struct NamedPoint {
   RankIndex name;
 };
 
-/// Cuts the longest side of the box around all points of the group where a sample says, and moves
+/// Cuts the side along which most points of the group spread where a sample says, and moves
 /// the points below to the group's first `low_ranks` ranks, those above to the others: about as
 /// many to each rank. Equal points are on one side of the cut. Read from rank to rank, the points
 /// of a side keep their order. Returns this rank's. Collective.

@@ -39,6 +39,7 @@ int open_groups = 0;
 int rank_in_job = 0;
 std::atomic<std::uint64_t> messages_sent = 0;
 std::atomic<std::uint64_t> bytes_sent = 0;
+std::atomic<std::uint64_t> calls = 0;
 std::atomic<double> call_seconds = 0;
 std::atomic<double> call_processor_seconds = 0;
 
@@ -48,6 +49,7 @@ class CallTimer {
   CallTimer() = default;
   ~CallTimer() {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
+    ++calls;
     call_seconds += seconds.count();
     call_processor_seconds += process_processor_seconds() - processor_start_;
   }
@@ -387,6 +389,7 @@ std::vector<std::byte> Ranks::receive(int from) const {
 Traffic traffic() {
   return {.messages = messages_sent,
           .bytes = bytes_sent,
+          .calls = calls,
           .seconds = call_seconds,
           .processor_seconds = call_processor_seconds};
 }

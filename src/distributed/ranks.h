@@ -37,7 +37,8 @@ struct Message {
 struct Traffic {
   std::uint64_t messages = 0;
   std::uint64_t bytes = 0;
-  double seconds = 0;            ///< in calls of groups, waiting included
+  std::uint64_t calls = 0;       ///< of groups
+  double seconds = 0;            ///< in these, waiting included
   double processor_seconds = 0;  ///< of the process, meanwhile
 };
 

@@ -62,8 +62,10 @@ struct RankMerge {
   std::uint64_t inner_border_points = 0;  ///< of the borders of those merges, together
   std::uint64_t sent_bytes = 0;
   double seconds = 0;
-  double wait_seconds = 0;       ///< of these, in exchanges
-  double processor_seconds = 0;  ///< that it worked, exchanges excluded
+  double wait_seconds = 0;           ///< of these, in exchanges
+  std::uint64_t calls = 0;           ///< exchanges, and what else ranks do together
+  double processor_seconds = 0;      ///< that it worked, these excluded
+  double triangulation_seconds = 0;  ///< of these, for points of borders
 };
 
 /// What one of several processes did.

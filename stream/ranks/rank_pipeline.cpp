@@ -10,8 +10,11 @@
 
 #include "formats/bytes/bytes.h"
 #include "src/delaunay/base_case/base_case.h"
+#include "src/delaunay/common/hash.h"
+#include "src/distributed/items.h"
 #include "src/parallel/parallel.h"
 #include "stream/ranks/exchange/collective_step.h"
+#include "stream/ranks/exchange/message_size.h"
 #include "stream/ranks/exchange/messages.h"
 #include "stream/ranks/exchange/piece_table.h"
 #include "stream/ranks/exchange/point_exchange.h"
@@ -244,9 +247,27 @@ class RankRun {
     }
   }
 
-  /// Facets of one simplex only, of all ranks: what is open at one rank may close what is open at
-  /// another. Needs memory for all such facets at rank 0.
+  /// Facets of one simplex only, of all ranks: what is open at one may close what is open at
+  /// another. Each facet has a rank where both would meet. Collective.
   [[nodiscard]] std::uint64_t open_facets() const {
+    distributed::ItemsByRank<std::array<std::uint64_t, D>> facets;
+    for (const auto& facet : own_open_facets()) {
+      std::uint64_t hash = 0;
+      for (const std::uint64_t v : facet) hash = mix64(hash ^ v);
+      facets[static_cast<int>(hash % static_cast<std::uint64_t>(ranks_.size()))].push_back(facet);
+    }
+    ShrinkingLease received(budget_);
+    OpenFacets<D> met;
+    for (const auto& [rank, some] : distributed::exchange_items(
+             ranks_, std::move(facets),
+             {.largest_message = largest_message(budget_, ranks_), .received = &received})) {
+      for (const auto& facet : some) met.toggle(facet);
+    }
+    return of_all_ranks(met.count());
+  }
+
+  /// Those of this rank alone, in numbers of the whole stream.
+  [[nodiscard]] OpenFacets<D> own_open_facets() const {
     OpenFacets<D> own;
     if (result_.own_section) {
       const std::uint64_t first = result_.sections[*result_.own_section].first_vertex;
@@ -259,16 +280,7 @@ class RankRun {
       const std::uint64_t first = result_.sections[merged.section].first_vertex;
       own.add_block(merged.mesh.corners, {first, merged.mesh});
     }
-    const std::vector<std::array<std::uint64_t, D>> facets(own.begin(), own.end());
-    OpenFacets<D> all;
-    for (const auto& bytes : ranks_.gather(std::as_bytes(std::span(facets)), 0)) {
-      for (std::size_t at = 0; at < bytes.size(); at += sizeof(facets[0])) {
-        all.toggle(load<std::array<std::uint64_t, D>>(bytes.data() + at));
-      }
-    }
-    std::uint64_t count = all.count();
-    ranks_.reduce(std::span(&count, 1), Reduction::kMost);
-    return count;
+    return own;
   }
 
   PointSource& source_;

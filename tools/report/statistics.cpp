@@ -39,7 +39,9 @@ Json to_json(const RankMerge& merge) {
           {"sent_bytes", merge.sent_bytes},
           {"seconds", merge.seconds},
           {"wait_seconds", merge.wait_seconds},
-          {"processor_seconds", merge.processor_seconds}};
+          {"calls", merge.calls},
+          {"processor_seconds", merge.processor_seconds},
+          {"triangulation_seconds", merge.triangulation_seconds}};
 }
 
 Json to_json(const RankFigures& rank, std::size_t number) {
@@ -107,12 +109,12 @@ Json ranks(const TracedReport& report) {
     }
     each.push_back(to_json(rank, number++));
   }
-  return {{"count", report.sums.ranks.size()},
-          {"point_bytes_sent_per_point", ratio(sent.point_bytes_sent, report.mesh.points)},
-          {"points_sent_share", ratio(sent.points_sent, report.mesh.points)},
-          {"border_bytes_sent_per_border_simplex",
-           ratio(merges.sent_bytes, merges.border_simplices)},
-          {"each", std::move(each)}};
+  return {
+      {"count", report.sums.ranks.size()},
+      {"point_bytes_sent_per_point", ratio(sent.point_bytes_sent, report.mesh.points)},
+      {"points_sent_share", ratio(sent.points_sent, report.mesh.points)},
+      {"border_bytes_sent_per_border_simplex", ratio(merges.sent_bytes, merges.border_simplices)},
+      {"each", std::move(each)}};
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "src/parallel/parallel.h"
 #include "src/runtime/packing.h"
 #include "src/runtime/work_lease.h"
+#include "stream/ranks/exchange/message_size.h"
 #include "stream/ranks/exchange/messages.h"
 #include "stream/triangulate/settle.h"
 
@@ -28,11 +29,7 @@ using distributed::Ranks;
 /// A border of fewer points is triangulated by one rank: it takes no longer there than by half of
 /// them.
 template <int D>
-constexpr std::size_t kGatherBelow = D == 2 ? 200'000 : 40'000;
-
-/// No message of a merge takes a larger share of the limit of the rank that has the least.
-constexpr std::uint64_t kMessageShare = 32;
-constexpr std::uint64_t kLeastMessage = std::uint64_t{64} << 10U;
+constexpr std::size_t kGatherBelow = D == 2 ? 20'000 : 10'000;
 
 /// Memory for each point of a border that ranks triangulate, beside that of a triangulation: names,
 /// and the share of it.
@@ -50,6 +47,7 @@ RankMerges<D>::RankMerges(const RankTree<D>& tree, TileEngine<D>& engine, Memory
       output_(engine.output()),
       kept_(budget) {
   output_.imported_vertices = true;
+  largest_message_ = largest_message(budget, ranks);
   const auto own = tree.own_node();
   Ranks group = ranks.split(own ? 0 : 1);
   if (!own) return;
@@ -86,8 +84,7 @@ void RankMerges<D>::run(Border<D> border) {
 /// Tells the budget what this rank holds of borders.
 template <int D>
 void RankMerges<D>::hold() {
-  engine_.hold_border(share_->simplices().size(),
-                      share_->bytes() + owned_->bytes() + held_.size());
+  engine_.hold_border(share_->simplices().size(), share_->bytes() + owned_->bytes() + held_.size());
 }
 
 /// Marks the simplices from `first` on that something in the trees may change.
@@ -113,9 +110,7 @@ void RankMerges<D>::merge(const Step& step) {
   {
     const Stopwatch watch(figures.seconds);
     ShrinkingLease received(budget_);
-    std::array most = {std::max(kLeastMessage, budget_.limit() / kMessageShare)};
-    step.ranks.reduce(most, distributed::Reduction::kLeast);
-    const ItemLimits limits{.largest_message = most[0], .received = &received};
+    const ItemLimits limits{.largest_message = largest_message_, .received = &received};
     merge_halves(step, limits, task, figures);
     if (share_->dimension() == D) settle(step, limits, task);
     hold();
@@ -123,6 +118,7 @@ void RankMerges<D>::merge(const Step& step) {
   const distributed::Traffic after = distributed::traffic();
   figures.sent_bytes = after.bytes - before.bytes;
   figures.wait_seconds = after.seconds - before.seconds;
+  figures.calls = after.calls - before.calls;
   figures.processor_seconds = process_processor_seconds() - processor_before -
                               (after.processor_seconds - before.processor_seconds);
   engine_.count_rank_merge(step.node->level, task);
@@ -159,13 +155,15 @@ void RankMerges<D>::merge_halves(const Step& step, ItemLimits limits, Task& task
     std::ranges::copy(std::exchange(points, {}), slab.begin());
     Triangulation<D> mesh;
     const StageTimer timer(engine_.times(), Stage::kMerge);
+    const double processor_before = process_processor_seconds();
     isolated([&] {
       mesh = border_delaunay<D>(std::move(slab), options_.kernel, &lease, task.after[1]);
     });
+    figures.triangulation_seconds += process_processor_seconds() - processor_before;
     return mesh;
   };
-  const HalvesMerged merged = distributed::merge_halves<D>(
-      *share_, {step.ranks, step.node->first}, high.first, std::move(marks), options);
+  const HalvesMerged merged = distributed::merge_halves<D>(*share_, {step.ranks, step.node->first},
+                                                           high.first, std::move(marks), options);
   figures.exposed_simplices = merged.put_apart;
   figures.border_points = merged.border;
   figures.retriangulated = merged.triangulated;

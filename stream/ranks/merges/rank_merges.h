@@ -66,6 +66,7 @@ class RankMerges {
   MemoryBudget& budget_;
   const StreamOptions& options_;
   OutputOptions output_;
+  std::size_t largest_message_ = 0;  ///< bytes
   int member_ = 0;
   std::vector<Step> steps_;  ///< from the root down
   std::optional<OwnedVertices<D>> owned_;
