@@ -46,7 +46,9 @@ class Run {
       const Ranks half = ranks.split(high ? 1 : 0);
       triangulate_group({half, high ? middle : group.first}, std::move(points));
     }
-    merge(group, middle);
+    const HalvesMerged merged = merge_halves(*growing_, group, middle, merges_++, options_);
+    options_.inner_merge(merged.border);
+    settle();
   }
 
   void triangulate_own(std::vector<NamedPoint<D>> named) {
@@ -57,7 +59,19 @@ class Run {
     begin_share(options_.triangulate(std::move(points)), named);
     named = {};
     boxes_ = gather_item(ranks_, box);
-    settle({ranks_, ranks_.rank()}, 1, 0);
+    note_other_halves(0, ranks_.size());
+    settle();
+  }
+
+  /// The other halves of all merges that this rank takes part in, of ranks from `begin` to `end`.
+  void note_other_halves(int begin, int end) {
+    if (end - begin < 2) return;
+    const int middle = begin + (end - begin) / 2;
+    const bool high = ranks_.rank() >= middle;
+    note_other_halves(high ? middle : begin, high ? end : middle);
+    const int other = high ? begin : middle;
+    other_halves_.push_back(
+        BoxTree<D>::of(std::span(boxes_).subspan(other, (high ? middle : end) - other)));
   }
 
   /// The share begins with the triangulation of the own points, equal ones made one.
@@ -86,42 +100,13 @@ class Run {
                      triangulation.dimension);
   }
 
-  /// The boxes of ranks from `begin` to `end`.
-  [[nodiscard]] BoxTree<D> boxes_of(int begin, int end) const {
-    return BoxTree<D>::of(std::span(boxes_).subspan(begin, end - begin));
-  }
-
-  /// Marks the simplices from `first` on that a point in one of the boxes may change.
-  [[nodiscard]] std::vector<std::uint8_t> marks_of_exposed(std::size_t first,
-                                                           std::span<const BoxTree<D>> boxes) const {
+  /// What nothing can change of what is new stays as it is.
+  void settle() {
     std::vector<const BoxTree<D>*> trees;
-    for (const BoxTree<D>& tree : boxes) trees.push_back(&tree);
-    const std::span<const Corners> simplices = growing_->simplices().subspan(first);
-    std::vector<std::uint8_t> marks(simplices.size());
-    find_exposed<D, BoxTree<D>>(simplices, growing_->points(), trees,
-                                [&marks](std::size_t s) { marks[s] = 1; });
-    return marks;
-  }
-
-  /// What no rank outside of `count` ones of the group can change, of what is new, stays as it is.
-  void settle(const Group& group, int count, std::size_t first) {
-    const int after = group.first + count;
-    std::vector<BoxTree<D>> outside;
-    if (group.first > 0) outside.push_back(boxes_of(0, group.first));
-    if (after < ranks_.size()) outside.push_back(boxes_of(after, ranks_.size()));
-    const auto settled = growing_->settle(first, marks_of_exposed(first, outside));
+    for (const BoxTree<D>& tree : other_halves_) trees.push_back(&tree);
+    const auto settled = growing_->settle(
+        exposure_by_tree<D, BoxTree<D>>(growing_->unsettled(), growing_->points(), trees, merges_));
     settled_.insert(settled_.end(), settled.begin(), settled.end());
-  }
-
-  /// From the triangulations of a group's halves to that of the group. The upper half begins at
-  /// rank `middle`.
-  void merge(const Group& group, int middle) {
-    const bool high = group.own() >= middle;
-    const std::array others = {high ? boxes_of(group.first, middle) : boxes_of(middle, group.end())};
-    const HalvesMerged merged =
-        merge_halves(*growing_, group, middle, marks_of_exposed(0, others), options_);
-    options_.inner_merge(merged.border);
-    settle(group, group.ranks.size(), merged.before);
   }
 
   /// What this rank holds in the end, of vertices only those that occur.
@@ -182,8 +167,10 @@ class Run {
   std::optional<GrowingShare<D>> growing_;
   std::vector<RankIndex> origins_;  ///< of its own points
   std::vector<typename Share<D>::Duplicate> duplicates_;
-  std::vector<Corners> settled_;  ///< simplices that no merge to come can change
-  std::vector<Box<D>> boxes_;     ///< of each rank's points
+  std::vector<Corners> settled_;          ///< simplices that no merge to come can change
+  std::vector<Box<D>> boxes_;             ///< of each rank's points
+  std::vector<BoxTree<D>> other_halves_;  ///< by merge that this rank takes part in
+  unsigned merges_ = 0;                   ///< that are done
 };
 
 }  // namespace

@@ -19,8 +19,7 @@ struct Group {
 
 /// exchange_items() within a group, of items by the ranks' numbers in names.
 template <typename T>
-ItemsByRank<T> exchange_within(const Group& group, ItemsByRank<T> items,
-                               const ItemLimits& limits) {
+ItemsByRank<T> exchange_within(const Group& group, ItemsByRank<T> items, const ItemLimits& limits) {
   ItemsByRank<T> shifted;
   for (auto& [rank, some] : items) shifted[rank - group.first] = std::move(some);
   ItemsByRank<T> received;

@@ -52,13 +52,14 @@ void GrowingShare<D>::add_point(const NamedPoint<D>& point) {
 }
 
 template <int D>
-std::vector<RankIndex> GrowingShare<D>::put_apart(std::span<const std::uint8_t> marks) {
+std::vector<RankIndex> GrowingShare<D>::put_apart(unsigned merge) {
   std::vector<std::uint8_t> used(points_.size());
   std::size_t kept = 0;
   apart_.clear();
   for (std::size_t s = 0; s < simplices_.size(); ++s) {
-    if (marks[s] == 0) {
-      simplices_[kept++] = simplices_[s];
+    if ((exposure_[s] >> merge & 1U) == 0) {
+      simplices_[kept] = simplices_[s];
+      exposure_[kept++] = exposure_[s];
       continue;
     }
     apart_.push_back(simplices_[s]);
@@ -67,6 +68,7 @@ std::vector<RankIndex> GrowingShare<D>::put_apart(std::span<const std::uint8_t> 
     }
   }
   simplices_.resize(kept);
+  exposure_.resize(kept);
   std::vector<RankIndex> names;
   for (VertexId v = 0; v < used.size(); ++v) {
     if (used[v] != 0) names.push_back(names_[v]);
@@ -76,9 +78,8 @@ std::vector<RankIndex> GrowingShare<D>::put_apart(std::span<const std::uint8_t> 
 }
 
 template <int D>
-std::size_t GrowingShare<D>::accept(const ItemsByRank<NamedSimplex<D>>& simplices,
-                                    const ItemsByRank<NamedPoint<D>>& points,
-                                    const Halves& halves) {
+void GrowingShare<D>::accept(const ItemsByRank<NamedSimplex<D>>& simplices,
+                             const ItemsByRank<NamedPoint<D>>& points, const Halves& halves) {
   for (const auto& [sender, some] : points) {
     for (const NamedPoint<D>& point : some) add_point(point);
   }
@@ -101,7 +102,6 @@ std::size_t GrowingShare<D>::accept(const ItemsByRank<NamedSimplex<D>>& simplice
   const std::array ends = {static_cast<VertexId>(low_end), static_cast<VertexId>(by_side.size())};
   const Acceptance<D> acceptance(ends, {halves.open[0], halves.open[1]}, apart_);
   typename Acceptance<D>::template Questions<> questions(acceptance);
-  const std::size_t before = simplices_.size();
   const auto found = [&](const Corners& corners, std::monostate, std::uint32_t) {
     simplices_.push_back(renumbered(corners, by_side));
   };
@@ -115,22 +115,22 @@ std::size_t GrowingShare<D>::accept(const ItemsByRank<NamedSimplex<D>>& simplice
   }
   questions.answer(found);
   apart_ = {};
-  return before;
 }
 
 template <int D>
 std::vector<std::array<VertexId, D + 1>> GrowingShare<D>::settle(
-    std::size_t first, std::span<const std::uint8_t> marks) {
+    std::span<const std::uint32_t> exposure) {
   std::vector<Corners> settled;
-  std::size_t kept = first;
-  for (std::size_t s = first; s < simplices_.size(); ++s) {
-    if (marks[s - first] != 0) {
-      simplices_[kept++] = simplices_[s];
+  const std::size_t first = exposure_.size();
+  for (std::size_t s = 0; s < exposure.size(); ++s) {
+    if (exposure[s] != 0) {
+      simplices_[exposure_.size()] = simplices_[first + s];
+      exposure_.push_back(exposure[s]);
     } else {
-      settled.push_back(simplices_[s]);
+      settled.push_back(simplices_[first + s]);
     }
   }
-  simplices_.resize(kept);
+  simplices_.resize(exposure_.size());
   return settled;
 }
 
@@ -164,7 +164,8 @@ template <int D>
 std::uint64_t GrowingShare<D>::bytes() const {
   constexpr std::uint64_t kForeignBytes = 48;  // of the table of names
   return points_.size() * (sizeof(Point<D>) + sizeof(RankIndex)) +
-         simplices_.size() * sizeof(Corners) + (points_.size() - own_) * kForeignBytes;
+         simplices_.size() * (sizeof(Corners) + sizeof(exposure_[0])) +
+         (points_.size() - own_) * kForeignBytes;
 }
 
 template class GrowingShare<2>;

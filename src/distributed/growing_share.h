@@ -26,8 +26,9 @@ struct Halves {
 };
 
 /// What one rank holds of a triangulation that grows, from that of the rank's own points to that of
-/// larger and larger groups: those simplices that may still change. A merge of two groups calls
-/// put_apart(), then accept(), and then settle().
+/// larger and larger groups: those simplices that may still change. Each knows its exposure: bit l
+/// is set if the other half of the l-th merge, from the lowest on, may change it. A merge of two
+/// groups calls put_apart(), then accept(), and then settle(), which also comes first of all.
 template <int D>
 class GrowingShare {
  public:
@@ -48,20 +49,23 @@ class GrowingShare {
   [[nodiscard]] int dimension() const { return dimension_; }
   void set_dimension(int dimension) { dimension_ = dimension; }
 
-  /// Puts apart the simplices that the other half may change, which are marked, and returns the
-  /// names of their vertices, sorted.
-  std::vector<RankIndex> put_apart(std::span<const std::uint8_t> marks);
+  /// Puts apart the simplices that the other half of this merge may change, and returns the names
+  /// of their vertices, sorted.
+  std::vector<RankIndex> put_apart(unsigned merge);
 
   /// Ends a merge. Of the simplices of the border's triangulation whose vertex of the least name is
   /// this rank's, the new ones become part of the share, and of those put apart the ones that came
-  /// back. `points` are those of their vertices that are owned elsewhere. Returns how many
-  /// simplices are in front that the share had before.
-  std::size_t accept(const ItemsByRank<NamedSimplex<D>>& simplices,
-                     const ItemsByRank<NamedPoint<D>>& points, const Halves& halves);
+  /// back. `points` are those of their vertices that are owned elsewhere.
+  void accept(const ItemsByRank<NamedSimplex<D>>& simplices,
+              const ItemsByRank<NamedPoint<D>>& points, const Halves& halves);
 
-  /// Takes out the simplices from `first` on that are not marked, by their place behind it, and
-  /// returns them.
-  std::vector<Corners> settle(std::size_t first, std::span<const std::uint8_t> marks);
+  /// The simplices whose exposure is not known yet.
+  [[nodiscard]] std::span<const Corners> unsettled() const {
+    return simplices().subspan(exposure_.size());
+  }
+
+  /// Tells the exposure of those; takes out the ones that nothing may change, and returns them.
+  std::vector<Corners> settle(std::span<const std::uint32_t> exposure);
 
   /// Forgets points of other ranks that its simplices do not have any more.
   void drop_unused_points();
@@ -79,7 +83,8 @@ class GrowingShare {
   std::vector<Point<D>> points_;
   std::vector<RankIndex> names_;
   std::vector<Corners> simplices_;
-  std::vector<Corners> apart_;  ///< exposed to the merge that goes on
+  std::vector<std::uint32_t> exposure_;                  ///< of simplices, the first ones
+  std::vector<Corners> apart_;                           ///< exposed to the merge that goes on
   std::unordered_map<std::uint64_t, VertexId> foreign_;  ///< points of other ranks by name
 };
 

@@ -21,19 +21,17 @@ class Merge {
         const DistributedOptions<D>& options)
       : share_(share), group_(group), options_(options), halves_{.middle = middle} {}
 
-  HalvesMerged run(std::vector<std::uint8_t> marks) {
+  HalvesMerged run(unsigned merge) {
     const bool high = group_.own() >= halves_.middle;
     std::array<std::uint64_t, 2> own_dimension{};  // plus 1: 0 without points
     own_dimension[high] = static_cast<std::uint64_t>(share_.dimension()) + 1;
     const auto dimensions = most_of(own_dimension, group_.ranks);
     const auto most = std::max(dimensions[0], dimensions[1]);
     share_.set_dimension(static_cast<int>(most) - 1);
-    result_.before = share_.simplices().size();
     if (dimensions[0] == 0 || dimensions[1] == 0) return result_;  // one half has no points
 
     halves_.open = {dimensions[0] <= D, dimensions[1] <= D};
-    const Share<D> border =
-        triangulate_border(complete_border(std::move(marks), halves_.open[high]));
+    const Share<D> border = triangulate_border(complete_border(merge, halves_.open[high]));
     const auto [dimension] =
         most_of<1>({static_cast<std::uint64_t>(border.dimension) + 1}, group_.ranks);
     share_.set_dimension(static_cast<int>(std::max(most, dimension)) - 1);
@@ -44,11 +42,11 @@ class Merge {
  private:
   /// The own vertices of the group's border: those that this rank finds, and those that others find
   /// in simplices that they share with it.
-  std::vector<VertexId> complete_border(std::vector<std::uint8_t> marks, bool open) {
+  std::vector<VertexId> complete_border(unsigned merge, bool open) {
     const std::size_t simplices = share_.simplices().size();
     std::vector<VertexId> border;
     ItemsByRank<VertexId> elsewhere;
-    for (const RankIndex name : share_.put_apart(std::exchange(marks, {}))) {
+    for (const RankIndex name : share_.put_apart(merge)) {
       const auto owner = static_cast<int>(name.rank);
       (owner == group_.own() ? border : elsewhere[owner]).push_back(name.index);
     }
@@ -115,7 +113,7 @@ class Merge {
     }
     const auto simplices_here = exchange_within(group_, std::move(simplices), options_.limits);
     const auto points_here = exchange_within(group_, std::move(points), options_.limits);
-    result_.before = share_.accept(simplices_here, points_here, halves_);
+    share_.accept(simplices_here, points_here, halves_);
   }
 
   GrowingShare<D>& share_;
@@ -128,16 +126,14 @@ class Merge {
 }  // namespace
 
 template <int D>
-HalvesMerged merge_halves(GrowingShare<D>& share, const Group& group, int middle,
-                          std::vector<std::uint8_t> marks, const DistributedOptions<D>& options) {
-  return Merge<D>(share, group, middle, options).run(std::move(marks));
+HalvesMerged merge_halves(GrowingShare<D>& share, const Group& group, int middle, unsigned merge,
+                          const DistributedOptions<D>& options) {
+  return Merge<D>(share, group, middle, options).run(merge);
 }
 
-template HalvesMerged merge_halves<2>(GrowingShare<2>&, const Group&, int,
-                                      std::vector<std::uint8_t>,
+template HalvesMerged merge_halves<2>(GrowingShare<2>&, const Group&, int, unsigned,
                                       const DistributedOptions<2>&);
-template HalvesMerged merge_halves<3>(GrowingShare<3>&, const Group&, int,
-                                      std::vector<std::uint8_t>,
+template HalvesMerged merge_halves<3>(GrowingShare<3>&, const Group&, int, unsigned,
                                       const DistributedOptions<3>&);
 
 }  // namespace spillway::detail::distributed

@@ -173,6 +173,7 @@ void initialise() {
   // Ranks of one machine talk through its memory: looking for networks would take longer.
   if (const Launch job = launch(); job.ranks_here == job.ranks) {
     setenv("OMPI_MCA_pml", "ob1", 0);
+    setenv("OMPI_MCA_btl", "^openib,tcp,uct,usnic,ofi", 0);
   }
   int provided = MPI_THREAD_SINGLE;
   check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided), "starting");

@@ -98,6 +98,8 @@ class RankRun {
     PieceTable pieces(source_, ranks_, scratch_, engine_.times(),
                       [&] { options_.progress(source_.points_read(), std::nullopt); });
     const RankDivision division = divide_among_ranks(pieces, D, ranks_);
+    const auto cell = division.cell_of(ranks_.rank());
+    if (cell && source_.extent()) engine_.expect_extent(common_part(*cell, *source_.extent()));
     const std::uint64_t sent_before = distributed::traffic().bytes;
     const ExchangeRound most = round();
     const std::uint64_t all_ranks = most.pieces_of_rank * static_cast<std::uint64_t>(ranks_.size());

@@ -39,6 +39,9 @@ class TileTree {
  public:
   TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times);
 
+  /// From now on it is known where the points will lie. To be called before fill().
+  void expect_extent(const Box<3>& extent) { options_.extent = extent; }
+
   /// Told how many points have been dealt again, and what share that is of all for which this is
   /// known to be necessary, from 0 to 1.
   using DivisionProgress = std::function<void(std::uint64_t points, double fraction)>;

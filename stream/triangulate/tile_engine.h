@@ -57,6 +57,9 @@ class TileEngine {
   [[nodiscard]] unsigned threads() const { return plan_.threads; }
   [[nodiscard]] StageTimes& times() { return counts_.times; }
 
+  /// Tells where the points will lie, if it was not known at first. To be called before spill().
+  void expect_extent(const Box<3>& extent) { tree_.expect_extent(extent); }
+
   /// Deals all points of the feed into tiles. With a plan, triangulates tiles that are complete.
   void spill(const PointFeed& feed);
 

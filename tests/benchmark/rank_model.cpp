@@ -4,32 +4,58 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
+
+#include "stream/ranks/merges/gather_below.h"
 
 namespace spillway::detail {
 namespace {
 
 constexpr double kPaperSpeedUp = 260;  ///< Funke and Sanders 2017, uniform points in space
+constexpr double kPaperMemory = 2.2;   ///< its growth for each core, from 1 to 2,048
 constexpr int kPaperRanks = 2048;
 constexpr double kPaperPoints = 1e6;  ///< of a rank
 
+/// What every rank knows of each section of the stream, and of each rank's tiles: bytes.
+constexpr double kSectionBytes = 48;
+constexpr double kTilesBytes = 1000;
+
 /// What the model is made of. Border simplices count on both sides of a merge.
 struct Figures {
-  double point_seconds = 0;        ///< of one core
-  double imbalance = 0;            ///< points of the largest rank over the mean
-  double exchange_seconds = 0;     ///< of each point of a rank
-  double exchange_bytes = 0;       ///< of a point that moves
-  double messages_per_point = 0;   ///< of a rank to each other, by the rank's points
-  std::vector<double> borders;     ///< simplices over N^((D - 1) / D), the root's first
-  double merge_seconds = 0;        ///< of a border simplex
-  double merge_bytes_sent = 0;     ///< likewise
-  double merge_memory = 0;         ///< likewise
-  double start_mib = 0;            ///< of a process that has done nothing
-  double tiles_mib = 0;            ///< of a rank that merges nothing
-  bool sees_merge_memory = false;  ///< whether merges took more than tiles
+  double point_seconds = 0;          ///< of one core
+  double imbalance = 0;              ///< points of the largest rank over the mean
+  double exchange_seconds = 0;       ///< of each point of a rank
+  double exchange_bytes = 0;         ///< of a point that moves
+  double messages_per_point = 0;     ///< of a rank to each other, by the rank's points
+  std::vector<double> simplices;     ///< of a border over N^((D - 1) / D), the root's first
+  std::vector<double> points;        ///< of it, likewise
+  double triangulation_seconds = 0;  ///< of a point of a border
+  double share_seconds = 0;          ///< of a simplex of a border, all else
+  double share_imbalance = 0;        ///< of the rank with most of that over the mean
+  double inner_points = 0;           ///< of an inner border, over M^((D - 2) / (D - 1))
+  double merge_bytes_sent = 0;       ///< of a simplex of a border
+  double calls = 0;                  ///< of a merge whose border one rank triangulates
+  double calls_of_inner = 0;         ///< more for each inner merge
+  double start_mib = 0;              ///< of a process that has done nothing
+  double rank_mib = 0;               ///< of the largest rank
 };
 
-Figures figures_of(const std::vector<RankRun>& runs) {
+/// The dimension of what is left of one of D dimensions, as a power of the number of points.
+double power_of_border(int dimension) { return (dimension - 1.0) / dimension; }
+
+std::size_t gather_below(int dimension) {
+  return dimension == 2 ? kGatherBelow<2> : kGatherBelow<3>;
+}
+
+/// Calls each(points, ranks) for the inner merges that a rank takes part in while `workers` ranks
+/// triangulate so many points: of two of them, of four, ..., of all.
+void for_each_inner_merge(double points, int workers,
+                          const std::function<void(double points, int ranks)>& each) {
+  for (int ranks = 2; ranks <= workers; ranks *= 2) each(points * ranks / workers, ranks);
+}
+
+Figures figures_of(const Plan& plan, const std::vector<RankRun>& runs) {
   const RankRun& alone = runs.front();
   const RankRun& many = runs.back();
   const RankRun& few = runs[1];
@@ -40,29 +66,42 @@ Figures figures_of(const std::vector<RankRun>& runs) {
   figures.exchange_seconds = few.exchange_seconds / few.points;
   figures.exchange_bytes = many.point_bytes_sent / many.points_sent;
   figures.messages_per_point = many.messages / many.ranks / (many.points / many.ranks);
+  double seconds = 0;
+  double points = 0;
   for (auto level = many.levels.rbegin(); level != many.levels.rend(); ++level) {
-    figures.borders.push_back(level->per_power(level->simplices, 3));
+    figures.simplices.push_back(level->per_power(level->simplices, plan.dimension));
+    figures.points.push_back(level->per_power(level->points, plan.dimension));
+    seconds += level->triangulation_seconds * level->merges;
+    points += level->points * level->merges;
   }
-  figures.merge_seconds = root.processor_seconds / root.simplices;
+  figures.triangulation_seconds = seconds / points;
+  figures.share_seconds = root.share_seconds / root.simplices;
+  figures.share_imbalance = root.longest_share_seconds / (root.share_seconds / many.ranks);
   figures.merge_bytes_sent = root.sent_bytes / root.simplices;
+  figures.calls = many.levels.front().calls;
+  if (root.inner_merges > 0) {
+    double powers = 0;
+    for_each_inner_merge(root.points, many.ranks / 2, [&](double below, int) {
+      powers += std::pow(below, power_of_border(plan.dimension - 1));
+    });
+    figures.inner_points = root.inner_points / powers;
+    figures.calls_of_inner = (root.calls - figures.calls) / root.inner_merges;
+  }
   figures.start_mib = many.start_peak_mib;
-  figures.tiles_mib = *std::min_element(many.peaks_mib.begin(), many.peaks_mib.end());
-  const double largest = *std::max_element(many.peaks_mib.begin(), many.peaks_mib.end());
-  figures.sees_merge_memory = largest > 1.1 * figures.tiles_mib;
-  figures.merge_memory = figures.sees_merge_memory
-                             ? (largest - figures.start_mib) * kMiB / root.simplices
-                             : many.waiting_bytes;
+  figures.rank_mib = *std::max_element(many.peaks_mib.begin(), many.peaks_mib.end());
   return figures;
 }
 
 void print_figures(const Plan& plan, const std::vector<RankRun>& runs, const Figures& figures,
                    const Network& network) {
   const int most = runs.back().ranks;
-  const std::string power = plan.dimension == 2 ? "N^(1/2)" : "N^(2/3)";
-  std::string borders;
-  for (const double border : figures.borders) {
-    borders += fmt::format("{}{:.2f}", borders.empty() ? "" : ", ", border);
-  }
+  const auto list = [](const std::vector<double>& values) {
+    std::string text;
+    for (const double value : values) {
+      text += fmt::format("{}{:.2f}", text.empty() ? "" : ", ", value);
+    }
+    return text;
+  };
   fmt::print("\n| figure of the model | value | measured with |\n|---|---|---|\n");
   const auto row = [](const std::string& figure, const std::string& value,
                       const std::string& source) {
@@ -71,6 +110,8 @@ void print_figures(const Plan& plan, const std::vector<RankRun>& runs, const Fig
   const auto ranks = [](int number) {
     return fmt::format("{} rank{}", number, number == 1 ? "" : "s");
   };
+  const std::string power = plan.dimension == 2 ? "N^(1/2)" : "N^(2/3)";
+  const std::string inner_power = plan.dimension == 2 ? "1" : "M^(1/2)";
   row("one core for a point, us", fmt::format("{:.3f}", 1e6 * figures.point_seconds),
       "1 rank, processor time without its start");
   row("points of the largest rank over the mean", fmt::format("{:.3f}", figures.imbalance),
@@ -80,16 +121,30 @@ void print_figures(const Plan& plan, const std::vector<RankRun>& runs, const Fig
   row("bytes of a point that moves", fmt::format("{:.2f}", figures.exchange_bytes), ranks(most));
   row("messages of a rank to each other, for a million points",
       fmt::format("{:.1f}", 1e6 * figures.messages_per_point), ranks(most));
-  row("border simplices of a merge over " + power + ", from the root down", borders, ranks(most));
-  row("merging a border simplex, ns", fmt::format("{:.0f}", 1e9 * figures.merge_seconds),
+  row("border simplices of a merge over " + power + ", from the root down", list(figures.simplices),
+      ranks(most));
+  row("points that it triangulates again over " + power + ", from the root down",
+      list(figures.points), ranks(most));
+  row("triangulating one of these points, ns",
+      fmt::format("{:.0f}", 1e9 * figures.triangulation_seconds), ranks(most) + ", all levels");
+  row("all else for a border simplex, ns", fmt::format("{:.0f}", 1e9 * figures.share_seconds),
+      ranks(most) + ", root, all ranks together");
+  row("of that the rank with most over the mean", fmt::format("{:.2f}", figures.share_imbalance),
       ranks(most) + ", root");
-  row("bytes sent for it", fmt::format("{:.1f}", figures.merge_bytes_sent), ranks(most) + ", root");
-  row("memory for it, bytes", fmt::format("{:.0f}", figures.merge_memory),
-      figures.sees_merge_memory ? ranks(most) + ", peak of the largest over a process' start"
-                                : "of one that waits: merges took no more than tiles");
+  row("bytes sent for a border simplex", fmt::format("{:.1f}", figures.merge_bytes_sent),
+      ranks(most) + ", root");
+  row("points of an inner merge's border over " + inner_power + " of the M points below it",
+      fmt::format("{:.1f}", figures.inner_points), ranks(most) + ", root");
+  row("points of a border below which one rank triangulates it",
+      fmt::format("{}", gather_below(plan.dimension)), "the command's own limit");
+  row("calls of a merge; and more for each inner merge",
+      fmt::format("{:.0f}; {:.0f}", figures.calls, figures.calls_of_inner),
+      ranks(most) + ", level 1; root");
   row("a process' start, MiB", fmt::format("{:.0f}", figures.start_mib),
       ranks(most) + " of hardly any points");
-  row("a rank that merges nothing, MiB", fmt::format("{:.0f}", figures.tiles_mib), ranks(most));
+  row("the largest rank, MiB; one rank alone",
+      fmt::format("{:.0f}; {:.0f}", figures.rank_mib, runs.front().peaks_mib.front()),
+      ranks(most) + "; 1 rank");
   row("network of a rank, GB/s", fmt::format("{:.1f}", network.bytes_per_second / 1e9),
       "assumed: there is none");
   row("a message, us", fmt::format("{:.1f}", 1e6 * network.latency), "assumed");
@@ -100,62 +155,92 @@ struct Estimate {
   double tiles = 0;
   double exchange = 0;
   double merges = 0;
-  double largest_mib = 0;  ///< of the rank that merges at the root
+  double largest_mib = 0;
 
   [[nodiscard]] double total() const { return tiles + exchange + merges; }
 };
 
-Estimate estimate(const Plan& plan, const Figures& figures, const Network& network, double n,
-                  int ranks) {
-  const double moved = n * (ranks - 1.0) / ranks;
-  Estimate result;
-  result.tiles = n * figures.point_seconds * figures.imbalance;
-  result.exchange = n * figures.exchange_seconds +
-                    moved * figures.exchange_bytes / network.bytes_per_second +
-                    n * figures.messages_per_point * ranks * network.latency;
-  double largest = 0;
-  std::size_t depth = 0;
-  for (int below = ranks; below >= 2; below /= 2, ++depth) {
-    const double border = figures.borders[std::min(depth, figures.borders.size() - 1)] *
-                          std::pow(below * n, (plan.dimension - 1.0) / plan.dimension);
-    largest = std::max(largest, border);
-    result.merges +=
-        border * (figures.merge_seconds + figures.merge_bytes_sent / network.bytes_per_second) +
-        network.latency;
+class Model {
+ public:
+  Model(const Plan& plan, const Figures& figures, const Network& network)
+      : plan_(plan), figures_(figures), network_(network) {}
+
+  [[nodiscard]] Estimate estimate(double n, int ranks) const {
+    const double moved = n * (ranks - 1.0) / ranks;
+    Estimate result;
+    result.tiles = n * figures_.point_seconds * figures_.imbalance;
+    result.exchange = n * figures_.exchange_seconds +
+                      moved * figures_.exchange_bytes / network_.bytes_per_second +
+                      n * figures_.messages_per_point * ranks * network_.latency;
+    std::size_t depth = 0;
+    for (int below = ranks; below >= 2; below /= 2, ++depth) {
+      result.merges += merge_seconds(n, below, std::min(depth, figures_.simplices.size() - 1));
+    }
+    const double sections = 3.0 * ranks * std::log2(ranks);
+    const double tables = sections * kSectionBytes + ranks * kTilesBytes;
+    const double tiles_mib = n > static_cast<double>(plan_.points_per_rank)
+                                 ? static_cast<double>(plan_.memory) / kMiB
+                                 : figures_.rank_mib;
+    result.largest_mib = std::ceil(tiles_mib + tables / kMiB);
+    return result;
   }
-  const double memory_mib = static_cast<double>(plan.memory) / kMiB;
-  const double tiles_mib =
-      n > static_cast<double>(plan.points_per_rank) ? memory_mib : figures.tiles_mib;
-  result.largest_mib =
-      std::ceil(std::max(tiles_mib, figures.start_mib + largest * figures.merge_memory / kMiB));
-  return result;
-}
+
+ private:
+  /// A merge of so many ranks, at a depth below the root.
+  [[nodiscard]] double merge_seconds(double n, int ranks, std::size_t depth) const {
+    const double power = std::pow(ranks * n, power_of_border(plan_.dimension));
+    const double share = figures_.simplices[depth] * power / ranks * figures_.share_imbalance;
+    return share *
+               (figures_.share_seconds + figures_.merge_bytes_sent / network_.bytes_per_second) +
+           figures_.calls * call_seconds(ranks) +
+           triangulation_seconds(figures_.points[depth] * power, ranks / 2, plan_.dimension - 1);
+  }
+
+  /// Of points that form a border of so many dimensions.
+  [[nodiscard]] double triangulation_seconds(double points, int workers, int dimension) const {
+    const double alone = points * figures_.triangulation_seconds;
+    if (workers < 2 || points < static_cast<double>(gather_below(plan_.dimension))) return alone;
+    double seconds = alone / workers;
+    for_each_inner_merge(points, workers, [&](double below, int ranks) {
+      const double border = figures_.inner_points * std::pow(below, power_of_border(dimension));
+      seconds += figures_.calls_of_inner * call_seconds(ranks) +
+                 triangulation_seconds(border, ranks / 2, std::max(1, dimension - 1));
+    });
+    return seconds;
+  }
+
+  /// Of what ranks do together.
+  [[nodiscard]] double call_seconds(int ranks) const { return std::log2(ranks) * network_.latency; }
+
+  const Plan& plan_;
+  const Figures& figures_;
+  const Network& network_;
+};
 
 }  // namespace
 
 void print_model(const Plan& plan, const std::vector<RankRun>& runs, const Network& network) {
-  const Figures figures = figures_of(runs);
+  const Figures figures = figures_of(plan, runs);
   print_figures(plan, runs, figures, network);
-  const double memory_mib = static_cast<double>(plan.memory) / kMiB;
+  const Model model(plan, figures, network);
   fmt::print(
       "\n| points a rank | ranks | tiles s | exchange s | merges s | total s | efficiency | "
-      "speed-up | largest rank, MiB of {:.0f} |\n|---|---|---|---|---|---|---|---|---|\n",
-      memory_mib);
+      "speed-up | largest rank, MiB |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const double n : {1e6, 1e8}) {
     for (int ranks = 2; ranks <= kPaperRanks; ranks *= 4) {
-      const Estimate run = estimate(plan, figures, network, n, ranks);
+      const Estimate run = model.estimate(n, ranks);
       const double alone = n * figures.point_seconds;
-      fmt::print(
-          "| {:.0e} | {} | {:.2f} | {:.3f} | {:.3f} | {:.2f} | {:.2f} | {:.0f} | {:.0f}{} |\n", n,
-          ranks, run.tiles, run.exchange, run.merges, run.total(), alone / run.total(),
-          ranks * alone / run.total(), run.largest_mib,
-          run.largest_mib > memory_mib ? ": too little" : "");
+      fmt::print("| {:.0e} | {} | {:.2f} | {:.3f} | {:.3f} | {:.2f} | {:.2f} | {:.0f} | {:.0f} |\n",
+                 n, ranks, run.tiles, run.exchange, run.merges, run.total(), alone / run.total(),
+                 ranks * alone / run.total(), run.largest_mib);
     }
   }
-  const Estimate paper = estimate(plan, figures, network, kPaperPoints, kPaperRanks);
+  const Estimate paper = model.estimate(kPaperPoints, kPaperRanks);
   fmt::print(
-      "\nSpeed-up over one core at 2,048 ranks of a million points: {:.0f}; the paper's: {:.0f}.\n",
-      kPaperRanks * kPaperPoints * figures.point_seconds / paper.total(), kPaperSpeedUp);
+      "\nAt 2,048 ranks of a million points: speed-up over one core {:.0f}, the paper's {:.0f}; "
+      "memory of a rank {:.2f} times that of one, the paper's {:.1f}.\n",
+      kPaperRanks * kPaperPoints * figures.point_seconds / paper.total(), kPaperSpeedUp,
+      paper.largest_mib / runs.front().peaks_mib.front(), kPaperMemory);
 }
 
 }  // namespace spillway::detail

@@ -51,21 +51,29 @@ void add_merges(RankRun& run, const Json& each) {
       level.inner_merges = std::max(level.inner_merges, figure("inner_merges"));
       level.inner_points = std::max(level.inner_points, figure("inner_border_points"));
       level.sent_bytes += figure("sent_bytes");
-      level.processor_seconds += figure("processor_seconds");
-      level.longest_seconds = std::max(level.longest_seconds, figure("processor_seconds"));
+      level.calls = std::max(level.calls, figure("calls"));
+      const double seconds = figure("processor_seconds");
+      const double triangulation = figure("triangulation_seconds");
+      level.triangulation_seconds += triangulation;
+      level.share_seconds += seconds - triangulation;
+      level.longest_share_seconds = std::max(level.longest_share_seconds, seconds - triangulation);
+      level.longest_seconds = std::max(level.longest_seconds, seconds);
     }
   }
   std::vector<MergeLevel> all;
   for (auto& [number, level] : levels) {
     level.below = run.points / level.merges;
     for (double* const sum : {&level.simplices, &level.points, &level.sent_bytes,
-                              &level.processor_seconds}) {
+                              &level.triangulation_seconds, &level.share_seconds}) {
       *sum /= level.merges;
     }
     if (!run.levels.empty()) {
       const MergeLevel& before = run.levels.at(all.size());
-      level.processor_seconds = std::min(level.processor_seconds, before.processor_seconds);
-      level.longest_seconds = std::min(level.longest_seconds, before.longest_seconds);
+      for (double MergeLevel::*const seconds :
+           {&MergeLevel::triangulation_seconds, &MergeLevel::share_seconds,
+            &MergeLevel::longest_share_seconds, &MergeLevel::longest_seconds}) {
+        level.*seconds = std::min(level.*seconds, before.*seconds);
+      }
     }
     all.push_back(level);
   }

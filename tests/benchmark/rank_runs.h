@@ -30,15 +30,18 @@ struct Plan {
 struct MergeLevel {
   int level = 0;
   double merges = 0;
-  double below = 0;              ///< points
-  double simplices = 0;          ///< of the borders of both sides
-  double points = 0;             ///< of the border, which are triangulated again
-  double inner_merges = 0;       ///< of a rank that has most of them
-  double inner_points = 0;       ///< of the borders of these
-  double sent_bytes = 0;         ///< by all ranks of a merge
-  double processor_seconds = 0;  ///< of all ranks of a merge
-  /// Of the rank that works longest at this level, in the turn that took least.
-  double longest_seconds = 0;
+  double below = 0;         ///< points
+  double simplices = 0;     ///< of the borders of both sides
+  double points = 0;        ///< of the border, which are triangulated again
+  double inner_merges = 0;  ///< of a rank that has most of them
+  double inner_points = 0;  ///< of the borders of these
+  double sent_bytes = 0;    ///< by all ranks of a merge
+  double calls = 0;         ///< of a rank that has most of them
+  // In the turn that took least, processor time:
+  double triangulation_seconds = 0;  ///< of all ranks of a merge, for the points
+  double share_seconds = 0;          ///< likewise, for all else
+  double longest_share_seconds = 0;  ///< of the rank that takes longest for all else
+  double longest_seconds = 0;        ///< of the rank that takes longest
 
   /// Of a figure, by below^((D - 1) / D).
   [[nodiscard]] double per_power(double figure, int dimension) const;

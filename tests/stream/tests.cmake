@@ -49,8 +49,16 @@ spillway_mpi_test(rank_pipeline_test
   RANKS 1 2 3 4 5 8
   TIMEOUT 600)
 
+# A driver for many random sets; see the head of its source.
+if(SPILLWAY_MPI)
+  add_executable(rank_sweep EXCLUDE_FROM_ALL stream/ranks/rank_sweep.cpp)
+  target_link_libraries(rank_sweep PRIVATE
+    spillway_stream_ranks spillway_generators CLI11::CLI11 GTest::gmock test_build)
+endif()
+
 spillway_test(rank_messages_test unit
   SOURCES stream/ranks/exchange/messages_test.cpp stream/ranks/part_file_numbers_test.cpp
+          stream/ranks/merges/owned_vertices_test.cpp
   LIBS spillway_stream_ranks)
 
 spillway_mpi_test(rank_unit_test

@@ -26,6 +26,7 @@ PointExchange::PointExchange(PieceTable& pieces, const RankDivision& division,
     : pieces_(pieces),
       division_(division),
       ranks_(ranks),
+      own_cell_(division.cell_of(ranks.rank())),
       indexed_(indexed),
       times_(times),
       pieces_per_round_(most.pieces_of_rank) {
@@ -113,6 +114,17 @@ void count_through(std::span<std::uint64_t> index, std::span<const std::uint64_t
   for (std::uint64_t& i : index) i = records_before[i >> kRecordBits] + (i & kRecordMask);
 }
 
+/// Whether all points are this rank's, as nearly all blocks of an input in spatial order are.
+bool PointExchange::is_all_own(const PointBlock& block) const {
+  return own_cell_ && std::ranges::all_of(block.points, [this](const LatticePoint& point) {
+           bool inside = true;
+           for (int k = 0; k < 3; ++k) {
+             inside = inside && point[k] >= own_cell_->lo[k] && point[k] < own_cell_->hi[k];
+           }
+           return inside;
+         });
+}
+
 /// Reads a piece's points and sorts them by rank; those for others are encoded.
 void PointExchange::deal(OwnPiece& piece) const {
   std::vector<Packer> for_rank(static_cast<std::size_t>(ranks_.size()));
@@ -124,6 +136,11 @@ void PointExchange::deal(OwnPiece& piece) const {
     const StageTimer timer(times_, Stage::kExchange);
     if (!pieces_.numbered()) {
       for (std::uint64_t& index : block.index) index |= piece.number << kRecordBits;
+    }
+    if (is_all_own(block)) {
+      if (!indexed_) block.index.clear();
+      piece.kept.push_back(std::exchange(block, {}));
+      continue;
     }
     dealt.deal(division_.cuts, block);
     for (const PointRun& run : dealt.runs) {

@@ -62,12 +62,14 @@ class PointExchange {
 
   void choose_own_pieces();
   void next_round();
+  [[nodiscard]] bool is_all_own(const PointBlock& block) const;
   void deal(OwnPiece& piece) const;
   void send(std::vector<OwnPiece>& own);
 
   PieceTable& pieces_;
   const RankDivision& division_;
   const distributed::Ranks& ranks_;
+  const std::optional<Box<3>> own_cell_;
   const bool indexed_;
   StageTimes& times_;
   std::uint64_t pieces_per_round_ = 1;

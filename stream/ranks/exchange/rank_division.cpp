@@ -56,6 +56,12 @@ void number_ranks(const CutTree& cuts, CutTree::NodeRef ref, int& next, std::vec
 
 }  // namespace
 
+std::optional<Box<3>> RankDivision::cell_of(int rank) const {
+  const auto tile = std::ranges::find(rank_of_tile, rank);
+  if (tile == rank_of_tile.end()) return std::nullopt;
+  return cuts.cell(static_cast<std::uint32_t>(tile - rank_of_tile.begin()));
+}
+
 RankDivision divide_among_ranks(PieceTable& pieces, int dimension,
                                 const distributed::Ranks& ranks) {
   const std::vector<LatticePoint> own = own_sample(pieces, ranks);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "src/distributed/ranks.h"
+#include "src/geometry/box.h"
 #include "stream/ranks/exchange/piece_table.h"
 #include "stream/tiles/cuts/cut_tree.h"
 
@@ -13,6 +15,9 @@ namespace spillway::detail {
 struct RankDivision {
   CutTree cuts;
   std::vector<int> rank_of_tile;  ///< by tile of `cuts`; ranks without a tile get no points
+
+  /// Where the points of a rank lie: from `lo` on, below `hi`. Nothing if it gets none.
+  [[nodiscard]] std::optional<Box<3>> cell_of(int rank) const;
 };
 
 /// Divides space so that all ranks get about as many points, by a sample of the pieces, which are

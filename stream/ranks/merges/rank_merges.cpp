@@ -13,6 +13,7 @@
 #include "src/runtime/work_lease.h"
 #include "stream/ranks/exchange/message_size.h"
 #include "stream/ranks/exchange/messages.h"
+#include "stream/ranks/merges/gather_below.h"
 #include "stream/triangulate/settle.h"
 
 namespace spillway::detail {
@@ -25,11 +26,6 @@ using distributed::ItemLimits;
 using distributed::ItemsByRank;
 using distributed::RankIndex;
 using distributed::Ranks;
-
-/// A border of fewer points is triangulated by one rank: it takes no longer there than by half of
-/// them.
-template <int D>
-constexpr std::size_t kGatherBelow = D == 2 ? 20'000 : 10'000;
 
 /// Memory for each point of a border that ranks triangulate, beside that of a triangulation: names,
 /// and the share of it.
@@ -59,6 +55,7 @@ RankMerges<D>::RankMerges(const RankTree<D>& tree, TileEngine<D>& engine, Memory
     const bool is_high = member_ >= high.first;
     Ranks half = group.split(is_high ? 1 : 0);
     steps_.push_back({node, std::move(group)});
+    other_halves_.insert(other_halves_.begin(), is_high ? low.tiles : high.tiles);
     group = std::move(half);
     node = is_high ? &high : &low;
   }
@@ -76,6 +73,10 @@ void RankMerges<D>::run(Border<D> border) {
     }
   }
   owned_.emplace(std::move(border), output_);
+  std::vector<std::uint32_t> exposure = exposure_of_new(0);
+  // What tiles have left is not final.
+  for (std::uint32_t& halves : exposure) halves = std::max(halves, std::uint32_t{1});
+  share_->settle(exposure);
   hold();
   for (; !steps_.empty(); steps_.pop_back()) merge(steps_.back());
   engine_.hold_border(0, 0);
@@ -87,14 +88,11 @@ void RankMerges<D>::hold() {
   engine_.hold_border(share_->simplices().size(), share_->bytes() + owned_->bytes() + held_.size());
 }
 
-/// Marks the simplices from `first` on that something in the trees may change.
+/// What is still to be merged that may change simplices that are new in the share.
 template <int D>
-std::vector<std::uint8_t> RankMerges<D>::exposed(std::size_t first, const Outside<D>& trees) const {
-  const std::span<const Corners> simplices = share_->simplices().subspan(first);
-  std::vector<std::uint8_t> marks(simplices.size());
-  find_exposed<D, TileNode<D>>(simplices, share_->points(), trees,
-                               [&marks](std::size_t s) { marks[s] = 1; });
-  return marks;
+std::vector<std::uint32_t> RankMerges<D>::exposure_of_new(std::size_t merges_done) const {
+  return exposure_by_tree<D, TileNode<D>>(share_->unsettled(), share_->points(), other_halves_,
+                                          merges_done);
 }
 
 template <int D>
@@ -128,14 +126,7 @@ void RankMerges<D>::merge(const Step& step) {
 template <int D>
 void RankMerges<D>::merge_halves(const Step& step, ItemLimits limits, Task& task,
                                  RankMerge& figures) {
-  const Node& low = tree_.nodes()[step.node->below[0]];
   const Node& high = tree_.nodes()[step.node->below[1]];
-  std::vector<std::uint8_t> marks;
-  {
-    task.after[0].kind = TaskKind::kBorder;
-    const Stopwatch watch(task.after[0].seconds);
-    marks = exposed(0, {member_ >= high.first ? low.tiles : high.tiles});
-  }
   WorkLease lease;
   distributed::DistributedOptions<D> options;
   options.gather_below = options_.gather_below.value_or(kGatherBelow<D>);
@@ -162,15 +153,14 @@ void RankMerges<D>::merge_halves(const Step& step, ItemLimits limits, Task& task
     figures.triangulation_seconds += process_processor_seconds() - processor_before;
     return mesh;
   };
-  const HalvesMerged merged = distributed::merge_halves<D>(*share_, {step.ranks, step.node->first},
-                                                           high.first, std::move(marks), options);
+  const HalvesMerged merged =
+      distributed::merge_halves<D>(*share_, {step.ranks, step.node->first}, high.first,
+                                   static_cast<unsigned>(figures_.size()), options);
   figures.exposed_simplices = merged.put_apart;
   figures.border_points = merged.border;
   figures.retriangulated = merged.triangulated;
   task.after[0].points = merged.triangulated;
   engine_.count_retriangulated(merged.triangulated);
-  // At the root nothing is outside, and all is final.
-  untested_ = step.node->outside.empty() ? 0 : merged.before;
 }
 
 /// Finds out which simplices are final. Their vertices are announced by those who
@@ -179,7 +169,7 @@ template <int D>
 void RankMerges<D>::settle(const Step& step, const ItemLimits& limits, Task& task) {
   task.after[2].kind = TaskKind::kAccept;
   const Group group{step.ranks, step.node->first};
-  std::vector<Corners> finals = share_->settle(untested_, exposed(untested_, step.node->outside));
+  std::vector<Corners> finals = share_->settle(exposure_of_new(figures_.size() + 1));
   const std::size_t all = finals.size();
   std::erase_if(finals, [](const Corners& corners) {
     return std::ranges::find(corners, kInfiniteVertex) != corners.end();

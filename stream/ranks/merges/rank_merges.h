@@ -49,7 +49,7 @@ class RankMerges {
     std::vector<std::uint8_t> held;  ///< by vertex of the share
   };
 
-  [[nodiscard]] std::vector<std::uint8_t> exposed(std::size_t first, const Outside<D>& trees) const;
+  [[nodiscard]] std::vector<std::uint32_t> exposure_of_new(std::size_t merges_done) const;
   void merge(const Step& step);
   void merge_halves(const Step& step, distributed::ItemLimits limits, Task& task,
                     RankMerge& figures);
@@ -69,9 +69,9 @@ class RankMerges {
   std::size_t largest_message_ = 0;  ///< bytes
   int member_ = 0;
   std::vector<Step> steps_;  ///< from the root down
+  Outside<D> other_halves_;  ///< by merge that this rank takes part in, from the lowest on
   std::optional<OwnedVertices<D>> owned_;
   std::optional<distributed::GrowingShare<D>> share_;
-  std::size_t untested_ = 0;        ///< the first simplex of the share that may be final now
   std::vector<std::uint8_t> held_;  ///< by vertex of the share, whether its simplices have it
   ShrinkingLease kept_;             ///< of sections
   std::vector<SectionDraft> sections_;

@@ -3,68 +3,23 @@
 
 #include <gtest/gtest.h>
 
-#include "src/delaunay/delaunay.h"
 #include "src/generators/generators.h"
 #include "tests/generators/family_cases.h"
-#include "tests/stream/ranks/rank_runner.h"
+#include "tests/stream/ranks/one_mesh.h"
 
 namespace spillway::detail {
 namespace {
 
 using distributed::world;
 
-/// Rank 0's points of a triangulation in memory, as sorted input indices, sorted.
-template <int D>
-std::vector<std::array<VertexId, D + 1>> expected_simplices(const std::vector<Point<D>>& points) {
-  const Triangulation<D> mesh = delaunay<D>(points, {.threads = 1});
-  std::vector<std::array<VertexId, D + 1>> simplices;
-  mesh.for_each_simplex([&](SimplexId, const Simplex<D>& simplex) {
-    if (simplex.infinite()) return;
-    auto& indices = simplices.emplace_back();
-    for (int k = 0; k <= D; ++k) indices[k] = mesh.input_index[simplex.vertices[k]];
-    std::sort(indices.begin(), indices.end());
-  });
-  std::sort(simplices.begin(), simplices.end());
-  return simplices;
-}
-
-template <int D>
-void expect_one_mesh(const GeneratorOptions& generate, std::size_t files,
-                     const StreamOptions& options) {
-  SCOPED_TRACE(testing::Message() << generate.count << " points in " << files << " files, tiles of "
-                                  << options.tile_capacity);
-  const std::vector<Point<D>> points = generate_points<D>(generate);
-  const auto expected = expected_simplices<D>(points);
-  if (expected.empty()) return;  // refused, by one rank: tested by the command
-  std::vector<std::string> paths;
-  if (world().rank() == 0) paths = write_shared_points<D>(points, files);
-  world().barrier();
-  const RankRunResult run = run_over_ranks<D>(paths, options);
-  const WholeMesh<D> mesh = gather_mesh<D>(run);
-  EXPECT_EQ(run.mesh.totals.points, points.size());
-  EXPECT_EQ(run.mesh.totals.vertices + run.mesh.totals.duplicates, points.size());
-  EXPECT_EQ(run.mesh.totals.simplices, expected.size());
-  if (world().rank() == 0) {
-    EXPECT_TRUE(mesh.simplices == expected)
-        << mesh.simplices.size() << " simplices, " << expected.size() << " expected";
-    const StreamRun alone = [&] {
-      const std::string path = write_points<D>(points);
-      StreamRun one = run_stream<D>(path, {.threads = 1});
-      std::filesystem::remove(path);
-      return one;
-    }();
-    EXPECT_EQ(run.mesh.totals, alone.figures.mesh);
-    for (const std::string& path : paths) std::filesystem::remove(path);
-  }
-}
-
 void expect_one_mesh(const FamilyCase& family, std::uint64_t count, std::uint64_t seed,
                      std::size_t files, const StreamOptions& options) {
+  SCOPED_TRACE(testing::Message() << count << " points, seed " << seed);
   const GeneratorOptions generate{family.family, count, family.dimension, seed};
   if (family.dimension == 2) {
-    expect_one_mesh<2>(generate, files, options);
+    expect_one_mesh<2>(generate_points<2>(generate), files, options);
   } else {
-    expect_one_mesh<3>(generate, files, options);
+    expect_one_mesh<3>(generate_points<3>(generate), files, options);
   }
 }
 
