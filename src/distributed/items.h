@@ -39,11 +39,15 @@ template <typename T>
 ItemsByRank<T> exchange_items(const Ranks& ranks, ItemsByRank<T> items, const ItemLimits& limits) {
   const std::size_t at_once = std::max<std::size_t>(1, limits.largest_message / sizeof(T));
   std::uint64_t rounds = 0;
+  ItemsByRank<T> received;
+  if (const auto own = items.find(ranks.rank()); own != items.end()) {
+    received[ranks.rank()] = std::move(own->second);
+    items.erase(own);
+  }
   for (const auto& [rank, some] : items) {
     rounds = std::max<std::uint64_t>(rounds, (some.size() + at_once - 1) / at_once);
   }
   ranks.reduce(std::span(&rounds, 1), Reduction::kMost);
-  ItemsByRank<T> received;
   for (std::uint64_t round = 0; round < rounds; ++round) {
     std::vector<Message> messages;
     for (auto& [rank, some] : items) {

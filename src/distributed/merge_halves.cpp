@@ -90,26 +90,32 @@ class Merge {
   /// Sends the simplices of the border's triangulation to those whose shares they may belong to:
   /// each to the owner of its vertex of the least name.
   void take_over(const Share<D>& border) {
-    ItemsByRank<NamedSimplex<D>> simplices;
-    std::vector<std::pair<std::uint32_t, VertexId>> unknown;  // at a rank, a vertex of `border`
-    for (const auto& corners : border.simplices) {
-      NamedSimplex<D> named;
-      std::ranges::transform(corners, named.begin(), [&](VertexId v) {
+    const auto ranks = static_cast<std::size_t>(group_.ranks.size());
+    std::vector<std::vector<NamedSimplex<D>>> named(ranks);
+    std::vector<std::vector<std::uint32_t>> places(ranks);
+    for (std::uint32_t s = 0; s < border.simplices.size(); ++s) {
+      NamedSimplex<D> names;
+      std::ranges::transform(border.simplices[s], names.begin(), [&](VertexId v) {
         return v == kInfiniteVertex ? kInfiniteName : border.origins[v];
       });
-      const std::uint32_t holder = std::ranges::min(named).rank;
-      simplices[static_cast<int>(holder)].push_back(named);
-      for (int i = 0; i <= D; ++i) {
-        if (named[i] != kInfiniteName && named[i].rank != holder) {
-          unknown.emplace_back(holder, corners[i]);
+      const auto holder = static_cast<int>(std::ranges::min(names).rank) - group_.first;
+      named[holder].push_back(names);
+      places[holder].push_back(s);
+    }
+    ItemsByRank<NamedSimplex<D>> simplices;
+    ItemsByRank<NamedPoint<D>> points;
+    std::vector<int> sent_to(border.points.size(), -1);  // by point, last
+    for (std::size_t r = 0; r < ranks; ++r) {
+      if (named[r].empty()) continue;
+      const int holder = group_.first + static_cast<int>(r);
+      simplices[holder] = std::move(named[r]);
+      for (const std::uint32_t s : places[r]) {
+        for (const VertexId v : border.simplices[s]) {
+          if (v == kInfiniteVertex || std::exchange(sent_to[v], holder) == holder) continue;
+          if (static_cast<int>(border.origins[v].rank) == holder) continue;
+          points[holder].push_back({border.points[v], border.origins[v]});
         }
       }
-    }
-    std::sort(unknown.begin(), unknown.end());
-    unknown.erase(std::unique(unknown.begin(), unknown.end()), unknown.end());
-    ItemsByRank<NamedPoint<D>> points;
-    for (const auto& [rank, v] : unknown) {
-      points[static_cast<int>(rank)].push_back({border.points[v], border.origins[v]});
     }
     const auto simplices_here = exchange_within(group_, std::move(simplices), options_.limits);
     const auto points_here = exchange_within(group_, std::move(points), options_.limits);

@@ -77,6 +77,7 @@ struct RankFigures {
   std::uint64_t bytes_sent = 0;
   std::uint64_t points_sent = 0;
   std::uint64_t point_bytes_sent = 0;
+  std::uint64_t point_messages_sent = 0;
   std::vector<RankMerge> merges{};
 };
 

@@ -100,7 +100,7 @@ class RankRun {
     const RankDivision division = divide_among_ranks(pieces, D, ranks_);
     const auto cell = division.cell_of(ranks_.rank());
     if (cell && source_.extent()) engine_.expect_extent(common_part(*cell, *source_.extent()));
-    const std::uint64_t sent_before = distributed::traffic().bytes;
+    const distributed::Traffic before = distributed::traffic();
     const ExchangeRound most = round();
     const std::uint64_t all_ranks = most.pieces_of_rank * static_cast<std::uint64_t>(ranks_.size());
     const MemoryLease lease(
@@ -112,7 +112,9 @@ class RankRun {
     engine_.spill(
         {.fetch = [&](SourcePiece& batch) { return exchange.fetch(batch, report); },
          .decode = [&](SourcePiece& batch, PointBlock& block) { exchange.decode(batch, block); }});
-    result_.exchanged_bytes = distributed::traffic().bytes - sent_before;
+    const distributed::Traffic after = distributed::traffic();
+    result_.exchanged_bytes = after.bytes - before.bytes;
+    result_.exchanged_messages = after.messages - before.messages;
     result_.exchanged_points = exchange.points_sent();
     if (options_.input_index && !pieces.numbered()) {
       engine_.replace_indices([before = exchange.records_before()](std::span<std::uint64_t> index) {

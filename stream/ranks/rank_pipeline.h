@@ -18,8 +18,8 @@
 namespace spillway::detail {
 
 /// A section of the stream that all ranks make together: what the tiles of one rank gave, or a
-/// step of a merge between ranks at one of them. Sections follow each other as tiles and merges do in
-/// a stream.
+/// step of a merge between ranks at one of them. Sections follow each other as tiles and merges do
+/// in a stream.
 struct StreamSection {
   int rank = 0;                    ///< that has it
   std::uint32_t level = 0;         ///< 0: a rank's tiles; merges of ranks are above
@@ -50,6 +50,7 @@ struct RankMesh {
   std::vector<RankMerge> merges;             ///< of this rank
   std::uint64_t exchanged_points = 0;        ///< that it sent to other ranks
   std::uint64_t exchanged_bytes = 0;         ///< and as how many bytes
+  std::uint64_t exchanged_messages = 0;      ///< and messages
 };
 
 /// The pipeline over ranks: they share the reading of `source`, whose points have an index; each

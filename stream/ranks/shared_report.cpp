@@ -76,8 +76,9 @@ std::vector<std::byte> pack_own(const RankMesh& mesh) {
   Packer message;
   pack(message, mesh.figures);
   message.put_list(mesh.task_sums);
-  for (const std::uint64_t figure : {peak_memory(), sent.messages, sent.bytes,
-                                     mesh.exchanged_points, mesh.exchanged_bytes}) {
+  for (const std::uint64_t figure :
+       {peak_memory(), sent.messages, sent.bytes, mesh.exchanged_points, mesh.exchanged_bytes,
+        mesh.exchanged_messages}) {
     message.put(figure);
   }
   message.put_list(mesh.merges);
@@ -91,7 +92,7 @@ RankFigures unpack_rank(std::span<const std::byte> bytes) {
   rank.task_sums = message.take_list<std::vector<TaskSum>>();
   for (std::uint64_t* const figure :
        {&rank.peak_memory, &rank.messages_sent, &rank.bytes_sent, &rank.points_sent,
-        &rank.point_bytes_sent}) {
+        &rank.point_bytes_sent, &rank.point_messages_sent}) {
     *figure = message.take<std::uint64_t>();
   }
   rank.merges = message.take_list<std::vector<RankMerge>>();

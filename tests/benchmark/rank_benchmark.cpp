@@ -49,17 +49,17 @@ void compare_with_threads(const Plan& plan) {
 void print_merges(const Plan& plan, const std::vector<RankRun>& runs) {
   const char* const power = plan.dimension == 2 ? "N^(1/2)" : "N^(2/3)";
   fmt::print(
-      "| ranks | level | merges | border simplices of a merge | per {} | points | per {} | inner "
-      "merges | their points | bytes sent | ms of all ranks | ms of the longest |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "| ranks | level | merges | border simplices of a merge | exposed | per {} | points | per {} "
+      "| inner merges | their points | bytes sent | ms of all ranks | ms of the longest |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       power, power);
   for (const RankRun& run : runs) {
     for (const MergeLevel& level : run.levels) {
       fmt::print(
-          "| {} | {} | {:.0f} | {:.0f} | {:.2f} | {:.0f} | {:.2f} | {:.0f} | {:.0f} | {:.0f} | "
-          "{:.2f} | {:.2f} |\n",
-          run.ranks, level.level, level.merges, level.simplices,
-          level.per_power(level.simplices, plan.dimension), level.points,
+          "| {} | {} | {:.0f} | {:.0f} | {:.0f} | {:.2f} | {:.0f} | {:.2f} | {:.0f} | {:.0f} | "
+          "{:.0f} | {:.2f} | {:.2f} |\n",
+          run.ranks, level.level, level.merges, level.simplices, level.exposed,
+          level.per_power(level.exposed, plan.dimension), level.points,
           level.per_power(level.points, plan.dimension), level.inner_merges, level.inner_points,
           level.sent_bytes, 1e3 * (level.triangulation_seconds + level.share_seconds),
           1e3 * level.longest_seconds);

@@ -21,20 +21,20 @@ constexpr double kPaperPoints = 1e6;  ///< of a rank
 constexpr double kSectionBytes = 48;
 constexpr double kTilesBytes = 1000;
 
-/// What the model is made of. Border simplices count on both sides of a merge.
+/// What the model is made of. Exposed simplices count on both sides of a merge.
 struct Figures {
-  double point_seconds = 0;          ///< of one core
-  double imbalance = 0;              ///< points of the largest rank over the mean
-  double exchange_seconds = 0;       ///< of each point of a rank
-  double exchange_bytes = 0;         ///< of a point that moves
-  double messages_per_point = 0;     ///< of a rank to each other, by the rank's points
-  std::vector<double> simplices;     ///< of a border over N^((D - 1) / D), the root's first
-  std::vector<double> points;        ///< of it, likewise
+  double point_seconds = 0;       ///< of one core
+  double imbalance = 0;           ///< points of the largest rank over the mean
+  double exchange_seconds = 0;    ///< of each point of a rank
+  double exchange_bytes = 0;      ///< of a point that moves
+  double messages_per_point = 0;  ///< of a rank to each other, by the rank's points
+  std::vector<double> exposed;    ///< simplices of a merge over N^((D - 1) / D), the root's first
+  std::vector<double> points;     ///< of its border, likewise
   double triangulation_seconds = 0;  ///< of a point of a border
-  double share_seconds = 0;          ///< of a simplex of a border, all else
+  double share_seconds = 0;          ///< of an exposed simplex, all else
   double share_imbalance = 0;        ///< of the rank with most of that over the mean
   double inner_points = 0;           ///< of an inner border, over M^((D - 2) / (D - 1))
-  double merge_bytes_sent = 0;       ///< of a simplex of a border
+  double merge_bytes_sent = 0;       ///< of an exposed simplex
   double calls = 0;                  ///< of a merge whose border one rank triangulates
   double calls_of_inner = 0;         ///< more for each inner merge
   double start_mib = 0;              ///< of a process that has done nothing
@@ -69,15 +69,15 @@ Figures figures_of(const Plan& plan, const std::vector<RankRun>& runs) {
   double seconds = 0;
   double points = 0;
   for (auto level = many.levels.rbegin(); level != many.levels.rend(); ++level) {
-    figures.simplices.push_back(level->per_power(level->simplices, plan.dimension));
+    figures.exposed.push_back(level->per_power(level->exposed, plan.dimension));
     figures.points.push_back(level->per_power(level->points, plan.dimension));
     seconds += level->triangulation_seconds * level->merges;
     points += level->points * level->merges;
   }
   figures.triangulation_seconds = seconds / points;
-  figures.share_seconds = root.share_seconds / root.simplices;
+  figures.share_seconds = root.share_seconds / root.exposed;
   figures.share_imbalance = root.longest_share_seconds / (root.share_seconds / many.ranks);
-  figures.merge_bytes_sent = root.sent_bytes / root.simplices;
+  figures.merge_bytes_sent = root.sent_bytes / root.exposed;
   figures.calls = many.levels.front().calls;
   if (root.inner_merges > 0) {
     double powers = 0;
@@ -121,17 +121,17 @@ void print_figures(const Plan& plan, const std::vector<RankRun>& runs, const Fig
   row("bytes of a point that moves", fmt::format("{:.2f}", figures.exchange_bytes), ranks(most));
   row("messages of a rank to each other, for a million points",
       fmt::format("{:.1f}", 1e6 * figures.messages_per_point), ranks(most));
-  row("border simplices of a merge over " + power + ", from the root down", list(figures.simplices),
+  row("exposed simplices of a merge over " + power + ", from the root down", list(figures.exposed),
       ranks(most));
   row("points that it triangulates again over " + power + ", from the root down",
       list(figures.points), ranks(most));
   row("triangulating one of these points, ns",
       fmt::format("{:.0f}", 1e9 * figures.triangulation_seconds), ranks(most) + ", all levels");
-  row("all else for a border simplex, ns", fmt::format("{:.0f}", 1e9 * figures.share_seconds),
+  row("all else for an exposed simplex, ns", fmt::format("{:.0f}", 1e9 * figures.share_seconds),
       ranks(most) + ", root, all ranks together");
   row("of that the rank with most over the mean", fmt::format("{:.2f}", figures.share_imbalance),
       ranks(most) + ", root");
-  row("bytes sent for a border simplex", fmt::format("{:.1f}", figures.merge_bytes_sent),
+  row("bytes sent for an exposed simplex", fmt::format("{:.1f}", figures.merge_bytes_sent),
       ranks(most) + ", root");
   row("points of an inner merge's border over " + inner_power + " of the M points below it",
       fmt::format("{:.1f}", figures.inner_points), ranks(most) + ", root");
@@ -165,6 +165,12 @@ class Model {
   Model(const Plan& plan, const Figures& figures, const Network& network)
       : plan_(plan), figures_(figures), network_(network) {}
 
+  /// What every rank knows of all others.
+  [[nodiscard]] static double tables_mib(int ranks) {
+    const double sections = 3.0 * ranks * std::log2(ranks);
+    return (sections * kSectionBytes + ranks * kTilesBytes) / kMiB;
+  }
+
   [[nodiscard]] Estimate estimate(double n, int ranks) const {
     const double moved = n * (ranks - 1.0) / ranks;
     Estimate result;
@@ -174,14 +180,12 @@ class Model {
                       n * figures_.messages_per_point * ranks * network_.latency;
     std::size_t depth = 0;
     for (int below = ranks; below >= 2; below /= 2, ++depth) {
-      result.merges += merge_seconds(n, below, std::min(depth, figures_.simplices.size() - 1));
+      result.merges += merge_seconds(n, below, std::min(depth, figures_.exposed.size() - 1));
     }
-    const double sections = 3.0 * ranks * std::log2(ranks);
-    const double tables = sections * kSectionBytes + ranks * kTilesBytes;
     const double tiles_mib = n > static_cast<double>(plan_.points_per_rank)
                                  ? static_cast<double>(plan_.memory) / kMiB
                                  : figures_.rank_mib;
-    result.largest_mib = std::ceil(tiles_mib + tables / kMiB);
+    result.largest_mib = std::ceil(tiles_mib + tables_mib(ranks));
     return result;
   }
 
@@ -189,7 +193,7 @@ class Model {
   /// A merge of so many ranks, at a depth below the root.
   [[nodiscard]] double merge_seconds(double n, int ranks, std::size_t depth) const {
     const double power = std::pow(ranks * n, power_of_border(plan_.dimension));
-    const double share = figures_.simplices[depth] * power / ranks * figures_.share_imbalance;
+    const double share = figures_.exposed[depth] * power / ranks * figures_.share_imbalance;
     return share *
                (figures_.share_seconds + figures_.merge_bytes_sent / network_.bytes_per_second) +
            figures_.calls * call_seconds(ranks) +
@@ -236,11 +240,13 @@ void print_model(const Plan& plan, const std::vector<RankRun>& runs, const Netwo
     }
   }
   const Estimate paper = model.estimate(kPaperPoints, kPaperRanks);
+  const double growth =
+      (figures.rank_mib + model.tables_mib(kPaperRanks)) / runs.front().peaks_mib.front();
   fmt::print(
       "\nAt 2,048 ranks of a million points: speed-up over one core {:.0f}, the paper's {:.0f}; "
       "memory of a rank {:.2f} times that of one, the paper's {:.1f}.\n",
-      kPaperRanks * kPaperPoints * figures.point_seconds / paper.total(), kPaperSpeedUp,
-      paper.largest_mib / runs.front().peaks_mib.front(), kPaperMemory);
+      kPaperRanks * kPaperPoints * figures.point_seconds / paper.total(), kPaperSpeedUp, growth,
+      kPaperMemory);
 }
 
 }  // namespace spillway::detail

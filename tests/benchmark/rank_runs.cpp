@@ -47,6 +47,7 @@ void add_merges(RankRun& run, const Json& each) {
       level.level = number;
       level.merges += share;
       level.simplices += figure("border_simplices");
+      level.exposed += figure("exposed_simplices");
       level.points += figure("border_points") * share;
       level.inner_merges = std::max(level.inner_merges, figure("inner_merges"));
       level.inner_points = std::max(level.inner_points, figure("inner_border_points"));
@@ -63,7 +64,7 @@ void add_merges(RankRun& run, const Json& each) {
   std::vector<MergeLevel> all;
   for (auto& [number, level] : levels) {
     level.below = run.points / level.merges;
-    for (double* const sum : {&level.simplices, &level.points, &level.sent_bytes,
+    for (double* const sum : {&level.simplices, &level.exposed, &level.points, &level.sent_bytes,
                               &level.triangulation_seconds, &level.share_seconds}) {
       *sum /= level.merges;
     }
@@ -156,7 +157,7 @@ RankRun measure(const Plan& plan, int ranks) {
     run.exchange_seconds = std::min(run.exchange_seconds, exchange);
     run.points_sent = sum(each, "points_sent");
     run.point_bytes_sent = sum(each, "point_bytes_sent");
-    run.messages = most(each, "messages_sent");
+    run.messages = most(each, "point_messages_sent");
     run.imbalance = most(each, "points") * ranks / sum(each, "points");
     add_merges(run, each);
   }

@@ -32,6 +32,7 @@ struct MergeLevel {
   double merges = 0;
   double below = 0;         ///< points
   double simplices = 0;     ///< of the borders of both sides
+  double exposed = 0;       ///< of these, that the other side may change
   double points = 0;        ///< of the border, which are triangulated again
   double inner_merges = 0;  ///< of a rank that has most of them
   double inner_points = 0;  ///< of the borders of these
@@ -57,7 +58,7 @@ struct RankRun {
   double exchange_seconds = 0;   ///< of all ranks together, in the turn that took least
   double points_sent = 0;
   double point_bytes_sent = 0;
-  double messages = 0;             ///< of the rank that sent most
+  double messages = 0;             ///< with points, of the rank that sent most
   double imbalance = 0;            ///< points of the largest rank over the mean
   double waiting_bytes = 0;        ///< in memory, of a border simplex that waits for its merge
   std::vector<double> peaks_mib;   ///< of each rank

@@ -61,7 +61,8 @@ Json to_json(const RankFigures& rank, std::size_t number) {
                {"messages_sent", rank.messages_sent},
                {"bytes_sent", rank.bytes_sent},
                {"points_sent", rank.points_sent},
-               {"point_bytes_sent", rank.point_bytes_sent}};
+               {"point_bytes_sent", rank.point_bytes_sent},
+               {"point_messages_sent", rank.point_messages_sent}};
   json["stages"] = stages(run);
   json["merges"] = Json::array();
   for (const RankMerge& merge : rank.merges) json["merges"].push_back(to_json(merge));

@@ -42,6 +42,7 @@ std::vector<std::uint32_t> exposure_by_tree(std::span<const std::array<VertexId,
                                             std::size_t first_tree) {
   constexpr std::size_t kGrain = 4096;
   std::vector<std::uint32_t> exposure(simplices.size());
+  if (first_tree >= trees.size()) return exposure;
   parallel_for(simplices.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
     for_each_region_batch<D>(
         end - begin, [&](std::size_t s) { return simplices[begin + s]; }, points,

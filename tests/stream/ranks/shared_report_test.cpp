@@ -67,6 +67,7 @@ RankMesh mesh_of(int rank) {
   mesh.merges.assign(n, merge);
   mesh.exchanged_points = 12 * n;
   mesh.exchanged_bytes = 13 * n;
+  mesh.exchanged_messages = 14 * n;
   return mesh;
 }
 
@@ -156,6 +157,7 @@ TEST(SharedReport, TellsTheFirstRankWhatEachHasDone) {
     EXPECT_GT(told.peak_memory, 0U);
     EXPECT_EQ(told.points_sent, own.exchanged_points);
     EXPECT_EQ(told.point_bytes_sent, own.exchanged_bytes);
+    EXPECT_EQ(told.point_messages_sent, own.exchanged_messages);
     ASSERT_THAT(told.merges, SizeIs(own.merges.size()));
     EXPECT_EQ(told.merges.back().sent_bytes, own.merges.back().sent_bytes);
     EXPECT_EQ(told.merges.back().seconds, 0.25);
