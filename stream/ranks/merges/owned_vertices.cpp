@@ -22,13 +22,10 @@ std::uint64_t number_in_section(const StreamPlace& place) {
 }
 
 template <int D>
-OwnedVertices<D>::OwnedVertices(Border<D> border, const OutputOptions& output)
-    : vertices_(std::move(border)), output_(output), holders_(vertices_.vertices.size()) {
-  for (const auto& simplex : std::exchange(vertices_.simplices, {})) {
-    for (const VertexId v : simplex) {
-      if (v != kInfiniteVertex) holders_[v] = 1;
-    }
-  }
+OwnedVertices<D>::OwnedVertices(Border<D> border, std::span<const std::uint8_t> held,
+                                const OutputOptions& output)
+    : vertices_(std::move(border)), output_(output), holders_(held.begin(), held.end()) {
+  vertices_.simplices = {};
   vertices_.exposure = {};
 }
 

@@ -40,8 +40,9 @@ std::uint64_t number_in_section(const StreamPlace& place);
 template <int D>
 class OwnedVertices {
  public:
-  /// Places are those of the stream of all ranks.
-  OwnedVertices(Border<D> border, const OutputOptions& output);
+  /// The vertices of a border, with their places in the stream of all ranks. `held` tells which of
+  /// them the rank's own simplices have.
+  OwnedVertices(Border<D> border, std::span<const std::uint8_t> held, const OutputOptions& output);
 
   /// Notes what one rank tells of a merge.
   void note(std::span<const VertexNews> news);

@@ -27,9 +27,30 @@ using distributed::ItemsByRank;
 using distributed::RankIndex;
 using distributed::Ranks;
 
+/// A triangulation that takes more than this share of the limit has no use for what tiles have
+/// kept.
+constexpr std::uint64_t kLargeMergeShare = 4;
+
 /// Memory for each point of a border that ranks triangulate, beside that of a triangulation: names,
 /// and the share of it.
 constexpr std::uint64_t kNamedPointBytes = 150;
+
+/// Adds the processor time of the process outside of calls of groups, in which it waits.
+class WorkTimer {
+ public:
+  explicit WorkTimer(double& seconds) : seconds_(seconds) {}
+  ~WorkTimer() { seconds_ += now() - start_; }
+  WorkTimer(const WorkTimer&) = delete;
+  WorkTimer& operator=(const WorkTimer&) = delete;
+
+ private:
+  static double now() {
+    return process_processor_seconds() - distributed::traffic().processor_seconds;
+  }
+
+  double& seconds_;
+  double start_ = now();
+};
 
 }  // namespace
 
@@ -63,16 +84,14 @@ RankMerges<D>::RankMerges(const RankTree<D>& tree, TileEngine<D>& engine, Memory
 
 template <int D>
 void RankMerges<D>::run(Border<D> border) {
-  std::vector<Point<D>> points = border.positions();
-  const int dimension = border.dimension;
-  share_.emplace(member_, std::move(points), border.simplices, dimension);
   held_.assign(border.vertices.size(), 0);
   for (const Corners& corners : border.simplices) {
     for (const VertexId v : corners) {
       if (v != kInfiniteVertex) held_[v] = 1;
     }
   }
-  owned_.emplace(std::move(border), output_);
+  share_.emplace(member_, border.positions(), std::move(border.simplices), border.dimension);
+  owned_.emplace(std::move(border), held_, output_);
   std::vector<std::uint32_t> exposure = exposure_of_new(0);
   // What tiles have left is not final.
   for (std::uint32_t& halves : exposure) halves = std::max(halves, std::uint32_t{1});
@@ -104,9 +123,9 @@ void RankMerges<D>::merge(const Step& step) {
   Task task{.points = step.node->tiles->size()};
   task.after.resize(3);
   const distributed::Traffic before = distributed::traffic();
-  const double processor_before = process_processor_seconds();
   {
     const Stopwatch watch(figures.seconds);
+    const WorkTimer work(figures.processor_seconds);
     ShrinkingLease received(budget_);
     const ItemLimits limits{.largest_message = largest_message_, .received = &received};
     merge_halves(step, limits, task, figures);
@@ -117,8 +136,6 @@ void RankMerges<D>::merge(const Step& step) {
   figures.sent_bytes = after.bytes - before.bytes;
   figures.wait_seconds = after.seconds - before.seconds;
   figures.calls = after.calls - before.calls;
-  figures.processor_seconds = process_processor_seconds() - processor_before -
-                              (after.processor_seconds - before.processor_seconds);
   engine_.count_rank_merge(step.node->level, task);
   figures_.push_back(figures);
 }
@@ -127,7 +144,7 @@ template <int D>
 void RankMerges<D>::merge_halves(const Step& step, ItemLimits limits, Task& task,
                                  RankMerge& figures) {
   const Node& high = tree_.nodes()[step.node->below[1]];
-  WorkLease lease;
+  WorkLease lease(budget_, 0, "the triangulation of a border");
   distributed::DistributedOptions<D> options;
   options.gather_below = options_.gather_below.value_or(kGatherBelow<D>);
   options.limits = limits;
@@ -138,19 +155,17 @@ void RankMerges<D>::merge_halves(const Step& step, ItemLimits limits, Task& task
   options.triangulate = [&](std::vector<Point<D>> points) {
     const std::uint64_t bytes =
         merge_bytes<D>(points.size(), step.node->tiles->size()) + points.size() * kNamedPointBytes;
-    lease = {};
-    release_base_case_memory();
+    if (bytes > budget_.limit() / kLargeMergeShare) release_base_case_memory();
     budget_.give_back_freed(bytes);
-    lease = WorkLease(budget_, bytes, "the triangulation of a border");
+    lease.extend(bytes, "the triangulation of a border");
     SlabArray<Point<D>> slab(points.size());
     std::ranges::copy(std::exchange(points, {}), slab.begin());
     Triangulation<D> mesh;
     const StageTimer timer(engine_.times(), Stage::kMerge);
-    const double processor_before = process_processor_seconds();
+    const WorkTimer work(figures.triangulation_seconds);
     isolated([&] {
       mesh = border_delaunay<D>(std::move(slab), options_.kernel, &lease, task.after[1]);
     });
-    figures.triangulation_seconds += process_processor_seconds() - processor_before;
     return mesh;
   };
   const HalvesMerged merged =
@@ -163,13 +178,20 @@ void RankMerges<D>::merge_halves(const Step& step, ItemLimits limits, Task& task
   engine_.count_retriangulated(merged.triangulated);
 }
 
-/// Finds out which simplices are final. Their vertices are announced by those who
-/// own them, then they are emitted, and then owners finalize vertices.
+/// Finds out which simplices are final. Their vertices are announced by those who own them, then
+/// they are emitted, and then owners finalize vertices.
 template <int D>
 void RankMerges<D>::settle(const Step& step, const ItemLimits& limits, Task& task) {
+  task.after[0].kind = TaskKind::kBorder;
   task.after[2].kind = TaskKind::kAccept;
   const Group group{step.ranks, step.node->first};
-  std::vector<Corners> finals = share_->settle(exposure_of_new(figures_.size() + 1));
+  std::vector<Corners> finals;
+  {
+    const StageTimer timer(engine_.times(), Stage::kFinality);
+    const WorkTimer work(task.after[0].seconds);
+    finals = share_->settle(exposure_of_new(figures_.size() + 1));
+  }
+  const WorkTimer work(task.after[2].seconds);
   const std::size_t all = finals.size();
   std::erase_if(finals, [](const Corners& corners) {
     return std::ranges::find(corners, kInfiniteVertex) != corners.end();

@@ -20,7 +20,7 @@ constexpr std::uint32_t kLost = VertexNews::kLost;
 
 constexpr OutputOptions kOutput{.input_index = true, .record_size = 1};
 
-/// Five vertices at (v, 0), of which the first three have a simplex; the last was announced.
+/// Five vertices at (v, 0), of which the last was announced.
 Border<2> border() {
   Border<2> border;
   border.dimension = 2;
@@ -32,10 +32,11 @@ Border<2> border() {
     border.attributes.push_back(static_cast<std::byte>(v));
   }
   border.vertices[4].place = shared_place(1, 77);
-  border.simplices.push_back({0, 1, 2});
-  border.simplices.push_back({2, 4, kInfiniteVertex});
   return border;
 }
+
+/// All but the fourth are in simplices of the rank's own.
+constexpr std::array<std::uint8_t, 5> kHeld{1, 1, 1, 0, 1};
 
 TEST(SharedPlace, HoldsNumbersOf64Bits) {
   const std::uint64_t number = (std::uint64_t{3} << 33U) + 5;
@@ -44,7 +45,7 @@ TEST(SharedPlace, HoldsNumbersOf64Bits) {
 }
 
 TEST(OwnedVertices, AreAnnouncedInTheirOrderWithWhatTheyCarryWhoeverUsesThem) {
-  OwnedVertices<2> owned(border(), kOutput);
+  OwnedVertices<2> owned(border(), kHeld, kOutput);
   owned.note(std::array<VertexNews, 2>{{{2, kUsed}, {4, kUsed}}});
   owned.note(std::array<VertexNews, 2>{{{0, kUsed}, {2, kUsed}}});
   const auto draft = owned.announce(7);
@@ -58,7 +59,7 @@ TEST(OwnedVertices, AreAnnouncedInTheirOrderWithWhatTheyCarryWhoeverUsesThem) {
 }
 
 TEST(OwnedVertices, TellWhoAsksWhereTheUsedOnesWereAnnounced) {
-  OwnedVertices<2> owned(border(), kOutput);
+  OwnedVertices<2> owned(border(), kHeld, kOutput);
   const std::array<VertexNews, 3> news{{{4, kUsed}, {1, kLost}, {2, kUsed | kGained}}};
   owned.note(news);
   owned.announce(7);
@@ -74,7 +75,7 @@ TEST(OwnedVertices, TellWhoAsksWhereTheUsedOnesWereAnnounced) {
 }
 
 TEST(OwnedVertices, AreFinalizedWhenNoRankHasASimplexOfThem) {
-  OwnedVertices<2> owned(border(), kOutput);
+  OwnedVertices<2> owned(border(), kHeld, kOutput);
   owned.note(std::array<VertexNews, 3>{{{0, kUsed | kLost}, {1, kUsed}, {2, kUsed | kLost}}});
   owned.note(std::array<VertexNews, 1>{{{2, kGained}}});
   owned.announce(7);
@@ -97,7 +98,7 @@ TEST(OwnedVertices, AreFinalizedWhenNoRankHasASimplexOfThem) {
 }
 
 TEST(OwnedVertices, WithoutSimplicesWaitUntilAMergeUsesThem) {
-  OwnedVertices<2> owned(border(), kOutput);
+  OwnedVertices<2> owned(border(), kHeld, kOutput);
   owned.note(std::array<VertexNews, 1>{{{3, kGained}}});
   EXPECT_FALSE(owned.announce(7));
   EXPECT_FALSE(owned.finalize(9));
