@@ -3,7 +3,8 @@ target_link_libraries(cgal_oracle PUBLIC spillway_build PRIVATE CGAL::CGAL)
 
 spillway_test(delaunay_unit_test unit
   SOURCES delaunay/acceptance_test.cpp delaunay/base_case_test.cpp delaunay/cut_judgement_test.cpp
-          delaunay/divide_test.cpp delaunay/filled_share_test.cpp delaunay/find_border_test.cpp
+          delaunay/divide_test.cpp delaunay/exposure_test.cpp delaunay/filled_share_test.cpp
+          delaunay/find_border_test.cpp
           delaunay/hilbert_order_test.cpp delaunay/parallel_test.cpp delaunay/point_search_test.cpp
           delaunay/run_boxes_test.cpp delaunay/schedule_test.cpp
           delaunay/working_memory_test.cpp
