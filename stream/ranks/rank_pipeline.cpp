@@ -97,7 +97,7 @@ class RankRun {
     // How much of the reading it is that comes before the exchange is not known.
     PieceTable pieces(source_, ranks_, scratch_, engine_.times(),
                       [&] { options_.progress(source_.points_read(), std::nullopt); });
-    const RankDivision division = divide_among_ranks(pieces, D, ranks_);
+    const RankDivision division = divide_among_ranks<D>(pieces, ranks_);
     const std::uint64_t sent_before = distributed::traffic().bytes;
     const ExchangeRound most = round();
     const std::uint64_t all_ranks = most.pieces_of_rank * static_cast<std::uint64_t>(ranks_.size());

@@ -15,8 +15,10 @@ struct RankDivision {
   std::vector<int> rank_of_tile;  ///< by tile of `cuts`; ranks without a tile get no points
 };
 
-/// Divides space so that all ranks get about as many points, by a sample of the pieces, which are
-/// spread over all inputs. Collective; all ranks get the same.
-RankDivision divide_among_ranks(PieceTable& pieces, int dimension, const distributed::Ranks& ranks);
+/// Divides space so that all ranks get about as many points and borders are small (divide_sample),
+/// by a sample of the pieces, which are spread over all inputs. Rank 0 has the sample, and tells
+/// the others the cuts. Collective; all ranks get the same.
+template <int D>
+RankDivision divide_among_ranks(PieceTable& pieces, const distributed::Ranks& ranks);
 
 }  // namespace spillway::detail

@@ -26,7 +26,8 @@ RankDivision divide(const std::vector<std::string>& paths, int dimension,
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   StageTimes times;
   PieceTable pieces(*source, world(), *scratch, times, [] {});
-  RankDivision division = divide_among_ranks(pieces, dimension, world());
+  RankDivision division = dimension == 2 ? divide_among_ranks<2>(pieces, world())
+                                         : divide_among_ranks<3>(pieces, world());
   if (counts != nullptr) *counts = source->counts();
   world().barrier();
   return division;
@@ -75,6 +76,17 @@ TEST(RankDivision, LooksAtAllInputsAlikeAndAtThoseOfOneRankAlone) {
   for (std::size_t i = points.size() / 2; i < points.size(); ++i) points[i][0] += 10;
   expect_equal_shares(divide(write_inputs(folder, points, 2, "npy"), 2), points);
   expect_equal_shares(divide(write_inputs(folder, points, 2, "spp"), 2), points);
+}
+
+/// Every n-th point would be of one place alone.
+TEST(RankDivision, SeesAllPlacesThatTheInputSendsInTurns) {
+  const SharedFolder folder;
+  std::vector<LatticePoint> points = points_of_seed(4 * 65'536, 7);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i][0] += static_cast<double>(10 * (i % 4));
+    points[i][1] *= 0.1;
+  }
+  expect_equal_shares(divide(write_inputs(folder, points, 1, "npy"), 2), points);
 }
 
 TEST(RankDivision, CountsNoPointsSinceTheyAreReadAgain) {
