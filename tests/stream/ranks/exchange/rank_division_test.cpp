@@ -83,8 +83,8 @@ TEST(RankDivision, SeesAllPlacesThatTheInputSendsInTurns) {
   const SharedFolder folder;
   std::vector<LatticePoint> points = points_of_seed(4 * 65'536, 7);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i][0] += static_cast<double>(10 * (i % 4));
-    points[i][1] *= 0.1;
+    points[i][0] += static_cast<double>(i % 4);
+    points[i][1] *= 0.9;
   }
   expect_equal_shares(divide(write_inputs(folder, points, 1, "npy"), 2), points);
 }
