@@ -97,9 +97,11 @@ class RankRun {
     // How much of the reading it is that comes before the exchange is not known.
     PieceTable pieces(source_, ranks_, scratch_, engine_.times(),
                       [&] { options_.progress(source_.points_read(), std::nullopt); });
-    const RankDivision division = divide_among_ranks(pieces, D, ranks_);
+    auto [division, sample] = divide_among_ranks<D>(pieces, ranks_);
     const auto cell = division.cell_of(ranks_.rank());
-    if (cell && source_.extent()) engine_.expect_extent(common_part(*cell, *source_.extent()));
+    if (cell && source_.extent()) {
+      engine_.expect(common_part(*cell, *source_.extent()), std::move(sample));
+    }
     const distributed::Traffic before = distributed::traffic();
     const ExchangeRound most = round();
     const std::uint64_t all_ranks = most.pieces_of_rank * static_cast<std::uint64_t>(ranks_.size());
@@ -122,7 +124,7 @@ class RankRun {
       });
     }
     options_.end_phase(of_all_ranks(source_.points_read()));
-    return division;
+    return std::move(division);
   }
 
   /// A phase of all ranks if any has tiles that are too large.

@@ -40,6 +40,12 @@ std::size_t tiles_for(double points, std::size_t capacity, double fill) {
   return std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(tiles)));
 }
 
+/// Whether a sample of so many points has enough of them for each of so many tiles.
+bool is_telling(std::span<const LatticePoint> sample, std::size_t tiles) {
+  constexpr std::size_t kPointsOfTile = 64;
+  return sample.size() / kPointsOfTile >= tiles;
+}
+
 /// Whether not all points of that box are equal.
 bool can_be_cut(const Box<3>& box, int dimension) {
   for (int k = 0; k < dimension; ++k) {
@@ -68,6 +74,13 @@ void TileTree::divide_first(Batch& batch) {
   const std::uint64_t all = std::min(options_.expected.value_or(0),
                                      std::numeric_limits<std::uint64_t>::max() / kExpectedShare);
   const bool tells = !filled_ && options_.extent && all > seen;
+  divided_ = true;
+  const std::size_t known_tiles =
+      tiles_for(static_cast<double>(all), capacity_, kRepresentativeFill);
+  if (tells && is_telling(expected_sample_, known_tiles)) {
+    divide(0, std::exchange(expected_sample_, {}), known_tiles, batch);
+    return;
+  }
   const bool everywhere = tells && spans_extent(box, *options_.extent, options_.dimension);
   std::size_t stride = sample_stride();
   if (tells && !everywhere) {
@@ -84,7 +97,6 @@ void TileTree::divide_first(Batch& batch) {
     append_expected_points(sample, box, *options_.extent, options_.dimension,
                            points / static_cast<double>(seen) - 1);
   }
-  divided_ = true;
   divide(0, std::move(sample), tiles_for(points, capacity_, fill), batch);
 }
 

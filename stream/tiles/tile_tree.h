@@ -39,8 +39,12 @@ class TileTree {
  public:
   TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times);
 
-  /// From now on it is known where the points will lie. To be called before fill().
-  void expect_extent(const Box<3>& extent) { options_.extent = extent; }
+  /// From now on it is known where the points will lie, and a sample of them is. To be called
+  /// before fill().
+  void expect(const Box<3>& extent, std::vector<LatticePoint> sample) {
+    options_.extent = extent;
+    expected_sample_ = std::move(sample);
+  }
 
   /// Told how many points have been dealt again, and what share that is of all for which this is
   /// known to be necessary, from 0 to 1.
@@ -186,6 +190,7 @@ class TileTree {
   [[nodiscard]] StoredTile one_of(Tile tile) const;
 
   TileTreeOptions options_;
+  std::vector<LatticePoint> expected_sample_;  ///< of the points to come, if there is one
   ScratchFolder& folder_;
   StageTimes& times_;
   CutTree cuts_;

@@ -58,7 +58,9 @@ class TileEngine {
   [[nodiscard]] StageTimes& times() { return counts_.times; }
 
   /// Tells where the points will lie, if it was not known at first. To be called before spill().
-  void expect_extent(const Box<3>& extent) { tree_.expect_extent(extent); }
+  void expect(const Box<3>& extent, std::vector<LatticePoint> sample) {
+    tree_.expect(extent, std::move(sample));
+  }
 
   /// Deals all points of the feed into tiles. With a plan, triangulates tiles that are complete.
   void spill(const PointFeed& feed);

@@ -71,6 +71,20 @@ TEST(CutJudgement, NoCutSeparatesEqualCoordinates) {
   EXPECT_EQ(best.axis, 1);
 }
 
+/// One triangle across the cut of each axis.
+TEST(CutJudgement, PointsOfGivenSimplicesCountByTheirWeights) {
+  const std::vector<Point<2>> points = {{0, 0},   {10, 0.1}, {11, 0.2},
+                                        {1, 0.3}, {1.5, 10}, {0.5, 11}};
+  const std::vector<std::array<VertexId, 3>> simplices = {{0, 1, 2}, {3, 4, 5}};
+  const std::vector<double> equal(6, 2.0);
+  EXPECT_EQ(CutJudgement<2>(points, equal, simplices).best_cut(1, 4, 0).axis, 1);
+  const std::vector<double> weights = {1, 1, 1, 5, 5, 5};
+  const JudgedCut best = CutJudgement<2>(points, weights, simplices).best_cut(1, 4, 0);
+  EXPECT_EQ(best.axis, 0);
+  EXPECT_DOUBLE_EQ(best.share, 3.0 / 18);
+  EXPECT_FALSE(CutJudgement<2>(points, weights, {}).known());
+}
+
 /// Whether divide() leaves the points in one part if it may.
 bool stays_whole(std::vector<Point<2>> points) {
   std::vector<VertexId> index(points.size());

@@ -57,8 +57,8 @@ if(SPILLWAY_MPI)
 endif()
 
 spillway_test(rank_messages_test unit
-  SOURCES stream/ranks/exchange/messages_test.cpp stream/ranks/part_file_numbers_test.cpp
-          stream/ranks/merges/owned_vertices_test.cpp
+  SOURCES stream/ranks/exchange/messages_test.cpp stream/ranks/exchange/sample_division_test.cpp
+          stream/ranks/part_file_numbers_test.cpp stream/ranks/merges/owned_vertices_test.cpp
   LIBS spillway_stream_ranks)
 
 spillway_mpi_test(rank_unit_test

@@ -21,10 +21,12 @@ std::vector<Point<D>> in_hilbert_order(const std::vector<Point<D>>& points) {
   return ordered;
 }
 
-/// How many points have simplices across a cut, by the number of points below it.
+/// The weights of the points that have simplices across a cut, by the number of points below it;
+/// `all` where there is no such cut.
 template <int D>
-std::vector<double> crossing_on(int axis, const std::vector<Point<D>>& points,
-                                const SlabArray<Simplex<D>>& simplices) {
+std::vector<double> crossing_on(int axis, double all, std::span<const Point<D>> points,
+                                std::span<const double> weights,
+                                std::span<const std::array<VertexId, D + 1>> simplices) {
   const std::size_t count = points.size();
   std::vector<double> sorted(count);
   std::transform(points.begin(), points.end(), sorted.begin(),
@@ -37,25 +39,25 @@ std::vector<double> crossing_on(int axis, const std::vector<Point<D>>& points,
   });
   std::vector<std::size_t> lowest = rank;
   std::vector<std::size_t> highest = rank;
-  for (const Simplex<D>& simplex : simplices) {
-    for (const VertexId v : simplex.vertices) {
-      for (const VertexId w : simplex.vertices) {
-        if (v == kInfiniteVertex || w == kInfiniteVertex) continue;
-        lowest[v] = std::min(lowest[v], rank[w]);
-        highest[v] = std::max(highest[v], rank[w]);
-      }
+  for (const auto& corners : simplices) {
+    const auto of_rank = [&](VertexId v) { return rank[v]; };
+    const std::size_t least = rank[std::ranges::min(corners, {}, of_rank)];
+    const std::size_t most = rank[std::ranges::max(corners, {}, of_rank)];
+    for (const VertexId v : corners) {
+      lowest[v] = std::min(lowest[v], least);
+      highest[v] = std::max(highest[v], most);
     }
   }
   std::vector<double> steps(count + 1);
   for (std::size_t v = 0; v < count; ++v) {
-    steps[lowest[v] + 1] += 1;
-    if (highest[v] < count) steps[highest[v] + 1] -= 1;
+    steps[lowest[v] + 1] += weights[v];
+    steps[highest[v] + 1] -= weights[v];
   }
   std::partial_sum(steps.begin(), steps.end(), steps.begin());
   steps.pop_back();
   for (std::size_t below = 0; below < count; ++below) {
     if (below == 0 || sorted[below - 1] == sorted[below]) {
-      steps[below] = static_cast<double>(count);
+      steps[below] = all;
     }
   }
   return steps;
@@ -64,14 +66,34 @@ std::vector<double> crossing_on(int axis, const std::vector<Point<D>>& points,
 }  // namespace
 
 template <int D>
-CutJudgement<D>::CutJudgement(std::vector<Point<D>> sample) {
+CutJudgement<D>::CutJudgement(const std::vector<Point<D>>& sample) {
   const std::vector<Point<D>> points = in_hilbert_order<D>(sample);
   std::vector<VertexId> index(points.size());
   std::iota(index.begin(), index.end(), VertexId{0});
   const BaseCase<D> mesh = triangulate_base_case<D>({.points = points, .input_index = index});
-  known_ = mesh.dimension == D;
-  if (!known_) return;
-  for (int k = 0; k < D; ++k) crossing_[k] = crossing_on<D>(k, points, mesh.simplices);
+  if (mesh.dimension < D) return;
+  std::vector<std::array<VertexId, D + 1>> simplices;
+  for (const Simplex<D>& simplex : mesh.simplices) {
+    if (!simplex.infinite()) simplices.push_back(simplex.vertices);
+  }
+  count_crossing(points, std::vector<double>(points.size(), 1.0), simplices);
+}
+
+template <int D>
+CutJudgement<D>::CutJudgement(std::span<const Point<D>> points, std::span<const double> weights,
+                              std::span<const std::array<VertexId, D + 1>> simplices) {
+  if (!simplices.empty()) count_crossing(points, weights, simplices);
+}
+
+template <int D>
+void CutJudgement<D>::count_crossing(std::span<const Point<D>> points,
+                                     std::span<const double> weights,
+                                     std::span<const std::array<VertexId, D + 1>> simplices) {
+  known_ = true;
+  all_ = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (int k = 0; k < D; ++k) {
+    crossing_[k] = crossing_on<D>(k, all_, points, weights, simplices);
+  }
 }
 
 template <int D>

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "src/geometry/point.h"
@@ -12,7 +13,7 @@ namespace spillway::detail {
 struct JudgedCut {
   int axis;
   std::size_t below;  ///< how many points of the sample lie below it
-  double share;       ///< of the points that are corners of simplices across it
+  double share;       ///< of the points' weights, of those that are corners of simplices across it
 };
 
 /// What cuts of a set would cost, by the triangulation of a sample of it: the points of simplices
@@ -23,9 +24,15 @@ template <int D>
 class CutJudgement {
  public:
   /// Of few points: they are triangulated by one thread.
-  explicit CutJudgement(std::vector<Point<D>> sample);
+  explicit CutJudgement(const std::vector<Point<D>>& sample);
 
-  /// Whether the sample spans D dimensions. Otherwise nothing is to be asked.
+  /// Of some simplices over the points, which may be those of a larger triangulation that have all
+  /// corners among these. A simplex is told by the numbers of its corners. A point counts as many
+  /// times as its weight says.
+  CutJudgement(std::span<const Point<D>> points, std::span<const double> weights,
+               std::span<const std::array<VertexId, D + 1>> simplices);
+
+  /// Whether there are simplices: the sample spans D dimensions. Otherwise nothing is to be asked.
   [[nodiscard]] bool known() const { return known_; }
 
   /// The best cut that has `below` points of the sample below it, or up to `room` more or fewer. It
@@ -33,13 +40,17 @@ class CutJudgement {
   [[nodiscard]] JudgedCut best_cut(int axis, std::size_t below, std::size_t room) const;
 
  private:
+  void count_crossing(std::span<const Point<D>> points, std::span<const double> weights,
+                      std::span<const std::array<VertexId, D + 1>> simplices);
+
   [[nodiscard]] double share(int axis, std::size_t below) const {
-    return crossing_[axis][below] / static_cast<double>(crossing_[axis].size());
+    return crossing_[axis][below] / all_;
   }
 
   bool known_ = false;
-  /// By axis and number of points below a cut, how many points have simplices across it; all where
-  /// there is no such cut, since coordinates are equal.
+  double all_ = 0;  ///< the weights of all points
+  /// By axis and number of points below a cut, the weights of those that have simplices across it;
+  /// of all where there is no such cut, since coordinates are equal.
   std::array<std::vector<double>, D> crossing_;
 };
 

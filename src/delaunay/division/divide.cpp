@@ -190,7 +190,7 @@ class Divider {
       sample[s] = piece.sample[s * piece.sample.size() / count];
     }
     if (filled_share<D>(sample, box) >= kFilled) return true;
-    const CutJudgement<D> judgement(std::move(sample));
+    const CutJudgement<D> judgement(sample);
     if (!judgement.known()) return true;
     // Leaves that are to be filled, and more than two parts, need cuts at certain places.
     const bool movable = !options_.fill_leaves && options_.children == 2;

@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
+#include "src/delaunay/common/hash.h"
+#include "src/distributed/items.h"
 #include "src/runtime/packing.h"
+#include "stream/ranks/exchange/collective_step.h"
+#include "stream/ranks/exchange/sample_division.h"
 
 namespace spillway::detail {
 namespace {
@@ -17,7 +22,16 @@ constexpr std::uint64_t kSample = 1 << 16;
 constexpr std::uint64_t kSamplePerRank = 256;
 constexpr std::uint64_t kPointsOfPiece = 65'536;
 
-/// Every n-th point of some pieces: those of this rank.
+/// Appends one of every `step` points: not every n-th, since points may have a period, as those
+/// that several scanners send in turns.
+void take_some(const std::vector<LatticePoint>& points, std::uint64_t step,
+               std::vector<LatticePoint>& sample) {
+  for (std::uint64_t i = 0; i < points.size(); i += step) {
+    sample.push_back(points[std::min(i + mix64(i) % step, points.size() - 1)]);
+  }
+}
+
+/// Some points of some pieces: those of this rank.
 std::vector<LatticePoint> own_sample(PieceTable& pieces, const distributed::Ranks& ranks) {
   const auto size = static_cast<std::uint64_t>(ranks.size());
   const std::uint64_t wanted = std::max(kSampledPieces, kSampledPiecesPerRank * size);
@@ -34,7 +48,7 @@ std::vector<LatticePoint> own_sample(PieceTable& pieces, const distributed::Rank
     for (SourcePiece& batch : pieces.fetch(p)) {
       batch.counted = false;
       pieces.decode(batch, block);
-      for (std::size_t i = 0; i < block.points.size(); i += step) sample.push_back(block.points[i]);
+      take_some(block.points, step, sample);
     }
   }
   // Pieces may be larger than usual: chunks of LAZ have any size.
@@ -42,8 +56,18 @@ std::vector<LatticePoint> own_sample(PieceTable& pieces, const distributed::Rank
   ranks.reduce(std::span(&total, 1), distributed::Reduction::kSum);
   const std::uint64_t more = 1 + total / (2 * std::max(kSample, kSamplePerRank * size));
   std::vector<LatticePoint> thinned;
-  for (std::size_t i = 0; i < sample.size(); i += more) thinned.push_back(sample[i]);
+  take_some(sample, more, thinned);
   return thinned;
+}
+
+std::vector<LatticePoint> joined(const std::vector<std::vector<std::byte>>& samples) {
+  std::vector<LatticePoint> all;
+  for (const std::vector<std::byte>& bytes : samples) {
+    const std::size_t before = all.size();
+    all.resize(before + bytes.size() / sizeof(LatticePoint));
+    std::ranges::copy(bytes, std::as_writable_bytes(std::span(all).subspan(before)).begin());
+  }
+  return all;
 }
 
 void number_ranks(const CutTree& cuts, CutTree::NodeRef ref, int& next, std::vector<int>& ranks) {
@@ -54,6 +78,23 @@ void number_ranks(const CutTree& cuts, CutTree::NodeRef ref, int& next, std::vec
   for (const CutTree::NodeRef side : cuts.sides(ref)) number_ranks(cuts, side, next, ranks);
 }
 
+/// The points of the sample that lie in this rank's cell, of what all ranks have of it. Collective.
+std::vector<LatticePoint> sample_of_rank(const RankDivision& division,
+                                         std::span<const LatticePoint> sample,
+                                         const distributed::Ranks& ranks) {
+  std::vector<std::uint32_t> tiles(sample.size());
+  division.cuts.find_tiles(sample, tiles);
+  distributed::ItemsByRank<LatticePoint> by_rank;
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    by_rank[division.rank_of_tile[tiles[i]]].push_back(sample[i]);
+  }
+  std::vector<LatticePoint> own;
+  for (const auto& [rank, some] : distributed::exchange_items(ranks, std::move(by_rank), {})) {
+    own.insert(own.end(), some.begin(), some.end());
+  }
+  return own;
+}
+
 }  // namespace
 
 std::optional<Box<3>> RankDivision::cell_of(int rank) const {
@@ -62,22 +103,31 @@ std::optional<Box<3>> RankDivision::cell_of(int rank) const {
   return cuts.cell(static_cast<std::uint32_t>(tile - rank_of_tile.begin()));
 }
 
-RankDivision divide_among_ranks(PieceTable& pieces, int dimension,
-                                const distributed::Ranks& ranks) {
+template <int D>
+DividedSample divide_among_ranks(PieceTable& pieces, const distributed::Ranks& ranks) {
   const std::vector<LatticePoint> own = own_sample(pieces, ranks);
-  std::vector<LatticePoint> sample;
-  for (const auto& bytes : ranks.gather(std::as_bytes(std::span(own)))) {
-    const std::size_t before = sample.size();
-    sample.resize(before + bytes.size() / sizeof(LatticePoint));
-    std::copy(bytes.begin(), bytes.end(),
-              std::as_writable_bytes(std::span(sample).subspan(before)).begin());
+  const auto samples = ranks.gather(std::as_bytes(std::span(own)), 0);
+  std::vector<std::byte> bytes;
+  run_collective_step(ranks, [&] {
+    if (ranks.rank() != 0) return;
+    Packer packer;
+    packer.put_list(divide_sample<D>(joined(samples), static_cast<std::size_t>(ranks.size())));
+    bytes = packer.take();
+  });
+  ranks.broadcast(bytes, 0);
+  RankDivision division{CutTree(D), {}};
+  for (const DivisionCut& cut : Unpacker(bytes).take_list<std::vector<DivisionCut>>()) {
+    division.cuts.make_cut(cut.tile, cut.where.axis, cut.where.value);
   }
-  RankDivision division{CutTree(dimension), {}};
-  division.cuts.split(0, sample, static_cast<std::size_t>(ranks.size()));
+  division.cuts.renew_lookup();
   division.rank_of_tile.resize(division.cuts.tiles());
   int next = 0;
   number_ranks(division.cuts, division.cuts.root(), next, division.rank_of_tile);
-  return division;
+  std::vector<LatticePoint> kept = sample_of_rank(division, own, ranks);
+  return {std::move(division), std::move(kept)};
 }
+
+template DividedSample divide_among_ranks<2>(PieceTable&, const distributed::Ranks&);
+template DividedSample divide_among_ranks<3>(PieceTable&, const distributed::Ranks&);
 
 }  // namespace spillway::detail

@@ -5,6 +5,7 @@
 
 #include "src/distributed/ranks.h"
 #include "src/geometry/box.h"
+#include "src/geometry/framed_point.h"
 #include "stream/ranks/exchange/piece_table.h"
 #include "stream/tiles/cuts/cut_tree.h"
 
@@ -20,8 +21,17 @@ struct RankDivision {
   [[nodiscard]] std::optional<Box<3>> cell_of(int rank) const;
 };
 
-/// Divides space so that all ranks get about as many points, by a sample of the pieces, which are
-/// spread over all inputs. Collective; all ranks get the same.
-RankDivision divide_among_ranks(PieceTable& pieces, int dimension, const distributed::Ranks& ranks);
+/// What a rank knows before points are exchanged: the division, the same at all ranks, and a sample
+/// of its own points.
+struct DividedSample {
+  RankDivision division;
+  std::vector<LatticePoint> own;
+};
+
+/// Divides space so that all ranks get about as many points and borders are small (divide_sample),
+/// by a sample of the pieces, which are spread over all inputs. Rank 0 has the sample, and tells
+/// the others the cuts. Collective.
+template <int D>
+DividedSample divide_among_ranks(PieceTable& pieces, const distributed::Ranks& ranks);
 
 }  // namespace spillway::detail

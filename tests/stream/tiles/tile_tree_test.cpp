@@ -360,6 +360,42 @@ TEST(TileTree, SurvivesAHeaderThatLies) {
   });
 }
 
+/// Points dealt again, of points in an order that hides where the others will lie, and a sample.
+std::uint64_t dealt_again(const Points& points, const Points& sample) {
+  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  StageTimes times;
+  TileTreeOptions options{.dimension = 2, .capacity = kCapacity, .buffered_points = kBuffered};
+  options.expected = points.size();
+  std::uint64_t divided = 0;
+  with_threads(2, [&] {
+    TileTree tree(options, *scratch, times);
+    Box<3> extent;
+    for (const LatticePoint& p : points) extent.expand(p);
+    tree.expect(extent, sample);
+    bool given = false;
+    tree.fill([&](PointBlock& block) {
+      block.points = given ? Points() : points;
+      return !std::exchange(given, true);
+    });
+    divided = tree.divide_large([](std::uint64_t, double) {});
+    const std::optional<TileNode<2>> root = tree.take_nodes<2>();
+    ASSERT_TRUE(root);
+    EXPECT_EQ(root->points, points.size());
+  });
+  return divided;
+}
+
+TEST(TileTree, OfASampleIsRightFromTheFirstPointOn) {
+  Points points = make_points(Order::kSorted, 250'000);
+  std::ranges::sort(points, {}, [](const LatticePoint& p) { return p[0]; });
+  // The last ones among the first, so that the first lie at both ends.
+  std::rotate(points.begin() + 20'000, points.end() - 5'000, points.end());
+  Points sample;
+  for (std::size_t i = 0; i < points.size(); i += 23) sample.push_back(points[i]);
+  EXPECT_EQ(dealt_again(points, sample), 0U);
+  dealt_again(points, Points(sample.size(), points.front()));  // a sample that lies loses nothing
+}
+
 TEST(TileTree, SaysWhenTheDiskIsFull) {
   const auto scratch = make_scratch_folder(testing::TempDir(), 10'000);
   StageTimes times;

@@ -23,7 +23,7 @@ struct Road {
   std::unique_ptr<ScratchFolder> scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   StageTimes times;
   PieceTable pieces{*source, world(), *scratch, times, [] {}};
-  RankDivision division = divide_among_ranks(pieces, 2, world());
+  RankDivision division = divide_among_ranks<2>(pieces, world()).division;
 };
 
 int rank_of(const RankDivision& division, const LatticePoint& point) {

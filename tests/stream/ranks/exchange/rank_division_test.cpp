@@ -26,7 +26,8 @@ RankDivision divide(const std::vector<std::string>& paths, int dimension,
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   StageTimes times;
   PieceTable pieces(*source, world(), *scratch, times, [] {});
-  RankDivision division = divide_among_ranks(pieces, dimension, world());
+  RankDivision division = dimension == 2 ? divide_among_ranks<2>(pieces, world()).division
+                                         : divide_among_ranks<3>(pieces, world()).division;
   if (counts != nullptr) *counts = source->counts();
   world().barrier();
   return division;
@@ -77,6 +78,17 @@ TEST(RankDivision, LooksAtAllInputsAlikeAndAtThoseOfOneRankAlone) {
   expect_equal_shares(divide(write_inputs(folder, points, 2, "spp"), 2), points);
 }
 
+/// Every n-th point would be of one place alone.
+TEST(RankDivision, SeesAllPlacesThatTheInputSendsInTurns) {
+  const SharedFolder folder;
+  std::vector<LatticePoint> points = points_of_seed(4 * 65'536, 7);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i][0] += static_cast<double>(i % 4);
+    points[i][1] *= 0.9;
+  }
+  expect_equal_shares(divide(write_inputs(folder, points, 1, "npy"), 2), points);
+}
+
 TEST(RankDivision, CountsNoPointsSinceTheyAreReadAgain) {
   const SharedFolder folder;
   PointCounts counts;
@@ -107,6 +119,28 @@ void append_ranks(const RankDivision& division, CutTree::NodeRef node, std::vect
   for (const CutTree::NodeRef side : division.cuts.sides(node)) {
     append_ranks(division, side, ranks);
   }
+}
+
+TEST(RankDivision, GivesEachRankTheSampleOfItsOwnCell) {
+  const SharedFolder folder;
+  const auto points = points_of_seed(20'000, 7);
+  const auto source = open_shared_source(disk(), write_inputs(folder, points, 2, "npy"),
+                                         {.dimension = 2, .index = true}, world());
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
+  StageTimes times;
+  PieceTable pieces(*source, world(), *scratch, times, [] {});
+  const auto [division, own] = divide_among_ranks<2>(pieces, world());
+  const Box<3> cell = *division.cell_of(world().rank());
+  for (const LatticePoint& p : own) {
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_GE(p[k], cell.lo[k]);
+      EXPECT_LT(p[k], cell.hi[k]);
+    }
+  }
+  std::uint64_t all = own.size();
+  world().reduce(std::span(&all, 1), distributed::Reduction::kSum);
+  EXPECT_GT(all, points.size() / 4) << "of so few points much is the sample";
+  EXPECT_FALSE(division.cell_of(world().size())) << "nobody's";
 }
 
 TEST(RankDivision, NumbersRanksInTheOrderOfTheTree) {

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "src/geometry/framed_point.h"
+#include "stream/tiles/cuts/cut_tree.h"
+
+namespace spillway::detail {
+
+/// A cut of a tile that came of the cuts before it: CutTree::make_cut makes it.
+struct DivisionCut {
+  std::uint32_t tile = 0;
+  TileCut where;
+};
+
+/// The cuts that divide space into about `parts` parts with equally many points, of a sample of
+/// all. A cut is across the longest side of a cell, unless a triangulation of some of the sample
+/// says that another one is crossed by fewer simplices: these become the border between ranks. A
+/// cut moves by a few percent of the points to where fewer cross it. (After Funke, Sanders,
+/// Winkler, "Load-Balancing for Parallel Delaunay Triangulations", Euro-Par 2019, who cut the graph
+/// of a sample's triangulation into parts of any shape; here all cuts are across an axis.) Fewer
+/// parts come out where the sample's points are equal or fewer than these. The same sample in the
+/// same order gives the same cuts.
+///
+/// Tried and left out: parts of equal work, as told by how many simplices the points have. In space
+/// that is nearly the same for all points, but where lines and curves are. There all that is cut is
+/// border, and to divide it costs more than it balances.
+template <int D>
+std::vector<DivisionCut> divide_sample(std::vector<LatticePoint> sample, std::size_t parts);
+
+}  // namespace spillway::detail
