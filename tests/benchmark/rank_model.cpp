@@ -134,7 +134,8 @@ void print_figures(const Plan& plan, const std::vector<RankRun>& runs, const Fig
   row("bytes sent for an exposed simplex", fmt::format("{:.1f}", figures.merge_bytes_sent),
       ranks(most) + ", root");
   row("points of an inner merge's border over " + inner_power + " of the M points below it",
-      fmt::format("{:.1f}", figures.inner_points), ranks(most) + ", root");
+      figures.inner_points > 0 ? fmt::format("{:.1f}", figures.inner_points) : "none seen",
+      figures.inner_points > 0 ? ranks(most) + ", root" : "so the model has one rank do all of it");
   row("points of a border below which one rank triangulates it",
       fmt::format("{}", gather_below(plan.dimension)), "the command's own limit");
   row("calls of a merge; and more for each inner merge",
@@ -203,7 +204,8 @@ class Model {
   /// Of points that form a border of so many dimensions.
   [[nodiscard]] double triangulation_seconds(double points, int workers, int dimension) const {
     const double alone = points * figures_.triangulation_seconds;
-    if (workers < 2 || points < static_cast<double>(gather_below(plan_.dimension))) return alone;
+    const bool is_small = points < static_cast<double>(gather_below(plan_.dimension));
+    if (workers < 2 || is_small || figures_.inner_points == 0) return alone;
     double seconds = alone / workers;
     for_each_inner_merge(points, workers, [&](double below, int ranks) {
       const double border = figures_.inner_points * std::pow(below, power_of_border(dimension));

@@ -1,6 +1,7 @@
 #include "stream/ranks/merges/owned_vertices.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 namespace spillway::detail {
@@ -78,6 +79,9 @@ std::optional<SectionDraft> OwnedVertices<D>::finalize(std::uint32_t section) {
   draft.section.section = section;
   for (const VertexId v : noted_) {
     const BorderVertex<D>& vertex = vertices_.vertices[v];
+    if (!vertex.place.announced()) {
+      throw std::logic_error("a vertex without simplices is in no mesh: a fault of the program");
+    }
     draft.section.mesh.finalized.push_back(static_cast<std::uint32_t>(draft.imported.size()));
     draft.imported.push_back(vertex.place);
     draft.section.imported_vertices.push_back(output_point(vertex));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 #include "src/delaunay/border/exposure.h"
@@ -98,6 +99,9 @@ void RankMerges<D>::run(Border<D> border) {
   share_->settle(exposure);
   hold();
   for (; !steps_.empty(); steps_.pop_back()) merge(steps_.back());
+  if (!share_->simplices().empty()) {
+    throw std::logic_error("not all that is final was found to be so: a fault of the program");
+  }
   engine_.hold_border(0, 0);
 }
 

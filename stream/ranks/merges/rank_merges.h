@@ -36,7 +36,7 @@ class RankMerges {
  private:
   using Node = typename RankTree<D>::Node;
   using Corners = std::array<VertexId, D + 1>;
-  /// A merge that this rank takes part in.
+  /// A merge that this rank takes part in, and those who do.
   struct Step {
     const Node* node = nullptr;
     distributed::Ranks ranks;
