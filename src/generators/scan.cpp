@@ -31,9 +31,11 @@ constexpr double kMoreNoise = 0.002;   // and how much it grows up to the end of
 struct Raster {
   std::uint64_t rows, columns;
 
+  /// Of at least so many rays.
   explicit Raster(double rays)
-      : rows(std::max<std::uint64_t>(3, nearest(std::sqrt(rays * kSwing)))),
-        columns(std::max<std::uint64_t>(1, nearest(rays / static_cast<double>(rows)))) {}
+      : rows(std::max<std::uint64_t>(3, static_cast<std::uint64_t>(std::sqrt(rays * kSwing)))),
+        columns(std::max<std::uint64_t>(
+            1, static_cast<std::uint64_t>(std::ceil(rays / static_cast<double>(rows))))) {}
 
   [[nodiscard]] Direction elevation(std::uint64_t row) const {
     return direction_at(kLowest +
@@ -43,9 +45,6 @@ struct Raster {
   [[nodiscard]] Direction azimuth(std::uint64_t column, double start) const {
     return direction_at((static_cast<double>(column) + start) / static_cast<double>(columns));
   }
-
- private:
-  static std::uint64_t nearest(double x) { return static_cast<std::uint64_t>(x + 0.5); }
 };
 
 /// The share of all rays of all stations that hit something, by a sample.
@@ -120,7 +119,7 @@ class Scan final : public PointGenerator {
 
   /// A few more than it takes, so that the last station all but finishes its turn.
   [[nodiscard]] double rays_of_a_station(std::uint64_t count) const {
-    constexpr double kReserve = 1.02;
+    constexpr double kReserve = 1.003;
     return kReserve * static_cast<double>(count) /
            (share_of_hits(scene_) * static_cast<double>(scene_.stations.size()));
   }
@@ -151,9 +150,9 @@ class Scan final : public PointGenerator {
   Point<3> measured(double range, const Direction& elevation) {
     range += (kLeastNoise + kMoreNoise * (range / kScanRange)) * noise_.next();
     const double level = range * elevation.cosine;
-    // All coordinates are positive, so that this rounds to the nearest.
+    // All coordinates are positive, so that this rounds down.
     const auto on_lattice = [](double metres) {
-      return static_cast<double>(static_cast<std::int64_t>(metres * kStepsPerMetre + 0.5));
+      return static_cast<double>(static_cast<std::int64_t>(metres * kStepsPerMetre));
     };
     return {on_lattice(station_[0] + level * azimuth_.cosine),
             on_lattice(station_[1] + level * azimuth_.sine),
