@@ -28,7 +28,7 @@ void ScanColumn::aim(const Point<3>& station, const Direction& azimuth) {
 
 std::optional<ScanColumn::Cut> ScanColumn::cut_of(const ScanBuilding& building,
                                                   const Point<3>& station,
-                                                  const Direction& azimuth) const {
+                                                  const Direction& azimuth) {
   const Direction& along = building.along;
   const double dx = station[0] - building.x;
   const double dy = station[1] - building.y;

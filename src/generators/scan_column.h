@@ -43,8 +43,8 @@ class ScanColumn {
     std::array<RoofLine, 2> roof;
   };
 
-  [[nodiscard]] std::optional<Cut> cut_of(const ScanBuilding& building, const Point<3>& station,
-                                          const Direction& azimuth) const;
+  [[nodiscard]] static std::optional<Cut> cut_of(const ScanBuilding& building,
+                                                 const Point<3>& station, const Direction& azimuth);
   [[nodiscard]] static std::optional<double> hit_of(const Cut& cut, double slope);
   std::optional<double> ground_hit();
 
