@@ -18,7 +18,7 @@ SPILLWAY_API std::vector<std::string> point_families();
 struct GenerateOptions {
   std::string family = "uniform";  ///< one of point_families()
   std::uint64_t count = 0;
-  int dimension = 2;  ///< 2 or 3; terrain always has z
+  int dimension = 2;  ///< 2 or 3; terrain and scan always have z
   std::uint64_t seed = 1;
 };
 

@@ -320,7 +320,7 @@ def generate(
     output : path, optional
         A point file, in the format of its extension. By default an array is made.
     dim : {2, 3}, optional
-        2 by default. Not for ``"terrain"``, which always has z.
+        2 by default. Not for ``"terrain"``, which always has z; ``"scan"`` has z with either.
     seed : int, optional
         Another seed, other points; 1 by default.
     grid : (int, int), optional

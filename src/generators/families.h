@@ -51,4 +51,7 @@ std::unique_ptr<PointGenerator> make_terrain(const GeneratorOptions& options);
 /// packing.
 std::unique_ptr<PointGenerator> make_packing(const GeneratorOptions& options);
 
+/// scan.
+std::unique_ptr<PointGenerator> make_scan(const GeneratorOptions& options);
+
 }  // namespace spillway::detail

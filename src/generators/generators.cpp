@@ -11,9 +11,9 @@
 namespace spillway::detail {
 namespace {
 
-constexpr std::array<const char*, 14> kNames = {
-    "uniform", "normal",  "bubbles",  "ellipsoid",  "lines",     "lattice",  "circle",
-    "terrain", "packing", "clusters", "duplicates", "collinear", "coplanar", "utm"};
+constexpr std::array<const char*, 15> kNames = {
+    "uniform", "normal", "bubbles",  "ellipsoid",  "lines",     "lattice",  "circle", "terrain",
+    "packing", "scan",   "clusters", "duplicates", "collinear", "coplanar", "utm"};
 static_assert(kNames.size() == static_cast<std::size_t>(Family::kUtm) + 1);
 
 }  // namespace
@@ -29,6 +29,10 @@ Family family_by_name(std::string_view name) {
   return static_cast<Family>(found - kNames.begin());
 }
 
+bool always_has_heights(Family family) {
+  return family == Family::kTerrain || family == Family::kScan;
+}
+
 std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options) {
   if (options.dimension != 2 && options.dimension != 3) {
     throw InvalidArgument(
@@ -36,6 +40,7 @@ std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options) 
   }
   if (options.family == Family::kTerrain) return make_terrain(options);
   if (options.family == Family::kPacking) return make_packing(options);
+  if (options.family == Family::kScan) return make_scan(options);
   auto generator = make_distribution(options);
   return generator ? std::move(generator) : make_degenerate(options);
 }

@@ -28,6 +28,7 @@ enum class Family {
   kCircle,
   kTerrain,
   kPacking,
+  kScan,
   kClusters,
   kDuplicates,
   kCollinear,
@@ -41,10 +42,13 @@ std::vector<std::string> family_names();
 /// The family of that name. Throws InvalidArgument that lists them all otherwise.
 Family family_by_name(std::string_view name);
 
+/// Whether its points have z, and are the same, also in two dimensions.
+bool always_has_heights(Family family);
+
 struct GeneratorOptions {
   Family family = Family::kUniform;
   std::uint64_t count = 0;
-  int dimension = 2;  ///< 2: z is 0, except for terrain, which always has z
+  int dimension = 2;  ///< 2: z is 0, but for families that always have heights
   std::uint64_t seed = 1;
 };
 
@@ -58,8 +62,8 @@ class PointGenerator {
   virtual std::size_t next(std::span<Point<3>> points) = 0;
 
   /// The lattice of families that consist of integers (lattice, duplicates, collinear, coplanar:
-  /// the unit one; terrain: centimetres at UTM offsets), nullptr for the others. Points of such
-  /// families come as integers.
+  /// the unit one; terrain: centimetres at UTM offsets; scan: tenths of millimetres), nullptr for
+  /// the others. Points of such families come as integers.
   [[nodiscard]] virtual const Lattice* lattice() const { return nullptr; }
 };
 

@@ -24,11 +24,13 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  spillway generate terrain -n 1e6 -o hills.las          airborne LiDAR as a scanner makes "
     "it\n"
+    "  spillway generate scan -n 1e6 -o houses.las            houses as a scanner on a tripod sees "
+    "them\n"
     "  spillway generate uniform -n 1e5 --dim 3 -o cube.npy\n"
     "  spillway generate circle -n 1000 | spillway triangulate - -o disc.obj\n"
     "  spillway generate terrain -n 1e8 --grid 20x20 -o 'survey/hills_#.las'  400 overlapping "
     "files\n"
-    "LAS and LAZ take the families of integers: lattice, terrain, duplicates, collinear, "
+    "LAS and LAZ take the families of integers: lattice, terrain, scan, duplicates, collinear, "
     "coplanar.\n"
     "The same family, number, dimension and seed give the same points on every machine.";
 
@@ -147,7 +149,7 @@ Subcommand add_generate(CommandLine& root) {
               parse_point_count)
       .required()
       .value_name("N");
-  add_dimension(app, options->dimension, "Dimension; terrain always has z");
+  add_dimension(app, options->dimension, "Dimension; terrain and scan always have z");
   take_whole_number(app.add_option("--seed", options->seed, "Another seed, other points"))
       .value_name("S")
       .show_default();

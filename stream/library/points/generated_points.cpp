@@ -22,7 +22,7 @@ GeneratorOptions generator_options(const GenerateOptions& options) {
 
 GeneratedPoints::GeneratedPoints(const GenerateOptions& options)
     : count_(options.count),
-      has_heights_(options.dimension == 3 || family_by_name(options.family) == Family::kTerrain),
+      has_heights_(options.dimension == 3 || always_has_heights(family_by_name(options.family))),
       generator_(make_generator(generator_options(options))) {
   if (generator_->lattice() != nullptr) lattice_ = *generator_->lattice();
 }

@@ -60,6 +60,7 @@ class GeneratedGrid : public testing::CallTest {
 
 TEST_F(GeneratedGrid, HoldsEachPointOfAFamilyOnceAndInOrder) {
   for (const auto& [family, name] : std::map<std::string, std::string>{{"terrain", "a_#.las"},
+                                                                       {"scan", "a_#.las"},
                                                                        {"lattice", "a_#.laz"},
                                                                        {"uniform", "a_#.spp"},
                                                                        {"circle", "a_#.npy"}}) {

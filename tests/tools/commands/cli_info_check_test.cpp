@@ -257,7 +257,7 @@ std::string dimension_option(const std::string& family, const std::string& dimen
 TEST(Generate, EveryFamilyComesInBothDimensionsAndAsManyAsAskedFor) {
   const Workspace work;
   for (const std::string family : {"uniform", "normal", "bubbles", "ellipsoid", "lines", "lattice",
-                                   "circle", "terrain", "packing"}) {
+                                   "circle", "terrain", "packing", "scan"}) {
     for (const std::string dimension : {"2", "3"}) {
       const std::string name = family + dimension + ".npy";
       work.succeed(fmt::format("spillway generate -q {} -n 777 {} -o {}", family,
@@ -267,10 +267,20 @@ TEST(Generate, EveryFamilyComesInBothDimensionsAndAsManyAsAskedFor) {
   }
 }
 
+TEST(Generate, AScanIsLasOfTenthsOfMillimetres) {
+  const Workspace work;
+  work.succeed(
+      "spillway generate -q scan -n 500 -o a.las; spillway generate -q scan -n 500 -o a.npy");
+  EXPECT_EQ(work.info("a.las")["scale"], (nlohmann::json{0.0001, 0.0001, 0.0001}));
+  work.succeed(
+      "spillway triangulate -q a.las --dim 3 -o mesh.ply\n"
+      "spillway check -q mesh.ply --points a.npy");
+}
+
 TEST(Check, AcceptsTheTriangulationOfEveryFamily) {
   const Workspace work;
   for (const std::string family : {"uniform", "normal", "bubbles", "ellipsoid", "lines", "lattice",
-                                   "circle", "terrain", "packing"}) {
+                                   "circle", "terrain", "packing", "scan"}) {
     for (const std::string dimension : {"2", "3"}) {
       work.succeed(
           fmt::format("spillway generate -q {} -n 700 {} -o points.npy\n"

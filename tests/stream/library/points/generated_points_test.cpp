@@ -69,7 +69,8 @@ TEST_P(GeneratedPointsOf, AFamilyAreTheSameForAProgramAndForARun) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, GeneratedPointsOf,
-                         ::testing::Values("uniform", "lattice", "terrain", "clusters", "utm"),
+                         ::testing::Values("uniform", "lattice", "terrain", "scan", "clusters",
+                                           "utm"),
                          [](const auto& family) { return family.param; });
 
 TEST(GeneratedPoints, ComeInBlocksAndAreNumberedThrough) {
@@ -81,10 +82,11 @@ TEST(GeneratedPoints, ComeInBlocksAndAreNumberedThrough) {
   EXPECT_EQ(taken.index.back(), 69'999U);
 }
 
-TEST(GeneratedPoints, HaveHeightsInSpaceAndOnTerrain) {
+TEST(GeneratedPoints, HaveHeightsInSpaceAndOnTerrainAndScans) {
   EXPECT_EQ(GeneratedPoints({.family = "uniform", .dimension = 2}).header().coordinates, 2);
   EXPECT_EQ(GeneratedPoints({.family = "uniform", .dimension = 3}).header().coordinates, 3);
   EXPECT_EQ(GeneratedPoints({.family = "terrain", .dimension = 2}).header().coordinates, 3);
+  EXPECT_EQ(GeneratedPoints({.family = "scan", .dimension = 2}).header().coordinates, 3);
   EXPECT_EQ(GeneratedPoints({.family = "uniform", .count = 12}).header().count, 12U);
 }
 
