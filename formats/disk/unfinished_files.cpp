@@ -31,8 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// No file system has a lower limit for names, and MPI-IO puts files beside a shared one whose
-/// names are longer still.
+/// No file system has a lower limit for names.
 constexpr std::size_t kLongestName = 140;
 
 constexpr std::string_view kEnding = ".part";

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <mutex>
 #include <string>
@@ -19,6 +20,10 @@
 
 namespace spillway::detail {
 namespace {
+
+/// How long an interrupted rank stays when it is done. mpirun kills all a second after it has told
+/// them to end, but at once when the first has ended: others may still be removing files.
+constexpr std::chrono::milliseconds kOtherRanks{900};
 
 std::string message_of(int number, std::vector<std::string> outputs) {
   constexpr std::size_t kMostNamed = 3;
@@ -55,6 +60,7 @@ sigset_t interrupts() {
     if (tell) last_message(message_of(number, outputs));
   } catch (const std::exception&) {  // no memory for words
   }
+  if (distributed::launch().ranks > 1) std::this_thread::sleep_for(kOtherRanks);
   _exit(128 + number);
 }
 
