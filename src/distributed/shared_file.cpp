@@ -30,8 +30,8 @@ void together(const Ranks& ranks, const char* activity, const std::string& name,
 
 }  // namespace
 
-SharedFile::SharedFile(const Ranks& ranks, const std::string& path, std::string name)
-    : ranks_(ranks), name_(name.empty() ? path : std::move(name)) {
+SharedFile::SharedFile(const Ranks& ranks, const std::string& path, const std::string& name)
+    : ranks_(ranks), name_(name.empty() ? path : name) {
   const auto open = [&](int flags) {
     descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
     return descriptor_ >= 0;

@@ -15,7 +15,7 @@ class SharedFile {
  public:
   /// `name` is for messages; the path if empty. Collective: rank 0 creates the file, the others
   /// open it. Throws Error at all ranks if one cannot.
-  SharedFile(const Ranks& ranks, const std::string& path, std::string name = "");
+  SharedFile(const Ranks& ranks, const std::string& path, const std::string& name = "");
   ~SharedFile();
   SharedFile(const SharedFile&) = delete;
   SharedFile& operator=(const SharedFile&) = delete;

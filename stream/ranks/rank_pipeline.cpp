@@ -230,15 +230,16 @@ class RankRun {
   void number_sections(const RankTree<D>& tree) {
     std::vector<std::uint64_t> sizes(2 * std::size_t{tree.sections()});
     if (const auto own = tree.own_node()) {
-      const std::uint32_t section = tree.nodes()[*own].first_section;
-      result_.own_section = section;
+      const std::size_t section = tree.nodes()[*own].first_section;
+      result_.own_section = tree.nodes()[*own].first_section;
       sizes[2 * section] = result_.figures.mesh.vertices;
       sizes[2 * section + 1] = result_.figures.mesh.simplices;
     }
     for (const SectionDraft& draft : drafts_) {
       const MeshBlock& mesh = draft.section.mesh;
-      sizes[2 * draft.section.section] = mesh.vertices.size();
-      sizes[2 * draft.section.section + 1] = mesh.corners.size() / (D + 1);
+      const std::size_t section = draft.section.section;
+      sizes[2 * section] = mesh.vertices.size();
+      sizes[2 * section + 1] = mesh.corners.size() / (D + 1);
     }
     ranks_.reduce(sizes, Reduction::kSum);
     std::uint64_t first = 0;

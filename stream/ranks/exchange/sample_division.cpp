@@ -87,9 +87,10 @@ class SampleDivider {
     if (!cut) return;
     cuts_.push_back({tile, *cut});
     const auto other = static_cast<std::uint32_t>(cuts_.size());
-    const auto high = std::ranges::partition(
-        sample, [&](const LatticePoint& p) { return p[cut->axis] < cut->value; });
-    const std::size_t below = sample.size() - high.size();
+    const auto high = std::partition(sample.begin(), sample.end(), [&](const LatticePoint& p) {
+      return p[cut->axis] < cut->value;
+    });
+    const auto below = static_cast<std::size_t>(high - sample.begin());
     std::array<SampleMesh<D>, 2> sides = mesh.sides(*cut);
     mesh = {};
     divide_tile(tile, sample.first(below), std::move(sides[0]), low_parts);
