@@ -42,6 +42,12 @@ class OpenFacets {
     if (!is_new) open_.erase(place);
   }
 
+  static std::uint64_t hash(const Facet& facet) {
+    std::uint64_t hash = 0;
+    for (const std::uint64_t v : facet) hash = mix64(hash ^ v);
+    return hash;
+  }
+
   [[nodiscard]] std::uint64_t count() const { return open_.size(); }
 
   /// The facets in any order, each as D numbers in ascending order.
@@ -50,11 +56,7 @@ class OpenFacets {
 
  private:
   struct Hash {
-    std::size_t operator()(const Facet& facet) const {
-      std::uint64_t hash = 0;
-      for (const std::uint64_t v : facet) hash = mix64(hash ^ v);
-      return hash;
-    }
+    std::size_t operator()(const Facet& facet) const { return hash(facet); }
   };
 
   std::unordered_set<Facet, Hash> open_;

@@ -10,7 +10,6 @@
 
 #include "formats/bytes/bytes.h"
 #include "src/delaunay/base_case/base_case.h"
-#include "src/delaunay/common/hash.h"
 #include "src/distributed/items.h"
 #include "src/parallel/parallel.h"
 #include "stream/ranks/exchange/collective_step.h"
@@ -259,9 +258,8 @@ class RankRun {
   [[nodiscard]] std::uint64_t open_facets() const {
     distributed::ItemsByRank<std::array<std::uint64_t, D>> facets;
     for (const auto& facet : own_open_facets()) {
-      std::uint64_t hash = 0;
-      for (const std::uint64_t v : facet) hash = mix64(hash ^ v);
-      facets[static_cast<int>(hash % static_cast<std::uint64_t>(ranks_.size()))].push_back(facet);
+      const auto ranks = static_cast<std::uint64_t>(ranks_.size());
+      facets[static_cast<int>(OpenFacets<D>::hash(facet) % ranks)].push_back(facet);
     }
     ShrinkingLease received(budget_);
     OpenFacets<D> met;

@@ -77,8 +77,8 @@ void TileTree::divide_first(Batch& batch) {
   divided_ = true;
   const std::size_t known_tiles =
       tiles_for(static_cast<double>(all), capacity_, kRepresentativeFill);
-  if (tells && is_telling(expected_sample_, known_tiles)) {
-    divide(0, std::exchange(expected_sample_, {}), known_tiles, batch);
+  if (tells && is_telling(options_.sample, known_tiles)) {
+    divide(0, std::exchange(options_.sample, {}), known_tiles, batch);
     return;
   }
   const bool everywhere = tells && spans_extent(box, *options_.extent, options_.dimension);

@@ -43,7 +43,7 @@ class TileTree {
   /// before fill().
   void expect(const Box<3>& extent, std::vector<LatticePoint> sample) {
     options_.extent = extent;
-    expected_sample_ = std::move(sample);
+    options_.sample = std::move(sample);
   }
 
   /// Told how many points have been dealt again, and what share that is of all for which this is
@@ -190,7 +190,6 @@ class TileTree {
   [[nodiscard]] StoredTile one_of(Tile tile) const;
 
   TileTreeOptions options_;
-  std::vector<LatticePoint> expected_sample_;  ///< of the points to come, if there is one
   ScratchFolder& folder_;
   StageTimes& times_;
   CutTree cuts_;

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "src/geometry/box.h"
+#include "src/geometry/framed_point.h"
 #include "stream/tiles/regions/region_plan.h"
 
 namespace spillway::detail {
@@ -24,6 +26,7 @@ struct TileTreeOptions {
   std::size_t buffered_points = 0;          ///< most points waiting in memory
   std::optional<std::uint64_t> expected{};  ///< how many points will come, where that is known
   std::optional<Box<3>> extent{};           ///< where they will lie, where that is known
+  std::vector<LatticePoint> sample{};       ///< of the points to come, where there is one
   bool index = false;                       ///< points keep their index; that of others is dropped
   std::size_t record_size = 0;              ///< bytes of the attributes that points carry
   std::size_t batches = 6;                  ///< most of them under way at a time
