@@ -8,9 +8,13 @@
 #include <utility>
 
 #include "src/delaunay/base_case/base_case.h"
+#include "src/delaunay/border/point_search.h"
 #include "src/delaunay/border/region_batch.h"
+#include "src/delaunay/common/hash.h"
+#include "src/delaunay/division/filled_share.h"
 #include "src/delaunay/division/point_tree.h"
 #include "src/parallel/parallel.h"
+#include "stream/triangulate/leaf_border.h"
 #include "stream/triangulate/merge_tree.h"
 
 namespace spillway::detail {
@@ -96,55 +100,10 @@ class WorkingMemory {
   std::size_t leaf_size_;
 };
 
-/// What may change simplices of a part of a tile: the siblings of the part, of the node above it,
-/// and so on, by level, and other tiles.
-template <int D>
-struct Surroundings {
-  std::vector<std::vector<const Part<D>*>> levels;
-  const Outside<D>& outside;
-
-  /// Whether there are few enough levels to tell what each may change.
-  [[nodiscard]] bool tells_exposure() const {
-    return !levels.empty() && levels.size() <= kExposureLevels;
-  }
-
-  /// The bits of regions that something may change. If `exposure` is given, sets that of each.
-  [[nodiscard]] std::uint64_t may_change(const RegionBatch<D>& regions, Exposure* exposure) const {
-    std::uint64_t changed = 0;
-    for (std::size_t level = 0; level < levels.size(); ++level) {
-      // Who wants to know the exposure asks for each level.
-      const std::uint64_t asked = exposure != nullptr ? regions.all() : regions.all() & ~changed;
-      std::uint64_t met = 0;
-      for (const Part<D>* sibling : levels[level]) {
-        met |= regions.may_meet_leaf(*sibling, asked & ~met);
-      }
-      changed |= met;
-      if (exposure == nullptr) continue;
-      for (; met != 0; met &= met - 1) {
-        exposure[std::countr_zero(met)] |= static_cast<Exposure>(1U << level);
-      }
-    }
-    for (const TileNode<D>* tile : outside) {
-      changed |= regions.may_meet_leaf(*tile, regions.all() & ~changed);
-    }
-    return changed;
-  }
-};
-
-/// Finds out the fates of simplices whose regions these are: calls set(s, fate) for each.
-template <int D, typename Set>
-void tell_fates(const RegionBatch<D>& regions, std::uint64_t changed, const Set& set) {
-  for (std::size_t s = 0; s < regions.kSize && (regions.all() >> s & 1) != 0; ++s) {
-    const bool kept = (changed >> s & 1) != 0;
-    const bool infinite = (regions.infinite() >> s & 1) != 0;
-    set(s, kept ? Fate::kKept : infinite ? Fate::kFinalFacet : Fate::kFinal);
-  }
-}
-
 /// Which simplices of a merged border are final: nothing around it may change them.
 template <int D>
 Settled<D> settle_merged(MergedBorder<D>& merged, BlockPlace block, const OutputOptions& output,
-                         const Surroundings<D>& surroundings, StageTimes& times) {
+                         Surroundings<D> surroundings, StageTimes& times) {
   const StageTimer timer(times, Stage::kFinality);
   Border<D>& border = merged.border;
   const std::vector<Point<D>> positions = border.positions();
@@ -156,18 +115,26 @@ Settled<D> settle_merged(MergedBorder<D>& merged, BlockPlace block, const Output
   } else {
     exposure = {};
   }
-  parallel_for(
-      fates.size() - merged.tested, kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for_each_region_batch<D>(
-            end - begin, [&](std::size_t s) { return border.simplices[merged.tested + begin + s]; },
-            positions,
-            [&](std::size_t first, const RegionBatch<D>& regions) {
-              const std::size_t at = merged.tested + begin + first;
-              const std::uint64_t changed =
-                  surroundings.may_change(regions, tells_exposure ? &exposure[at] : nullptr);
-              tell_fates(regions, changed, [&](std::size_t s, Fate fate) { fates[at + s] = fate; });
-            });
-      });
+  const std::span<const std::array<VertexId, D + 1>> fresh =
+      std::span(border.simplices).subspan(merged.tested);
+  if (surroundings.asks_for_points && !fresh.empty()) {
+    std::vector<std::array<VertexId, D + 1>> sample(kAskedSample);
+    for (std::size_t s = 0; s < sample.size(); ++s) sample[s] = fresh[mix64(s) % fresh.size()];
+    const std::vector<const Part<D>*> all = surroundings.all_siblings();
+    surroundings.asks_for_points =
+        asking_for_points_pays<D>(sample, positions, surroundings.siblings(all));
+  }
+  parallel_for(fresh.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+    ChangeSearch<D> search(surroundings);
+    for_each_region_batch<D>(
+        end - begin, [&](std::size_t s) { return fresh[begin + s]; }, positions,
+        [&](std::size_t first, const RegionBatch<D>& regions) {
+          const std::size_t at = merged.tested + begin + first;
+          const std::uint64_t changed =
+              search.may_change(regions, tells_exposure ? &exposure[at] : nullptr);
+          tell_fates(regions, changed, [&](std::size_t s, Fate fate) { fates[at + s] = fate; });
+        });
+  });
   return settle<D>(
       MergeToSettle<D>{.block = block, .merged = border, .fates = fates, .exposure = exposure},
       output);
@@ -208,14 +175,21 @@ class TileRun {
                          .scheme = options.division,
                          .children = options.children,
                          .stop = {},
-                         .fill_leaves = true},
+                         .fill_leaves = true,
+                         .largest_undivided = largest_undivided()},
                         division.data());
     }
+    boxes_.resize(root_.list + 1);
     counts_.points += tile_.left_out;
     counts_.duplicates += tile_.left_out;
     context_.sequencer.open_slot(slot_, root_.list + 1);
     tree_.emplace(root_);
     const std::vector<Node*>& leaves = tree_->leaves();
+    parallel_for(leaves.size(), 1, [&](std::size_t, std::size_t begin, std::size_t) {
+      const Part<D>& leaf = *leaves[begin]->tree;
+      boxes_[leaf.list] =
+          RunBoxes<D>(std::span<const Point<D>>(tile_.points).subspan(leaf.begin, leaf.size()));
+    });
     parallel_for(leaves.size(), 1, [&](std::size_t, std::size_t begin, std::size_t) {
       Node& leaf = *leaves[begin];
       leaf.border = triangulate_leaf(leaf);
@@ -229,8 +203,9 @@ class TileRun {
 
  private:
   struct State {
-    Border<D> border;  ///< once the node is done
-    Task task;         ///< likewise, without those of its children
+    Border<D> border;     ///< once the node is done
+    Task task;            ///< likewise, without those of its children
+    bool hollow = false;  ///< a part of it is a curve or a surface
   };
   using Tree = MergeTree<Part<D>, State>;
   using Node = typename Tree::Node;
@@ -245,8 +220,14 @@ class TileRun {
     return std::move(tree_->root().task);
   }
 
+  /// Points of a leaf that is larger than others, since no cut of it pays.
+  [[nodiscard]] std::size_t largest_undivided() const {
+    constexpr std::uint64_t kShare = 4;  // of the limit
+    return context_.budget.limit() / kShare / (kLeafBytes<D> + context_.options.output.record_size);
+  }
+
   [[nodiscard]] Surroundings<D> surroundings_of(const Node& node) const {
-    return {tree_->siblings_by_level(node), outside_};
+    return {tree_->siblings_by_level(node), outside_, tile_.points, boxes_, node.hollow};
   }
 
   Border<D> triangulate_leaf(Node& node) {
@@ -259,6 +240,7 @@ class TileRun {
                   part.size() * (kLeafBytes<D> + context_.options.output.record_size),
                   "the triangulation of a leaf"),
         context_.options.leaf_size);
+    node.hollow = is_hollow<D>(points, part.box);
     BaseCase<D> leaf = base_case(node, points, memory.lease());
     counts_.points += part.size();
     counts_.duplicates += leaf.duplicates.size();
@@ -281,34 +263,41 @@ class TileRun {
     return pass_on(context_, std::move(settled), place_of(node));
   }
 
-  Settled<D> settle_leaf(const Node& node, const BaseCase<D>& base_case) {
+  Settled<D> settle_leaf(const Node& node, BaseCase<D>& base_case) {
     const StageTimer timer(counts_.times, Stage::kFinality);
     LeafToSettle<D> leaf = leaf_of(*node.tree);
-    leaf.corners = {base_case.corners.data(), base_case.corners.size()};
+    LeafFates told;
+    if (node.hollow) {
+      told = search_leaf_border<D>({leaf.points, leaf.first_vertex, node.tree->box},
+                                   surroundings_of(node), base_case);
+    }
+    leaf.corners = base_case.corners.span();
     leaf.duplicates = base_case.duplicates;
     leaf.open = *base_case.not_inside;
     leaf.open_simplices = base_case.open_simplices;
-    std::vector<Exposure> exposure;
-    const std::vector<Fate> fates = fates_in_leaf(node, leaf, exposure);
-    leaf.fates = fates;
-    leaf.exposure = exposure;
+    if (!node.hollow) told = test_leaf_border<D>(leaf, surroundings_of(node));
+    leaf.fates = told.fates;
+    leaf.exposure = told.exposure;
     return settle<D>(leaf, context_.options.output);
   }
 
+  /// Of a leaf that is not hollow its corners, and of a hollow one its simplices.
   BaseCase<D> base_case(const Node& node, std::span<const Point<D>> points, WorkLease& memory) {
     const StageTimer timer(counts_.times, Stage::kLeaves);
     const Part<D>& part = *node.tree;
-    const Box<D> clear_box = clear_box_of(node);
-    BaseCase<D> base_case = triangulate_base_case<D>(
-        {.points = points,
-         .input_index = std::span(input_index_).subspan(part.begin, part.size()),
-         .first_vertex = part.begin,
-         .clear_box = clear_box,
-         .in_place = true,
-         .corners_only = true,
-         .kernel = context_.options.kernel,
-         .memory = &memory});
-    if (!base_case.simplices.empty()) tell_corners(base_case, points, part.begin, clear_box);
+    BaseCaseInput<D> input{.points = points,
+                           .input_index = std::span(input_index_).subspan(part.begin, part.size()),
+                           .first_vertex = part.begin,
+                           .in_place = true,
+                           .kernel = context_.options.kernel,
+                           .memory = &memory};
+    if (node.hollow) return triangulate_base_case<D>(input);
+    input.clear_box = clear_box_of(node);
+    input.corners_only = true;
+    BaseCase<D> base_case = triangulate_base_case<D>(input);
+    if (!base_case.simplices.empty()) {
+      tell_corners(base_case, points, part.begin, *input.clear_box);
+    }
     return base_case;
   }
 
@@ -380,27 +369,12 @@ class TileRun {
     }
   }
 
-  /// By simplex. Sets the exposure of those that are open, if it can be told.
-  [[nodiscard]] std::vector<Fate> fates_in_leaf(const Node& node, const LeafToSettle<D>& leaf,
-                                                std::vector<Exposure>& exposure) const {
-    const Surroundings<D> surroundings = surroundings_of(node);
-    const std::span<const std::uint32_t> open = leaf.open;
-    if (surroundings.tells_exposure()) exposure.resize(open.size());
-    std::vector<Fate> fates(leaf.simplex_count(), Fate::kFinal);
-    for_each_region_batch<D>(
-        open.size(), [&](std::size_t i) { return leaf.open_simplex(i); }, leaf.points,
-        [&](std::size_t first, const RegionBatch<D>& regions) {
-          const std::uint64_t changed =
-              surroundings.may_change(regions, exposure.empty() ? nullptr : &exposure[first]);
-          tell_fates(regions, changed,
-                     [&](std::size_t i, Fate fate) { fates[open[first + i]] = fate; });
-        });
-    return fates;
-  }
-
   Border<D> merge_node(Node& node) {
     std::vector<Border<D>> children;
-    for (Node* child : node.children) children.push_back(std::exchange(child->border, {}));
+    for (Node* child : node.children) {
+      children.push_back(std::exchange(child->border, {}));
+      node.hollow = node.hollow || child->hollow;
+    }
     MergedBorder<D> merged = merge_resident<D>(context_, children, *node.tree, node.task);
     WorkingMemory<D> memory(std::move(merged.memory), context_.options.leaf_size);
     const BlockPlace block = place_of(node);
@@ -424,6 +398,7 @@ class TileRun {
   const Outside<D>& outside_;
   const std::uint32_t slot_;
   Part<D> root_;
+  std::vector<RunBoxes<D>> boxes_;  ///< of leaves, by list
   std::optional<Tree> tree_;
 };
 

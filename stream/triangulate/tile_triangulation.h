@@ -16,6 +16,7 @@
 #include "stream/tiles/tile_tree.h"
 #include "stream/triangulate/border.h"
 #include "stream/triangulate/settle.h"
+#include "stream/triangulate/surroundings.h"
 
 namespace spillway::detail {
 
@@ -82,10 +83,6 @@ struct StreamCounts {
   std::atomic<std::uint64_t> densest_leaf = 0;    ///< simplices for each of its points, rounded up
   std::atomic<std::uint64_t> retriangulated = 0;  ///< points in triangulations of borders
 };
-
-/// Where everything else is: the roots of the trees of boxes that are not this tile's.
-template <int D>
-using Outside = std::vector<const TileNode<D>*>;
 
 /// What all tiles and merges of a run share; used by many threads at once.
 template <int D>

@@ -12,6 +12,7 @@ spillway_test(stream_unit_test unit
           stream/tiles/cuts/cut_tree_test.cpp
           stream/tiles/regions/reading_order_test.cpp stream/tiles/regions/region_plan_test.cpp
           stream/triangulate/border_growth_test.cpp stream/triangulate/border_test.cpp
+          stream/triangulate/leaf_border_test.cpp
           stream/triangulate/cell_tree_test.cpp stream/triangulate/merge_forest_test.cpp stream/triangulate/merge_tree_test.cpp
           stream/triangulate/settle_test.cpp stream/triangulate/task_sums_test.cpp
           stream/triangulate/tile_engine_test.cpp

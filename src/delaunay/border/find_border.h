@@ -22,8 +22,7 @@ enum class Mark : std::uint8_t {
 };
 using ListMarks = SlabArray<Mark>;
 
-/// Whether asking for points pays, told by a sample of a part's simplices: it does unless regions
-/// meet very many boxes, or most of them hold a point, as those of points on a common sphere do.
+/// Whether asking for points pays, told by a sample of a part's simplices.
 template <int D>
 bool asking_for_points_pays(const Triangulation<D>& triangulation, const Part<D>& part,
                             const Siblings<D>& siblings);

@@ -1,6 +1,7 @@
 #include "src/delaunay/border/point_search.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace spillway::detail {
 
@@ -17,6 +18,19 @@ bool PointSearch<D>::may_hold_a_point(const ConflictRegion<D>& region) {
   last_box_ = boxes_seen_ + siblings_.most_boxes;
   return std::any_of(siblings_.parts.begin(), siblings_.parts.end(),
                      [&](const Part<D>* part) { return in_part(region, *part); });
+}
+
+template <int D>
+std::uint64_t PointSearch<D>::may_hold_points(const RegionBatch<D>& regions, std::uint64_t asked) {
+  std::uint64_t near = 0;
+  for (const Part<D>* part : siblings_.parts) near |= regions.may_meet_leaf(*part, asked & ~near);
+  if (siblings_.most_boxes == 0) return near;
+  std::uint64_t held = 0;
+  for (; near != 0; near &= near - 1) {
+    const int s = std::countr_zero(near);
+    if (may_hold_a_point(regions.region(s))) held |= std::uint64_t{1} << s;
+  }
+  return held;
 }
 
 template <int D>
@@ -62,6 +76,23 @@ bool PointSearch<D>::in_run(const ConflictRegion<D>& region, std::size_t begin, 
   return false;
 }
 
+template <int D>
+bool asking_for_points_pays(std::span<const std::array<VertexId, D + 1>> sample,
+                            std::span<const Point<D>> points, const Siblings<D>& siblings) {
+  constexpr std::size_t kMostBoxesOfOne = 4096;  // on average; others take none
+  PointSearch<D> search(siblings);
+  std::size_t held = 0;
+  for (const auto& corners : sample) {
+    held += search.may_hold_a_point(ConflictRegion<D>(corners, points)) ? 1 : 0;
+    if (search.boxes_seen() > sample.size() * kMostBoxesOfOne) return false;
+  }
+  return held <= sample.size() / 2;
+}
+
+template bool asking_for_points_pays<2>(std::span<const std::array<VertexId, 3>>,
+                                        std::span<const Point<2>>, const Siblings<2>&);
+template bool asking_for_points_pays<3>(std::span<const std::array<VertexId, 4>>,
+                                        std::span<const Point<3>>, const Siblings<3>&);
 template class PointSearch<2>;
 template class PointSearch<3>;
 

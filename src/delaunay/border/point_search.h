@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "src/delaunay/border/conflict_region.h"
+#include "src/delaunay/border/region_batch.h"
 #include "src/delaunay/border/run_boxes.h"
 #include "src/delaunay/division/divide.h"
 #include "src/geometry/point.h"
@@ -29,12 +31,15 @@ struct Siblings {
 template <int D>
 class PointSearch {
  public:
-  /// `siblings` must outlive it.
+  /// What `siblings` refer to must outlive it.
   explicit PointSearch(const Siblings<D>& siblings) : siblings_(siblings) {}
 
   /// False only if the region certainly holds no point of a sibling. The answer does not depend on
   /// earlier questions.
   [[nodiscard]] bool may_hold_a_point(const ConflictRegion<D>& region);
+
+  /// The bits of those regions `asked` for of which that is not false.
+  [[nodiscard]] std::uint64_t may_hold_points(const RegionBatch<D>& regions, std::uint64_t asked);
 
   /// How many boxes of runs all questions have looked at.
   [[nodiscard]] std::size_t boxes_seen() const { return boxes_seen_; }
@@ -45,11 +50,21 @@ class PointSearch {
                               std::size_t level, std::size_t begin);
   [[nodiscard]] bool in_run(const ConflictRegion<D>& region, std::size_t begin, std::size_t end);
 
-  const Siblings<D>& siblings_;
+  Siblings<D> siblings_;
   std::size_t boxes_seen_ = 0;
   std::size_t last_box_ = 0;  ///< how many may have been seen when the question ends
   std::array<Point<D>, 4> found_{};
   std::size_t found_count_ = 0;  ///< ever
 };
+
+/// How many simplices are enough for asking_for_points_pays().
+constexpr std::size_t kAskedSample = 256;
+
+/// Whether asking for points pays, told by a sample of a part's simplices, whose corners are
+/// positions of `points` or kInfiniteVertex: it does unless regions meet very many boxes, or most
+/// of them hold a point, as those of points on a common sphere do.
+template <int D>
+bool asking_for_points_pays(std::span<const std::array<VertexId, D + 1>> sample,
+                            std::span<const Point<D>> points, const Siblings<D>& siblings);
 
 }  // namespace spillway::detail

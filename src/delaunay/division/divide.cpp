@@ -29,9 +29,6 @@ constexpr std::size_t kUsedUp = 3;
 /// Points of a set whose cuts are judged: enough to tell which axis is the better one by far.
 template <int D>
 constexpr std::size_t kJudgedSample = D == 2 ? 512 : 1'024;
-/// From this share of filled cells on (filled_share) a set is no curve and no surface: the longest
-/// axis is the best one.
-constexpr double kFilled = 0.6;
 /// A cut does not pay if more than this share of the points has simplices across it: they would be
 /// triangulated twice.
 constexpr double kLargestCrossing = 0.5;
@@ -189,7 +186,7 @@ class Divider {
     for (std::size_t s = 0; s < count; ++s) {
       sample[s] = piece.sample[s * piece.sample.size() / count];
     }
-    if (filled_share<D>(sample, box) >= kFilled) return true;
+    if (!is_hollow<D>(sample, box)) return true;  // the longest axis is the best one
     const CutJudgement<D> judgement(sample);
     if (!judgement.known()) return true;
     // Leaves that are to be filled, and more than two parts, need cuts at certain places.

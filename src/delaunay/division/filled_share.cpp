@@ -29,6 +29,18 @@ double filled_share(std::span<const Point<D>> points, const Box<D>& box) {
          static_cast<double>(cells);
 }
 
+template <int D>
+bool is_hollow(std::span<const Point<D>> points, const Box<D>& box) {
+  constexpr double kFilled = 0.6;
+  constexpr std::size_t kSample = D == 2 ? 512 : 1'024;
+  if (points.size() <= kSample) return filled_share<D>(points, box) < kFilled;
+  std::vector<Point<D>> sample(kSample);
+  for (std::size_t s = 0; s < kSample; ++s) sample[s] = points[s * points.size() / kSample];
+  return filled_share<D>(sample, box) < kFilled;
+}
+
+template bool is_hollow<2>(std::span<const Point<2>>, const Box<2>&);
+template bool is_hollow<3>(std::span<const Point<3>>, const Box<3>&);
 template double filled_share<2>(std::span<const Point<2>>, const Box<2>&);
 template double filled_share<3>(std::span<const Point<3>>, const Box<3>&);
 

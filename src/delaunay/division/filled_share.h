@@ -13,4 +13,9 @@ namespace spillway::detail {
 template <int D>
 double filled_share(std::span<const Point<D>> points, const Box<D>& box);
 
+/// Whether points that lie in that box are those of a curve or a surface: what a sample of them, if
+/// they are many, fills of the box is clearly less than what evenly spread ones do.
+template <int D>
+bool is_hollow(std::span<const Point<D>> points, const Box<D>& box);
+
 }  // namespace spillway::detail

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "src/delaunay/border/region_batch.h"
+#include "src/parallel/parallel.h"
+
+namespace spillway::detail {
+
+/// Finds, from `starts` on and by all threads, the simplices that are connected through facets to
+/// one of these, themselves included, by such as a question says yes to. Returns them in any order.
+/// `mesh` has the type `Id` of its simplices, their corners(id), which are numbers of positions()
+/// or kInfiniteVertex, and neighbour(id, i); it knows which are found() and may be told so:
+/// set_found(id) is false if that was known. For each task make_question() makes a question of a
+/// RegionBatch, whose answer has the bits of those that are changed.
+template <int D, typename Mesh, typename MakeQuestion>
+std::vector<typename Mesh::Id> search_border(std::vector<typename Mesh::Id> starts, Mesh& mesh,
+                                             const MakeQuestion& make_question) {
+  using Id = typename Mesh::Id;
+  constexpr std::size_t kBatch = 512;  // that a task looks at before it shares its work
+  std::mutex mutex;
+  std::vector<Id> border;  // guarded by `mutex`
+  parallel_work_queue(
+      std::move(starts), kBatch, [&](std::span<const Id> candidates, std::vector<Id>& next) {
+        std::vector<Id> fresh;
+        std::ranges::copy_if(candidates, std::back_inserter(fresh),
+                             [&](Id id) { return !mesh.found(id); });
+        auto question = make_question();
+        std::vector<Id> mine;
+        for_each_region_batch<D>(
+            fresh.size(), [&](std::size_t s) { return mesh.corners(fresh[s]); }, mesh.positions(),
+            [&](std::size_t first, const RegionBatch<D>& regions) {
+              for (std::uint64_t bits = question(regions); bits != 0; bits &= bits - 1) {
+                const Id id = fresh[first + std::countr_zero(bits)];
+                if (!mesh.set_found(id)) continue;
+                mine.push_back(id);
+                for (int i = 0; i <= D; ++i) next.push_back(mesh.neighbour(id, i));
+              }
+            });
+        const std::lock_guard lock(mutex);
+        border.insert(border.end(), mine.begin(), mine.end());
+      });
+  return border;
+}
+
+}  // namespace spillway::detail
