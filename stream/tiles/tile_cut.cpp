@@ -4,6 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "src/delaunay/division/cut_judgement.h"
+#include "src/delaunay/division/filled_share.h"
+#include "stream/tiles/cuts/sample_mesh.h"
+
 namespace spillway::detail {
 namespace {
 
@@ -23,6 +27,12 @@ constexpr double kLongest = 64;
 /// Sampled values that are tried as cuts on each axis.
 constexpr std::size_t kTriedSamples = 7;
 
+/// What points with simplices across a cut of a hollow tile cost, as a share of all.
+constexpr double kCrossingCost = 2;
+
+/// A smaller sample does not tell how its points lie.
+constexpr std::size_t kLeastToldSample = 128;
+
 /// So many of a sample, and such a share of it, at one place are no accident.
 constexpr std::size_t kLeastHeavySamples = 4;
 constexpr double kLeastHeavyShare = 0.25;
@@ -30,6 +40,50 @@ constexpr double kLeastHeavyShare = 0.25;
 double above(double value) {
   return std::nextafter(value, std::numeric_limits<double>::infinity());
 }
+
+template <int D>
+std::vector<Point<D>> mesh_points(std::span<const LatticePoint> sample) {
+  std::vector<Point<D>> points;
+  for (const LatticePoint& p : sample) points.push_back(mesh_point<D>(p));
+  return points;
+}
+
+template <int D>
+bool is_hollow_in(std::span<const LatticePoint> sample) {
+  const std::vector<Point<D>> points = mesh_points<D>(sample);
+  Box<D> box;
+  for (const Point<D>& p : points) box.expand(p);
+  return is_hollow<D>(points, box);
+}
+
+template <int D>
+bool some_cut_pays_in(std::span<const LatticePoint> sample) {
+  const CutJudgement<D> judgement(judged_sample<D>(mesh_points<D>(sample)));
+  return !judgement.known() || judgement.some_cut_pays();
+}
+
+/// Of a hollow tile, the share of the sample that has simplices across a cut; else nothing.
+class Crossing {
+ public:
+  explicit Crossing(const CrowdedTile& tile) {
+    if (!tile.hollow) return;
+    if (tile.dimension == 2) {
+      plane_.emplace(mesh_points<2>(tile.sample));
+    } else {
+      space_.emplace(mesh_points<3>(tile.sample));
+    }
+  }
+
+  /// Of a cut with so many points of the sample below it.
+  [[nodiscard]] double share(int axis, std::size_t below) const {
+    if (plane_ && plane_->known()) return plane_->share(axis, below);
+    return space_ && space_->known() ? space_->share(axis, below) : 0;
+  }
+
+ private:
+  std::optional<CutJudgement<2>> plane_;
+  std::optional<CutJudgement<3>> space_;
+};
 
 /// The cuts of one axis.
 class Axis {
@@ -63,13 +117,16 @@ class Axis {
 
   /// The share of all points that a cut leaves below.
   [[nodiscard]] double share(double value) const {
-    double below =
-        tile_.weight * static_cast<double>(std::lower_bound(values_.begin(), values_.end(), value) -
-                                           values_.begin());
+    double below = tile_.weight * static_cast<double>(sampled_below(value));
     for (const TileSegment& segment : tile_.segments) {
       below += static_cast<double>(segment.points) * share_below(segment.box, {axis_, value});
     }
     return below / points_;
+  }
+
+  /// How many points of the sample a cut leaves below.
+  [[nodiscard]] std::size_t sampled_below(double value) const {
+    return static_cast<std::size_t>(std::ranges::lower_bound(values_, value) - values_.begin());
   }
 
   /// The share of all points that lies in segments on both sides.
@@ -172,11 +229,22 @@ std::optional<TileCut> cut_beside(const Box<3>& box, const LatticePoint& place, 
   return std::nullopt;
 }
 
+bool is_hollow(std::span<const LatticePoint> sample, int dimension) {
+  if (sample.size() < kLeastToldSample) return false;
+  return dimension == 2 ? is_hollow_in<2>(sample) : is_hollow_in<3>(sample);
+}
+
+bool some_cut_pays(std::span<const LatticePoint> sample, int dimension) {
+  return dimension == 2 ? some_cut_pays_in<2>(sample) : some_cut_pays_in<3>(sample);
+}
+
 std::optional<TileCut> choose_cut(const CrowdedTile& tile) {
   Box<3> reach = tile.box;
   reach.expand(tile.expected);
   const double too_long_cost = tile.complete ? kTooLongAtEndCost : kTooLongCost;
+  const Crossing crossing(tile);
   const auto shape_cost = [&](const TileCut& cut, int side) {
+    if (tile.hollow) return 0.0;
     const double times = std::min(aspect(part_of(reach, cut, side), tile.dimension), kLongest);
     return kLongCost * std::max(0.0, std::log2(times / 2)) +
            too_long_cost * std::max(0.0, std::log2(times / kMostAspect));
@@ -191,7 +259,8 @@ std::optional<TileCut> choose_cut(const CrowdedTile& tile) {
       const double uneven = std::abs(axis.share(value) - 0.5);
       const double too_uneven = std::max(0.0, uneven - (0.5 - kLeastShare));
       const double cost = axis.split_share(value) + kImbalanceCost * uneven + 10 * too_uneven +
-                          shape_cost(cut, 0) + shape_cost(cut, 1);
+                          shape_cost(cut, 0) + shape_cost(cut, 1) +
+                          kCrossingCost * crossing.share(k, axis.sampled_below(value));
       if (cost >= least) continue;
       least = cost;
       best = cut;

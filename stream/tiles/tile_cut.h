@@ -24,10 +24,19 @@ struct CrowdedTile {
   std::vector<LatticePoint> sample{};       ///< of those in memory
   double weight = 1;                        ///< points that each of the sample stands for
   bool complete = false;                    ///< no others come but those that are expected
+  bool hollow = false;                      ///< its points lie on curves or surfaces
 };
 
-/// Where to cut it: into shares that are not too uneven, sides that are compact, and so that few
-/// segments lie on both sides. Nothing if all its points are equal. There are points on both sides.
+/// Whether points lie on curves or surfaces, by a sample of them: not if it is of few.
+bool is_hollow(std::span<const LatticePoint> sample, int dimension);
+
+/// Whether some cut of them leaves less than half of the points with simplices across it, by a
+/// sample.
+bool some_cut_pays(std::span<const LatticePoint> sample, int dimension);
+
+/// Where to cut it: into shares that are not too uneven, and so that few segments lie on both sides;
+/// into sides that are compact, or, if it is hollow, so that few points of the sample have simplices
+/// across the cut. Nothing if all its points are equal. There are points on both sides.
 std::optional<TileCut> choose_cut(const CrowdedTile& tile);
 
 /// Where a large share of the sample's points are equal; nothing if that is nowhere.

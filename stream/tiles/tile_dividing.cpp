@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "stream/tiles/cuts/sample_division.h"
 #include "stream/tiles/point_sample.h"
 #include "stream/tiles/tile_cut.h"
 #include "stream/tiles/tile_tree.h"
@@ -66,6 +67,17 @@ std::vector<LatticePoint> sample_of(const std::vector<Held>& held, std::size_t s
 
 }  // namespace
 
+/// Whether all points, which are in memory, had better be one tile; it may have so many then.
+bool TileTree::stays_whole() {
+  if (points_ > options_.largest_undivided || options_.plan != nullptr) return false;
+  const std::vector<LatticePoint> sample = sample_of(tiles_[0].held, sample_stride());
+  if (!is_hollow(sample, options_.dimension) || some_cut_pays(sample, options_.dimension)) {
+    return false;
+  }
+  capacity_ = std::max<std::size_t>(capacity_, points_);
+  return true;
+}
+
 /// Divides the one tile that there is at first, all of whose points are in memory, for those that
 /// are to come, too, if it is known where they will lie.
 void TileTree::divide_first(Batch& batch) {
@@ -107,9 +119,16 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
   Tile whole = std::exchange(tiles_[number], {});
   const CutTree::NodeRef first_cut = cuts_.cuts();
   const auto first_new = static_cast<std::ptrdiff_t>(tiles_.size());
+  const bool hollow = is_hollow(sample, options_.dimension);
+  const std::vector<DivisionCut> judged =
+      hollow ? divide_sample(sample, tile_count, options_.dimension) : std::vector<DivisionCut>{};
   {
     const std::unique_lock lock(cuts_mutex_);
-    cuts_.split(number, sample, tile_count);
+    if (hollow) {
+      cuts_.split(number, judged);
+    } else {
+      cuts_.split(number, sample, tile_count);
+    }
     if (cuts_.tiles() == tiles_.size()) {
       const auto cut = choose_cut({.dimension = options_.dimension,
                                    .box = whole.box,
@@ -133,6 +152,7 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
   const auto take_from_whole = [&](Tile& tile) {
     tile.cell = whole.cell;
     tile.last_left_over = whole.last_left_over;
+    tile.hollow = hollow;
   };
   take_from_whole(tiles_[number]);
   std::for_each(tiles_.begin() + first_new, tiles_.end(), take_from_whole);
@@ -177,10 +197,11 @@ bool TileTree::outgrown(const Tile& tile) const {
   return can_be_cut(tile.box, options_.dimension);
 }
 
-/// Whether a tile is, with the points still to come. A side is not short that no cut has made so.
+/// Whether a tile is, with the points still to come. A side is not short that no cut has made so. A
+/// hollow tile may be as long as it likes: its points are few beside any side.
 bool TileTree::is_too_long(std::uint32_t number) const {
   const Tile& tile = tiles_[number];
-  if (tile.points == 0) return false;
+  if (tile.points == 0 || tile.hollow) return false;
   Box<3> box = tile.box;
   box.expand(tile.expected_box);
   return too_long(static_cast<double>(tile.points) + tile.expected,
@@ -216,13 +237,14 @@ void TileTree::cut_in_two(std::uint32_t number, bool complete) {
   Tile whole = std::exchange(tiles_[number], {});
   std::ranges::stable_sort(whole.segments, {}, &TileSegment::arrival);
   const std::size_t stride = std::max<std::size_t>(1, whole.waiting() / kCutSamples);
-  const CrowdedTile crowded{.dimension = options_.dimension,
+  CrowdedTile crowded{.dimension = options_.dimension,
                             .box = whole.box,
                             .expected = whole.expected_box,
                             .segments = whole.segments,
                             .sample = sample_of(whole.held, stride),
                             .weight = static_cast<double>(stride),
                             .complete = complete};
+  crowded.hollow = whole.hollow || is_hollow(crowded.sample, options_.dimension);
   const std::optional<LatticePoint> heavy = heavy_place(crowded);
   const auto cut_beside_heavy = [&](const Tile& tile) {
     Box<3> box = tile.box;
@@ -254,6 +276,7 @@ void TileTree::cut_in_two(std::uint32_t number, bool complete) {
     half.used = whole.used;
     half.cut_at = cuts_made_;
     half.cell = whole.cell;
+    half.hollow = crowded.hollow;
   }
   tiles_[number].file = std::move(whole.file);
   tiles_[number].spills = whole.spills;

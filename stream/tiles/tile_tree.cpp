@@ -75,7 +75,7 @@ void TileTree::fill(const PointFeed& source, const CellDone& done) {
       },
       done);
   filled_ = true;
-  if (!divided_ && points_ > capacity_) {
+  if (!divided_ && points_ > capacity_ && !stays_whole()) {
     Batch batch;  // nothing is spilled
     divide_first(batch);
   }

@@ -145,6 +145,7 @@ class TileTree {
   void finish_cell(std::uint32_t cell, Batch& batch);
   [[nodiscard]] bool left_over_below(CutTree::NodeRef ref) const;
   [[nodiscard]] double spill_weight(const Tile& tile) const;
+  [[nodiscard]] bool stays_whole();
   void divide_first(Batch& batch);
   void divide(std::uint32_t number, std::vector<LatticePoint> sample, std::size_t tile_count,
               Batch& batch);

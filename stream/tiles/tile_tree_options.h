@@ -31,6 +31,9 @@ struct TileTreeOptions {
   std::size_t record_size = 0;              ///< bytes of the attributes that points carry
   std::size_t batches = 6;                  ///< most of them under way at a time
   const RegionPlan* plan = nullptr;         ///< that the feed keeps to; outlives the tree
+  /// So many points in memory may be one tile, though that is more than its capacity, if no cut of
+  /// them pays.
+  std::size_t largest_undivided = 0;
   /// If set, read() makes one point of a tile of points that are one vertex, where they are more
   /// than a tile may have: which one, in the plane, this tells.
   std::optional<Heights> one_of_equal{};

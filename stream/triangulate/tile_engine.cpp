@@ -106,6 +106,8 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
           .record_size = options_.record_size,
           .batches = plan_.batches,
           .plan = expected.plan,
+          .largest_undivided = std::min(
+              plan_.tile_room, largest_undivided<D>(budget_.limit(), options_.record_size)),
           .one_of_equal = options_.heights};
 }
 

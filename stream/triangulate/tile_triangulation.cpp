@@ -176,7 +176,8 @@ class TileRun {
                          .children = options.children,
                          .stop = {},
                          .fill_leaves = true,
-                         .largest_undivided = largest_undivided()},
+                         .largest_undivided = largest_undivided<D>(
+                             context_.budget.limit(), options.output.record_size)},
                         division.data());
     }
     boxes_.resize(root_.list + 1);
@@ -218,12 +219,6 @@ class TileRun {
       for (Node* child : node.children) node.task.children.push_back(std::move(child->task));
     }
     return std::move(tree_->root().task);
-  }
-
-  /// Points of a leaf that is larger than others, since no cut of it pays.
-  [[nodiscard]] std::size_t largest_undivided() const {
-    constexpr std::uint64_t kShare = 4;  // of the limit
-    return context_.budget.limit() / kShare / (kLeafBytes<D> + context_.options.output.record_size);
   }
 
   [[nodiscard]] Surroundings<D> surroundings_of(const Node& node) const {
@@ -405,6 +400,12 @@ class TileRun {
 }  // namespace
 
 template <int D>
+std::size_t largest_undivided(std::uint64_t limit, std::size_t record_size) {
+  constexpr std::uint64_t kShare = 4;
+  return limit / kShare / (kLeafBytes<D> + record_size);
+}
+
+template <int D>
 Border<D> triangulate_tile(const TileContext<D>& context, TileInput<D> tile, Task& task) {
   return TileRun<D>(context, std::move(tile)).run(task);
 }
@@ -429,6 +430,8 @@ MergedTiles<D> merge_tiles(const TileContext<D>& context, const MergeInput<D>& i
   return {pass_on(context, std::move(settled), input.place), final_simplices};
 }
 
+template std::size_t largest_undivided<2>(std::uint64_t, std::size_t);
+template std::size_t largest_undivided<3>(std::uint64_t, std::size_t);
 template Border<2> triangulate_tile(const TileContext<2>&, TileInput<2>, Task&);
 template Border<3> triangulate_tile(const TileContext<3>&, TileInput<3>, Task&);
 template MergedTiles<2> merge_tiles(const TileContext<2>&, const MergeInput<2>&, Task&);

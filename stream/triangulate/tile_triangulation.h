@@ -121,6 +121,11 @@ struct MergedTiles {
   std::uint64_t final_simplices = 0;
 };
 
+/// Most points of a leaf, or of a tile, that is larger than others since no cut of it pays, where
+/// memory is limited to so many bytes. Points carry attributes of `record_size` bytes.
+template <int D>
+std::size_t largest_undivided(std::uint64_t limit, std::size_t record_size);
+
 /// Triangulates a loaded tile: divides it into leaves, works them off in order by all threads, and
 /// merges what is left of them; everything that is final goes to the sequencer, as the blocks of
 /// the tile's slot. Returns what is not final.

@@ -9,7 +9,7 @@ spillway_test(stream_unit_test unit
           stream/tiles/storage/tile_block_test.cpp stream/tiles/tile_cut_test.cpp
           stream/tiles/tile_node_test.cpp stream/tiles/storage/tile_segment_test.cpp
           stream/tiles/tile_tree_test.cpp stream/tiles/cuts/cut_lookup_test.cpp
-          stream/tiles/cuts/cut_tree_test.cpp
+          stream/tiles/cuts/cut_tree_test.cpp stream/tiles/cuts/sample_division_test.cpp
           stream/tiles/regions/reading_order_test.cpp stream/tiles/regions/region_plan_test.cpp
           stream/triangulate/border_growth_test.cpp stream/triangulate/border_test.cpp
           stream/triangulate/leaf_border_test.cpp
@@ -58,7 +58,7 @@ if(SPILLWAY_MPI)
 endif()
 
 spillway_test(rank_messages_test unit
-  SOURCES stream/ranks/exchange/messages_test.cpp stream/ranks/exchange/sample_division_test.cpp
+  SOURCES stream/ranks/exchange/messages_test.cpp
           stream/ranks/part_file_numbers_test.cpp stream/ranks/merges/owned_vertices_test.cpp
   LIBS spillway_stream_ranks)
 

@@ -113,6 +113,13 @@ JudgedCut CutJudgement<D>::best_cut(int axis, std::size_t below, std::size_t roo
   return best.share < kBetter * preferred.share ? best : preferred;
 }
 
+template <int D>
+bool CutJudgement<D>::some_cut_pays() const {
+  constexpr std::size_t kRoomShare = 8;
+  const std::size_t count = crossing_[0].size();
+  return best_cut(0, count / 2, count / kRoomShare).share <= kLargestCrossing;
+}
+
 template class CutJudgement<2>;
 template class CutJudgement<3>;
 

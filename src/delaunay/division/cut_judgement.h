@@ -9,6 +9,10 @@
 
 namespace spillway::detail {
 
+/// A cut does not pay if more than this share of the points has simplices across it: they would be
+/// triangulated twice.
+inline constexpr double kLargestCrossing = 0.5;
+
 /// A cut of a sample, and what it costs.
 struct JudgedCut {
   int axis;
@@ -39,13 +43,17 @@ class CutJudgement {
   /// is across `axis`, and in the middle of the room, unless another one is better by a quarter.
   [[nodiscard]] JudgedCut best_cut(int axis, std::size_t below, std::size_t room) const;
 
+  /// The share of a cut that has `below` points of the sample below it; 1 where that is none.
+  [[nodiscard]] double share(int axis, std::size_t below) const {
+    return below < crossing_[axis].size() ? crossing_[axis][below] / all_ : 1;
+  }
+
+  /// Whether a cut near the middle pays.
+  [[nodiscard]] bool some_cut_pays() const;
+
  private:
   void count_crossing(std::span<const Point<D>> points, std::span<const double> weights,
                       std::span<const std::array<VertexId, D + 1>> simplices);
-
-  [[nodiscard]] double share(int axis, std::size_t below) const {
-    return crossing_[axis][below] / all_;
-  }
 
   bool known_ = false;
   double all_ = 0;  ///< the weights of all points

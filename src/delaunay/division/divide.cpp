@@ -26,12 +26,6 @@ constexpr std::size_t kPointsOfSample = 16;
 /// Halves share the sample of the whole. One is made anew when less than this part of those wanted
 /// is left.
 constexpr std::size_t kUsedUp = 3;
-/// Points of a set whose cuts are judged: enough to tell which axis is the better one by far.
-template <int D>
-constexpr std::size_t kJudgedSample = D == 2 ? 512 : 1'024;
-/// A cut does not pay if more than this share of the points has simplices across it: they would be
-/// triangulated twice.
-constexpr double kLargestCrossing = 0.5;
 /// One of so many points of a leaf that is to be filled stays free, as samples err.
 constexpr std::size_t kSpareShare = 24;
 /// Parts below this size are divided in the task that made them.
@@ -181,11 +175,8 @@ class Divider {
   /// Looks for a better cut of a piece that is hollow. Returns false if none pays and the piece may
   /// stay as it is.
   [[nodiscard]] bool judge(const Piece<D>& piece, const Box<D>& box, Cut& where) const {
-    const std::size_t count = std::min(kJudgedSample<D>, piece.sample.size());
-    std::vector<Point<D>> sample(count);
-    for (std::size_t s = 0; s < count; ++s) {
-      sample[s] = piece.sample[s * piece.sample.size() / count];
-    }
+    const std::vector<Point<D>> sample = judged_sample<D>(piece.sample);
+    const std::size_t count = sample.size();
     if (!is_hollow<D>(sample, box)) return true;  // the longest axis is the best one
     const CutJudgement<D> judgement(sample);
     if (!judgement.known()) return true;

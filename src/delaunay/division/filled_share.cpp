@@ -30,15 +30,22 @@ double filled_share(std::span<const Point<D>> points, const Box<D>& box) {
 }
 
 template <int D>
-bool is_hollow(std::span<const Point<D>> points, const Box<D>& box) {
-  constexpr double kFilled = 0.6;
-  constexpr std::size_t kSample = D == 2 ? 512 : 1'024;
-  if (points.size() <= kSample) return filled_share<D>(points, box) < kFilled;
-  std::vector<Point<D>> sample(kSample);
-  for (std::size_t s = 0; s < kSample; ++s) sample[s] = points[s * points.size() / kSample];
-  return filled_share<D>(sample, box) < kFilled;
+std::vector<Point<D>> judged_sample(std::span<const Point<D>> points) {
+  std::vector<Point<D>> sample(std::min(kJudgedSample<D>, points.size()));
+  for (std::size_t s = 0; s < sample.size(); ++s) {
+    sample[s] = points[s * points.size() / sample.size()];
+  }
+  return sample;
 }
 
+template <int D>
+bool is_hollow(std::span<const Point<D>> points, const Box<D>& box) {
+  constexpr double kFilled = 0.6;
+  return filled_share<D>(judged_sample<D>(points), box) < kFilled;
+}
+
+template std::vector<Point<2>> judged_sample<2>(std::span<const Point<2>>);
+template std::vector<Point<3>> judged_sample<3>(std::span<const Point<3>>);
 template bool is_hollow<2>(std::span<const Point<2>>, const Box<2>&);
 template bool is_hollow<3>(std::span<const Point<3>>, const Box<3>&);
 template double filled_share<2>(std::span<const Point<2>>, const Box<2>&);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
@@ -12,6 +14,14 @@ namespace spillway::detail {
 /// much less for those of a curve or a surface; at most 1. 0 without points.
 template <int D>
 double filled_share(std::span<const Point<D>> points, const Box<D>& box);
+
+/// Points of a set that tell how it lies: which of two cuts is the better one by far, too.
+template <int D>
+inline constexpr std::size_t kJudgedSample = D == 2 ? 512 : 1'024;
+
+/// So many of some points, spread over them.
+template <int D>
+std::vector<Point<D>> judged_sample(std::span<const Point<D>> points);
 
 /// Whether points that lie in that box are those of a curve or a surface: what a sample of them, if
 /// they are many, fills of the box is clearly less than what evenly spread ones do.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
@@ -22,9 +23,16 @@ class HalfSpace {
   /// hyperplane; false for an empty box.
   [[nodiscard]] bool meets(const Box<D>& box) const;
 
+  /// Whether a point lies in it: its sign beside the hyperplane by rounded arithmetic, as far as
+  /// that is certain.
+  [[nodiscard]] std::optional<bool> quickly_has(const Point<D>& point) const;
+
  private:
   std::array<Point<D>, D> facet_{};
   std::array<bool, D> upwards_{};  ///< by axis, whether larger coordinates lie farther beyond
+  /// A rounded normal, and for each component the sum of the absolute values that it is made of.
+  std::array<double, D> normal_{};
+  std::array<double, D> magnitude_{};
 };
 
 }  // namespace spillway::detail

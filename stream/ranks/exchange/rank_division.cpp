@@ -8,7 +8,7 @@
 #include "src/distributed/items.h"
 #include "src/runtime/packing.h"
 #include "stream/ranks/exchange/collective_step.h"
-#include "stream/ranks/exchange/sample_division.h"
+#include "stream/tiles/cuts/sample_division.h"
 
 namespace spillway::detail {
 namespace {
@@ -116,10 +116,7 @@ DividedSample divide_among_ranks(PieceTable& pieces, const distributed::Ranks& r
   });
   ranks.broadcast(bytes, 0);
   RankDivision division{CutTree(D), {}};
-  for (const DivisionCut& cut : Unpacker(bytes).take_list<std::vector<DivisionCut>>()) {
-    division.cuts.make_cut(cut.tile, cut.where.axis, cut.where.value);
-  }
-  division.cuts.renew_lookup();
+  division.cuts.split(0, Unpacker(bytes).take_list<std::vector<DivisionCut>>());
   division.rank_of_tile.resize(division.cuts.tiles());
   int next = 0;
   number_ranks(division.cuts, division.cuts.root(), next, division.rank_of_tile);

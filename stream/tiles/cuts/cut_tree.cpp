@@ -136,6 +136,14 @@ void CutTree::split(std::uint32_t tile, std::vector<LatticePoint>& sample, std::
   renew_lookup();
 }
 
+void CutTree::split(std::uint32_t tile, std::span<const DivisionCut> cuts) {
+  const std::uint32_t next = tiles_;
+  for (const DivisionCut& cut : cuts) {
+    make_cut(cut.part == 0 ? tile : next + cut.part - 1, cut.where.axis, cut.where.value);
+  }
+  renew_lookup();
+}
+
 void CutTree::split_sample(std::uint32_t tile, LatticePoint* begin, LatticePoint* end,
                            std::size_t parts) {
   if (parts < 2 || end - begin < 2) return;

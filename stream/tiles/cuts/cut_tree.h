@@ -18,6 +18,13 @@ struct TileCut {
   double value = 0;
 };
 
+/// A cut of a part that came of the cuts before it, numbered from 0 on: each leaves its number to
+/// what is below, and what is not gets the next one.
+struct DivisionCut {
+  std::uint32_t part = 0;
+  TileCut where;
+};
+
 /// Which tile a point belongs to: a k-d tree of cuts whose cells reach to infinity, so that it
 /// knows a tile for points anywhere. Points on a cut go up; equal points always go together.
 class CutTree {
@@ -38,6 +45,8 @@ class CutTree {
   /// tile, which are put into another order). The tile keeps its number for one of them, the others
   /// get new ones. Fewer parts come out where the sample's points are equal.
   void split(std::uint32_t tile, std::vector<LatticePoint>& sample, std::size_t parts);
+  /// Divides a tile by cuts that are known: it keeps its number for part 0, the others follow.
+  void split(std::uint32_t tile, std::span<const DivisionCut> cuts);
 
   /// Cuts a tile in two: it keeps its number for what is below `value` on `axis`. Returns the cut.
   NodeRef cut(std::uint32_t tile, int axis, double value);

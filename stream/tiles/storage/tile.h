@@ -36,6 +36,7 @@ struct Tile {
   std::uint64_t used = 0;    ///< the last batch that had points of it
   std::uint64_t cut_at = 0;  ///< how many cuts had been made when it came about
   std::uint32_t cell = 0;    ///< of the plan
+  bool hollow = false;       ///< its points, as far as is known, lie on curves or surfaces
 
   [[nodiscard]] std::size_t room() const;     ///< of what is held, in points
   [[nodiscard]] std::size_t waiting() const;  ///< points held

@@ -1,4 +1,4 @@
-#include "stream/ranks/exchange/sample_mesh.h"
+#include "stream/tiles/cuts/sample_mesh.h"
 
 #include <algorithm>
 #include <utility>

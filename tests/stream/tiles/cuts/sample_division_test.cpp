@@ -1,6 +1,6 @@
 // Where ranks are parted, by a sample: in equal numbers, and where few simplices are cut.
 
-#include "stream/ranks/exchange/sample_division.h"
+#include "stream/tiles/cuts/sample_division.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -59,8 +59,7 @@ std::vector<LatticePoint> layer_with_strays(std::size_t count, int height_axis) 
 std::vector<std::size_t> points_of_parts(int dimension, const std::vector<DivisionCut>& cuts,
                                          const std::vector<LatticePoint>& points) {
   CutTree tree(dimension);
-  for (const DivisionCut& cut : cuts) tree.make_cut(cut.tile, cut.where.axis, cut.where.value);
-  tree.renew_lookup();
+  tree.split(0, cuts);
   std::vector<std::uint32_t> tiles(points.size());
   tree.find_tiles(points, tiles);
   std::vector<std::size_t> counts(tree.tiles());

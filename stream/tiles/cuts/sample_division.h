@@ -9,15 +9,9 @@
 
 namespace spillway::detail {
 
-/// A cut of a tile that came of the cuts before it: CutTree::make_cut makes it.
-struct DivisionCut {
-  std::uint32_t tile = 0;
-  TileCut where;
-};
-
 /// The cuts that divide space into about `parts` parts with equally many points, of a sample of
 /// all. A cut is across the longest side of a cell, unless a triangulation of some of the sample
-/// says that another one is crossed by fewer simplices: these become the border between ranks. A
+/// says that another one is crossed by fewer simplices: these become the border between parts. A
 /// cut moves by a few percent of the points to where fewer cross it. (After Funke, Sanders,
 /// Winkler, "Load-Balancing for Parallel Delaunay Triangulations", Euro-Par 2019, who cut the graph
 /// of a sample's triangulation into parts of any shape; here all cuts are across an axis.) Fewer
@@ -29,5 +23,9 @@ struct DivisionCut {
 /// border, and to divide it costs more than it balances.
 template <int D>
 std::vector<DivisionCut> divide_sample(std::vector<LatticePoint> sample, std::size_t parts);
+
+/// The same in a dimension that is not known before.
+std::vector<DivisionCut> divide_sample(std::vector<LatticePoint> sample, std::size_t parts,
+                                       int dimension);
 
 }  // namespace spillway::detail

@@ -1,4 +1,4 @@
-#include "stream/ranks/exchange/sample_division.h"
+#include "stream/tiles/cuts/sample_division.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "src/delaunay/division/cut_judgement.h"
 #include "src/geometry/box.h"
-#include "stream/ranks/exchange/sample_mesh.h"
+#include "stream/tiles/cuts/sample_mesh.h"
 
 namespace spillway::detail {
 namespace {
@@ -132,6 +132,12 @@ class SampleDivider {
 template <int D>
 std::vector<DivisionCut> divide_sample(std::vector<LatticePoint> sample, std::size_t parts) {
   return SampleDivider<D>().divide(sample, std::min(parts, sample.size()));
+}
+
+std::vector<DivisionCut> divide_sample(std::vector<LatticePoint> sample, std::size_t parts,
+                                       int dimension) {
+  return dimension == 2 ? divide_sample<2>(std::move(sample), parts)
+                        : divide_sample<3>(std::move(sample), parts);
 }
 
 template std::vector<DivisionCut> divide_sample<2>(std::vector<LatticePoint>, std::size_t);
