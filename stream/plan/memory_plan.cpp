@@ -58,6 +58,7 @@ constexpr std::uint64_t kManyTiles = 8192;
 /// What buffers and tiles get of their shares if they are there at the same time.
 constexpr double kEarlyShare = 0.75;
 constexpr double kWaitingShare = 0.1;
+constexpr double kSketchShare = 0.03;
 constexpr std::size_t kBufferedPointBytes = 24;
 
 /// How often the attributes of a point are in memory: in two loaded tiles and the output that
@@ -106,6 +107,7 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
   plan.leaf_size =
       std::min({costs.good_leaf, share(limit, costs.leaf_share, leaf_bytes), plan.tile_capacity});
   plan.waiting_bytes = share(limit, kWaitingShare, 1);
+  plan.sketch_bytes = share(limit, kSketchShare, 1);
   plan.batches = std::clamp(
       share(limit, kBatchesShare, kBatchPoints * (kBatchPointBytes + kBatchRecords * record_size)),
       early ? kLeastEarlyBatches : kLeastBatches,

@@ -13,6 +13,7 @@ struct MemoryPlan {
   std::size_t tile_capacity = 0;    ///< points of a tile, unless there are very many
   std::size_t leaf_size = 0;        ///< largest number of points of a leaf
   std::uint64_t waiting_bytes = 0;  ///< of output that waits for its turn while tiles are begun
+  std::uint64_t sketch_bytes = 0;   ///< of what tells where the points of other tiles lie
   std::size_t batches = 1;          ///< of points, on their way to their tiles
   unsigned threads = 1;             ///< that the scratch memory of leaves leaves room for
 };

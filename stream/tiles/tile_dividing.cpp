@@ -238,12 +238,12 @@ void TileTree::cut_in_two(std::uint32_t number, bool complete) {
   std::ranges::stable_sort(whole.segments, {}, &TileSegment::arrival);
   const std::size_t stride = std::max<std::size_t>(1, whole.waiting() / kCutSamples);
   CrowdedTile crowded{.dimension = options_.dimension,
-                            .box = whole.box,
-                            .expected = whole.expected_box,
-                            .segments = whole.segments,
-                            .sample = sample_of(whole.held, stride),
-                            .weight = static_cast<double>(stride),
-                            .complete = complete};
+                      .box = whole.box,
+                      .expected = whole.expected_box,
+                      .segments = whole.segments,
+                      .sample = sample_of(whole.held, stride),
+                      .weight = static_cast<double>(stride),
+                      .complete = complete};
   crowded.hollow = whole.hollow || is_hollow(crowded.sample, options_.dimension);
   const std::optional<LatticePoint> heavy = heavy_place(crowded);
   const auto cut_beside_heavy = [&](const Tile& tile) {

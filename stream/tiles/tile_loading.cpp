@@ -85,6 +85,7 @@ std::optional<TileNode<D>> TileTree::nodes_below(CutTree::NodeRef ref) const {
   Joinable<D> all = join_below<D>(ref, tiles);
   if (all.tile) tiles.push_back(std::move(*all.tile));
   if (tiles.empty()) return std::nullopt;
+  sketch_tiles<D>(tiles);
   return tree_over(std::move(tiles));
 }
 

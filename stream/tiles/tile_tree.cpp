@@ -285,16 +285,19 @@ void TileTree::spill(std::uint32_t number, Batch& batch) {
   for (HeldPoints& held : parts) {
     auto stretch = std::make_shared<FileStretch>(tile.file);
     const std::uint64_t points = held.buffer.size();
+    std::shared_ptr<CellSketch> sketch = begin_sketch(tile, held);
     tile.segments.push_back({.stretch = stretch,
                              .first_spill = tile.spills,
                              .end_spill = tile.spills + 1,
                              .points = points,
                              .arrival = held.arrival.value_or(arrivals_),
                              .box = held.box});
+    if (sketch) tile.segments.back().sketches.push_back(sketch);
     if (!held.arrival) arrivals_ += points;
     ++tile.spills;
     ++segments_;
-    batch.spills.push_back({std::move(held.buffer), std::move(stretch), points, {}});
+    batch.spills.push_back(
+        {std::move(held.buffer), std::move(stretch), points, {}, std::move(sketch)});
   }
   if (tile.segments.size() <= kMostSegments || filled_ || options_.plan != nullptr) return;
   const std::size_t before = tile.segments.size();
@@ -305,7 +308,12 @@ void TileTree::spill(std::uint32_t number, Batch& batch) {
 
 void TileTree::encode(Batch& batch) {
   const StageTimer timer(times_, Stage::kSpill);
-  for (Spill& spill : batch.spills) encode_points(spill.points, spill.bytes);
+  for (Spill& spill : batch.spills) {
+    if (spill.sketch) {
+      spill.points.visit([&](std::span<const LatticePoint> some) { spill.sketch->add(some); });
+    }
+    encode_points(spill.points, spill.bytes);
+  }
 }
 
 void TileTree::write(Batch& batch) {

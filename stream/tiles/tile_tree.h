@@ -183,6 +183,13 @@ class TileTree {
   Joinable<D> join_below(CutTree::NodeRef ref, std::vector<TileNode<D>>& tiles) const;
   template <int D>
   [[nodiscard]] std::optional<TileNode<D>> nodes_below(CutTree::NodeRef ref) const;
+  [[nodiscard]] std::size_t boxes_for_sketch(std::uint64_t points) const;
+  [[nodiscard]] bool is_known_hollow(const Tile& tile, const HeldPoints& held) const;
+  std::shared_ptr<CellSketch> begin_sketch(const Tile& tile, const HeldPoints& held);
+  template <int D>
+  void sketch_tiles(std::span<TileNode<D>> tiles) const;
+  template <int D>
+  [[nodiscard]] CellSketch sketch_of(const TileNode<D>& node) const;
   void take_below(CutTree::NodeRef ref);
   [[nodiscard]] Tile take(std::uint32_t number);
   template <typename OnDisk, typename InMemory>

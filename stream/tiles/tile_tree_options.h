@@ -29,6 +29,7 @@ struct TileTreeOptions {
   std::vector<LatticePoint> sample{};       ///< of the points to come, where there is one
   bool index = false;                       ///< points keep their index; that of others is dropped
   std::size_t record_size = 0;              ///< bytes of the attributes that points carry
+  std::uint64_t sketch_bytes = 0;           ///< that sketches of tiles may take, about
   std::size_t batches = 6;                  ///< most of them under way at a time
   const RegionPlan* plan = nullptr;         ///< that the feed keeps to; outlives the tree
   /// So many points in memory may be one tile, though that is more than its capacity, if no cut of

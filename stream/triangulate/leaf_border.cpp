@@ -1,12 +1,10 @@
 #include "stream/triangulate/leaf_border.h"
 
-#include <atomic>
 #include <cstring>
 #include <numeric>
 
 #include "src/delaunay/border/border_search.h"
 #include "src/delaunay/border/facing_sides.h"
-#include "src/delaunay/common/hash.h"
 
 namespace spillway::detail {
 namespace {
@@ -16,7 +14,12 @@ namespace {
 using Marks = std::uint32_t;
 constexpr Marks kChanged = Marks{1} << kExposureLevels;
 
-/// The simplices of a leaf, of which those that have a certain bit are found, for search_border().
+/// So many boxes a search may look at for each point of the leaf: that takes about as long as the
+/// triangulation of the leaf.
+constexpr std::size_t kBoxesOfPoint = 256;
+
+/// The simplices of a leaf, of which those that have a certain bit are found, for
+/// search_border_alone().
 template <int D>
 class LeafMesh {
  public:
@@ -35,11 +38,11 @@ class LeafMesh {
     return corners;
   }
   [[nodiscard]] Id neighbour(Id id, int i) const { return simplices_[id].neighbours[i]; }
-  [[nodiscard]] bool found(Id id) {
-    return (std::atomic_ref(marks_[id]).load(std::memory_order_relaxed) & bit_) != 0;
-  }
+  [[nodiscard]] bool found(Id id) const { return (marks_[id] & bit_) != 0; }
   [[nodiscard]] bool set_found(Id id) {
-    return (std::atomic_ref(marks_[id]).fetch_or(bit_, std::memory_order_relaxed) & bit_) == 0;
+    const bool is_new = !found(id);
+    marks_[id] |= bit_;
+    return is_new;
   }
 
  private:
@@ -66,16 +69,12 @@ class LeafBorderSearch {
         surroundings_(std::move(surroundings)),
         leaf_(leaf),
         mesh_(part, leaf.simplices.span()) {
-    const std::vector<const Part<D>*> all = surroundings_.all_siblings();
-    surroundings_.asks_for_points = true;
-    surroundings_.asks_for_points =
-        asking_for_points_pays<D>(sample(), part.points, surroundings_.siblings(all));
     if (surroundings_.tells_exposure()) {
       for (std::size_t level = 0; level < surroundings_.levels.size(); ++level) {
         search_siblings(surroundings_.levels[level], Marks{1} << level);
       }
     } else {
-      search_siblings(all, kChanged);
+      search_siblings(surroundings_.all_siblings(), kChanged);
     }
     search_tiles();
   }
@@ -98,14 +97,6 @@ class LeafBorderSearch {
   }
 
  private:
-  [[nodiscard]] std::vector<std::array<VertexId, D + 1>> sample() const {
-    std::vector<std::array<VertexId, D + 1>> some(kAskedSample);
-    for (std::size_t s = 0; s < some.size(); ++s) {
-      some[s] = mesh_.corners(static_cast<std::uint32_t>(mix64(s) % leaf_.simplices.size()));
-    }
-    return some;
-  }
-
   [[nodiscard]] std::vector<std::uint32_t> beside(const FacingSides<D>& sides) const {
     std::vector<std::uint32_t> starts;
     std::ranges::copy_if(leaf_.hull, std::back_inserter(starts), [&](std::uint32_t s) {
@@ -121,10 +112,9 @@ class LeafBorderSearch {
     }
     mesh_.find(bit);
     const Siblings<D> siblings = surroundings_.siblings(parts);
-    search_border<D>(beside(sides), mesh_, [&] {
-      return [search = PointSearch<D>(siblings)](const RegionBatch<D>& regions) mutable {
-        return search.may_hold_points(regions, regions.all());
-      };
+    PointSearch<D> search(siblings, kBoxesOfPoint * part_.points.size());
+    search_border_alone<D>(beside(sides), mesh_, [&search](const RegionBatch<D>& regions) {
+      return search.may_hold_points(regions, regions.all());
     });
   }
 
@@ -142,10 +132,8 @@ class LeafBorderSearch {
       std::iota(starts.begin(), starts.end(), 0U);
     }
     mesh_.find(kChanged);
-    search_border<D>(std::move(starts), mesh_, [&] {
-      return [&](const RegionBatch<D>& regions) {
-        return surroundings_.may_meet_tiles(regions, regions.all());
-      };
+    search_border_alone<D>(std::move(starts), mesh_, [this](const RegionBatch<D>& regions) {
+      return surroundings_.may_meet_tiles(regions, regions.all());
     });
   }
 
@@ -184,7 +172,7 @@ LeafFates test_leaf_border(const LeafToSettle<D>& leaf, const Surroundings<D>& s
   const std::span<const std::uint32_t> open = leaf.open;
   LeafFates told{.fates = std::vector<Fate>(leaf.simplex_count(), Fate::kFinal)};
   if (surroundings.tells_exposure()) told.exposure.resize(open.size());
-  ChangeSearch<D> search(surroundings);
+  ChangeSearch<D> search(surroundings, open.size());
   for_each_region_batch<D>(
       open.size(), [&](std::size_t i) { return leaf.open_simplex(i); }, leaf.points,
       [&](std::size_t first, const RegionBatch<D>& regions) {

@@ -57,10 +57,11 @@ struct Surroundings {
 template <int D>
 class ChangeSearch {
  public:
-  /// `surroundings` must outlive it.
-  explicit ChangeSearch(const Surroundings<D>& surroundings) : surroundings_(surroundings) {
+  /// `surroundings` must outlive it. It will be asked about so many simplices.
+  ChangeSearch(const Surroundings<D>& surroundings, std::size_t simplices)
+      : surroundings_(surroundings) {
     for (const auto& level : surroundings.levels) {
-      searches_.emplace_back(surroundings.siblings(level));
+      searches_.emplace_back(surroundings.siblings(level), kBoxesOfOne * simplices);
     }
   }
 
@@ -81,6 +82,8 @@ class ChangeSearch {
   }
 
  private:
+  static constexpr std::size_t kBoxesOfOne = 256;  ///< on average; many take none
+
   const Surroundings<D>& surroundings_;
   std::vector<PointSearch<D>> searches_;  ///< by level
 };

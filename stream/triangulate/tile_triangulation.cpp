@@ -10,7 +10,6 @@
 #include "src/delaunay/base_case/base_case.h"
 #include "src/delaunay/border/point_search.h"
 #include "src/delaunay/border/region_batch.h"
-#include "src/delaunay/common/hash.h"
 #include "src/delaunay/division/filled_share.h"
 #include "src/delaunay/division/point_tree.h"
 #include "src/parallel/parallel.h"
@@ -103,7 +102,7 @@ class WorkingMemory {
 /// Which simplices of a merged border are final: nothing around it may change them.
 template <int D>
 Settled<D> settle_merged(MergedBorder<D>& merged, BlockPlace block, const OutputOptions& output,
-                         Surroundings<D> surroundings, StageTimes& times) {
+                         const Surroundings<D>& surroundings, StageTimes& times) {
   const StageTimer timer(times, Stage::kFinality);
   Border<D>& border = merged.border;
   const std::vector<Point<D>> positions = border.positions();
@@ -117,15 +116,8 @@ Settled<D> settle_merged(MergedBorder<D>& merged, BlockPlace block, const Output
   }
   const std::span<const std::array<VertexId, D + 1>> fresh =
       std::span(border.simplices).subspan(merged.tested);
-  if (surroundings.asks_for_points && !fresh.empty()) {
-    std::vector<std::array<VertexId, D + 1>> sample(kAskedSample);
-    for (std::size_t s = 0; s < sample.size(); ++s) sample[s] = fresh[mix64(s) % fresh.size()];
-    const std::vector<const Part<D>*> all = surroundings.all_siblings();
-    surroundings.asks_for_points =
-        asking_for_points_pays<D>(sample, positions, surroundings.siblings(all));
-  }
   parallel_for(fresh.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-    ChangeSearch<D> search(surroundings);
+    ChangeSearch<D> search(surroundings, end - begin);
     for_each_region_batch<D>(
         end - begin, [&](std::size_t s) { return fresh[begin + s]; }, positions,
         [&](std::size_t first, const RegionBatch<D>& regions) {
@@ -176,8 +168,8 @@ class TileRun {
                          .children = options.children,
                          .stop = {},
                          .fill_leaves = true,
-                         .largest_undivided = largest_undivided<D>(
-                             context_.budget.limit(), options.output.record_size)},
+                         .largest_undivided = largest_undivided<D>(context_.budget.limit(),
+                                                                   options.output.record_size)},
                         division.data());
     }
     boxes_.resize(root_.list + 1);

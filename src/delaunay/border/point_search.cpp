@@ -8,7 +8,7 @@ namespace spillway::detail {
 template <int D>
 bool PointSearch<D>::may_hold_a_point(const ConflictRegion<D>& region) {
   // Of what is not tight, boxes leave nothing out.
-  if (!region.tight() || siblings_.most_boxes == 0) {
+  if (!region.tight() || siblings_.most_boxes == 0 || boxes_seen_ >= boxes_allowed_) {
     return std::any_of(siblings_.parts.begin(), siblings_.parts.end(),
                        [&](const Part<D>* part) { return region.may_meet_leaf(*part); });
   }
@@ -24,7 +24,7 @@ template <int D>
 std::uint64_t PointSearch<D>::may_hold_points(const RegionBatch<D>& regions, std::uint64_t asked) {
   std::uint64_t near = 0;
   for (const Part<D>* part : siblings_.parts) near |= regions.may_meet_leaf(*part, asked & ~near);
-  if (siblings_.most_boxes == 0) return near;
+  if (siblings_.most_boxes == 0 || boxes_seen_ >= boxes_allowed_) return near;
   std::uint64_t held = 0;
   for (; near != 0; near &= near - 1) {
     const int s = std::countr_zero(near);

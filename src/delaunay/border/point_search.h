@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "src/delaunay/border/conflict_region.h"
@@ -31,11 +32,14 @@ struct Siblings {
 template <int D>
 class PointSearch {
  public:
-  /// What `siblings` refer to must outlive it.
-  explicit PointSearch(const Siblings<D>& siblings) : siblings_(siblings) {}
+  /// What `siblings` refer to must outlive it. All questions together may look at `boxes` boxes of
+  /// runs: then those of leaves are all that is asked.
+  explicit PointSearch(const Siblings<D>& siblings,
+                       std::size_t boxes = std::numeric_limits<std::size_t>::max())
+      : siblings_(siblings), boxes_allowed_(boxes) {}
 
   /// False only if the region certainly holds no point of a sibling. The answer does not depend on
-  /// earlier questions.
+  /// earlier questions, as long as there are boxes to be looked at.
   [[nodiscard]] bool may_hold_a_point(const ConflictRegion<D>& region);
 
   /// The bits of those regions `asked` for of which that is not false.
@@ -51,6 +55,7 @@ class PointSearch {
   [[nodiscard]] bool in_run(const ConflictRegion<D>& region, std::size_t begin, std::size_t end);
 
   Siblings<D> siblings_;
+  std::size_t boxes_allowed_;
   std::size_t boxes_seen_ = 0;
   std::size_t last_box_ = 0;  ///< how many may have been seen when the question ends
   std::array<Point<D>, 4> found_{};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "src/delaunay/border/conflict_region.h"
+#include "src/delaunay/border/run_boxes.h"
 #include "src/geometry/constructions/circumsphere.h"
 #include "src/geometry/point.h"
 
@@ -71,17 +72,42 @@ class RegionBatch {
     return met;
   }
 
-  /// ConflictRegion::may_meet_leaf() of those `asked` for.
+  /// Whether they may meet a leaf of a tree of boxes (Part, or anything with `box` and `children`),
+  /// of those `asked` for; where a leaf has a `sketch`, one of its boxes.
   template <typename Tree>
   [[nodiscard]] std::uint64_t may_meet_leaf(const Tree& tree, std::uint64_t asked) const {
     const std::uint64_t near = may_meet(tree.box, asked);
-    if (near == 0 || tree.children.empty()) return near;
+    if (near == 0) return near;
+    if (tree.children.empty()) {
+      if constexpr (requires { tree.sketch; }) {
+        if (tree.sketch) return may_meet_runs(*tree.sketch, near);
+      }
+      return near;
+    }
     std::uint64_t met = 0;
     for (const auto& child : tree.children) met |= may_meet_leaf(child, near & ~met);
     return met;
   }
 
+  /// Whether they may meet a box of the lowest level, of those `asked` for.
+  [[nodiscard]] std::uint64_t may_meet_runs(const RunBoxes<D>& runs, std::uint64_t asked) const {
+    return runs.levels() == 0 ? 0 : may_meet_runs(runs, runs.levels() - 1, 0, asked);
+  }
+
  private:
+  [[nodiscard]] std::uint64_t may_meet_runs(const RunBoxes<D>& runs, std::size_t level,
+                                            std::size_t begin, std::uint64_t asked) const {
+    const std::span<const Box<D>> boxes = runs.level(level);
+    const std::size_t end = std::min(begin + RunBoxes<D>::kFanOut, boxes.size());
+    std::uint64_t met = 0;
+    for (std::size_t b = begin; b < end && met != asked; ++b) {
+      const std::uint64_t near = may_meet(boxes[b], asked & ~met);
+      if (near == 0) continue;
+      met |= level == 0 ? near : may_meet_runs(runs, level - 1, b * RunBoxes<D>::kFanOut, near);
+    }
+    return met;
+  }
+
   void set_apart(std::size_t s, const ConflictRegion<D>& region) {
     const std::uint64_t bit = std::uint64_t{1} << s;
     apart_.emplace_back(s, region);

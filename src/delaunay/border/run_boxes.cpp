@@ -19,6 +19,18 @@ template <int D>
 RunBoxes<D>::RunBoxes(std::span<const Point<D>> points) {
   if (points.empty()) return;
   levels_.push_back(boxes_around<D>(points, kRun));
+  add_levels();
+}
+
+template <int D>
+RunBoxes<D>::RunBoxes(std::vector<Box<D>> boxes) {
+  if (boxes.empty()) return;
+  levels_.push_back(std::move(boxes));
+  add_levels();
+}
+
+template <int D>
+void RunBoxes<D>::add_levels() {
   while (levels_.back().size() > kFanOut) {
     std::vector<Box<D>> above = boxes_around<D>(std::span<const Box<D>>(levels_.back()), kFanOut);
     levels_.push_back(std::move(above));

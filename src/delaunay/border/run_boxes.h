@@ -19,12 +19,16 @@ class RunBoxes {
 
   RunBoxes() = default;
   explicit RunBoxes(std::span<const Point<D>> points);
+  /// Over boxes that are the lowest level.
+  explicit RunBoxes(std::vector<Box<D>> boxes);
 
   /// Number of levels; 0 without points. The highest one has at most kFanOut boxes.
   [[nodiscard]] std::size_t levels() const { return levels_.size(); }
   [[nodiscard]] std::span<const Box<D>> level(std::size_t l) const { return levels_[l]; }
 
  private:
+  void add_levels();
+
   std::vector<std::vector<Box<D>>> levels_;  ///< the lowest one first
 };
 

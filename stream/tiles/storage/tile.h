@@ -49,6 +49,7 @@ struct Spill {
   std::shared_ptr<FileStretch> stretch;
   std::uint64_t count = 0;
   std::vector<std::byte> bytes;
+  std::shared_ptr<CellSketch> sketch;  ///< to be filled, or none
 };
 
 /// A tile's points as they lay in the tree: on the disk, encoded, and in memory.

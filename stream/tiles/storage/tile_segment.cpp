@@ -28,6 +28,9 @@ void join(TileSegment& segment, const TileSegment& next) {
   segment.end_spill = next.end_spill;
   segment.points += next.points;
   segment.box.expand(next.box);
+  const bool both = !segment.sketches.empty() && !next.sketches.empty();
+  if (!both) return segment.sketches.clear();
+  segment.sketches.insert(segment.sketches.end(), next.sketches.begin(), next.sketches.end());
 }
 
 }  // namespace

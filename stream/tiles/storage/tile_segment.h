@@ -9,6 +9,7 @@
 
 #include "formats/disk/scratch_folder.h"
 #include "src/geometry/box.h"
+#include "stream/tiles/storage/cell_sketch.h"
 
 namespace spillway::detail {
 
@@ -48,6 +49,8 @@ struct TileSegment {
   std::uint64_t arrival = 0;
   bool follows = false;  ///< no other points that are dealt again come between it and the last
   Box<3> box;
+  /// Together of all its points, complete once these have been encoded; or none.
+  std::vector<std::shared_ptr<const CellSketch>> sketches{};
 
   /// No part of it has a later one. A segment has points.
   [[nodiscard]] std::uint64_t last_arrival() const { return arrival + points - 1; }
