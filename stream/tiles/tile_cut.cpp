@@ -30,8 +30,9 @@ constexpr std::size_t kTriedSamples = 7;
 /// What points with simplices across a cut of a hollow tile cost, as a share of all.
 constexpr double kCrossingCost = 2;
 
-/// A smaller sample does not tell how its points lie.
-constexpr std::size_t kLeastToldSample = 128;
+/// Points that fill less of their box are hollow; a smaller sample does not tell.
+constexpr double kHollow = 0.3;
+constexpr std::size_t kLeastToldSample = 512;
 
 /// So many of a sample, and such a share of it, at one place are no accident.
 constexpr std::size_t kLeastHeavySamples = 4;
@@ -49,11 +50,11 @@ std::vector<Point<D>> mesh_points(std::span<const LatticePoint> sample) {
 }
 
 template <int D>
-bool is_hollow_in(std::span<const LatticePoint> sample) {
+double filled_share_of(std::span<const LatticePoint> sample) {
   const std::vector<Point<D>> points = mesh_points<D>(sample);
   Box<D> box;
   for (const Point<D>& p : points) box.expand(p);
-  return is_hollow<D>(points, box);
+  return filled_share<D>(points, box);
 }
 
 template <int D>
@@ -231,7 +232,7 @@ std::optional<TileCut> cut_beside(const Box<3>& box, const LatticePoint& place, 
 
 bool is_hollow(std::span<const LatticePoint> sample, int dimension) {
   if (sample.size() < kLeastToldSample) return false;
-  return dimension == 2 ? is_hollow_in<2>(sample) : is_hollow_in<3>(sample);
+  return (dimension == 2 ? filled_share_of<2>(sample) : filled_share_of<3>(sample)) < kHollow;
 }
 
 bool some_cut_pays(std::span<const LatticePoint> sample, int dimension) {

@@ -27,16 +27,17 @@ struct CrowdedTile {
   bool hollow = false;                      ///< its points lie on curves or surfaces
 };
 
-/// Whether points lie on curves or surfaces, by a sample of them: not if it is of few.
+/// Whether points lie on curves or surfaces, by a sample of them: not if it is of few, nor if they
+/// fill a part of their box, as the first strips of a survey do.
 bool is_hollow(std::span<const LatticePoint> sample, int dimension);
 
 /// Whether some cut of them leaves less than half of the points with simplices across it, by a
 /// sample.
 bool some_cut_pays(std::span<const LatticePoint> sample, int dimension);
 
-/// Where to cut it: into shares that are not too uneven, and so that few segments lie on both sides;
-/// into sides that are compact, or, if it is hollow, so that few points of the sample have simplices
-/// across the cut. Nothing if all its points are equal. There are points on both sides.
+/// Where to cut it: into shares that are not too uneven, and so that few segments lie on both
+/// sides; into sides that are compact, or, if it is hollow, so that few points of the sample have
+/// simplices across the cut. Nothing if all its points are equal. There are points on both sides.
 std::optional<TileCut> choose_cut(const CrowdedTile& tile);
 
 /// Where a large share of the sample's points are equal; nothing if that is nowhere.

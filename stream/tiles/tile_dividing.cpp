@@ -152,12 +152,23 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
   const auto take_from_whole = [&](Tile& tile) {
     tile.cell = whole.cell;
     tile.last_left_over = whole.last_left_over;
-    tile.hollow = hollow;
   };
   take_from_whole(tiles_[number]);
   std::for_each(tiles_.begin() + first_new, tiles_.end(), take_from_whole);
+  judge_tiles(sample);
   room_ -= whole.room();
   for (HeldPoints& held : whole.held) deal_held(std::move(held), batch);
+}
+
+/// Tells which tiles are hollow, of those that have enough of a sample.
+void TileTree::judge_tiles(std::span<const LatticePoint> sample) {
+  std::vector<std::uint32_t> numbers(sample.size());
+  cuts_.find_tiles(sample, numbers);
+  std::vector<std::vector<LatticePoint>> samples(tiles_.size());
+  for (std::size_t i = 0; i < sample.size(); ++i) samples[numbers[i]].push_back(sample[i]);
+  for (std::size_t t = 0; t < samples.size(); ++t) {
+    if (!samples[t].empty()) tiles_[t].hollow = is_hollow(samples[t], options_.dimension);
+  }
 }
 
 /// Deals points that wait to the tiles there are now.
@@ -237,14 +248,14 @@ void TileTree::cut_in_two(std::uint32_t number, bool complete) {
   Tile whole = std::exchange(tiles_[number], {});
   std::ranges::stable_sort(whole.segments, {}, &TileSegment::arrival);
   const std::size_t stride = std::max<std::size_t>(1, whole.waiting() / kCutSamples);
-  CrowdedTile crowded{.dimension = options_.dimension,
-                      .box = whole.box,
-                      .expected = whole.expected_box,
-                      .segments = whole.segments,
-                      .sample = sample_of(whole.held, stride),
-                      .weight = static_cast<double>(stride),
-                      .complete = complete};
-  crowded.hollow = whole.hollow || is_hollow(crowded.sample, options_.dimension);
+  const CrowdedTile crowded{.dimension = options_.dimension,
+                            .box = whole.box,
+                            .expected = whole.expected_box,
+                            .segments = whole.segments,
+                            .sample = sample_of(whole.held, stride),
+                            .weight = static_cast<double>(stride),
+                            .complete = complete,
+                            .hollow = whole.hollow};
   const std::optional<LatticePoint> heavy = heavy_place(crowded);
   const auto cut_beside_heavy = [&](const Tile& tile) {
     Box<3> box = tile.box;
@@ -276,7 +287,7 @@ void TileTree::cut_in_two(std::uint32_t number, bool complete) {
     half.used = whole.used;
     half.cut_at = cuts_made_;
     half.cell = whole.cell;
-    half.hollow = crowded.hollow;
+    half.hollow = whole.hollow;
   }
   tiles_[number].file = std::move(whole.file);
   tiles_[number].spills = whole.spills;

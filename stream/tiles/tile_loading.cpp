@@ -85,7 +85,14 @@ std::optional<TileNode<D>> TileTree::nodes_below(CutTree::NodeRef ref) const {
   Joinable<D> all = join_below<D>(ref, tiles);
   if (all.tile) tiles.push_back(std::move(*all.tile));
   if (tiles.empty()) return std::nullopt;
-  sketch_tiles<D>(tiles);
+  if (tiles.size() > 1 || options_.plan != nullptr) {
+    const auto stored = [this](std::uint32_t number) -> const Tile& { return taken_.at(number); };
+    isolated([&] {
+      parallel_for(tiles.size(), 1, [&](std::size_t, std::size_t t, std::size_t) {
+        sketches_.sketch<D>(tiles[t], stored, points_to_come());
+      });
+    });
+  }
   return tree_over(std::move(tiles));
 }
 

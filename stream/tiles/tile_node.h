@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "src/delaunay/border/run_boxes.h"
+#include "src/delaunay/border/point_sketch.h"
 #include "src/geometry/box.h"
 #include "stream/tiles/shared_children.h"
 
@@ -18,8 +18,8 @@ struct TileNode {
   std::uint64_t points = 0;
   SharedChildren<TileNode> children;  ///< none for a tile
   std::vector<std::uint32_t> stored;  ///< of a tile: the stored tiles it is made of
-  /// Boxes that hold all points of a tile, if it is known more closely where they lie.
-  std::shared_ptr<const RunBoxes<D>> sketch{};
+  /// Of a tile, where its points lie, if that is known more closely.
+  std::shared_ptr<const PointSketch<D>> sketch{};
 
   [[nodiscard]] std::uint64_t size() const { return points; }
   [[nodiscard]] bool leaf() const { return children.empty(); }

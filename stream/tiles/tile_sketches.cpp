@@ -1,84 +1,86 @@
-// Where the points of hollow tiles lie, as others ask that are triangulated before or after them.
+#include "stream/tiles/tile_sketches.h"
 
 #include <algorithm>
-#include <memory>
 
-#include "src/parallel/parallel.h"
 #include "stream/tiles/point_sample.h"
 #include "stream/tiles/tile_cut.h"
-#include "stream/tiles/tile_tree.h"
 
 namespace spillway::detail {
 namespace {
 
-/// So many points for each box, and boxes of a tile: more tell little more.
-constexpr std::uint64_t kPointsOfBox = 64;
-constexpr std::size_t kMostBoxes = 4096;
-constexpr std::size_t kFewestBoxes = 16;
+/// So many points for each cell, and cells of a tile: more tell little more.
+constexpr std::uint64_t kPointsOfCell = 128;
+constexpr std::size_t kMostCells = 4096;
+/// Fewer cells tell no more than a box around them.
+constexpr std::size_t kFewestCells = 8;
+/// What goes to the disk gets at most one of so many cells that are left.
+constexpr std::size_t kLeftShare = 4;
 /// Points by which it is judged how others lie.
-constexpr std::size_t kSample = 1024;
+constexpr std::size_t kSample = 4096;
 
 }  // namespace
 
-/// As many as there are for a tile of so many points if others take as many.
-std::size_t TileTree::boxes_for_sketch(std::uint64_t points) const {
-  const std::uint64_t all = std::max<std::uint64_t>({points_, options_.expected.value_or(0), 1});
-  const double share = static_cast<double>(points) / static_cast<double>(all);
-  const double room =
-      share * static_cast<double>(options_.sketch_bytes) / double{CellSketch::kBoxBytes};
-  return std::clamp<std::size_t>(
-      static_cast<std::size_t>(std::min(room, static_cast<double>(points / kPointsOfBox))),
-      kFewestBoxes, kMostBoxes);
+/// As many as there are for so many points if others take as many.
+std::size_t TileSketches::cells_for(std::uint64_t points, std::uint64_t all_points) const {
+  const double share = static_cast<double>(points) / static_cast<double>(all_points);
+  const double room = share * static_cast<double>(bytes_) / double{CellSketch::kCellBytes};
+  const double useful = static_cast<double>(points / kPointsOfCell);
+  return std::min(static_cast<std::size_t>(std::min(room, useful)), kMostCells);
 }
 
 /// In the plane strips of flight lines are thin, too, by themselves: only the whole tells there.
-bool TileTree::is_known_hollow(const Tile& tile, const HeldPoints& held) const {
-  if (tile.hollow || options_.dimension == 2) return tile.hollow;
+bool TileSketches::is_known_hollow(const Tile& tile, const HeldPoints& held) const {
+  if (tile.hollow || dimension_ == 2) return tile.hollow;
   PointSample sample(std::max<std::size_t>(1, held.buffer.size() / kSample));
   held.buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
-  return is_hollow(sample.take(), options_.dimension);
+  return is_hollow(sample.take(), dimension_);
 }
 
-/// Of points that go to the disk, where that pays.
-std::shared_ptr<CellSketch> TileTree::begin_sketch(const Tile& tile, const HeldPoints& held) {
-  if (!is_known_hollow(tile, held)) return nullptr;
-  return std::make_shared<CellSketch>(options_.dimension, boxes_for_sketch(held.buffer.size()));
-}
-
-/// Of tiles that have been taken.
-template <int D>
-void TileTree::sketch_tiles(std::span<TileNode<D>> tiles) const {
-  if (tiles.size() == 1 && options_.plan == nullptr) return;  // there is no other
-  isolated([&] {
-    parallel_for(tiles.size(), 1, [&](std::size_t, std::size_t t, std::size_t) {
-      const CellSketch sketch = sketch_of<D>(tiles[t]);
-      if (sketch.size() <= 1) return;
-      tiles[t].sketch = std::make_shared<RunBoxes<D>>(sketch.template boxes<D>());
-    });
-  });
+std::shared_ptr<CellSketch> TileSketches::begin(const Tile& tile, const HeldPoints& held,
+                                                std::uint64_t all_points) {
+  const std::size_t all = bytes_ / CellSketch::kCellBytes;
+  const std::size_t left = all - std::min(all, cells_begun_);
+  const std::size_t cells = std::min(cells_for(held.buffer.size(), all_points), left / kLeftShare);
+  if (cells < kFewestCells || !is_known_hollow(tile, held)) return nullptr;
+  cells_begun_ += cells;
+  return std::make_shared<CellSketch>(dimension_, cells);
 }
 
 template <int D>
-CellSketch TileTree::sketch_of(const TileNode<D>& node) const {
-  CellSketch sketch(options_.dimension, boxes_for_sketch(node.points));
-  for (const std::uint32_t number : node.stored) {
-    const Tile& tile = taken_.at(number);
-    for (const TileSegment& segment : tile.segments) {
-      if (segment.sketches.empty()) sketch.add(segment.box);
-      for (const auto& part : segment.sketches) sketch.add(*part);
-    }
-    for (const HeldPoints& held : tile.held) {
-      if (is_known_hollow(tile, held)) {
-        held.buffer.visit([&](std::span<const LatticePoint> points) { sketch.add(points); });
-      } else if (held.buffer.size() > 0) {
-        sketch.add(held.box);
+void TileSketches::sketch(TileNode<D>& node,
+                          const std::function<const Tile&(std::uint32_t)>& stored,
+                          std::uint64_t all_points) const {
+  CellSketch sketch(dimension_, cells_for(node.points, all_points));
+  bool tells = false;
+  const auto visit = [&](const auto& visit_part) {
+    for (const std::uint32_t number : node.stored) {
+      const Tile& tile = stored(number);
+      for (const TileSegment& segment : tile.segments) {
+        if (segment.sketches.empty()) visit_part(segment.box);
+        for (const auto& part : segment.sketches) visit_part(*part);
+        tells = tells || !segment.sketches.empty();
+      }
+      for (const HeldPoints& held : tile.held) {
+        if (is_known_hollow(tile, held)) {
+          tells = true;
+          held.buffer.visit([&](std::span<const LatticePoint> points) { visit_part(points); });
+        } else if (held.buffer.size() > 0) {
+          visit_part(held.box);
+        }
       }
     }
-  }
-  return sketch;
+  };
+  visit([&](const auto& part) { sketch.gather(part); });
+  if (!tells || sketch.size() == 1) return;
+  visit([&](const auto& part) { sketch.measure(part); });
+  node.sketch = std::make_shared<PointSketch<D>>(sketch.template sketch<D>());
 }
 
-template void TileTree::sketch_tiles<2>(std::span<TileNode<2>>) const;
-template void TileTree::sketch_tiles<3>(std::span<TileNode<3>>) const;
+template void TileSketches::sketch<2>(TileNode<2>&,
+                                      const std::function<const Tile&(std::uint32_t)>&,
+                                      std::uint64_t) const;
+template void TileSketches::sketch<3>(TileNode<3>&,
+                                      const std::function<const Tile&(std::uint32_t)>&,
+                                      std::uint64_t) const;
 
 }  // namespace spillway::detail

@@ -42,6 +42,7 @@ TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageT
     : options_(options),
       folder_(folder),
       times_(times),
+      sketches_(options.dimension, options.sketch_bytes),
       cuts_(options.dimension),
       tiles_(1),
       capacity_(options.capacity) {
@@ -231,6 +232,11 @@ std::uint64_t TileTree::held_bytes() const {
   return bytes;
 }
 
+/// All points, as far as is known.
+std::uint64_t TileTree::points_to_come() const {
+  return std::max<std::uint64_t>({points_, options_.expected.value_or(0), 1});
+}
+
 /// Room for points that wait, besides what the tiles themselves take.
 std::size_t TileTree::most_room() const {
   const std::size_t taken =
@@ -285,7 +291,7 @@ void TileTree::spill(std::uint32_t number, Batch& batch) {
   for (HeldPoints& held : parts) {
     auto stretch = std::make_shared<FileStretch>(tile.file);
     const std::uint64_t points = held.buffer.size();
-    std::shared_ptr<CellSketch> sketch = begin_sketch(tile, held);
+    std::shared_ptr<CellSketch> sketch = sketches_.begin(tile, held, points_to_come());
     tile.segments.push_back({.stretch = stretch,
                              .first_spill = tile.spills,
                              .end_spill = tile.spills + 1,
@@ -310,7 +316,8 @@ void TileTree::encode(Batch& batch) {
   const StageTimer timer(times_, Stage::kSpill);
   for (Spill& spill : batch.spills) {
     if (spill.sketch) {
-      spill.points.visit([&](std::span<const LatticePoint> some) { spill.sketch->add(some); });
+      spill.points.visit([&](std::span<const LatticePoint> some) { spill.sketch->gather(some); });
+      spill.points.visit([&](std::span<const LatticePoint> some) { spill.sketch->measure(some); });
     }
     encode_points(spill.points, spill.bytes);
   }

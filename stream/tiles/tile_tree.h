@@ -25,6 +25,7 @@
 #include "stream/tiles/storage/tile_block.h"
 #include "stream/tiles/tile_cut.h"
 #include "stream/tiles/tile_node.h"
+#include "stream/tiles/tile_sketches.h"
 #include "stream/tiles/tile_tree_options.h"
 
 namespace spillway::detail {
@@ -149,6 +150,7 @@ class TileTree {
   void divide_first(Batch& batch);
   void divide(std::uint32_t number, std::vector<LatticePoint> sample, std::size_t tile_count,
               Batch& batch);
+  void judge_tiles(std::span<const LatticePoint> sample);
   void deal_held(HeldPoints held, Batch& batch);
   [[nodiscard]] std::vector<std::uint32_t> numbers_in_order() const;
   void append_numbers(CutTree::NodeRef ref, std::vector<std::uint32_t>& numbers) const;
@@ -183,13 +185,7 @@ class TileTree {
   Joinable<D> join_below(CutTree::NodeRef ref, std::vector<TileNode<D>>& tiles) const;
   template <int D>
   [[nodiscard]] std::optional<TileNode<D>> nodes_below(CutTree::NodeRef ref) const;
-  [[nodiscard]] std::size_t boxes_for_sketch(std::uint64_t points) const;
-  [[nodiscard]] bool is_known_hollow(const Tile& tile, const HeldPoints& held) const;
-  std::shared_ptr<CellSketch> begin_sketch(const Tile& tile, const HeldPoints& held);
-  template <int D>
-  void sketch_tiles(std::span<TileNode<D>> tiles) const;
-  template <int D>
-  [[nodiscard]] CellSketch sketch_of(const TileNode<D>& node) const;
+  [[nodiscard]] std::uint64_t points_to_come() const;
   void take_below(CutTree::NodeRef ref);
   [[nodiscard]] Tile take(std::uint32_t number);
   template <typename OnDisk, typename InMemory>
@@ -200,6 +196,7 @@ class TileTree {
   TileTreeOptions options_;
   ScratchFolder& folder_;
   StageTimes& times_;
+  TileSketches sketches_;
   CutTree cuts_;
   std::uint64_t cuts_made_ = 0;
   mutable std::shared_mutex cuts_mutex_;  ///< guards both: batches are dealt meanwhile

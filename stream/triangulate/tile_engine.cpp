@@ -41,6 +41,7 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
       plan_(plan_for(options.threads, expected.plan != nullptr)),
       counts_(budget),
       held_points_(budget),
+      sketches_(budget),
       expected_points_(expected.count.value_or(0)),
       tree_(tree_options(expected), scratch, counts_.times),
       sequencer_(sink, budget, {.max_edge = options.max_edge}, counts_.times),
@@ -166,10 +167,10 @@ std::uint64_t TileEngine<D>::divide_large() {
              });
 }
 
-/// What points take that wait to be spilled, at most.
+/// What points take that wait to be spilled, and sketches of those that have been, at most.
 template <int D>
 std::uint64_t TileEngine<D>::buffer_bytes() const {
-  return plan_.buffered_points * (sizeof(LatticePoint) + options_.record_size);
+  return plan_.buffered_points * (sizeof(LatticePoint) + options_.record_size) + plan_.sketch_bytes;
 }
 
 /// From now on what waits gets less: as much as there is of it is leased.
@@ -278,6 +279,9 @@ typename TileEngine<D>::Node* TileEngine<D>::add_nodes(
   if (tree.leaf()) {
     ++figures_.tiles;
     count_shape(tree.box, figures_.tile_shapes);
+    if (tree.sketch) {
+      sketches_.take(PointSketch<D>::bytes_of(tree.sketch->plates.size()), "sketches of tiles");
+    }
   }
   return add_node({.tree = &tree, .outside = outside, .surroundings = surroundings},
                   std::move(children));

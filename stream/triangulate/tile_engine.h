@@ -161,6 +161,7 @@ class TileEngine {
   MemoryPlan plan_;
   StreamCounts counts_;
   ShrinkingLease held_points_;  ///< in memory when all are read, until their tile is loaded
+  ShrinkingLease sketches_;     ///< of tiles
   PointSpan<D> span_;
   const std::uint64_t expected_points_;  ///< 0: not known
   TileTree tree_;

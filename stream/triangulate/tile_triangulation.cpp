@@ -21,6 +21,11 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
+/// Of smaller parts that are divided, the longest axis is cut unseen: what a sample tells would
+/// cost more than it saves.
+template <int D>
+constexpr std::size_t kSmallestJudged = D == 2 ? 4'096 : 8'192;
+
 /// Memory for each point of a leaf while it is triangulated, where it makes as many simplices as
 /// usual: the records of the kernel, and then what is made of them.
 template <int D>
@@ -168,6 +173,7 @@ class TileRun {
                          .children = options.children,
                          .stop = {},
                          .fill_leaves = true,
+                         .smallest_judged = kSmallestJudged<D>,
                          .largest_undivided = largest_undivided<D>(context_.budget.limit(),
                                                                    options.output.record_size)},
                         division.data());

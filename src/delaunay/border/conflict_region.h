@@ -7,6 +7,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/constructions/circumsphere.h"
 #include "src/geometry/constructions/half_space.h"
+#include "src/geometry/constructions/plate.h"
 #include "src/geometry/point.h"
 
 namespace spillway::detail {
@@ -35,6 +36,12 @@ class ConflictRegion {
 
   /// False only if the region certainly has no point of the box.
   [[nodiscard]] bool may_meet(const Box<D>& box) const;
+
+  /// The same of a plate.
+  [[nodiscard]] bool may_meet(const Plate<D>& plate) const {
+    return infinite_ ? spillway::detail::may_meet<D>(half_space_, plate)
+                     : spillway::detail::may_meet<D>(ball_, plate);
+  }
 
   /// False only if the point certainly lies outside. What needs big integers is not decided.
   [[nodiscard]] bool may_hold(const Point<D>& point) const;

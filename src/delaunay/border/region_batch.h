@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,7 +10,7 @@
 #include <vector>
 
 #include "src/delaunay/border/conflict_region.h"
-#include "src/delaunay/border/run_boxes.h"
+#include "src/delaunay/border/point_sketch.h"
 #include "src/geometry/constructions/circumsphere.h"
 #include "src/geometry/point.h"
 
@@ -80,7 +81,7 @@ class RegionBatch {
     if (near == 0) return near;
     if (tree.children.empty()) {
       if constexpr (requires { tree.sketch; }) {
-        if (tree.sketch) return may_meet_runs(*tree.sketch, near);
+        if (tree.sketch) return may_meet_sketch(*tree.sketch, near);
       }
       return near;
     }
@@ -89,21 +90,36 @@ class RegionBatch {
     return met;
   }
 
-  /// Whether they may meet a box of the lowest level, of those `asked` for.
-  [[nodiscard]] std::uint64_t may_meet_runs(const RunBoxes<D>& runs, std::uint64_t asked) const {
-    return runs.levels() == 0 ? 0 : may_meet_runs(runs, runs.levels() - 1, 0, asked);
+  /// Whether they may hold a point of a sketch, of those `asked` for.
+  [[nodiscard]] std::uint64_t may_meet_sketch(const PointSketch<D>& sketch,
+                                              std::uint64_t asked) const {
+    const std::size_t levels = sketch.boxes.levels();
+    return levels == 0 ? 0 : may_meet_runs(sketch, levels - 1, 0, asked);
   }
 
  private:
-  [[nodiscard]] std::uint64_t may_meet_runs(const RunBoxes<D>& runs, std::size_t level,
+  [[nodiscard]] std::uint64_t may_meet_runs(const PointSketch<D>& sketch, std::size_t level,
                                             std::size_t begin, std::uint64_t asked) const {
-    const std::span<const Box<D>> boxes = runs.level(level);
+    const std::span<const Box<D>> boxes = sketch.boxes.level(level);
     const std::size_t end = std::min(begin + RunBoxes<D>::kFanOut, boxes.size());
     std::uint64_t met = 0;
     for (std::size_t b = begin; b < end && met != asked; ++b) {
       const std::uint64_t near = may_meet(boxes[b], asked & ~met);
       if (near == 0) continue;
-      met |= level == 0 ? near : may_meet_runs(runs, level - 1, b * RunBoxes<D>::kFanOut, near);
+      met |= level == 0 ? may_meet(sketch.plates[b], near)
+                        : may_meet_runs(sketch, level - 1, b * RunBoxes<D>::kFanOut, near);
+    }
+    return met;
+  }
+
+  [[nodiscard]] std::uint64_t may_meet(const Plate<D>& plate, std::uint64_t asked) const {
+    std::uint64_t met = 0;
+    for (; asked != 0; asked &= asked - 1) {
+      const int s = std::countr_zero(asked);
+      const bool apart = (apart_bits_ >> s & 1) != 0;
+      if (apart ? region(s).may_meet(plate) : spillway::detail::may_meet<D>(balls_.at(s), plate)) {
+        met |= std::uint64_t{1} << s;
+      }
     }
     return met;
   }

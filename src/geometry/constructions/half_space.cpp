@@ -31,24 +31,32 @@ requires SupportedDimension<D> HalfSpace<D>::HalfSpace(const std::array<Point<D>
 }
 
 // A difference of two coordinates errs by half an ulp of itself, so a component of the normal by
-// less than 3 ulp of its magnitude, and the sum by less than 8 ulp of `scale`; and by much less than
-// that for what underflows, unless `scale` is very small.
+// less than 3 ulp of its magnitude, and the sum by less than 8 ulp of `scale`; by what underflows
+// it errs by much less than the rest of the bound.
 template <int D>
 requires SupportedDimension<D>
-std::optional<bool> HalfSpace<D>::quickly_has(const Point<D>& point) const {
+auto HalfSpace<D>::place_of(const Point<D>& point) const -> Place {
   constexpr double kError = 0x1p-49;
-  constexpr double kLeastScale = 0x1p-900;
-  double beyond = 0;
+  constexpr double kSmallest = 0x1p-900;
+  Place place;
   double scale = 0;
   double reach = 0;
   for (int k = 0; k < D; ++k) {
     const double difference = point[k] - facet_[0][k];
-    beyond += normal_[k] * difference;
+    place.beyond += normal_[k] * difference;
     scale += magnitude_[k] * std::abs(difference);
     reach += std::abs(difference);
   }
-  if (!(scale > kLeastScale * (1 + reach)) || !(std::abs(beyond) > kError * scale)) return std::nullopt;
-  return beyond > 0;
+  place.error = kError * scale + kSmallest * (1 + reach);
+  return place;
+}
+
+template <int D>
+requires SupportedDimension<D> std::optional<bool> HalfSpace<D>::quickly_has(const Point<D>& point)
+const {
+  const Place place = place_of(point);
+  if (!(std::abs(place.beyond) > place.error)) return std::nullopt;
+  return place.beyond > 0;
 }
 
 template <int D>

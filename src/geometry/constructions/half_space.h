@@ -27,12 +27,24 @@ class HalfSpace {
   /// that is certain.
   [[nodiscard]] std::optional<bool> quickly_has(const Point<D>& point) const;
 
+  /// The product of the rounded normal with the vector to a point from the hyperplane, positive
+  /// beyond; and how far that may be from the product with the true normal.
+  struct Place {
+    double beyond = 0;
+    double error = 0;
+  };
+  [[nodiscard]] Place place_of(const Point<D>& point) const;
+
+  /// A normal, rounded; and for each component the sum of the absolute values that it is made of:
+  /// it errs by less than 3 ulp of that.
+  [[nodiscard]] const Point<D>& normal() const { return normal_; }
+  [[nodiscard]] const Point<D>& magnitude() const { return magnitude_; }
+
  private:
   std::array<Point<D>, D> facet_{};
   std::array<bool, D> upwards_{};  ///< by axis, whether larger coordinates lie farther beyond
-  /// A rounded normal, and for each component the sum of the absolute values that it is made of.
-  std::array<double, D> normal_{};
-  std::array<double, D> magnitude_{};
+  Point<D> normal_{};
+  Point<D> magnitude_{};
 };
 
 }  // namespace spillway::detail

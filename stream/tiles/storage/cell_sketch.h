@@ -6,53 +6,72 @@
 #include <cstdint>
 #include <span>
 #include <unordered_map>
-#include <vector>
 
+#include "src/delaunay/border/point_sketch.h"
 #include "src/geometry/box.h"
+#include "src/geometry/constructions/plate.h"
 #include "src/geometry/framed_point.h"
 
 namespace spillway::detail {
 
-/// Where points lie: tight boxes around those of each cell of a grid in which some lie. The cells
-/// are as small as they can be so that there are not too many, and become larger as points come. In
-/// which order these come makes no difference, but for those that come first.
+/// Where points lie: a tight box and a plate around those of each cell of a grid in which some lie.
+/// The cells are as small as they can be so that there are not too many, and become larger as
+/// points come. All points are to be gathered, and then measured once more.
 class CellSketch {
  public:
   /// Only the first `dimension` axes count.
   CellSketch(int dimension, std::size_t most_cells)
       : dimension_(dimension), most_cells_(std::max(most_cells, kFewestCells)) {}
 
-  void add(std::span<const LatticePoint> points);
-  /// Adds all that another sketch has. A box of it may reach into several cells here.
-  void add(const CellSketch& other);
-  /// Adds a box that holds points of which no more is known.
-  void add(const Box<3>& box);
+  void gather(std::span<const LatticePoint> points);
+  /// All that another sketch has, which has been measured. A box of it may reach into other cells.
+  void gather(const CellSketch& other);
+  /// Points of which no more is known than a box around them.
+  void gather(const Box<3>& box);
 
-  /// How many boxes there are; and the boxes, neighbours after each other.
+  /// The same again, in any order, after all have been gathered.
+  void measure(std::span<const LatticePoint> points);
+  void measure(const CellSketch& other);
+  void measure(const Box<3>& box);
+
+  /// How many cells there are; and what is known of them, neighbours after each other.
   [[nodiscard]] std::size_t size() const { return cells_.size(); }
   template <int D>
-  [[nodiscard]] std::vector<Box<D>> boxes() const;
+  [[nodiscard]] PointSketch<D> sketch() const;
 
-  /// What a box takes in memory, about.
-  static constexpr std::size_t kBoxBytes = 112;
+  /// What a cell takes in memory, about.
+  static constexpr std::size_t kCellBytes = 256;
 
  private:
-  using Cell = std::array<std::int64_t, 3>;
+  using Number = std::array<std::int64_t, 3>;
+  struct Hash {
+    std::size_t operator()(const Number& number) const;
+  };
+  struct Cell {
+    Box<3> box{};
+    double weight = 0;  ///< points, or boxes
+    /// Sums of coordinates from the origin on, and of their products: xx, yy, zz, yz, zx, xy.
+    std::array<double, 3> sum{};
+    std::array<double, 6> products{};
+    Plate<3> plate{};  ///< once it is measured
+
+    void add(const Cell& other);
+    void begin_plate(const Point<3>& origin, int dimension);
+  };
   /// However large cells are, there may be one on each side of the origin on each axis.
   static constexpr std::size_t kFewestCells = 8;
-  struct Hash {
-    std::size_t operator()(const Cell& cell) const;
-  };
 
-  void begin(const Point<3>& origin, int exponent);
   void begin_at(const Box<3>& box);
+  void begin(const Point<3>& origin, int exponent);
   void set_exponent(int exponent);
   [[nodiscard]] bool reaches(const Point<3>& point) const;
-  [[nodiscard]] Cell cell_of(const Point<3>& point) const;
+  [[nodiscard]] Number number_of(const Point<3>& point) const;
   [[nodiscard]] double place(const Point<3>& point, int axis) const {
     return point[axis] * scale_ - scaled_origin_[axis];
   }
+  [[nodiscard]] Point<3> flat(const Point<3>& point) const;
   void coarsen();
+  void begin_measuring();
 
   int dimension_;
   std::size_t most_cells_;
@@ -61,7 +80,8 @@ class CellSketch {
   double scale_ = 1;  ///< that power's reciprocal
   Point<3> scaled_origin_{};
   bool begun_ = false;
-  std::unordered_map<Cell, Box<3>, Hash> cells_;
+  bool measuring_ = false;
+  std::unordered_map<Number, Cell, Hash> cells_;
 };
 
 }  // namespace spillway::detail

@@ -116,6 +116,7 @@ template <int D>
 struct DealtTile {
   Box<D> box;              ///< as the tree has it
   std::size_t stored = 0;  ///< tiles that it is made of, one after the other
+  std::shared_ptr<const PointSketch<D>> sketch;
   TilePoints<D> points;
 };
 
@@ -143,7 +144,8 @@ struct Dealing {
   unsigned threads = 2;
   Knowledge known{};
   bool evenly = false;  ///< divide all anew at the end
-  bool carry = false;   ///< points carry three bytes each, by carried_by()
+  std::size_t largest_undivided = 0;
+  bool carry = false;  ///< points carry three bytes each, by carried_by()
 };
 
 inline std::array<std::byte, 3> carried_by(std::uint64_t number) {
@@ -159,7 +161,9 @@ DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dea
                           .capacity = dealing.capacity,
                           .buffered_points = dealing.buffered,
                           .index = true,
-                          .record_size = dealing.carry ? carried_by(0).size() : 0};
+                          .record_size = dealing.carry ? carried_by(0).size() : 0,
+                          .sketch_bytes = std::uint64_t{1} << 20,
+                          .largest_undivided = dealing.largest_undivided};
   if (dealing.known.count) options.expected = points.size();
   if (dealing.known.extent) {
     options.extent = Box<3>();
@@ -204,7 +208,8 @@ DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dea
     const auto visit = [&](const auto& self, const TileNode<D>& node) -> void {
       for (const auto& child : node.children) self(self, child);
       if (!node.leaf()) return;
-      dealt.tiles.push_back({node.box, node.stored.size(), tree.decode<D>(tree.read(node))});
+      dealt.tiles.push_back(
+          {node.box, node.stored.size(), node.sketch, tree.decode<D>(tree.read(node))});
       EXPECT_EQ(dealt.tiles.back().points.points.size(), node.points);
     };
     if (const auto root = tree.take_nodes<D>()) visit(visit, *root);

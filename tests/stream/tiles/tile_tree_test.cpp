@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "src/error.h"
 #include "src/parallel/parallel.h"
@@ -258,6 +259,67 @@ TEST(TileTree, DividedEvenlyKeepsThePointsOfSpace) {
       points, {.capacity = 300, .buffered = 9'000, .known = kAll, .evenly = true});
   EXPECT_EQ(fault_of(dealt, points), "");
   EXPECT_EQ(out_of_order(dealt), 0U);
+}
+
+/// On a long ellipse, in random order.
+Points on_an_ellipse(std::size_t count) {
+  Points points = make_points(Order::kRandom, count);
+  for (LatticePoint& p : points) {
+    const double angle = 2 * std::numbers::pi * p[0];
+    p[0] = std::cos(angle);
+    p[1] = 0.6 * std::sin(angle);
+  }
+  return points;
+}
+
+/// Whether a point lies in a box of a sketch, and in its plate.
+bool holds(const PointSketch<2>& sketch, const Point<2>& point) {
+  const auto boxes = sketch.boxes.level(0);
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    Plate<2> plate = sketch.plates[b];
+    plate.expand(point);
+    const double more = plate.thickness - sketch.plates[b].thickness;
+    if (boxes[b].contains(point) && more <= 1e-9 * plate.radius) return true;
+  }
+  return false;
+}
+
+TEST(TileTree, CutsACurveAcrossAndKnowsWhereItsPointsLie) {
+  const Points points = on_an_ellipse(60'000);
+  for (const std::size_t buffered : {std::size_t{200'000}, std::size_t{24'000}}) {
+    const DealtTiles<2> dealt =
+        deal_into_tiles<2>(points, {.capacity = 6000, .buffered = buffered, .known = kNothing});
+    EXPECT_EQ(dealt.written > 0, buffered < points.size());
+    EXPECT_EQ(out_of_order(dealt), 0U) << buffered;
+    std::size_t dealt_points = 0;
+    std::size_t across = 0;
+    for (const DealtTile<2>& tile : dealt.tiles) {
+      dealt_points += tile.points.points.size();
+      across += tile.box.lo[1] * tile.box.hi[1] < 0 ? 1 : 0;
+      ASSERT_NE(tile.sketch, nullptr) << buffered;
+      for (const Point<2>& p : tile.points.points) EXPECT_TRUE(holds(*tile.sketch, p)) << buffered;
+    }
+    EXPECT_EQ(dealt_points, points.size());
+    EXPECT_GE(across, dealt.tiles.size() * 4 / 5) << buffered;
+  }
+}
+
+TEST(TileTree, KeepsWhatNoCutWouldPayForInOnePieceIfThatMayBe) {
+  Points points = make_points(Order::kRandom, 20'000);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    // On two lines that cross; pairs of points have the same place on both.
+    const double place = points[i - i % 2][0];
+    points[i][0] = i % 2 == 0 ? place : 1 - place;
+    points[i][1] = i % 2 == 0 ? 0.1 + 0.9 * place : place;
+  }
+  const Dealing dealing{.capacity = 15'000, .buffered = 200'000, .known = kNothing};
+  EXPECT_GT(deal_into_tiles<2>(points, dealing).tiles.size(), 1U);
+  Dealing whole = dealing;
+  whole.largest_undivided = 30'000;
+  EXPECT_EQ(deal_into_tiles<2>(points, whole).tiles.size(), 1U);
+  const Points even = make_points(Order::kRandom, 20'000);
+  EXPECT_GT(deal_into_tiles<2>(even, whole).tiles.size(), 1U);
+  EXPECT_EQ(deal_into_tiles<2>(even, whole).tiles[0].sketch, nullptr);
 }
 
 TEST(TileTree, LeavesLongWhatIsThinItself) {
