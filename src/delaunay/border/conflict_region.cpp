@@ -48,7 +48,8 @@ bool ConflictRegion<D>::may_meet(const Box<D>& box) const {
 template <int D>
 bool ConflictRegion<D>::may_hold(const Point<D>& point) const {
   if (infinite_) {
-    if (const std::optional<bool> has = half_space_.quickly_has(point)) return *has;
+    const auto place = half_space_.place_of(point);
+    if (place.certain()) return place.beyond > 0;
     stages::Points<stages::Orientation<D>> points;
     std::copy(half_space_.facet().begin(), half_space_.facet().end(), points.begin());
     points[D] = point;

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <optional>
+#include <cmath>
 
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
@@ -21,19 +22,41 @@ class HalfSpace {
 
   /// Whether it has a point in common with a finite box. True if the facet's points do not span a
   /// hyperplane; false for an empty box.
-  [[nodiscard]] bool meets(const Box<D>& box) const;
+  [[nodiscard]] bool meets(const Box<D>& box) const {
+    const Place place = place_of(box);
+    return place.certain() ? place.beyond > 0 : meets_exactly(box);
+  }
 
-  /// Whether a point lies in it: its sign beside the hyperplane by rounded arithmetic, as far as
-  /// that is certain.
-  [[nodiscard]] std::optional<bool> quickly_has(const Point<D>& point) const;
-
-  /// The product of the rounded normal with the vector to a point from the hyperplane, positive
-  /// beyond; and how far that may be from the product with the true normal.
+  /// How far beyond the hyperplane something reaches, as the product of the rounded normal with a
+  /// vector from there; and how far that may be from the product with the true normal.
   struct Place {
     double beyond = 0;
     double error = 0;
+
+    /// Whether the sign is certain.
+    [[nodiscard]] bool certain() const { return std::abs(beyond) > error; }
   };
-  [[nodiscard]] Place place_of(const Point<D>& point) const;
+  [[nodiscard]] Place place_of(const Point<D>& point) const {
+    return place_of(Box<D>{point, point});
+  }
+  /// Of the corner that reaches farthest. Without branches: nobody can tell which that is.
+  [[nodiscard]] Place place_of(const Box<D>& box) const {
+    constexpr double kError = 0x1p-48;
+    constexpr double kSmallest = 0x1p-900;
+    Place place;
+    double scale = 0;
+    double reach = 0;
+    for (int k = 0; k < D; ++k) {
+      const double low = box.lo[k] - facet_[0][k];
+      const double high = box.hi[k] - facet_[0][k];
+      const double farthest = std::max(std::abs(low), std::abs(high));
+      place.beyond += std::max(normal_[k] * low, normal_[k] * high);
+      scale += magnitude_[k] * farthest;
+      reach += farthest;
+    }
+    place.error = kError * scale + kSmallest * (1 + reach);
+    return place;
+  }
 
   /// A normal, rounded; and for each component the sum of the absolute values that it is made of:
   /// it errs by less than 3 ulp of that.
@@ -41,8 +64,9 @@ class HalfSpace {
   [[nodiscard]] const Point<D>& magnitude() const { return magnitude_; }
 
  private:
+  [[nodiscard]] bool meets_exactly(const Box<D>& box) const;
+
   std::array<Point<D>, D> facet_{};
-  std::array<bool, D> upwards_{};  ///< by axis, whether larger coordinates lie farther beyond
   Point<D> normal_{};
   Point<D> magnitude_{};
 };
