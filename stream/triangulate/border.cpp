@@ -1,6 +1,7 @@
 #include "stream/triangulate/border.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <utility>
 
@@ -69,29 +70,22 @@ class Merge {
   void find_exposed(Task& task) {
     task.kind = TaskKind::kBorder;
     const Stopwatch watch(task.seconds);
-    auto& vertices = result_.border.vertices;
     first_vertex_.assign(1, 0);
     for (const Border<D>& child : children_) {
       first_vertex_.push_back(first_vertex_.back() + static_cast<VertexId>(child.vertices.size()));
       result_.border.dimension = std::max(result_.border.dimension, child.dimension);
     }
-    vertices.reserve(first_vertex_.back());
-    wanted_.assign(first_vertex_.back() + 1, 0);
+    const VertexId count = first_vertex_.back();
+    result_.border.vertices.resize(count);
+    wanted_.assign(count, 0);
     result_.exposure_is_known = std::all_of(children_.begin(), children_.end(), knows_exposure);
     for (std::size_t c = 0; c < children_.size(); ++c) {
       Border<D> child = std::exchange(children_[c], {});
       open_.push_back(child.open());
       sort_out(child, c);
-      if (child.open()) {
-        std::fill(wanted_.begin() + first_vertex_[c], wanted_.begin() + first_vertex_[c + 1], 1);
-      }
-      vertices.insert(vertices.end(), child.vertices.begin(), child.vertices.end());
-      std::vector<std::byte>& attributes = result_.border.attributes;
-      attributes.insert(attributes.end(), child.attributes.begin(), child.attributes.end());
+      take_vertices(child, c);
     }
-    for (VertexId v = 0; v < first_vertex_.back(); ++v) {
-      if (wanted_[v] != 0) border_vertices_.push_back(v);
-    }
+    border_vertices_ = numbers_of_wanted();
     wanted_ = {};
     result_.tested = result_.border.simplices.size();
     result_.retriangulated = border_vertices_.size();
@@ -99,42 +93,114 @@ class Merge {
     task.grains = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
   }
 
+  /// Of an open child all vertices are wanted.
+  void take_vertices(const Border<D>& child, std::size_t c) {
+    const VertexId first = first_vertex_[c];
+    const std::size_t record =
+        child.vertices.empty() ? 0 : child.attributes.size() / child.vertices.size();
+    std::vector<std::byte>& attributes = result_.border.attributes;
+    if (record > 0) attributes.resize(first_vertex_.back() * record);
+    parallel_for(child.vertices.size(), kGrain,
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   std::copy(child.vertices.begin() + begin, child.vertices.begin() + end,
+                             result_.border.vertices.begin() + first + begin);
+                   std::copy(child.attributes.begin() + begin * record,
+                             child.attributes.begin() + end * record,
+                             attributes.begin() + (first + begin) * record);
+                   if (!child.open()) return;
+                   std::fill(wanted_.begin() + first + begin, wanted_.begin() + first + end, 1);
+                 });
+  }
+
+  [[nodiscard]] std::vector<VertexId> numbers_of_wanted() const {
+    std::vector<std::vector<VertexId>> found(grain_count(wanted_.size(), kGrain));
+    parallel_for(wanted_.size(), kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        if (wanted_[v] != 0) found[g].push_back(static_cast<VertexId>(v));
+      }
+    });
+    std::vector<VertexId> all;
+    append_all(found, all);
+    return all;
+  }
+
+  /// Appends the items of many vectors in their order, by all threads.
+  template <typename T>
+  static void append_all(const std::vector<std::vector<T>>& some, std::vector<T>& all) {
+    std::vector<std::size_t> first(some.size() + 1, all.size());
+    for (std::size_t g = 0; g < some.size(); ++g) first[g + 1] = first[g] + some[g].size();
+    all.resize(first.back());
+    parallel_for(some.size(), 1, [&](std::size_t g, std::size_t, std::size_t) {
+      std::copy(some[g].begin(), some[g].end(), all.begin() + first[g]);
+    });
+  }
+
   /// Sorts a child's simplices, in numbers of the merge, into those that are exposed, whose
-  /// vertices are marked, and the others. Nobody can tell which comes next: without branches.
+  /// vertices are marked, and the others.
   void sort_out(Border<D>& child, std::size_t c) {
     std::vector<Exposure>& exposure = child.exposure;
     if (!knows_exposure(child)) exposure = exposure_to_siblings(child, c);
     const std::size_t count = child.simplices.size();
-    const auto exposed = static_cast<std::size_t>(std::count_if(
-        exposure.begin(), exposure.end(), [](Exposure levels) { return (levels & 1) != 0; }));
+    std::vector<std::size_t> exposed_before(grain_count(count, kGrain) + 1);
+    parallel_for(count, kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
+      exposed_before[g + 1] = static_cast<std::size_t>(
+          std::count_if(exposure.begin() + begin, exposure.begin() + end,
+                        [](Exposure levels) { return (levels & 1) != 0; }));
+    });
+    std::partial_sum(exposed_before.begin(), exposed_before.end(), exposed_before.begin());
     auto& kept = result_.border.simplices;
-    auto& kept_exposure = result_.border.exposure;
-    const bool keeps_exposure = result_.exposure_is_known;
-    const std::size_t kept_before = kept.size();
-    const std::size_t exposed_before = exposed_.size();
-    kept.resize(kept_before + count - exposed + 1);  // and one more, that is written and not kept
-    exposed_.resize(exposed_before + exposed + 1);
-    if (keeps_exposure) kept_exposure.resize(kept.size());
-    Corners* next_kept = &kept[kept_before];
-    Corners* next_exposed = &exposed_[exposed_before];
-    const VertexId none = first_vertex_.back();
-    for (std::size_t s = 0; s < count; ++s) {
-      const Exposure levels = exposure[s];
-      const std::uint8_t is_exposed = levels & 1;
+    const std::size_t first_exposed = exposed_.size();
+    const std::size_t first_kept = kept.size();
+    exposed_.resize(first_exposed + exposed_before.back());
+    kept.resize(first_kept + count - exposed_before.back());
+    if (result_.exposure_is_known) result_.border.exposure.resize(kept.size());
+    parallel_for(count, kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
+      SortedOut some(end - begin);
+      sort_out_grain(child, c, begin, end, some);
+      std::copy_n(some.exposed.begin(), some.exposed_count,
+                  exposed_.begin() + first_exposed + exposed_before[g]);
+      const std::size_t to = first_kept + begin - exposed_before[g];
+      std::copy_n(some.kept.begin(), some.kept_count, kept.begin() + to);
+      if (!result_.exposure_is_known) return;
+      std::copy_n(some.kept_exposure.begin(), some.kept_count,
+                  result_.border.exposure.begin() + to);
+    });
+  }
+
+  /// The simplices of a grain; each list has room for one more, that is written and not kept.
+  struct SortedOut {
+    explicit SortedOut(std::size_t count)
+        : exposed(count + 1), kept(count + 1), kept_exposure(count + 1) {}
+
+    std::vector<Corners> exposed;
+    std::vector<Corners> kept;
+    std::vector<Exposure> kept_exposure;
+    std::size_t exposed_count = 0;
+    std::size_t kept_count = 0;
+  };
+
+  /// Nobody can tell which comes next: without branches.
+  void sort_out_grain(const Border<D>& child, std::size_t c, std::size_t begin, std::size_t end,
+                      SortedOut& some) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Exposure levels = child.exposure[s];
+      const std::size_t is_exposed = levels & 1;
       Corners corners = child.simplices[s];
-      for (VertexId& v : corners) {
-        const bool finite = v != kInfiniteVertex;
-        v = finite ? v + first_vertex_[c] : v;
-        wanted_[finite ? v : none] |= is_exposed;
-      }
-      if (keeps_exposure) kept_exposure[next_kept - kept.data()] = levels >> 1;
-      *(is_exposed != 0 ? next_exposed : next_kept) = corners;
-      next_exposed += is_exposed;
-      next_kept += 1 - is_exposed;
+      for (VertexId& v : corners) v = v != kInfiniteVertex ? v + first_vertex_[c] : v;
+      some.exposed[some.exposed_count] = corners;
+      some.kept[some.kept_count] = corners;
+      some.kept_exposure[some.kept_count] = levels >> 1;
+      some.exposed_count += is_exposed;
+      some.kept_count += 1 - is_exposed;
     }
-    kept.pop_back();
-    exposed_.pop_back();
-    if (keeps_exposure) kept_exposure.pop_back();
+    for (std::size_t s = 0; s < some.exposed_count; ++s) {
+      for (const VertexId v : some.exposed[s]) {
+        // Other threads may set it, too.
+        if (v != kInfiniteVertex) {
+          std::atomic_ref(wanted_[v]).store(1, std::memory_order_relaxed);
+        }
+      }
+    }
   }
 
   [[nodiscard]] static bool knows_exposure(const Border<D>& child) {
@@ -157,8 +223,11 @@ class Merge {
 
   void triangulate(Task& task) {
     SlabArray<Point<D>> points(border_vertices_.size());
-    std::transform(border_vertices_.begin(), border_vertices_.end(), points.begin(),
-                   [&](VertexId v) { return result_.border.vertices[v].position; });
+    parallel_for(points.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        points[i] = result_.border.vertices[border_vertices_[i]].position;
+      }
+    });
     mesh_ = border_delaunay<D>(std::move(points), kernel_, &result_.memory, task);
     result_.border.dimension = std::max(result_.border.dimension, mesh_.dimension);
   }
@@ -170,9 +239,9 @@ class Merge {
     const Acceptance<D> acceptance(std::span<const VertexId>(first_vertex_).subspan(1), open_,
                                    exposed_);
     std::vector<VertexId> number(mesh_.input_index.size());
-    for (std::size_t v = 0; v < number.size(); ++v) {
-      number[v] = border_vertices_[mesh_.input_index[v]];
-    }
+    parallel_for(number.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) number[v] = border_vertices_[mesh_.input_index[v]];
+    });
     for (const SimplexList<D>& list : mesh_.lists) {
       const std::span simplices(list.simplices.data(), list.simplices.size());
       std::vector<std::vector<Corners>> accepted(grain_count(simplices.size(), kGrain));
@@ -184,8 +253,7 @@ class Merge {
               append_accepted(simplices.subspan(first, count), number, questions, accepted[g]);
             }
           });
-      auto& result = result_.border.simplices;
-      for (const auto& some : accepted) result.insert(result.end(), some.begin(), some.end());
+      append_all(accepted, result_.border.simplices);
     }
     task.grains = std::max<std::size_t>(1, grain_count(exposed_.size(), kGrain));
   }
@@ -212,7 +280,7 @@ class Merge {
   Kernel kernel_;
   std::vector<VertexId> first_vertex_;  ///< by child, and one more
   std::vector<bool> open_;              ///< by child
-  std::vector<std::uint8_t> wanted_;  ///< by vertex, whether it is to be triangulated; and one more
+  std::vector<std::uint8_t> wanted_;    ///< by vertex, whether it is to be triangulated
   std::vector<Corners> exposed_;
   std::vector<VertexId> border_vertices_;
   Triangulation<D> mesh_;

@@ -10,6 +10,7 @@
 #include "src/delaunay/division/point_tree.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/point.h"
+#include "src/parallel/parallel.h"
 #include "src/runtime/work_lease.h"
 #include "stream/output/stream_place.h"
 
@@ -54,8 +55,11 @@ struct Border {
   /// fewer than D dimensions.
   [[nodiscard]] bool open() const { return dimension < D; }
   [[nodiscard]] std::vector<Point<D>> positions() const {
+    constexpr std::size_t kGrain = 4096;
     std::vector<Point<D>> positions(vertices.size());
-    for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = vertices[v].position;
+    parallel_for(positions.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) positions[v] = vertices[v].position;
+    });
     return positions;
   }
   [[nodiscard]] std::uint64_t bytes() const {
