@@ -43,14 +43,16 @@ std::shared_ptr<CellSketch> TileSketches::begin(const Tile& tile, const HeldPoin
   const std::size_t cells = std::min(cells_for(held.buffer.size(), all_points), left / kLeftShare);
   if (cells < kFewestCells || !is_known_hollow(tile, held)) return nullptr;
   cells_begun_ += cells;
-  return std::make_shared<CellSketch>(dimension_, cells);
+  return std::make_shared<CellSketch>(dimension_, cells, held.box);
 }
 
 template <int D>
 void TileSketches::sketch(TileNode<D>& node,
                           const std::function<const Tile&(std::uint32_t)>& stored,
                           std::uint64_t all_points) const {
-  CellSketch sketch(dimension_, cells_for(node.points, all_points));
+  Box<3> box;
+  for (const std::uint32_t number : node.stored) box.expand(stored(number).box);
+  CellSketch sketch(dimension_, cells_for(node.points, all_points), box);
   bool tells = false;
   const auto visit = [&](const auto& visit_part) {
     for (const std::uint32_t number : node.stored) {

@@ -87,32 +87,51 @@ TEST_P(StreamOfFamily, EqualsCgalForLargeSetsThatSpill) {
   }
 }
 
-TEST_P(StreamOfFamily, GivesTheSameBlocksForAnyThreadCount) {
-  const GeneratorOptions generate{GetParam().family, 700, GetParam().dimension, 3};
-  const auto blocks_of = [&](unsigned threads) {
-    const StreamOptions options{
-        .threads = threads, .tile_capacity = 90, .buffered_points = 200, .leaf_size = 20};
-    if (GetParam().dimension == 2) {
-      const std::string path = write_points<2>(generate_points<2>(generate));
-      return run_stream<2>(path, options).mesh.blocks;
-    }
-    const std::string path = write_points<3>(generate_points<3>(generate));
-    return run_stream<3>(path, options).mesh.blocks;
-  };
-  std::vector<MeshBlock> once;
-  try {
-    once = blocks_of(1);
-  } catch (const Error&) {
-    GTEST_SKIP() << "no simplices in this dimension";
+/// The blocks of a set out of core.
+std::vector<MeshBlock> blocks_of(const GeneratorOptions& generate, const StreamOptions& options) {
+  if (generate.dimension == 2) {
+    const std::string path = write_points<2>(generate_points<2>(generate));
+    return run_stream<2>(path, options).mesh.blocks;
   }
+  const std::string path = write_points<3>(generate_points<3>(generate));
+  return run_stream<3>(path, options).mesh.blocks;
+}
+
+/// The same for one thread and for several.
+void expect_same_blocks(const GeneratorOptions& generate, StreamOptions options) {
+  options.threads = 1;
+  const std::vector<MeshBlock> once = blocks_of(generate, options);
   for (const unsigned threads : {2U, 4U}) {
-    const auto again = blocks_of(threads);
+    options.threads = threads;
+    const auto again = blocks_of(generate, options);
     ASSERT_EQ(once.size(), again.size());
     for (std::size_t b = 0; b < once.size(); ++b) {
       ASSERT_EQ(once[b].vertices, again[b].vertices);
       ASSERT_EQ(once[b].imported, again[b].imported);
       ASSERT_EQ(once[b].corners, again[b].corners);
       ASSERT_EQ(once[b].finalized, again[b].finalized);
+    }
+  }
+}
+
+TEST_P(StreamOfFamily, GivesTheSameBlocksForAnyThreadCount) {
+  const GeneratorOptions generate{GetParam().family, 700, GetParam().dimension, 3};
+  try {
+    expect_same_blocks(generate, {.tile_capacity = 90, .buffered_points = 200, .leaf_size = 20});
+  } catch (const Error&) {
+    GTEST_SKIP() << "no simplices in this dimension";
+  }
+}
+
+TEST(StreamOfSurface, GivesTheSameBlocksForAnyThreadCountByItsSketches) {
+  for (const int dimension : {2, 3}) {
+    for (const Family family : {Family::kEllipsoid, Family::kScan}) {
+      if (dimension == 2 && family == Family::kScan) continue;
+      for (const std::size_t buffered : {4'000, 100'000}) {
+        SCOPED_TRACE(testing::Message() << dimension << "D, " << buffered << " points wait");
+        expect_same_blocks({family, 12'000, dimension, 3},
+                           {.tile_capacity = 2'500, .buffered_points = buffered, .leaf_size = 400});
+      }
     }
   }
 }

@@ -10,9 +10,9 @@
 namespace spillway::detail {
 namespace {
 
-/// The cells of what comes first have its longest side divided by two to this power.
+/// The first cells have the longest side of the box divided by two to this power.
 constexpr int kFirstPower = 12;
-/// Farther from the first points than so many cells no cell is numbered: there cells become larger.
+/// Farther from the box than so many cells no cell is numbered: there cells become larger.
 constexpr double kFarthest = 0x1p40;
 
 /// Entry i, k of a symmetric matrix in the order xx, yy, zz, yz, zx, xy.
@@ -80,13 +80,14 @@ void CellSketch::Cell::begin_plate(const Point<3>& origin, int dimension) {
   plate.normal = normal;
 }
 
+CellSketch::CellSketch(int dimension, std::size_t most_cells, const Box<3>& box)
+    : dimension_(dimension), most_cells_(std::max(most_cells, kFewestCells)), origin_(box.lo) {
+  double longest = 0;
+  for (int k = 0; k < dimension_; ++k) longest = std::max(longest, box.extent(k));
+  set_exponent(std::isnormal(longest) ? std::ilogb(longest) - kFirstPower : -kFirstPower);
+}
+
 void CellSketch::gather(std::span<const LatticePoint> points) {
-  if (points.empty()) return;
-  if (!begun_) {
-    Box<3> box;
-    for (const LatticePoint& p : points) box.expand(p);
-    begin_at(box);
-  }
   Number last{};
   Cell* cell = nullptr;
   for (const LatticePoint& p : points) {
@@ -115,7 +116,6 @@ void CellSketch::gather(std::span<const LatticePoint> points) {
 }
 
 void CellSketch::gather(const CellSketch& other) {
-  if (!begun_ && other.begun_) begin(other.origin_, other.exponent_);
   for (const auto& [number, cell] : other.cells_) {
     while (!reaches(cell.box.lo)) coarsen();
     Cell moved = cell;
@@ -134,7 +134,6 @@ void CellSketch::gather(const CellSketch& other) {
 }
 
 void CellSketch::gather(const Box<3>& box) {
-  if (!begun_) begin_at(box);
   while (!reaches(box.lo)) coarsen();
   Cell cell{.box = box, .weight = 1};
   for (int i = 0; i < dimension_; ++i) cell.sum[i] = box.lo[i] - origin_[i];
@@ -187,18 +186,6 @@ void CellSketch::measure(const Box<3>& box) {
 
 Point<3> CellSketch::flat(const Point<3>& point) const {
   return dimension_ == 2 ? Point<3>{point[0], point[1], 0} : point;
-}
-
-void CellSketch::begin_at(const Box<3>& box) {
-  double longest = 0;
-  for (int k = 0; k < dimension_; ++k) longest = std::max(longest, box.extent(k));
-  begin(box.lo, std::isnormal(longest) ? std::ilogb(longest) - kFirstPower : -kFirstPower);
-}
-
-void CellSketch::begin(const Point<3>& origin, int exponent) {
-  begun_ = true;
-  origin_ = origin;
-  set_exponent(exponent);
 }
 
 void CellSketch::set_exponent(int exponent) {

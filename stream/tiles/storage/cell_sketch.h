@@ -16,12 +16,11 @@ namespace spillway::detail {
 
 /// Where points lie: a tight box and a plate around those of each cell of a grid in which some lie.
 /// The cells are as small as they can be so that there are not too many, and become larger as
-/// points come. All points are to be gathered, and then measured once more.
+/// points come, in whatever spans. All points are to be gathered, and then measured once more.
 class CellSketch {
  public:
-  /// Only the first `dimension` axes count.
-  CellSketch(int dimension, std::size_t most_cells)
-      : dimension_(dimension), most_cells_(std::max(most_cells, kFewestCells)) {}
+  /// Only the first `dimension` axes count. Most points will lie in `box`.
+  CellSketch(int dimension, std::size_t most_cells, const Box<3>& box);
 
   void gather(std::span<const LatticePoint> points);
   /// All that another sketch has, which has been measured. A box of it may reach into other cells.
@@ -61,8 +60,6 @@ class CellSketch {
   /// However large cells are, there may be one on each side of the origin on each axis.
   static constexpr std::size_t kFewestCells = 8;
 
-  void begin_at(const Box<3>& box);
-  void begin(const Point<3>& origin, int exponent);
   void set_exponent(int exponent);
   [[nodiscard]] bool reaches(const Point<3>& point) const;
   [[nodiscard]] Number number_of(const Point<3>& point) const;
@@ -75,11 +72,10 @@ class CellSketch {
 
   int dimension_;
   std::size_t most_cells_;
-  Point<3> origin_{};
+  Point<3> origin_;
   int exponent_ = 0;  ///< of two, of the side of a cell
   double scale_ = 1;  ///< that power's reciprocal
   Point<3> scaled_origin_{};
-  bool begun_ = false;
   bool measuring_ = false;
   std::unordered_map<Number, Cell, Hash> cells_;
 };
