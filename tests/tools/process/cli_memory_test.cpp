@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include <string>
+#include <tuple>
 
 #include "tests/tools/command_runner.h"
 
@@ -82,7 +83,7 @@ TEST_F(ResidentMemory, IsTheLeastLimitWhateverIsWritten) {
 }
 
 TEST_F(ResidentMemory, IsTheLimitWhereMorePointsMakeMoreAndMoreSimplices) {
-  for (const std::string points : {"lines -n 6000", "lines -n 60000", "ellipsoid -n 400000"}) {
+  for (const std::string points : {"lines -n 6000", "lines -n 60000", "circle -n 200000"}) {
     work_.succeed("spillway generate -q --dim 3 -o in.spp " + points);
     const Result refused =
         work_.run("spillway triangulate -q --dim 3 --threads 2 --memory 96M in.spp -o mesh.spm");
@@ -91,6 +92,18 @@ TEST_F(ResidentMemory, IsTheLimitWhereMorePointsMakeMoreAndMoreSimplices) {
     rusage most{};  // of the processes so far
     ASSERT_EQ(getrusage(RUSAGE_CHILDREN, &most), 0);
     EXPECT_LE(static_cast<double>(most.ru_maxrss) / 1024, 96 + kBeside) << points;
+  }
+}
+
+TEST_F(ResidentMemory, IsEnoughForCurvesAndSurfacesWhoseBordersAreSmall) {
+  for (const auto& [points, dimension, memory] :
+       {std::tuple{"ellipsoid -n 300000", 2, 32}, std::tuple{"ellipsoid -n 150000", 3, 96},
+        std::tuple{"scan -n 400000", 3, 96}}) {
+    work_.succeed(fmt::format("spillway generate -q --dim {} -o in.spp {}", dimension, points));
+    const auto stats =
+        triangulate(fmt::format("--dim {} --memory {}M in.spp -o mesh.spm", dimension, memory));
+    EXPECT_LE(peak(stats), memory + kBeside) << points;
+    work_.succeed("spillway check -q mesh.spm");
   }
 }
 

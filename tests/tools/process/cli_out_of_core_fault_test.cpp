@@ -191,9 +191,8 @@ TEST_P(OutOfCoreRefusal, NamesMemoryThatIsEnough) {
 
 INSTANTIATE_TEST_SUITE_P(Points, OutOfCoreRefusal,
                          testing::Values(Refusal{"circle -n 3e5", "32M", true},
-                                         Refusal{"ellipsoid -n 3e5", "32M", true},
                                          Refusal{"lines -n 3e5", "32M", true},
-                                         Refusal{"ellipsoid --dim 3 -n 150000", "96M", false},
+                                         Refusal{"circle --dim 3 -n 100000", "96M", false},
                                          Refusal{"lines --dim 3 -n 5000", "96M", false},
                                          Refusal{"normal --dim 3 -n 6e6", "96M", false}));
 
