@@ -105,21 +105,23 @@ void TileTree::divide_first(Batch& batch) {
     points = static_cast<double>(all);
     fill = everywhere ? kRepresentativeFill : kExpectedFill;
   }
-  if (tells && !everywhere) {
+  const bool representative = !tells || everywhere;
+  if (!representative) {
     append_expected_points(sample, box, *options_.extent, options_.dimension,
                            points / static_cast<double>(seen) - 1);
   }
-  divide(0, std::move(sample), tiles_for(points, capacity_, fill), batch);
+  divide(0, std::move(sample), tiles_for(points, capacity_, fill), batch, representative);
 }
 
 /// Divides a tile into many by a sample of its points; where that tells too little, by its box.
+/// Only a representative sample tells whether they are hollow.
 void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
-                      std::size_t tile_count, Batch& batch) {
+                      std::size_t tile_count, Batch& batch, bool representative) {
   if (options_.tiles_made) options_.tiles_made(tiles_.size() + tile_count - 1);
   Tile whole = std::exchange(tiles_[number], {});
   const CutTree::NodeRef first_cut = cuts_.cuts();
   const auto first_new = static_cast<std::ptrdiff_t>(tiles_.size());
-  const bool hollow = is_hollow(sample, options_.dimension);
+  const bool hollow = representative && is_hollow(sample, options_.dimension);
   const std::vector<DivisionCut> judged =
       hollow ? divide_sample(sample, tile_count, options_.dimension) : std::vector<DivisionCut>{};
   {
@@ -155,7 +157,7 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
   };
   take_from_whole(tiles_[number]);
   std::for_each(tiles_.begin() + first_new, tiles_.end(), take_from_whole);
-  judge_tiles(sample);
+  if (representative) judge_tiles(sample);
   room_ -= whole.room();
   for (HeldPoints& held : whole.held) deal_held(std::move(held), batch);
 }

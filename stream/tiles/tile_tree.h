@@ -149,7 +149,7 @@ class TileTree {
   [[nodiscard]] bool stays_whole();
   void divide_first(Batch& batch);
   void divide(std::uint32_t number, std::vector<LatticePoint> sample, std::size_t tile_count,
-              Batch& batch);
+              Batch& batch, bool representative = true);
   void judge_tiles(std::span<const LatticePoint> sample);
   void deal_held(HeldPoints held, Batch& batch);
   [[nodiscard]] std::vector<std::uint32_t> numbers_in_order() const;

@@ -178,17 +178,12 @@ class TileRun {
                                                                    options.output.record_size)},
                         division.data());
     }
-    boxes_.resize(root_.list + 1);
     counts_.points += tile_.left_out;
     counts_.duplicates += tile_.left_out;
     context_.sequencer.open_slot(slot_, root_.list + 1);
     tree_.emplace(root_);
     const std::vector<Node*>& leaves = tree_->leaves();
-    parallel_for(leaves.size(), 1, [&](std::size_t, std::size_t begin, std::size_t) {
-      const Part<D>& leaf = *leaves[begin]->tree;
-      boxes_[leaf.list] =
-          RunBoxes<D>(std::span<const Point<D>>(tile_.points).subspan(leaf.begin, leaf.size()));
-    });
+    judge_leaves();
     parallel_for(leaves.size(), 1, [&](std::size_t, std::size_t begin, std::size_t) {
       Node& leaf = *leaves[begin];
       leaf.border = triangulate_leaf(leaf);
@@ -209,6 +204,23 @@ class TileRun {
   using Tree = MergeTree<Part<D>, State>;
   using Node = typename Tree::Node;
 
+  [[nodiscard]] std::span<const Point<D>> points_of(const Part<D>& part) const {
+    return std::span<const Point<D>>(tile_.points).subspan(part.begin, part.size());
+  }
+
+  /// Tells which leaves are hollow; if any is, their points will be asked for.
+  void judge_leaves() {
+    const std::vector<Node*>& leaves = tree_->leaves();
+    parallel_for(leaves.size(), 1, [&](std::size_t, std::size_t l, std::size_t) {
+      leaves[l]->hollow = is_hollow<D>(points_of(*leaves[l]->tree), leaves[l]->tree->box);
+    });
+    if (std::ranges::none_of(leaves, [](const Node* leaf) { return leaf->hollow; })) return;
+    boxes_.resize(root_.list + 1);
+    parallel_for(leaves.size(), 1, [&](std::size_t, std::size_t l, std::size_t) {
+      boxes_[leaves[l]->tree->list] = RunBoxes<D>(points_of(*leaves[l]->tree));
+    });
+  }
+
   /// Puts the tasks of all nodes together.
   Task task_tree() {
     for (Node& node : tree_->nodes()) {
@@ -227,13 +239,12 @@ class TileRun {
     const Stopwatch watch(node.task.seconds);
     context_.budget.give_back_freed();
     const Part<D>& part = *node.tree;
-    const auto points = std::span(tile_.points).subspan(part.begin, part.size());
+    const auto points = points_of(part);
     WorkingMemory<D> memory(
         WorkLease(context_.budget,
                   part.size() * (kLeafBytes<D> + context_.options.output.record_size),
                   "the triangulation of a leaf"),
         context_.options.leaf_size);
-    node.hollow = is_hollow<D>(points, part.box);
     BaseCase<D> leaf = base_case(node, points, memory.lease());
     counts_.points += part.size();
     counts_.duplicates += leaf.duplicates.size();
@@ -309,7 +320,7 @@ class TileRun {
     LeafToSettle<D> leaf;
     leaf.block = {slot_, part.list};
     leaf.first_vertex = part.begin;
-    leaf.points = std::span(tile_.points).subspan(part.begin, part.size());
+    leaf.points = points_of(part);
     leaf.input_index = std::span(input_index_).subspan(part.begin, part.size());
     if constexpr (D == 2) leaf.heights = tile_.heights;
     leaf.index = tile_.index;
@@ -391,7 +402,7 @@ class TileRun {
   const Outside<D>& outside_;
   const std::uint32_t slot_;
   Part<D> root_;
-  std::vector<RunBoxes<D>> boxes_;  ///< of leaves, by list
+  std::vector<RunBoxes<D>> boxes_;  ///< of leaves, by list, if one is hollow
   std::optional<Tree> tree_;
 };
 
