@@ -13,10 +13,11 @@ namespace {
 /// may change, or any part where levels are too many to tell.
 using Marks = std::uint32_t;
 constexpr Marks kChanged = Marks{1} << kExposureLevels;
+/// Known to be final by itself.
+constexpr Marks kFinal = kChanged << 1;
 
-/// So many boxes a search may look at for each point of the leaf: that takes about as long as the
-/// triangulation of the leaf.
-constexpr std::size_t kBoxesOfPoint = 256;
+/// So many steps a search may take for each point of the leaf: about as long as its triangulation.
+constexpr std::size_t kStepsOfPoint = 128;
 
 /// The simplices of a leaf, of which those that have a certain bit are found, for
 /// search_border_alone().
@@ -25,8 +26,13 @@ class LeafMesh {
  public:
   using Id = std::uint32_t;
 
-  LeafMesh(const LeafPart<D>& part, std::span<const Simplex<D>> simplices)
-      : part_(part), simplices_(simplices), marks_(simplices.size()) {}
+  LeafMesh(const LeafPart<D>& part, const BaseCase<D>& leaf)
+      : part_(part),
+        simplices_(leaf.simplices.span()),
+        marks_(simplices_.size(), leaf.not_inside ? kFinal : 0) {
+    if (!leaf.not_inside) return;
+    for (const std::uint32_t s : *leaf.not_inside) marks_[s] = 0;
+  }
 
   void find(Marks bit) { bit_ = bit; }
   [[nodiscard]] std::span<const Marks> marks() const { return marks_; }
@@ -38,7 +44,7 @@ class LeafMesh {
     return corners;
   }
   [[nodiscard]] Id neighbour(Id id, int i) const { return simplices_[id].neighbours[i]; }
-  [[nodiscard]] bool found(Id id) const { return (marks_[id] & bit_) != 0; }
+  [[nodiscard]] bool found(Id id) const { return (marks_[id] & (bit_ | kFinal)) != 0; }
   [[nodiscard]] bool set_found(Id id) {
     const bool is_new = !found(id);
     marks_[id] |= bit_;
@@ -65,10 +71,7 @@ template <int D>
 class LeafBorderSearch {
  public:
   LeafBorderSearch(const LeafPart<D>& part, Surroundings<D> surroundings, BaseCase<D>& leaf)
-      : part_(part),
-        surroundings_(std::move(surroundings)),
-        leaf_(leaf),
-        mesh_(part, leaf.simplices.span()) {
+      : part_(part), surroundings_(std::move(surroundings)), leaf_(leaf), mesh_(part, leaf) {
     if (surroundings_.tells_exposure()) {
       for (std::size_t level = 0; level < surroundings_.levels.size(); ++level) {
         search_siblings(surroundings_.levels[level], Marks{1} << level);
@@ -85,7 +88,7 @@ class LeafBorderSearch {
     std::vector<std::uint32_t>& open = leaf_.not_inside.emplace();
     const std::span<const Marks> marks = mesh_.marks();
     for (std::uint32_t s = 0; s < marks.size(); ++s) {
-      if (marks[s] != 0) told.fates[s] = Fate::kKept;
+      if ((marks[s] & ~kFinal) != 0) told.fates[s] = Fate::kKept;
       if (told.fates[s] == Fate::kFinal) continue;
       open.push_back(s);
       leaf_.open_simplices.push_back(leaf_.simplices[s]);
@@ -112,7 +115,7 @@ class LeafBorderSearch {
     }
     mesh_.find(bit);
     const Siblings<D> siblings = surroundings_.siblings(parts);
-    PointSearch<D> search(siblings, kBoxesOfPoint * part_.points.size());
+    PointSearch<D> search(siblings, kStepsOfPoint * part_.points.size());
     search_border_alone<D>(beside(sides), mesh_, [&search](const RegionBatch<D>& regions) {
       return search.may_hold_points(regions, regions.all());
     });
@@ -172,7 +175,7 @@ LeafFates test_leaf_border(const LeafToSettle<D>& leaf, const Surroundings<D>& s
   const std::span<const std::uint32_t> open = leaf.open;
   LeafFates told{.fates = std::vector<Fate>(leaf.simplex_count(), Fate::kFinal)};
   if (surroundings.tells_exposure()) told.exposure.resize(open.size());
-  ChangeSearch<D> search(surroundings, open.size());
+  ChangeSearch<D> search(surroundings, kStepsOfPoint * leaf.points.size());
   for_each_region_batch<D>(
       open.size(), [&](std::size_t i) { return leaf.open_simplex(i); }, leaf.points,
       [&](std::size_t first, const RegionBatch<D>& regions) {

@@ -26,8 +26,9 @@ struct LeafPart {
 
 /// The fates of a leaf whose simplices have neighbours, by searches from its hull for what each
 /// level of its surroundings may change: what lies on a curve or a surface has balls that reach far
-/// but hold no point of others, and most of it is never looked at. Then leaves the corners in place
-/// of the simplices; those `not_inside` are the infinite and the kept ones.
+/// but hold no point of others, and most of it is never looked at. If there are some `not_inside`,
+/// all others are final. Then leaves the corners in place of the simplices, and in `not_inside` the
+/// infinite and the kept ones.
 template <int D>
 LeafFates search_leaf_border(const LeafPart<D>& part, Surroundings<D> surroundings,
                              BaseCase<D>& leaf);

@@ -57,11 +57,11 @@ struct Surroundings {
 template <int D>
 class ChangeSearch {
  public:
-  /// `surroundings` must outlive it. It will be asked about so many simplices.
-  ChangeSearch(const Surroundings<D>& surroundings, std::size_t simplices)
+  /// `surroundings` must outlive it. Points are asked for in so many steps for each level.
+  ChangeSearch(const Surroundings<D>& surroundings, std::size_t steps)
       : surroundings_(surroundings) {
     for (const auto& level : surroundings.levels) {
-      searches_.emplace_back(surroundings.siblings(level), kBoxesOfOne * simplices);
+      searches_.emplace_back(surroundings.siblings(level), steps);
     }
   }
 
@@ -82,8 +82,6 @@ class ChangeSearch {
   }
 
  private:
-  static constexpr std::size_t kBoxesOfOne = 256;  ///< on average; many take none
-
   const Surroundings<D>& surroundings_;
   std::vector<PointSearch<D>> searches_;  ///< by level
 };

@@ -21,6 +21,9 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
+/// A merge may ask for points in so many steps for each simplex, or each point below it.
+constexpr std::size_t kStepsOfOne = 64;
+
 /// Of smaller parts that are divided, the longest axis is cut unseen: what a sample tells would
 /// cost more than it saves.
 template <int D>
@@ -104,10 +107,12 @@ class WorkingMemory {
   std::size_t leaf_size_;
 };
 
-/// Which simplices of a merged border are final: nothing around it may change them.
+/// Which simplices of a merged border are final: nothing around it may change them. There are so
+/// many points below the merge.
 template <int D>
 Settled<D> settle_merged(MergedBorder<D>& merged, BlockPlace block, const OutputOptions& output,
-                         const Surroundings<D>& surroundings, StageTimes& times) {
+                         const Surroundings<D>& surroundings, std::uint64_t points,
+                         StageTimes& times) {
   const StageTimer timer(times, Stage::kFinality);
   Border<D>& border = merged.border;
   const std::vector<Point<D>> positions = border.positions();
@@ -121,8 +126,10 @@ Settled<D> settle_merged(MergedBorder<D>& merged, BlockPlace block, const Output
   }
   const std::span<const std::array<VertexId, D + 1>> fresh =
       std::span(border.simplices).subspan(merged.tested);
+  const std::size_t grains = std::max<std::size_t>(1, grain_count(fresh.size(), kGrain));
   parallel_for(fresh.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-    ChangeSearch<D> search(surroundings, end - begin);
+    ChangeSearch<D> search(surroundings,
+                           kStepsOfOne * std::max<std::size_t>(end - begin, points / grains));
     for_each_region_batch<D>(
         end - begin, [&](std::size_t s) { return fresh[begin + s]; }, positions,
         [&](std::size_t first, const RegionBatch<D>& regions) {
@@ -295,11 +302,10 @@ class TileRun {
                            .in_place = true,
                            .kernel = context_.options.kernel,
                            .memory = &memory};
-    if (node.hollow) return triangulate_base_case<D>(input);
     input.clear_box = clear_box_of(node);
-    input.corners_only = true;
+    input.corners_only = !node.hollow;
     BaseCase<D> base_case = triangulate_base_case<D>(input);
-    if (!base_case.simplices.empty()) {
+    if (!node.hollow && !base_case.simplices.empty()) {
       tell_corners(base_case, points, part.begin, *input.clear_box);
     }
     return base_case;
@@ -386,8 +392,8 @@ class TileRun {
       memory.give_back();
       return pass_up(context_, std::move(merged.border), block);
     }
-    Settled<D> settled =
-        settle_merged(merged, block, context_.options.output, surroundings_of(node), counts_.times);
+    Settled<D> settled = settle_merged(merged, block, context_.options.output,
+                                       surroundings_of(node), node.tree->size(), counts_.times);
     memory.give_back();
     counts_.final_in_tiles += settled.final_simplices;
     return pass_on(context_, std::move(settled), block);
@@ -432,7 +438,7 @@ MergedTiles<D> merge_tiles(const TileContext<D>& context, const MergeInput<D>& i
     settled.border = std::move(merged.border);
   } else {
     settled = settle_merged<D>(merged, input.place, context.options.output,
-                               {.levels = {}, .outside = input.outside}, context.counts.times);
+                               {.levels = {}, .outside = input.outside}, 0, context.counts.times);
   }
   merged.memory = {};
   const std::uint64_t final_simplices = settled.final_simplices;

@@ -123,9 +123,27 @@ TEST(PointSearch, EndsSoonIfItIsTold) {
   siblings.most_boxes = 50;
   PointSearch<2> search(siblings);
   EXPECT_TRUE(search.may_hold_a_point(region));
-  EXPECT_EQ(search.boxes_seen(), 50U);
+  EXPECT_GE(search.steps(), 50U);
   siblings.most_boxes = 0;
   EXPECT_TRUE(PointSearch<2>(siblings).may_hold_a_point(region));
+}
+
+TEST(PointSearch, AsksNoMoreWhenItsStepsHaveNotBeenWorthIt) {
+  std::vector<Point<2>> ring;
+  for (int i = 0; i < 5000; ++i) {
+    const double t = 6.2831853 * i / 5000;
+    ring.push_back({2 * std::cos(t), 2 * std::sin(t)});
+  }
+  const DividedPoints<2> divided(ring);
+  const Siblings<2> siblings = divided.siblings();
+  const std::vector<Point<2>> corners{{-1.9, 0}, {1.9, 0}, {0, 1.9}, {-2.1, 0}, {2.1, 0}, {0, 2.1}};
+  const ConflictRegion<2> misses({0, 1, 2}, corners);
+  const ConflictRegion<2> holds({3, 4, 5}, corners);
+  PointSearch<2> in_vain(siblings, 1);
+  EXPECT_TRUE(in_vain.may_hold_a_point(holds));
+  EXPECT_TRUE(in_vain.may_hold_a_point(misses)) << "it meets the box of a leaf";
+  PointSearch<2> of_use(siblings, 1);
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(of_use.may_hold_a_point(misses)) << "no is worth more";
 }
 
 }  // namespace

@@ -4,27 +4,38 @@
 #include <bit>
 
 namespace spillway::detail {
+namespace {
+
+/// What a point takes beside a box, about.
+constexpr std::size_t kStepsOfPoint = 4;
+/// What it is worth to know that a region holds no point: its simplex is not merged, and of those
+/// behind it none is asked about.
+constexpr std::size_t kStepsOfNo = 8192;
+
+}  // namespace
 
 template <int D>
 bool PointSearch<D>::may_hold_a_point(const ConflictRegion<D>& region) {
   // Of what is not tight, boxes leave nothing out.
-  if (!region.tight() || siblings_.most_boxes == 0 || boxes_seen_ >= boxes_allowed_) {
+  if (!region.tight() || siblings_.most_boxes == 0 || !may_ask()) {
     return std::any_of(siblings_.parts.begin(), siblings_.parts.end(),
                        [&](const Part<D>* part) { return region.may_meet_leaf(*part); });
   }
   for (std::size_t f = 0; f < std::min(found_count_, found_.size()); ++f) {
     if (region.may_hold(found_[f])) return true;
   }
-  last_box_ = boxes_seen_ + siblings_.most_boxes;
-  return std::any_of(siblings_.parts.begin(), siblings_.parts.end(),
-                     [&](const Part<D>* part) { return in_part(region, *part); });
+  boxes_left_ = siblings_.most_boxes;
+  const bool held = std::any_of(siblings_.parts.begin(), siblings_.parts.end(),
+                                [&](const Part<D>* part) { return in_part(region, *part); });
+  steps_earned_ += held ? 0 : kStepsOfNo;
+  return held;
 }
 
 template <int D>
 std::uint64_t PointSearch<D>::may_hold_points(const RegionBatch<D>& regions, std::uint64_t asked) {
   std::uint64_t near = 0;
   for (const Part<D>* part : siblings_.parts) near |= regions.may_meet_leaf(*part, asked & ~near);
-  if (siblings_.most_boxes == 0 || boxes_seen_ >= boxes_allowed_) return near;
+  if (siblings_.most_boxes == 0 || !may_ask()) return near;
   std::uint64_t held = 0;
   for (; near != 0; near &= near - 1) {
     const int s = std::countr_zero(near);
@@ -51,8 +62,9 @@ bool PointSearch<D>::in_boxes(const ConflictRegion<D>& region, const Part<D>& le
   const std::span<const Box<D>> boxes = siblings_.boxes[leaf.list].level(level);
   const std::size_t end = std::min(begin + RunBoxes<D>::kFanOut, boxes.size());
   for (std::size_t b = begin; b < end; ++b) {
-    if (boxes_seen_ == last_box_) return true;
-    ++boxes_seen_;
+    if (boxes_left_ == 0) return true;
+    --boxes_left_;
+    ++steps_;
     if (!region.may_meet(boxes[b])) continue;
     if (level > 0) {
       if (in_boxes(region, leaf, level - 1, b * RunBoxes<D>::kFanOut)) return true;
@@ -69,6 +81,7 @@ bool PointSearch<D>::in_boxes(const ConflictRegion<D>& region, const Part<D>& le
 template <int D>
 bool PointSearch<D>::in_run(const ConflictRegion<D>& region, std::size_t begin, std::size_t end) {
   for (std::size_t p = begin; p < end; ++p) {
+    steps_ += kStepsOfPoint;
     if (!region.may_hold(siblings_.points[p])) continue;
     found_[found_count_++ % found_.size()] = siblings_.points[p];
     return true;
@@ -79,12 +92,12 @@ bool PointSearch<D>::in_run(const ConflictRegion<D>& region, std::size_t begin, 
 template <int D>
 bool asking_for_points_pays(std::span<const std::array<VertexId, D + 1>> sample,
                             std::span<const Point<D>> points, const Siblings<D>& siblings) {
-  constexpr std::size_t kMostBoxesOfOne = 4096;  // on average; others take none
+  constexpr std::size_t kMostStepsOfOne = 16'384;  // on average; others take none
   PointSearch<D> search(siblings);
   std::size_t held = 0;
   for (const auto& corners : sample) {
     held += search.may_hold_a_point(ConflictRegion<D>(corners, points)) ? 1 : 0;
-    if (search.boxes_seen() > sample.size() * kMostBoxesOfOne) return false;
+    if (search.steps() > sample.size() * kMostStepsOfOne) return false;
   }
   return held <= sample.size() / 2;
 }

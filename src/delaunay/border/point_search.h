@@ -32,21 +32,22 @@ struct Siblings {
 template <int D>
 class PointSearch {
  public:
-  /// What `siblings` refer to must outlive it. All questions together may look at `boxes` boxes of
-  /// runs: then those of leaves are all that is asked.
+  /// What `siblings` refer to must outlive it. All questions together may take so many `steps`, and
+  /// some more for each that was answered by no: then boxes of leaves are all that is asked. A box
+  /// is a step, a point some.
   explicit PointSearch(const Siblings<D>& siblings,
-                       std::size_t boxes = std::numeric_limits<std::size_t>::max())
-      : siblings_(siblings), boxes_allowed_(boxes) {}
+                       std::size_t steps = std::numeric_limits<std::size_t>::max())
+      : siblings_(siblings), steps_allowed_(steps) {}
 
   /// False only if the region certainly holds no point of a sibling. The answer does not depend on
-  /// earlier questions, as long as there are boxes to be looked at.
+  /// earlier questions, as long as there are steps left.
   [[nodiscard]] bool may_hold_a_point(const ConflictRegion<D>& region);
 
   /// The bits of those regions `asked` for of which that is not false.
   [[nodiscard]] std::uint64_t may_hold_points(const RegionBatch<D>& regions, std::uint64_t asked);
 
-  /// How many boxes of runs all questions have looked at.
-  [[nodiscard]] std::size_t boxes_seen() const { return boxes_seen_; }
+  /// How many steps all questions have taken.
+  [[nodiscard]] std::size_t steps() const { return steps_; }
 
  private:
   [[nodiscard]] bool in_part(const ConflictRegion<D>& region, const Part<D>& part);
@@ -55,9 +56,14 @@ class PointSearch {
   [[nodiscard]] bool in_run(const ConflictRegion<D>& region, std::size_t begin, std::size_t end);
 
   Siblings<D> siblings_;
-  std::size_t boxes_allowed_;
-  std::size_t boxes_seen_ = 0;
-  std::size_t last_box_ = 0;  ///< how many may have been seen when the question ends
+  [[nodiscard]] bool may_ask() const {
+    return steps_ < steps_earned_ || steps_ - steps_earned_ < steps_allowed_;
+  }
+
+  std::size_t steps_allowed_;
+  std::size_t steps_earned_ = 0;  ///< by answers
+  std::size_t steps_ = 0;
+  std::size_t boxes_left_ = 0;  ///< of a question
   std::array<Point<D>, 4> found_{};
   std::size_t found_count_ = 0;  ///< ever
 };
