@@ -9,7 +9,7 @@ namespace spillway::detail {
 namespace {
 
 /// So many points for each cell, and cells of a tile: more tell little more.
-constexpr std::uint64_t kPointsOfCell = 128;
+constexpr double kPointsOfCell = 128;
 constexpr std::size_t kMostCells = 4096;
 /// Fewer cells tell no more than a box around them.
 constexpr std::size_t kFewestCells = 8;
@@ -24,7 +24,7 @@ constexpr std::size_t kSample = 4096;
 std::size_t TileSketches::cells_for(std::uint64_t points, std::uint64_t all_points) const {
   const double share = static_cast<double>(points) / static_cast<double>(all_points);
   const double room = share * static_cast<double>(bytes_) / double{CellSketch::kCellBytes};
-  const double useful = static_cast<double>(points / kPointsOfCell);
+  const double useful = static_cast<double>(points) / kPointsOfCell;
   return std::min(static_cast<std::size_t>(std::min(room, useful)), kMostCells);
 }
 

@@ -94,13 +94,18 @@ TYPED_TEST(PointSearchTest, FindsAPointOfEverySphereAndHalfSpaceThatHasOne) {
   EXPECT_GT(empty, 20U);
 }
 
-TEST(PointSearch, SeesThatAGapBetweenPointsIsEmpty) {
-  std::vector<Point<2>> ring;
+/// Five thousand points on a circle.
+std::vector<Point<2>> on_a_circle(double radius) {
+  std::vector<Point<2>> points;
   for (int i = 0; i < 5000; ++i) {
     const double t = 6.2831853 * i / 5000;
-    ring.push_back({2 * std::cos(t), 2 * std::sin(t)});
+    points.push_back({radius * std::cos(t), radius * std::sin(t)});
   }
-  const DividedPoints<2> divided(ring);
+  return points;
+}
+
+TEST(PointSearch, SeesThatAGapBetweenPointsIsEmpty) {
+  const DividedPoints<2> divided(on_a_circle(2));
   const Siblings<2> siblings = divided.siblings();
   PointSearch<2> search(siblings);
   const std::vector<Point<2>> inside{{-1.9, 0}, {1.9, 0}, {0, 1.9}};
@@ -110,12 +115,7 @@ TEST(PointSearch, SeesThatAGapBetweenPointsIsEmpty) {
 }
 
 TEST(PointSearch, EndsSoonIfItIsTold) {
-  std::vector<Point<2>> circle;
-  for (int i = 0; i < 5000; ++i) {
-    const double t = 6.2831853 * i / 5000;
-    circle.push_back({std::cos(t), std::sin(t)});
-  }
-  const DividedPoints<2> divided(circle);
+  const DividedPoints<2> divided(on_a_circle(1));
   Siblings<2> siblings = divided.siblings();
   const std::vector<Point<2>> corners{{1 - 1e-9, 0}, {0, 1 - 1e-9}, {-1 + 1e-9, 0}};
   const ConflictRegion<2> region({0, 1, 2}, corners);
@@ -129,12 +129,7 @@ TEST(PointSearch, EndsSoonIfItIsTold) {
 }
 
 TEST(PointSearch, AsksNoMoreWhenItsStepsHaveNotBeenWorthIt) {
-  std::vector<Point<2>> ring;
-  for (int i = 0; i < 5000; ++i) {
-    const double t = 6.2831853 * i / 5000;
-    ring.push_back({2 * std::cos(t), 2 * std::sin(t)});
-  }
-  const DividedPoints<2> divided(ring);
+  const DividedPoints<2> divided(on_a_circle(2));
   const Siblings<2> siblings = divided.siblings();
   const std::vector<Point<2>> corners{{-1.9, 0}, {1.9, 0}, {0, 1.9}, {-2.1, 0}, {2.1, 0}, {0, 2.1}};
   const ConflictRegion<2> misses({0, 1, 2}, corners);
