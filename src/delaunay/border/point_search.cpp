@@ -10,7 +10,8 @@ namespace {
 constexpr std::size_t kStepsOfPoint = 4;
 /// What it is worth to know that a region holds no point: its simplex is not merged, and of those
 /// behind it none is asked about.
-constexpr std::size_t kStepsOfNo = 8192;
+template <int D>
+constexpr std::size_t kStepsOfNo = D == 2 ? 8'192 : 32'768;
 
 }  // namespace
 
@@ -27,7 +28,7 @@ bool PointSearch<D>::may_hold_a_point(const ConflictRegion<D>& region) {
   boxes_left_ = siblings_.most_boxes;
   const bool held = std::any_of(siblings_.parts.begin(), siblings_.parts.end(),
                                 [&](const Part<D>* part) { return in_part(region, *part); });
-  steps_earned_ += held ? 0 : kStepsOfNo;
+  steps_earned_ += held ? 0 : kStepsOfNo<D>;
   return held;
 }
 
