@@ -230,7 +230,7 @@ std::optional<TileCut> cut_beside(const Box<3>& box, const LatticePoint& place, 
   return std::nullopt;
 }
 
-bool is_hollow(std::span<const LatticePoint> sample, int dimension) {
+bool is_clearly_hollow(std::span<const LatticePoint> sample, int dimension) {
   if (sample.size() < kLeastToldSample) return false;
   return (dimension == 2 ? filled_share_of<2>(sample) : filled_share_of<3>(sample)) < kHollow;
 }

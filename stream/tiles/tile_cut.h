@@ -28,8 +28,9 @@ struct CrowdedTile {
 };
 
 /// Whether points lie on curves or surfaces, by a sample of them: not if it is of few, nor if they
-/// fill a part of their box, as the first strips of a survey do.
-bool is_hollow(std::span<const LatticePoint> sample, int dimension);
+/// fill a part of their box, as the first strips of a survey do. Stricter than is_hollow(), which
+/// decides less.
+bool is_clearly_hollow(std::span<const LatticePoint> sample, int dimension);
 
 /// Whether some cut of them leaves less than half of the points with simplices across it, by a
 /// sample.

@@ -71,7 +71,7 @@ std::vector<LatticePoint> sample_of(const std::vector<Held>& held, std::size_t s
 bool TileTree::stays_whole() {
   if (points_ > options_.largest_undivided || options_.plan != nullptr) return false;
   const std::vector<LatticePoint> sample = sample_of(tiles_[0].held, sample_stride());
-  if (!is_hollow(sample, options_.dimension) || some_cut_pays(sample, options_.dimension)) {
+  if (!is_clearly_hollow(sample, options_.dimension) || some_cut_pays(sample, options_.dimension)) {
     return false;
   }
   capacity_ = std::max<std::size_t>(capacity_, points_);
@@ -121,7 +121,7 @@ void TileTree::divide(std::uint32_t number, std::vector<LatticePoint> sample,
   Tile whole = std::exchange(tiles_[number], {});
   const CutTree::NodeRef first_cut = cuts_.cuts();
   const auto first_new = static_cast<std::ptrdiff_t>(tiles_.size());
-  const bool hollow = representative && is_hollow(sample, options_.dimension);
+  const bool hollow = representative && is_clearly_hollow(sample, options_.dimension);
   const std::vector<DivisionCut> judged =
       hollow ? divide_sample(sample, tile_count, options_.dimension) : std::vector<DivisionCut>{};
   {
@@ -169,7 +169,7 @@ void TileTree::judge_tiles(std::span<const LatticePoint> sample) {
   std::vector<std::vector<LatticePoint>> samples(tiles_.size());
   for (std::size_t i = 0; i < sample.size(); ++i) samples[numbers[i]].push_back(sample[i]);
   for (std::size_t t = 0; t < samples.size(); ++t) {
-    if (!samples[t].empty()) tiles_[t].hollow = is_hollow(samples[t], options_.dimension);
+    if (!samples[t].empty()) tiles_[t].hollow = is_clearly_hollow(samples[t], options_.dimension);
   }
 }
 

@@ -33,7 +33,7 @@ bool TileSketches::is_known_hollow(const Tile& tile, const HeldPoints& held) con
   if (tile.hollow || dimension_ == 2) return tile.hollow;
   PointSample sample(std::max<std::size_t>(1, held.buffer.size() / kSample));
   held.buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
-  return is_hollow(sample.take(), dimension_);
+  return is_clearly_hollow(sample.take(), dimension_);
 }
 
 std::shared_ptr<CellSketch> TileSketches::begin(const Tile& tile, const HeldPoints& held,
@@ -51,29 +51,35 @@ void TileSketches::sketch(TileNode<D>& node,
                           const std::function<const Tile&(std::uint32_t)>& stored,
                           std::uint64_t all_points) const {
   Box<3> box;
-  for (const std::uint32_t number : node.stored) box.expand(stored(number).box);
-  CellSketch sketch(dimension_, cells_for(node.points, all_points), box);
-  bool tells = false;
-  const auto visit = [&](const auto& visit_part) {
-    for (const std::uint32_t number : node.stored) {
-      const Tile& tile = stored(number);
-      for (const TileSegment& segment : tile.segments) {
-        if (segment.sketches.empty()) visit_part(segment.box);
-        for (const auto& part : segment.sketches) visit_part(*part);
-        tells = tells || !segment.sketches.empty();
-      }
-      for (const HeldPoints& held : tile.held) {
-        if (is_known_hollow(tile, held)) {
-          tells = true;
-          held.buffer.visit([&](std::span<const LatticePoint> points) { visit_part(points); });
-        } else if (held.buffer.size() > 0) {
-          visit_part(held.box);
-        }
+  std::vector<Box<3>> loose;  // of points of which no more is known
+  std::vector<const CellSketch*> sketched;
+  std::vector<const PointBuffer*> held_points;
+  for (const std::uint32_t number : node.stored) {
+    const Tile& tile = stored(number);
+    box.expand(tile.box);
+    for (const TileSegment& segment : tile.segments) {
+      if (segment.sketches.empty()) loose.push_back(segment.box);
+      for (const auto& part : segment.sketches) sketched.push_back(part.get());
+    }
+    for (const HeldPoints& held : tile.held) {
+      if (is_known_hollow(tile, held)) {
+        held_points.push_back(&held.buffer);
+      } else if (held.buffer.size() > 0) {
+        loose.push_back(held.box);
       }
     }
+  }
+  if (sketched.empty() && held_points.empty()) return;
+  const auto visit = [&](const auto& visit_part) {
+    for (const Box<3>& some : loose) visit_part(some);
+    for (const CellSketch* some : sketched) visit_part(*some);
+    for (const PointBuffer* some : held_points) {
+      some->visit([&](std::span<const LatticePoint> points) { visit_part(points); });
+    }
   };
+  CellSketch sketch(dimension_, cells_for(node.points, all_points), box);
   visit([&](const auto& part) { sketch.gather(part); });
-  if (!tells || sketch.size() == 1) return;
+  if (sketch.size() == 1) return;
   visit([&](const auto& part) { sketch.measure(part); });
   node.sketch = std::make_shared<PointSketch<D>>(sketch.template sketch<D>());
 }

@@ -18,6 +18,7 @@
 #include "src/runtime/stage_times.h"
 #include "stream/tiles/cuts/cut_tree.h"
 #include "stream/tiles/cuts/dealt_points.h"
+#include "stream/tiles/point_batch.h"
 #include "stream/tiles/point_feed.h"
 #include "stream/tiles/regions/region_plan.h"
 #include "stream/tiles/storage/segment_reader.h"
@@ -114,18 +115,7 @@ class TileTree {
   [[nodiscard]] std::uint64_t bytes_written() const { return bytes_written_; }
 
  private:
-  /// What goes through the pipeline at a time.
-  struct Batch {
-    SourcePiece piece;                       ///< as it came from the source
-    StoredBlocks stored;                     ///< or as read back from a file
-    std::optional<std::uint64_t> arrival{};  ///< of the first point, if from a file
-    std::uint64_t run = 0;                   ///< of points from a file or a region, else 0
-    std::size_t region = 0;                  ///< by its position in the plan
-    std::uint64_t cuts_made = 0;             ///< when it was dealt
-    DealtPoints dealt;
-    std::vector<Spill> spills;
-    std::vector<std::uint32_t> cells_done;
-  };
+  using Batch = PointBatch;
   /// Sends batches through the steps: `fetch` fills them in order, `decode` makes their points.
   void run_batches(const std::function<bool(Batch&)>& fetch,
                    const std::function<void(Batch&, PointBlock&)>& decode, const CellDone& done);

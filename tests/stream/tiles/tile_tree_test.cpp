@@ -14,6 +14,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "tests/stream/tiles/dealt_tiles.h"
+#include "tests/stream/tiles/ordered_points.h"
 
 namespace spillway::detail {
 namespace {
