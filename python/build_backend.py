@@ -39,12 +39,11 @@ def build_wheel(
     jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1))
     _cmake("--build", build, "--parallel", jobs, "--target", "_spillway")
     version = _cached(build, "CMAKE_PROJECT_VERSION")
-    summary = _cached(build, "CMAKE_PROJECT_DESCRIPTION")
     name = f"spillway-{version}-{tag}.whl"
     with tempfile.TemporaryDirectory() as prefix:
         _cmake("--install", build, "--strip", "--component", "python", "--prefix", prefix)
         (packages,) = pathlib.Path(prefix).glob("lib/python3*/*-packages")
-        _add_information(packages / f"spillway-{version}.dist-info", version, summary, tag)
+        _add_information(packages / f"spillway-{version}.dist-info", tag)
         _pack(packages, pathlib.Path(wheel_directory) / name)
     return name
 
@@ -77,13 +76,8 @@ def _cached(build: pathlib.Path, variable: str) -> str:
     return found[1]
 
 
-def _add_information(folder: pathlib.Path, version: str, summary: str, tag: str) -> None:
-    folder.mkdir()
-    (folder / "METADATA").write_text(
-        f"Metadata-Version: 2.1\nName: spillway\nVersion: {version}\nSummary: {summary}\n"
-        "Requires-Python: >=3.9\nRequires-Dist: numpy\n",
-        encoding="utf-8",
-    )
+def _add_information(folder: pathlib.Path, tag: str) -> None:
+    """What a wheel holds besides the metadata that CMake installs."""
     (folder / "WHEEL").write_text(
         f"Wheel-Version: 1.0\nGenerator: spillway\nRoot-Is-Purelib: false\nTag: {tag}\n",
         encoding="utf-8",

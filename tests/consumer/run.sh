@@ -9,7 +9,7 @@
 #   fast-math        the same where the program is built with -ffast-math
 #   headers          every header compiles alone, without warnings, and includes nothing but the standard's and its own
 #   symbols          the shared library exports the public names alone
-#   docs             the code in docs/library.md is that of the program
+#   docs             the code in docs/library.md and README.md is that of the program
 #   everything       what is installed without a choice: command, manual, completions, library, licence, docs
 #   refusal          Spillway itself is not built with -ffast-math, nor without anything to build
 #   subdirectory     as a subdirectory it gives the library alone, and changes nothing of its parent project; no build
@@ -131,7 +131,7 @@ case $what in
     ;;
   docs)
     cat "$here"/*.cpp | tr -d ' \n' >"$work/program"
-    sed -n '/^```cpp/,/^```$/{/^```/d;s# *//.*##;s/ //g;/./p}' "$here/../../docs/library.md" >"$work/lines"
+    sed -s -n '/^```cpp/,/^```$/{/^```/d;s# *//.*##;s/ //g;/./p}' "$here"/../../{docs/library,README}.md >"$work/lines"
     (($(wc -l <"$work/lines") > 30)) || fail "there is no code"
     while read -r line; do
       grep -qF -- "$line" "$work/program" || fail "in neither source: $line"

@@ -1,4 +1,4 @@
-"""The code in docs/python.md and in docstrings runs."""
+"""The code in docs/python.md, in README.md and in docstrings runs."""
 
 import contextlib
 import doctest
@@ -35,6 +35,13 @@ class Docs(unittest.TestCase):
             self.assertGreater(os.path.getsize("hills.png"), 10_000)
         said = re.search(r"^    print\(error\) +# (.*)$", page, re.MULTILINE).group(1)
         self.assertIn(said, printed.getvalue())
+
+    def test_the_code_of_the_first_page_runs(self):
+        page = (PAGE.parents[1] / "README.md").read_text(encoding="utf-8")
+        (block,) = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            exec(compile(block, "README.md", "exec"), {})
+        self.assertGreaterEqual(int(printed.getvalue()), 0)
 
     def test_every_attribute_of_the_page_is_there(self):
         tri = spillway.Delaunay([[0, 0], [1, 0], [0, 1]])

@@ -1,7 +1,11 @@
 // The module's one door.
 
 #include <cpl_conv.h>
+#include <dlfcn.h>
 #include <gdal.h>
+
+#include <filesystem>
+#include <system_error>
 
 #include "formats/gdal/gdal.h"
 #include "formats/gdal/module/crs.h"
@@ -14,6 +18,18 @@
 namespace spillway::detail {
 namespace {
 
+/// In an archive that brings GDAL along, its tables do not lie where it was built to look.
+void use_bundled_data() {
+  Dl_info info{};
+  if (::dladdr(reinterpret_cast<const void*>(&use_bundled_data), &info) == 0) return;
+  std::error_code ignored;  // what cannot be looked at is not there
+  const std::filesystem::path data =
+      std::filesystem::path(info.dli_fname).parent_path() / "../../share/gdal";
+  if (std::filesystem::is_directory(data, ignored)) {
+    CPLSetConfigOption("GDAL_DATA", data.lexically_normal().c_str());
+  }
+}
+
 class LoadedGdal : public Gdal {
  public:
   LoadedGdal() {
@@ -21,6 +37,7 @@ class LoadedGdal : public Gdal {
     // Files get their final name only when complete, so that a crash may leave them broken.
     CPLSetConfigOption("OGR_SQLITE_SYNCHRONOUS", "OFF");
     CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");
+    use_bundled_data();
     GDALAllRegister();
   }
 

@@ -1,0 +1,165 @@
+"""Draws the pictures of the pages, by the command and the Python module.
+
+    python3 docs/pictures/draw.py COMMAND [FOLDER] [--points N]
+
+COMMAND is the spillway to run, FOLDER where pictures go (beside this file, if left out). N is the largest set of points
+for resident-border.svg: 1e8, which takes a minute or two. Needs the module spillway and matplotlib.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import tempfile
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+import spillway
+
+INK, FINAL, BORDER = "#333333", "#7fb069", "#e8833a"
+plt.rcParams.update({"font.size": 9, "axes.edgecolor": INK, "svg.hashsalt": "spillway", "savefig.dpi": 120})
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Draws the pictures of the pages.")
+    parser.add_argument("command", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path, nargs="?", default=pathlib.Path(__file__).parent)
+    parser.add_argument("--points", type=float, default=1e8)
+    arguments = parser.parse_args()
+    arguments.folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="spillway-pictures-") as work:
+        scene = Scene(arguments.command.resolve(), pathlib.Path(work), arguments.folder.resolve())
+        draw_mesh(scene)
+        draw_dem(scene)
+        draw_contours(scene)
+        draw_section(scene)
+        draw_border(scene)
+        draw_resident_border(scene, int(arguments.points))
+
+
+class Scene:
+    """A hilly country with woods and houses, and where its files lie."""
+
+    def __init__(self, command, work, folder):
+        self.command, self.work, self.folder = command, work, folder
+        self.spillway("generate", "terrain", "-n", "4e5", "--seed", "7", "-o", "hills.las")
+        low = spillway.info(str(work / "hills.las")).extent[0]
+        self.x, self.y = (100 * np.floor(value / 100) for value in low[:2])
+
+    def spillway(self, *arguments):
+        subprocess.run([self.command, *map(str, arguments), "-q"], cwd=self.work, check=True)
+
+    def box(self, west, south, east, north):
+        """A box in metres from the corner of the country, as --zoom and --bounds take it."""
+        return f"{self.x + west},{self.y + south},{self.x + east},{self.y + north}"
+
+    def pixels(self, **options):
+        return spillway.dem(str(self.work / "hills.las"), **options)
+
+    def save(self, figure, name):
+        options = {"metadata": {"Date": None}} if name.endswith(".svg") else {}
+        figure.savefig(self.folder / name, bbox_inches="tight", **options)
+        plt.close(figure)
+
+
+def draw_mesh(scene):
+    scene.spillway("render", "hills.las", "-o", "relief.png", "--thin", 2, "--max-edge", 40, "--size", 640)
+    scene.spillway("render", "hills.las", "-o", "mesh.png", "--zoom", scene.box(300, 150, 360, 195), "--wireframe", "--size", 520)
+    for name in ("relief.png", "mesh.png"):
+        (scene.work / name).replace(scene.folder / name)
+
+
+def draw_dem(scene):
+    """The same place with everything on it, and from the lowest points."""
+    box = tuple(float(side) for side in scene.box(60, 100, 300, 260).split(","))
+    figure, axes = plt.subplots(1, 2, figsize=(8.4, 3))
+    for axis, title, options in zip(axes, ("all points", "the lowest one in 6 m"), ({}, {"thin": (6, "lowest")})):
+        axis.imshow(scene.pixels(resolution=0.5, product="hillshade", bounds=box, **options).values, cmap="gray")
+        axis.set(title=title, xticks=[], yticks=[])
+    scene.save(figure, "dem.png")
+
+
+def draw_contours(scene):
+    """Contours of the lowest points over their shaded relief."""
+    low = ("--thin", "6:lowest")
+    scene.spillway("contour", "hills.las", "-o", "lines.geojson", "--interval", 2, "--force-crs", *low)
+    lines = json.loads((scene.work / "lines.geojson").read_text(encoding="utf-8"))["features"]
+    shade = scene.pixels(resolution=1, product="hillshade", thin=(6, "lowest"))
+    west, step, _, north, _, _ = shade.geotransform
+    rows, columns = shade.values.shape
+    figure, axis = plt.subplots(figsize=(6.4, 4.6))
+    extent = (west, west + step * columns, north - step * rows, north)
+    axis.imshow(shade.values, cmap="gray", vmin=-60, extent=extent)
+    for line in lines:
+        x, y, *_ = np.array(line["geometry"]["coordinates"]).T
+        heavy = line["properties"]["elevation"] % 10 == 0
+        axis.plot(x, y, color="#8a4b1f", linewidth=1.1 if heavy else 0.4)
+    axis.set(xticks=[], yticks=[], xlim=(scene.x + 50, scene.x + 370), ylim=(scene.y + 80, scene.y + 310))
+    scene.save(figure, "contours.png")
+
+
+def draw_section(scene):
+    """Houses in space, cut at the height of a table."""
+    scene.spillway("generate", "scan", "-n", "1e5", "-o", "houses.las")
+    low = spillway.info(str(scene.work / "houses.las")).extent[0]
+    scene.spillway(
+        "render", "houses.las", "--dim", 3, "-o", "section.png", "--slice", f"z={low[2] + 1.2:.2f}", "--size", 640
+    )
+    (scene.work / "section.png").replace(scene.folder / "section.png")
+
+
+def draw_border(scene):
+    """Four tiles, each triangulated by itself: what is final, and what stays in memory as border."""
+    points = np.random.default_rng(5).random((500, 2))
+    figure, axis = plt.subplots(figsize=(4.6, 4.6))
+    for column in (0, 1):
+        for row in (0, 1):
+            inside = (points[:, 0] >= 0.5) == column, (points[:, 1] >= 0.5) == row
+            tile = spillway.Delaunay(points[inside[0] & inside[1]])
+            centres = tile.circumcenters
+            radii = np.linalg.norm(tile.points[tile.simplices[:, 0]] - centres, axis=1)
+            # The other tiles are beyond the two lines in the middle.
+            near_x = radii > np.abs(centres[:, 0] - 0.5)
+            near_y = radii > np.abs(centres[:, 1] - 0.5)
+            beyond = ((centres[:, 0] >= 0.5) != column) | ((centres[:, 1] >= 0.5) != row)
+            border = near_x | near_y | beyond
+            x, y = tile.points.T
+            for chosen, colour in ((tile.simplices[~border], FINAL), (tile.simplices[border], BORDER)):
+                axis.tripcolor(x, y, chosen, np.zeros(len(x)), cmap=matplotlib.colors.ListedColormap([colour]))
+                axis.triplot(x, y, chosen, color="white", linewidth=0.5)
+    axis.axhline(0.5, color=INK, linewidth=1)
+    axis.axvline(0.5, color=INK, linewidth=1)
+    axis.set(aspect="equal", xlim=(0, 1), ylim=(0, 1))
+    axis.axis("off")
+    scene.save(figure, "border.png")
+
+
+def draw_resident_border(scene, most):
+    """How many triangles of terrain are in memory at a time as border, beside all."""
+    counts = [n for n in (100_000, 1_000_000, 10_000_000, 100_000_000) if n <= most]
+    resident, all_of_them = [], []
+    for count in counts:
+        scene.spillway("generate", "terrain", "-n", count, "-o", "many.las")
+        scene.spillway("triangulate", "many.las", "-o", "many.spm", "--memory", "256M", "--stats", "many.json")
+        figures = json.loads((scene.work / "many.json").read_text(encoding="utf-8"))
+        resident.append(figures["border_simplices"])
+        all_of_them.append(figures["simplices"])
+        for name in ("many.las", "many.spm", "many.json"):
+            (scene.work / name).unlink()
+    figure, axis = plt.subplots(figsize=(5.4, 3.2))
+    axis.loglog(counts, all_of_them, "o-", color=FINAL, label="triangles of the mesh")
+    axis.loglog(counts, resident, "o-", color=BORDER, label="of these in memory as border, at most")
+    for count, border, whole in zip(counts, resident, all_of_them):
+        axis.annotate(f"{100 * border / whole:.2g} %", (count, border), (0, 6), textcoords="offset points", ha="center")
+    axis.set(xlabel="points of terrain", ylabel="triangles")
+    axis.margins(x=0.1)
+    axis.grid(alpha=0.3)
+    axis.legend(frameon=False)
+    scene.save(figure, "resident-border.svg")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,25 @@
+# The pages for users: their shell blocks run, and their pictures can be drawn. C++ is for tests/consumer, Python for
+# tests/python/test_docs.py.
+find_package(Python3 COMPONENTS Interpreter)
+if(Python3_FOUND)
+  set(python ${Python3_EXECUTABLE})
+  if(SPILLWAY_PYTHON)
+    set(python ${Python_EXECUTABLE})
+  endif()
+  foreach(page README docs/recipes docs/library docs/python)
+    cmake_path(GET page FILENAME name)
+    add_test(NAME Docs.blocks_of_${name}
+      COMMAND ${python} -B ${CMAKE_CURRENT_LIST_DIR}/run_blocks.py ${PROJECT_SOURCE_DIR}/${page}.md $<TARGET_FILE:spillway>)
+    set_tests_properties(Docs.blocks_of_${name} PROPERTIES LABELS cli TIMEOUT 600 SKIP_RETURN_CODE 77
+      ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python")
+  endforeach()
+  if(SPILLWAY_PYTHON AND SPILLWAY_GDAL)
+    add_test(NAME Docs.pictures_can_be_drawn COMMAND ${python} -B ${PROJECT_SOURCE_DIR}/docs/pictures/draw.py
+      $<TARGET_FILE:spillway> ${CMAKE_CURRENT_BINARY_DIR}/pictures --points 1e5)
+    set_tests_properties(Docs.pictures_can_be_drawn PROPERTIES LABELS cli TIMEOUT 300
+      ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python" SKIP_REGULAR_EXPRESSION "No module named 'matplotlib'")
+  endif()
+endif()
+add_test(NAME Docs.packages_are_built_with_what_packages_txt_lists
+  COMMAND ${CMAKE_CURRENT_LIST_DIR}/build_dependencies.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(Docs.packages_are_built_with_what_packages_txt_lists PROPERTIES LABELS cli TIMEOUT 20)
