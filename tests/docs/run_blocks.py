@@ -41,11 +41,11 @@ exec -a spillway COMMAND "${arguments[@]}"
 """
 
 
-def lacking(command, text):
-    """What the page needs and this machine lacks; empty if it lacks nothing."""
+def lacking(command, blocks):
+    """What the blocks need and this machine lacks; empty if it lacks nothing."""
     version = subprocess.run([command, "--version"], check=True, capture_output=True, text=True).stdout
     lacks = re.findall(r"without \w+", version)
-    if "import spillway" in text and importlib.util.find_spec("spillway") is None:
+    if any("import spillway" in block["text"] for block in blocks) and importlib.util.find_spec("spillway") is None:
         lacks.append("no Python module spillway")
     return lacks + [f"no {name}" for name in ("mpirun", "gdal_calc.py", "awk", "zcat") if shutil.which(name) is None]
 
@@ -81,10 +81,10 @@ def run(text, folder, environment):
 def main():
     page, command = pathlib.Path(sys.argv[1]), str(pathlib.Path(sys.argv[2]).resolve())
     text = page.read_text(encoding="utf-8")
-    if missing := lacking(command, text):
+    blocks = list(BLOCK.finditer(text))
+    if missing := lacking(command, blocks):
         print("skipped:", ", ".join(missing))
         return SKIPPED
-    blocks = list(BLOCK.finditer(text))
     assert len(blocks) == len(re.findall(r"^```sh$", text, re.MULTILINE)), "a block does not end"
     failures = 0
     with tempfile.TemporaryDirectory(prefix="spillway-blocks-") as work:
