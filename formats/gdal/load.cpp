@@ -1,5 +1,6 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <spillway/version.h>
 
 #include <array>
 #include <cerrno>
@@ -17,9 +18,11 @@ namespace {
 constexpr const char* kModule = "spillway_gdal.so";
 
 /// Where the module may lie, seen from the folder of the running program: beside it when built,
-/// in the folder of libraries when installed.
-constexpr std::array<std::string_view, 3> kFolders = {".", "../lib/spillway",
-                                                      "../" SPILLWAY_LIBRARY_FOLDER "/spillway"};
+/// in the folder of libraries when installed. Programs of others that have the static library in
+/// them lie anywhere: for them the last one is where this build is installed.
+constexpr std::array<std::string_view, 4> kFolders = {".", "../lib/spillway",
+                                                      "../" SPILLWAY_LIBRARY_FOLDER "/spillway",
+                                                      SPILLWAY_INSTALLED_LIBRARIES "/spillway"};
 /// The same, seen from the folder of Spillway's shared library: when installed, when built, and in
 /// the Python package.
 constexpr std::array<std::string_view, 3> kLibraryFolders = {"spillway", "../bin", "."};
@@ -81,6 +84,15 @@ const Gdal& load() {
         fmt::format("cannot load the module {}: {}; {}", path.string(), reason,
                     no_memory ? "raise the limit of memory (ulimit -v)" : "install GDAL (libgdal)"),
         path.string(), no_memory ? ENOMEM : 0);
+  }
+  void* const version = ::dlsym(module, kGdalVersion);
+  const std::string_view its_own =
+      version == nullptr ? "unknown" : reinterpret_cast<GdalVersion>(version)();
+  if (its_own != SPILLWAY_VERSION_TEXT) {
+    throw Error(fmt::format("the module {} is of another version of Spillway: {}, where {} is "
+                            "needed; install both of one version",
+                            path.string(), its_own, SPILLWAY_VERSION_TEXT),
+                ErrorCode::kInputOutput, {.file = path.string()});
   }
   return *reinterpret_cast<GdalFactory>(factory)();
 }

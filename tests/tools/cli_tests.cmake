@@ -39,6 +39,9 @@ spillway_command_test(cli_out_of_core_tests cli
   tools/process/cli_memory_test.cpp tools/process/cli_out_of_core_test.cpp)
 spillway_command_test(cli_out_of_core_fault_tests fault
   tools/process/cli_out_of_core_fault_test.cpp)
+add_library(other_gdal_module MODULE tools/inputs/other_gdal_module.cpp)
+set_target_properties(other_gdal_module PROPERTIES PREFIX "" OUTPUT_NAME spillway_gdal
+  LIBRARY_OUTPUT_DIRECTORY ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/other_version)
 spillway_command_test(cli_input_tests cli
   tools/inputs/cli_crs_test.cpp tools/inputs/cli_filter_test.cpp tools/inputs/cli_inputs_test.cpp
   tools/inputs/cli_lattice_test.cpp tools/inputs/cli_salvage_test.cpp tools/inputs/cli_table_test.cpp tools/inputs/cli_survey_test.cpp)

@@ -3,6 +3,7 @@
 #include <cpl_conv.h>
 #include <dlfcn.h>
 #include <gdal.h>
+#include <spillway/version.h>
 
 #include <filesystem>
 #include <system_error>
@@ -89,6 +90,10 @@ class LoadedGdal : public Gdal {
 
 }  // namespace
 }  // namespace spillway::detail
+
+extern "C" __attribute__((visibility("default"))) const char* spillway_gdal_version() {
+  return SPILLWAY_VERSION_TEXT;
+}
 
 extern "C" __attribute__((visibility("default"))) const spillway::detail::Gdal* spillway_gdal() {
   static const spillway::detail::LoadedGdal instance;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -187,6 +188,20 @@ TEST(CoordinateSystems, OfCommonCodesAreWrittenWithoutTheModule) {
   const Result result = work.run("./alone convert -q in.xyz --crs EPSG:9141 -o other.las");
   EXPECT_NE(result.exit_code, 0);
   EXPECT_THAT(result.err, HasSubstr("need the module spillway_gdal.so"));
+}
+
+TEST(CoordinateSystems, TheModuleForGdalOfAnotherVersionIsRefused) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  const Workspace work;
+  work.write("in.xyz", "1 2 3\n4 5 6\n7 9 8\n");
+  const std::string folder =
+      (std::filesystem::path(command_path()).parent_path() / "other_version").string();
+  const Result result =
+      work.run("SPILLWAY_MODULES=" + folder + " spillway dem -q in.xyz -o out.tif --resolution 1");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("other_version/spillway_gdal.so is of another version of "
+                                    "Spillway: 0.0.1, where "));
+  EXPECT_FALSE(work.has("out.tif"));
 }
 
 /// Whether a run of the command opens GDAL's module.
