@@ -13,6 +13,9 @@ if(Python3_FOUND)
     set_tests_properties(Docs.blocks_of_${name} PROPERTIES LABELS cli TIMEOUT 600 SKIP_RETURN_CODE 77
       ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python")
   endforeach()
+  add_test(NAME Docs.links_between_pages_lead_somewhere
+    COMMAND ${python} -B ${CMAKE_CURRENT_LIST_DIR}/links.py ${PROJECT_SOURCE_DIR})
+  set_tests_properties(Docs.links_between_pages_lead_somewhere PROPERTIES LABELS cli TIMEOUT 20)
   if(SPILLWAY_PYTHON AND SPILLWAY_GDAL)
     add_test(NAME Docs.pictures_can_be_drawn COMMAND ${python} -B ${PROJECT_SOURCE_DIR}/docs/pictures/draw.py
       $<TARGET_FILE:spillway> ${CMAKE_CURRENT_BINARY_DIR}/pictures --points 1e5)
