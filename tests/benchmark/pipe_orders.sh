@@ -61,7 +61,7 @@ for program in "$spillway" "$driver" /usr/bin/time; do
   [ -x "$program" ] || { echo "pipe_orders.sh: no program $program" >&2; exit 2; }
 done
 
-folder=$(mktemp -d "$tmpdir/pipe-orders-XXXXXX") || exit 2
+folder=$(mktemp -d "$(realpath -- "$tmpdir")/pipe-orders-XXXXXX") || exit 2
 trap 'rm -rf "$folder"' EXIT
 trap 'exit 130' INT TERM
 mkfifo "$folder/pipe"

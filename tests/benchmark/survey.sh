@@ -86,7 +86,7 @@ for program in "${needed[@]}"; do
   [ -x "$program" ] || { echo "survey.sh: no program $program" >&2; exit 2; }
 done
 
-folder=$(mktemp -d "$tmpdir/survey-XXXXXX") || exit 2
+folder=$(mktemp -d "$(realpath -- "$tmpdir")/survey-XXXXXX") || exit 2
 trap 'rm -rf "$folder"' EXIT
 trap 'exit 130' INT TERM
 
