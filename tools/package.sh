@@ -1,17 +1,23 @@
 #!/usr/bin/env bash
-# Builds Debian packages and an archive that needs no installation, into build/packages. Installs what is missing.
+# Builds Debian packages, and an archive that needs no installation, into build/packages. Installs what is missing.
+# Packages take some ten minutes on two cores, the archive half of that; where ccache serves them, two minutes.
 #
-#   tools/package.sh           all
-#   tools/package.sh debian    spillway, libspillway0.1, libspillway-dev, python3-spillway, spillway-doc; lintian checks them
-#   tools/package.sh archive   spillway-VERSION-debian12-MACHINE.tar.gz: the command, and what it needs but the C library
+#   tools/package.sh           both
+#   tools/package.sh debian    spillway, libspillway0.1, libspillway-dev, python3-spillway, spillway-doc; lintian
+#                              checks them
+#   tools/package.sh archive   spillway-VERSION-SYSTEM-MACHINE.tar.gz: the command, and what it needs but the C library
 #
 # The sources are those of this folder as they are now, committed or not.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-what=${1:-all}
-if [[ ! $what =~ ^(all|debian|archive)$ ]]; then
-  echo "package.sh: '$what' is none of all, debian, archive" >&2
+what=${1:-both}
+if [[ $what == -h || $what == --help ]]; then
+  sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+  exit 0
+fi
+if (($# > 1)) || [[ ! $what =~ ^(both|debian|archive)$ ]]; then
+  echo "package.sh: '$*' is none of debian, archive, both" >&2
   exit 2
 fi
 
@@ -19,38 +25,55 @@ tools/install_packages.sh package
 jobs=$(nproc)
 packages=$PWD/build/packages
 mkdir -p "$packages"
+# All is made here, and moved when it is complete.
+work=$packages/work
+trap 'rm -rf "$work"' EXIT
+rm -rf "$work"
 
-if [[ $what != archive ]]; then
+build_debian_packages() {
   echo "== Debian packages"
-  sources=$packages/spillway
-  rm -rf "$sources" "$packages"/*.{deb,dsc,changes,buildinfo,tar.xz}
-  mkdir "$sources"
-  tar --create --exclude-vcs --exclude=./build . | tar --extract --directory "$sources"
+  local sources=$work/debian/spillway log=$packages/debian.log
+  mkdir -p "$sources"
+  tar --create --exclude-vcs --exclude=./build --exclude='*.part' --exclude=__pycache__ . |
+    tar --extract --directory "$sources"
   # debhelper gives compilers a home folder of its own; the compiler's cache stays where it is.
+  if command -v ccache >/dev/null; then
+    CCACHE_DIR=$(ccache --get-config cache_dir)
+    export CCACHE_DIR
+  fi
   (
     cd "$sources"
-    export CCACHE_DIR=${CCACHE_DIR:-$HOME/.cache/ccache} DEB_BUILD_OPTIONS="noautodbgsym ${DEB_BUILD_OPTIONS:-}"
-    dpkg-buildpackage --no-sign -j"$jobs"
-  ) >"$packages/build.log" 2>&1 || {
-    tail -n 40 "$packages/build.log"
-    echo "package.sh: the packages do not build; all messages are in $packages/build.log" >&2
+    DEB_BUILD_OPTIONS="noautodbgsym ${DEB_BUILD_OPTIONS:-}" dpkg-buildpackage --no-sign -j"$jobs"
+  ) >"$log" 2>&1 || {
+    tail -n 40 "$log"
+    echo "package.sh: the packages do not build; all messages are in $log" >&2
     exit 1
   }
-  rm -rf "$sources"
-  lintian --fail-on error,warning "$packages"/*.changes
-fi
+  lintian --fail-on error,warning "$work"/debian/*.changes || {
+    echo "package.sh: lintian finds faults in the packages" >&2
+    exit 1
+  }
+  rm -f "$packages"/*.{deb,dsc,changes,buildinfo,tar.xz}
+  mv "$work"/debian/*.{deb,dsc,changes,buildinfo,tar.xz} "$packages"
+}
 
-if [[ $what != debian ]]; then
+build_archive() {
   echo "== archive"
   cmake -S . -B build/archive -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_LIBDIR=lib -DSPILLWAY_BUNDLE=ON \
     -DSPILLWAY_LIBRARY=OFF -DSPILLWAY_TESTS=OFF --log-level=WARNING
   cmake --build build/archive -j "$jobs" --target product
-  cpack --config build/archive/CPackConfig.cmake -B "$packages" >"$packages/cpack.log" || {
-    cat "$packages/cpack.log"
+  mkdir -p "$work/archive"
+  cpack --config build/archive/CPackConfig.cmake -B "$work/archive" >"$packages/archive.log" 2>&1 || {
+    cat "$packages/archive.log"
+    echo "package.sh: the archive cannot be made" >&2
     exit 1
   }
-  rm -rf "$packages/_CPack_Packages"
-fi
+  rm -f "$packages"/*.tar.gz
+  mv "$work"/archive/*.tar.gz "$packages"
+}
 
+[[ $what == archive ]] || build_debian_packages
+[[ $what == debian ]] || build_archive
 echo "== build/packages"
-(cd "$packages" && ls -sh -- *.deb *.tar.gz 2>/dev/null) || true
+cd "$packages"
+find . -maxdepth 1 -name '*.deb' -printf '%f\n' -o -name '*.tar.gz' -printf '%f\n' | sort

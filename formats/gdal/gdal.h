@@ -102,8 +102,8 @@ const Gdal& gdal();
 using GdalFactory = const Gdal* (*)();
 inline constexpr const char* kGdalFactory = "spillway_gdal";
 
-/// And under kGdalVersion: it returns the version of Spillway that the module is of, which must be
-/// the caller's.
+/// The other function that the module has, under the name kGdalVersion: it returns the version of
+/// Spillway that the module is of, which must be the caller's.
 using GdalVersion = const char* (*)();
 inline constexpr const char* kGdalVersion = "spillway_gdal_version";
 

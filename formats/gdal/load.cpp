@@ -18,8 +18,8 @@ namespace {
 constexpr const char* kModule = "spillway_gdal.so";
 
 /// Where the module may lie, seen from the folder of the running program: beside it when built,
-/// in the folder of libraries when installed. Programs of others that have the static library in
-/// them lie anywhere: for them the last one is where this build is installed.
+/// in the folder of libraries when installed. The last one is where this build is installed, for
+/// programs that have the static library in them and lie anywhere.
 constexpr std::array<std::string_view, 4> kFolders = {".", "../lib/spillway",
                                                       "../" SPILLWAY_LIBRARY_FOLDER "/spillway",
                                                       SPILLWAY_INSTALLED_LIBRARIES "/spillway"};
@@ -67,8 +67,9 @@ std::filesystem::path find_module() {
   }
   throw Error(
       fmt::format("coordinate systems, GeoTIFF, GeoPackage and Shapefile need the module {}, which "
-                  "is neither in {} nor in {}; install it, or name its folder in SPILLWAY_MODULES",
-                  kModule, folder.string(), (folder / kFolders[1]).lexically_normal().string()),
+                  "is in none of {}, {} and {}; install it, or name its folder in SPILLWAY_MODULES",
+                  kModule, folder.string(), (folder / kFolders[1]).lexically_normal().string(),
+                  kFolders.back()),
       ErrorCode::kInputOutput, {.file = kModule, .system_error = ENOENT});
 }
 

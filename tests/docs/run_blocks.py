@@ -2,13 +2,14 @@
 
     run_blocks.py PAGE COMMAND
 
-PAGE is a page in Markdown, COMMAND the spillway to run; `python3` is the interpreter that runs this. Each block is one run of bash, which must succeed. So that pages
-may speak of a hundred million points, `spillway generate` makes at most 20,000. A block below a line
+PAGE is a page in Markdown, COMMAND the spillway to run; `python3` is the interpreter that runs this. Each block is one
+run of bash, which must succeed. So that pages may speak of a hundred million points, `spillway generate` makes at most
+20,000. `build/release` is the build that COMMAND is of, `docs` that of this checkout. A block below a line
 
     <!-- not run: REASON -->
 
 is only shown; programs of this checkout that it names must be there. Prints a line for each block, and ends with 77
-(skipped) where the build or the machine lacks what the page needs.
+(skipped) where the build or the machine lacks what the blocks need.
 """
 
 import importlib.util
@@ -17,6 +18,7 @@ import pathlib
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -45,9 +47,11 @@ def lacking(command, blocks):
     """What the blocks need and this machine lacks; empty if it lacks nothing."""
     version = subprocess.run([command, "--version"], check=True, capture_output=True, text=True).stdout
     lacks = re.findall(r"without \w+", version)
-    if any("import spillway" in block["text"] for block in blocks) and importlib.util.find_spec("spillway") is None:
-        lacks.append("no Python module spillway")
-    return lacks + [f"no {name}" for name in ("mpirun", "gdal_calc.py", "awk", "zcat") if shutil.which(name) is None]
+    text = "".join(block["text"] for block in blocks if not block["reason"])
+    programs = [name for name in ("mpirun", "gdal_calc.py", "awk", "zcat", "cmake") if name in text]
+    lacks += [f"no {name}" for name in programs if shutil.which(name) is None]
+    modules = [name for name in ("numpy", "spillway") if f"import {name}" in text]
+    return lacks + [f"no Python module {name}" for name in modules if importlib.util.find_spec(name) is None]
 
 
 def check_shown(text):
@@ -62,35 +66,43 @@ def add_program(path, text):
 
 
 def run(text, folder, environment):
-    done = subprocess.run(
+    """Whether the block succeeds in time; else what it has printed is shown."""
+    shell = subprocess.Popen(
         ["bash", "-e", "-u", "-o", "pipefail", "-c", text],
         cwd=folder,
         env=environment,
-        timeout=SECONDS,
+        start_new_session=True,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
         errors="replace",
     )
-    if done.returncode != 0:
-        print(done.stdout)
-    return done.returncode == 0
+    try:
+        printed, _ = shell.communicate(timeout=SECONDS)
+    except subprocess.TimeoutExpired:
+        os.killpg(shell.pid, signal.SIGKILL)
+        printed = f"{shell.communicate()[0]}\nnot done after {SECONDS} s"
+    if shell.returncode != 0:
+        print(printed)
+    return shell.returncode == 0
 
 
 def main():
     page, command = pathlib.Path(sys.argv[1]), str(pathlib.Path(sys.argv[2]).resolve())
     text = page.read_text(encoding="utf-8")
     blocks = list(BLOCK.finditer(text))
+    assert len(blocks) == len(re.findall(r"^```sh$", text, re.MULTILINE)), "a block does not end"
     if missing := lacking(command, blocks):
         print("skipped:", ", ".join(missing))
         return SKIPPED
-    assert len(blocks) == len(re.findall(r"^```sh$", text, re.MULTILINE)), "a block does not end"
     failures = 0
     with tempfile.TemporaryDirectory(prefix="spillway-blocks-") as work:
         programs, folder = pathlib.Path(work, "bin"), pathlib.Path(work, "folder")
         programs.mkdir()
-        folder.mkdir()
+        (folder / "build").mkdir(parents=True)
+        (folder / "build" / "release").symlink_to(pathlib.Path(command).parents[1])
+        (folder / "docs").symlink_to(CHECKOUT / "docs")
         add_program(programs / "spillway", FEWER_POINTS.replace("COMMAND", shlex.quote(command)))
         add_program(programs / "python3", f'#!/bin/sh\nexec {shlex.quote(sys.executable)} "$@"\n')
         environment = {
@@ -110,7 +122,8 @@ def main():
             begin = time.monotonic()
             succeeded = run(block["text"], folder, environment)
             failures += not succeeded
-            print(f"{'ran    ' if succeeded else 'FAILED '} {page.name}:{line}  {first}  {time.monotonic() - begin:.1f} s")
+            seconds = time.monotonic() - begin
+            print(f"{'ran    ' if succeeded else 'FAILED '} {page.name}:{line}  {first}  {seconds:.1f} s")
     return 1 if failures else 0
 
 

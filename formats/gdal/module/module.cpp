@@ -19,8 +19,10 @@
 namespace spillway::detail {
 namespace {
 
-/// In an archive that brings GDAL along, its tables do not lie where it was built to look.
+/// In an archive that brings GDAL along, its tables do not lie where it was built to look. A folder
+/// that the user names goes before.
 void use_bundled_data() {
+  if (CPLGetConfigOption("GDAL_DATA", nullptr) != nullptr) return;
   Dl_info info{};
   if (::dladdr(reinterpret_cast<const void*>(&use_bundled_data), &info) == 0) return;
   std::error_code ignored;  // what cannot be looked at is not there
