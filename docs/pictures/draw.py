@@ -67,7 +67,8 @@ class Scene:
 
 def draw_mesh(scene):
     scene.spillway("render", "hills.las", "-o", "relief.png", "--thin", 2, "--max-edge", 40, "--size", 640)
-    scene.spillway("render", "hills.las", "-o", "mesh.png", "--zoom", scene.box(300, 150, 360, 195), "--wireframe", "--size", 520)
+    zoom = scene.box(300, 150, 360, 195)
+    scene.spillway("render", "hills.las", "-o", "mesh.png", "--zoom", zoom, "--wireframe", "--size", 520)
     for name in ("relief.png", "mesh.png"):
         (scene.work / name).replace(scene.folder / name)
 

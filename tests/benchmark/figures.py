@@ -47,9 +47,10 @@ def main():
     for name, _ in chosen:
         (folder / f"{name}.txt").unlink(missing_ok=True)
     subprocess.run(["bash", "-e", "-c", build], cwd=CHECKOUT, check=True, stdout=subprocess.DEVNULL)
+    programs = [pathlib.Path(sys.executable).parent, CHECKOUT / "build/release/bin", CHECKOUT / "tests/benchmark"]
     environment = {
         **os.environ,
-        "PATH": f"{pathlib.Path(sys.executable).parent}:{CHECKOUT}/build/release/bin:{CHECKOUT}/tests/benchmark:{os.environ['PATH']}",
+        "PATH": ":".join([*map(str, programs), os.environ["PATH"]]),
         "PYTHONPATH": f"{CHECKOUT}/build/release/python",
         "LIDAR": str(pathlib.Path(os.environ["LIDAR"]).resolve()),
     }

@@ -16,7 +16,8 @@ if(Python3_FOUND)
   foreach(page IN LISTS pages)
     cmake_path(GET page FILENAME name)
     add_test(NAME Docs.blocks_of_${name}
-      COMMAND ${python} -B ${CMAKE_CURRENT_LIST_DIR}/run_blocks.py ${PROJECT_SOURCE_DIR}/${page}.md $<TARGET_FILE:spillway>)
+      COMMAND ${python} -B ${CMAKE_CURRENT_LIST_DIR}/run_blocks.py
+        ${PROJECT_SOURCE_DIR}/${page}.md $<TARGET_FILE:spillway>)
     set_tests_properties(Docs.blocks_of_${name} PROPERTIES LABELS cli TIMEOUT 600 SKIP_RETURN_CODE 77
       ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python")
   endforeach()
