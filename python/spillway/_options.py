@@ -333,7 +333,7 @@ _OPTIONS = {
     ),
     "force_crs": _Option(
         "bool, optional",
-        "Take coordinates as they are, whatever coordinate systems inputs have.",
+        "Use coordinates as they are, even if coordinate systems differ.",
         "points",
         attribute("foreign_crs"),
     ),
@@ -352,7 +352,7 @@ _OPTIONS = {
     ),
     "distrust_headers": _Option(
         "bool, optional",
-        "Triangulate nothing before all is read: headers may lie about where points are.",
+        "Read all points before triangulating, as headers may lie about their extent.",
         "division",
         lambda target, value: setattr(target, "trust_headers", not value),
     ),

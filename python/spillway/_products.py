@@ -123,7 +123,7 @@ def dem(
     bounds : (float, float, float, float), optional
         Cover xmin, ymin, xmax, ymax. By default all points.
     force_size : bool, optional
-        Cover all points, though some may lie far away and pixels be very many.
+        Cover all points, even if outliers make the raster very large.
     align : bool, optional
         Put edges of pixels on multiples of the resolution.
     like : path, optional

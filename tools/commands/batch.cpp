@@ -80,9 +80,9 @@ struct BatchOptions {
 std::string meaning_in_jobs(const OptionInfo& option) {
   const std::string& flag = option.names.back();
   if (flag == "--bounds")
-    return "What rasters cover; of jobs without any, the box of points to use";
+    return "Box that rasters cover; in jobs without rasters, that of points to use";
   if (flag == "--resolution") {
-    return "Side of a raster's pixel; of jobs without any, as for triangulate";
+    return "Pixel size of rasters; in jobs without rasters, as in triangulate";
   }
   return option.description;
 }
@@ -381,10 +381,9 @@ Subcommand add_batch(CommandLine& root) {
       kMostThreads)
       .value_name("N")
       .show_default();
-  take_number_between(
-      app.add_option("--buffer", options->buffer,
-                     "Read what other jobs have so near to a job's own points, too"),
-      0, kMostBuffer)
+  take_number_between(app.add_option("--buffer", options->buffer,
+                                     "Also read points of other jobs within M of a job's own"),
+                      0, kMostBuffer)
       .value_name("M");
   app.add_flag("--resume", options->resume, "Leave out jobs that are complete and unchanged");
   take_whole_number(app.add_option("--threads", options->threads,

@@ -248,7 +248,7 @@ Subcommand add_convert(CommandLine& root) {
   add_choice(app, "--output-format", options->output.format, output_format_names(),
              "Format of the output, where the name does not tell");
   add_choice(app, "--mesh-format", options->mesh_format, mesh_format_names(),
-             "The input is a mesh of this format, which neither content nor name tell");
+             "The input is a mesh of this format, if neither content nor name tell it");
   add_las_version(app, options->output);
   add_number_list(app, "--scale", options->scale,
                   "Round coordinates to multiples of this; one number, or one for each axis", true)
@@ -256,10 +256,10 @@ Subcommand add_convert(CommandLine& root) {
   add_number_list(app, "--offset", options->offset, "Count these multiples from here on; likewise")
       .value_name("N[,N,N]");
   add_attributes(app, options->attributes,
-                 "Attributes that are written; usually all, of points in text but CSV none");
+                 "Attributes to write [all; none of text other than CSV]");
   app.add_flag("--force", options->force, "Replace an input, though the output holds less than it");
   app.add_flag("--sorted", options->sorted,
-               "Write the points cell by cell, so that who reads them can begin at once");
+               "Write the points cell by cell, so that their reader can begin at once");
   take_whole_number(app.add_option("--cell-points", options->sorting.cell_points,
                                    "Most points of a cell; usually 65536")
                         .value_name("N"),

@@ -107,7 +107,7 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
       .value_name("BOX")
       .group(group);
   app.add_flag("--force-size", options.force_size,
-               "Cover all points, though some may lie far away and pixels be very many")
+               "Cover all points, even if outliers make the raster very large")
       .group(group);
   app.add_flag("--align", options.align, "Put edges of pixels on multiples of R").group(group);
   app.add_option("--like", options.like, "Put pixels where this raster has them")

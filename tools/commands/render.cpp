@@ -137,7 +137,7 @@ Subcommand add_render(CommandLine& root) {
   app.add_flag("--wireframe", options->wireframe, "Draw the edges of triangles").group(group);
   take_positive_number(
       app.add_option("--exaggerate", options->exaggeration,
-                     "Shade a terrain as if it were Z times as high [such that slopes are seen]"))
+                     "Shade a terrain as if it were Z times as high [chosen so that slopes show]"))
       .value_name("Z")
       .group(group);
   add_number_list(app, "--view", options->view,

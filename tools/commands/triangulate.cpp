@@ -73,7 +73,7 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
                 "2: triangles over x, y, with z carried along; 3: tetrahedra");
   app.add_flag("--id", options.input_index, "Write each vertex's index in the input");
   add_attributes(app, options.attributes,
-                 "What points carry that their vertices keep; of ply usually colour, else none");
+                 "Attributes of points that vertices keep [none; of ply the colour]");
   app.add_flag(
       "--parts", options.parts,
       "Under mpirun: a file for each rank, NAME.0.EXT, NAME.1.EXT, ... (vtu: and NAME.pvtu)");

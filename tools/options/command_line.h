@@ -21,7 +21,7 @@ namespace spillway::detail {
 inline constexpr const char* kFilterGroup = "Filters (of the points that are read)";
 inline constexpr const char* kResourceGroup = "Threads, memory and disk";
 inline constexpr const char* kReportGroup = "Messages and figures";
-inline constexpr const char* kTuningGroup = "Fine tuning (what is chosen without suits nearly all)";
+inline constexpr const char* kTuningGroup = "Fine tuning (the defaults suit nearly everyone)";
 
 /// A handle of an option or positional argument of a CommandLine, which it must not outlive. Each
 /// function says more of the option, and returns the same handle.

@@ -50,7 +50,7 @@ bool InputOptions::filters() const {
 
 void add_input_options(CommandLine& app, InputOptions& options) {
   add_choice(app, "--input-format", options.format, point_format_names(),
-             "Format of the points, where neither name nor first bytes tell");
+             "Format of the points, if neither name nor first bytes tell it");
   take_parsed(app.add_option("--columns", options.columns,
                              "Of text, the columns of x, y, z: as 3,2,4, or as PNEZD")
                   .value_name("LIST"),
@@ -61,7 +61,7 @@ void add_input_options(CommandLine& app, InputOptions& options) {
       parse_crs)
       .value_name("CRS");
   app.add_flag("--force-crs", options.force_crs,
-               "Take coordinates as they are, whatever coordinate systems inputs have");
+               "Use coordinates as they are, even if coordinate systems differ");
   const std::string group = kFilterGroup;
   const auto add = [&](const char* name, std::string& value, const char* type, const char* what) {
     return app.add_option(name, value, what).value_name(type).group(group);
@@ -84,23 +84,23 @@ void add_input_options(CommandLine& app, InputOptions& options) {
       app.add_option("--every", options.every, "Use records 0, N, 2N, ... of each input"), 1)
       .value_name("N")
       .group(group);
-  take_parsed(
-      add("--thin", options.thin, "CELL[:CHOICE]",
-          "Use one point a cell of a grid: the first, lowest, highest one or that at its center"),
-      parse_thinning);
+  take_parsed(add("--thin", options.thin, "CELL[:CHOICE]",
+                  "Use one point in each grid cell: the first, lowest or highest, or the one at "
+                  "its center"),
+              parse_thinning);
   take_positive_number(
       app.add_option("--resolution", options.resolution,
-                     "Of COPC files, read the levels needed for points so far apart; others whole"))
+                     "Of COPC files, read only the levels needed for points this far apart"))
       .value_name("R")
       .group(group);
   app.add_flag("--keep-withheld", options.keep_withheld,
                "Use points that LAS files flag as withheld, too")
       .group(group);
   app.add_flag("--skip-invalid", options.skip_invalid,
-               "Leave out rows of text and npy that are no points, and count them")
+               "Leave out rows of text and npy that are not points, and count them")
       .group(group);
   app.add_flag("--salvage", options.salvage,
-               "Use what is whole of LAS and LAZ files that are cut off or damaged; count the rest")
+               "Use the intact points of truncated or damaged LAS and LAZ files; count the rest")
       .group(group);
   app.add_flag("--skip-broken", options.skip_broken,
                "Leave out files that cannot be read; name them at the end, with exit code 1")

@@ -48,7 +48,7 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
       .show_default();
   add_memory_options(app, options.memory);
   app.add_flag("--distrust-headers", options.distrust_headers,
-               "Triangulate nothing before all is read: headers may lie about where points are")
+               "Read all points before triangulating, as headers may lie about their extent")
       .group(kTuningGroup);
   app.add_option("--stats", options.stats_path, "Write figures of the run")
       .value_name("FILE")
