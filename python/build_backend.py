@@ -1,4 +1,4 @@
-"""What `pip install .` calls (PEP 517): CMake builds the package, and a wheel is made of it.
+"""What `pip install ./python` calls (PEP 517): CMake builds the package, and a wheel is made of it.
 
 It needs nothing but Python, so that pip fetches nothing. The build folder stays below build/, so
 that the next time only what has changed is compiled. CMAKE_ARGS in the environment goes to CMake.

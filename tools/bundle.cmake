@@ -21,20 +21,6 @@ set(of_the_c_library "^lib(c|m|mvec|pthread|dl|rt|util|resolv|anl)[.]so[.]" "^ld
 install(RUNTIME_DEPENDENCY_SET bundle PRE_EXCLUDE_REGEXES ${of_the_c_library}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
-install(CODE "
-  set(PATCHELF ${PATCHELF})
-  set(libraries_folder ${CMAKE_INSTALL_LIBDIR})
-  set(licences_folder ${CMAKE_INSTALL_DOCDIR}/libraries)")
-install(CODE [[
-  set(prefix "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
-  file(GLOB libraries "${prefix}/${libraries_folder}/*.so*")
-  foreach(library IN LISTS libraries)
-    if(NOT IS_SYMLINK ${library})
-      execute_process(COMMAND ${PATCHELF} --remove-rpath ${library} COMMAND_ERROR_IS_FATAL ANY)
-    endif()
-  endforeach()
-]])
-
 # What PROJ and GDAL read: PROJ looks for it beside its library, the module tells GDAL (formats/gdal/module).
 if(SPILLWAY_GDAL)
   install(FILES /usr/share/proj/proj.db /usr/share/proj/proj.ini DESTINATION share/proj)
@@ -42,13 +28,21 @@ if(SPILLWAY_GDAL)
     PATTERN "*.png" EXCLUDE)
 endif()
 
-# The licence of each library, under the name of its Debian package.
-install(CODE "set(machine ${CMAKE_LIBRARY_ARCHITECTURE})")
+# Libraries lose search paths of their own, and the licence of each comes along under the name of its Debian package.
+install(CODE "
+  set(patchelf ${PATCHELF})
+  set(machine ${CMAKE_LIBRARY_ARCHITECTURE})
+  set(libraries_folder ${CMAKE_INSTALL_LIBDIR})
+  set(licences_folder ${CMAKE_INSTALL_DOCDIR}/libraries)")
 install(CODE [[
+  set(prefix "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
+  file(GLOB libraries RELATIVE "${prefix}/${libraries_folder}" "${prefix}/${libraries_folder}/*.so*")
+  set(names)
   set(places)
-  foreach(library IN LISTS libraries)
-    get_filename_component(name ${library} NAME)
-    if(NOT IS_SYMLINK ${library})
+  foreach(name IN LISTS libraries)
+    if(NOT IS_SYMLINK "${prefix}/${libraries_folder}/${name}")
+      execute_process(COMMAND ${patchelf} --remove-rpath "${prefix}/${libraries_folder}/${name}"
+        COMMAND_ERROR_IS_FATAL ANY)
       list(APPEND names ${name})
       list(APPEND places "/usr/lib/${name}" "*/${machine}/${name}" "*/${machine}/*/${name}")
     endif()

@@ -12,7 +12,7 @@ import numpy as np
 import spillway
 from support import random_points
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
+SOURCE = pathlib.Path(__file__).resolve().parents[2] / "python"
 
 
 class Pip(unittest.TestCase):
