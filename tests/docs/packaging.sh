@@ -4,7 +4,7 @@
 # - the packages that debian/control names for a build are those of tools/packages.txt that tools/package.sh installs,
 #   but for what every Debian build has (build-essential), what only helps (ccache), and what checks or packs the result;
 # - the version in debian/changelog is that of CMakeLists.txt, and the library's package has its first two numbers;
-# - lines of debian/control are as short as lintian wants them.
+# - lines of descriptions are as short as lintian wants them.
 #
 #   packaging.sh CHECKOUT
 set -euo pipefail
@@ -30,7 +30,7 @@ grep -qx "Package: libspillway${version%.*}" debian/control || {
   exit 1
 }
 
-if grep -nE '^.{81}' debian/control; then
-  echo "debian/control has lines of more than 80 characters, which lintian does not like" >&2
+if grep -nE '^ .{80}' debian/control; then
+  echo "debian/control has descriptions with lines of more than 80 characters, which lintian does not like" >&2
   exit 1
 fi
