@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <mutex>
 #include <utility>
 
@@ -40,24 +41,36 @@ PointFeed feed_of(PointStream& source, const StreamOptions& options, StageTimes&
 
 template <int D>
 void divide(TileEngine<D>& engine, const StreamOptions& options) {
-  if (engine.points_to_divide() == 0) return;
+  if (!engine.is_to_divide()) return;
   options.begin_phase("divide");
   options.end_phase(engine.divide_large());
+}
+
+/// The next phase begins, with a checkpoint if that is due.
+template <int D>
+void begin(EnginePhase phase, TileEngine<D>& engine, const StreamOptions& options) {
+  if (engine.phase() == phase) return;
+  engine.begin_phase(phase);
+  if (options.checkpoints != nullptr && options.checkpoints->due_at_end_of_phase()) engine.save();
 }
 
 template <int D>
 void run(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
          const StreamOptions& options) {
-  options.begin_phase("read");
-  engine.spill(feed_of(source, options, engine.times()));
-  options.end_phase(source.points_read());
-  divide(engine, options);
+  if (engine.phase() == EnginePhase::kSpill) {
+    options.begin_phase("read");
+    engine.spill(feed_of(source, options, engine.times()));
+    options.end_phase(source.points_read());
+    begin(EnginePhase::kDivide, engine, options);
+  }
+  if (engine.phase() == EnginePhase::kDivide) divide(engine, options);
   options.begin_phase("triangulate");
-  const std::optional<TileNode<D>> root = engine.take_nodes();
+  const std::optional<TileNode<D>>& root = engine.take_nodes();
   if (!root) refuse_empty_input(source.counts());
   refuse_flat_points(engine.span(), engine.points());
   options.extent_known(plane_of(root->box), root->points);
   if constexpr (D == 2) budget.set_enough(enough_memory<D>(root->points, options.record_size));
+  begin(EnginePhase::kTriangulate, engine, options);
   engine.triangulate(*root, {});
   options.end_phase(engine.points());
 }
@@ -79,6 +92,11 @@ class SeenExtent {
   /// When all is read.
   [[nodiscard]] const Box<2>& box() const { return box_; }
 
+  template <typename State>
+  void state(State& state) {
+    state(box_);
+  }
+
  private:
   std::mutex mutex_;  ///< guards the next one
   Box<2> box_;
@@ -88,21 +106,33 @@ class SeenExtent {
 struct Trust {
   std::optional<RegionPlan> plan{};  ///< by which tiles are complete early
   std::optional<Box<2>> extent{};    ///< on which early blocks rely
+
+  /// How far it went in a process before this one, by which it is found again.
+  template <typename State>
+  void state(State& state) {
+    state.section("trust");
+    bool planned = plan.has_value();
+    state(planned, extent);
+    if (State::kReads && !planned) plan.reset();
+  }
 };
 
 /// Triangulates while it reads. Throws FalseHeader if a point lies elsewhere, or if all together do
 /// not have the extent on which blocks rely.
 template <int D>
 void run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
-               const StreamOptions& options, const std::optional<Box<2>>& extent) {
+               const StreamOptions& options, const std::optional<Box<2>>& extent,
+               SeenExtent& seen) {
   if constexpr (D == 2) {
     budget.set_enough(enough_memory<D>(source.expected().value_or(0), options.record_size));
   }
-  options.begin_phase("read");
-  SeenExtent seen;
-  PointFeed feed = feed_of(source, options, engine.times());
-  engine.spill(extent ? seen.watched(std::move(feed)) : std::move(feed));
-  options.end_phase(source.points_read());
+  if (engine.phase() == EnginePhase::kSpill) {
+    options.begin_phase("read");
+    PointFeed feed = feed_of(source, options, engine.times());
+    engine.spill(extent ? seen.watched(std::move(feed)) : std::move(feed));
+    options.end_phase(source.points_read());
+    begin(EnginePhase::kDivide, engine, options);
+  }
   if (engine.points() == 0) refuse_empty_input(source.counts());
   if (extent && *extent != seen.box() && !options.extent_holds(seen.box())) {
     throw FalseHeader(
@@ -111,9 +141,10 @@ void run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
         "headers tell another extent than that of the points",
         FalseHeader::Extent{seen.box(), engine.points()});
   }
-  divide(engine, options);
+  if (engine.phase() == EnginePhase::kDivide) divide(engine, options);
   options.begin_phase("triangulate");
   refuse_flat_points(engine.span(), engine.points());
+  begin(EnginePhase::kTriangulate, engine, options);
   options.end_phase(engine.triangulate_rest());
 }
 
@@ -145,17 +176,63 @@ Trust trust_in(PointStream& source, int dimension, const MemoryBudget& budget,
   return trust;
 }
 
+/// What of a run outlives the process.
+template <int D>
+struct RunState {
+  TileEngine<D>& engine;
+  PointStream& source;
+  BlockSink& sink;
+  Trust& trust;
+  SeenExtent& seen;
+
+  void save(StateWriter& state) {
+    state(trust, seen, engine);
+    source.save(state);
+    sink.save(state);
+  }
+  /// All but the trust.
+  void restore(StateReader& state) {
+    state(seen, engine);
+    source.restore(state);
+    sink.restore(state);
+  }
+};
+
+/// Points that do not come again are read to their end before there is a checkpoint.
+template <int D>
+void keep_checkpoints(RunState<D> run, Checkpoints& checkpoints) {
+  run.engine.rest_for({.due =
+                           [&checkpoints, run, again = run.source.goes_on()] {
+                             return (again || run.engine.phase() != EnginePhase::kSpill) &&
+                                    checkpoints.due();
+                           },
+                       .save =
+                           [&checkpoints, run]() mutable {
+                             checkpoints.save([&run](StateWriter& state) { run.save(state); });
+                           }});
+}
+
+/// Goes on from `restored`, if it is set, which is used up.
 template <int D>
 RunFigures run_once(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
-                    MemoryBudget& budget, const StreamOptions& options, const Trust& trust) {
+                    MemoryBudget& budget, const StreamOptions& options, Trust& trust,
+                    std::unique_ptr<StateReader>& restored) {
   TileEngine<D> engine({.lattice = source.lattice(),
                         .count = source.expected(),
                         .extent = source.extent(),
                         .plan = trust.plan ? &*trust.plan : nullptr},
                        sink, scratch, budget, options);
+  SeenExtent seen;
+  const RunState<D> state{engine, source, sink, trust, seen};
+  if (options.checkpoints != nullptr) keep_checkpoints(state, *options.checkpoints);
   with_threads(engine.threads(), [&] {
+    if (restored) {
+      RunState<D>(state).restore(*restored);
+      options.checkpoints->folder().restored(*restored);
+      restored.reset();
+    }
     if (trust.plan) {
-      run_early(engine, source, budget, options, trust.extent);
+      run_early(engine, source, budget, options, trust.extent, seen);
     } else {
       run(engine, source, budget, options);
     }
@@ -163,6 +240,13 @@ RunFigures run_once(PointStream& source, BlockSink& sink, ScratchFolder& scratch
   release_base_case_memory();
   if (options.trace != nullptr) options.trace->end({.tasks = engine.task_sums()});
   return engine.figures();
+}
+
+/// As far as it went when the checkpoint was made.
+void restore_trust(StateReader& state, PointStream& source, Trust& trust) {
+  const bool planned = trust.plan.has_value();
+  state(trust);
+  if (planned && !trust.plan) source.read_again(false);
 }
 
 /// Leaves of the trust what has held, and returns where blocks go now; nullptr if points or blocks
@@ -193,11 +277,15 @@ template <int D>
 RunFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
                               MemoryBudget& budget, const StreamOptions& options) {
   const MemoryLease inputs(budget, source.known_bytes(), "what is known of the inputs");
+  std::unique_ptr<StateReader> restored =
+      options.checkpoints != nullptr ? options.checkpoints->folder().open_checkpoint() : nullptr;
   Trust trust = trust_in(source, D, budget, options);
+  if (restored) restore_trust(*restored, source, trust);
   for (BlockSink* blocks = &sink;;) {
     try {
-      return run_once<D>(source, *blocks, scratch, budget, options, trust);
+      return run_once<D>(source, *blocks, scratch, budget, options, trust, restored);
     } catch (const FalseHeader& found) {
+      if (options.checkpoints != nullptr) options.checkpoints->folder().forget_checkpoint();
       blocks = begin_again(found, source, options, trust);
       if (blocks == nullptr) throw;
     }

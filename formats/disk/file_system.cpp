@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <stdexcept>
 #include <stop_token>
 #include <system_error>
 #include <utility>
@@ -173,8 +174,34 @@ class DiskOutput : public OutputFile {
     return true;
   }
 
+  std::uint64_t sync() override {
+    flush();
+    if (::fdatasync(file_.get()) != 0) fail(errno);
+    const off_t end = ::lseek(file_.get(), 0, SEEK_CUR);
+    if (end < 0) fail(errno);
+    return static_cast<std::uint64_t>(end);
+  }
+
+  void go_on_after(std::uint64_t bytes) override {
+    buffer_.clear();
+    const off_t end = ::lseek(file_.get(), 0, SEEK_END);
+    if (end < static_cast<off_t>(bytes)) {
+      throw BadInput(FileSpot{temporary_path(), at_byte(static_cast<std::uint64_t>(end))},
+                     fmt::format("the file ends, of which {} bytes were written: the run cannot go "
+                                 "on",
+                                 bytes));
+    }
+    if (::ftruncate(file_.get(), static_cast<off_t>(bytes)) != 0 ||
+        ::lseek(file_.get(), static_cast<off_t>(bytes), SEEK_SET) < 0) {
+      fail(errno);
+    }
+  }
+
   void commit() override {
     flush();
+    const bool is_kept = temporary_ && temporary_->is_kept();
+    if (is_kept && ::ftruncate(file_.get(), ::lseek(file_.get(), 0, SEEK_CUR)) != 0) fail(errno);
+    if (is_kept && ::fdatasync(file_.get()) != 0) fail(errno);
     if (const int error = file_.close()) fail(error);
     if (!temporary_) return;
     if (const int error = temporary_->rename()) fail(error);
@@ -233,6 +260,15 @@ int copy_of_standard(int descriptor, int wrong_direction, const std::string& wha
   return copy;
 }
 
+std::unique_ptr<OutputFile> create_output(const OutputTarget& target, const std::string& path,
+                                          std::unique_ptr<UnfinishedFile> temporary) {
+  const int fd = temporary->create();
+  if (fd < 0) fail_to_create(path, errno);
+  // Failing that, as on file systems without permissions, it has those of a new file.
+  if (target.mode) static_cast<void>(::fchmod(fd, *target.mode));
+  return std::make_unique<DiskOutput>(fd, path, std::move(temporary));
+}
+
 class Disk : public FileSystem {
  public:
   explicit Disk(std::stop_token stop = {}) : stop_(std::move(stop)) {}
@@ -266,12 +302,7 @@ class Disk : public FileSystem {
       if (fd < 0) fail_to_create(path, errno);
       return std::make_unique<DiskOutput>(fd, path, nullptr);
     }
-    auto temporary = std::make_unique<UnfinishedFile>(target.path, path);
-    const int fd = temporary->create();
-    if (fd < 0) fail_to_create(path, errno);
-    // Failing that, as on file systems without permissions, it has those of a new file.
-    if (target.mode) static_cast<void>(::fchmod(fd, *target.mode));
-    return std::make_unique<DiskOutput>(fd, path, std::move(temporary));
+    return create_output(target, path, std::make_unique<UnfinishedFile>(target.path, path));
   }
 
   [[nodiscard]] bool exists(const std::string& path) const override {
@@ -283,7 +314,41 @@ class Disk : public FileSystem {
   std::stop_token stop_;
 };
 
+/// The disk, where outputs outlive the process.
+class KeepingDisk final : public Disk {
+ public:
+  explicit KeepingDisk(std::string mark) : mark_(std::move(mark)) {}
+
+  std::unique_ptr<OutputFile> create(const std::string& path) override {
+    if (path != "-") {
+      const OutputTarget target = output_target(path);
+      if (target.regular) {
+        return create_output(target, path,
+                             std::make_unique<UnfinishedFile>(target.path, path, mark_));
+      }
+    }
+    throw InvalidArgument(fmt::format("a run that can go on writes to a file, not to {}: name one",
+                                      path == "-" ? "standard output" : path),
+                          {.file = path});
+  }
+
+ private:
+  const std::string mark_;
+};
+
 }  // namespace
+
+std::uint64_t OutputFile::sync() {
+  throw std::logic_error("this output cannot be brought to the disk: a fault of the program");
+}
+
+void OutputFile::go_on_after(std::uint64_t /*bytes*/) {
+  throw std::logic_error("this output cannot be gone on with: a fault of the program");
+}
+
+std::unique_ptr<FileSystem> keep_outputs(std::string mark) {
+  return std::make_unique<KeepingDisk>(std::move(mark));
+}
 
 std::unique_ptr<OutputFile> create_private_file(const std::string& path, const std::string& name) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);

@@ -50,6 +50,15 @@ class OutputFile {
   /// end. False, and nothing done, if the file cannot go back: a pipe, a terminal, a device.
   virtual bool rewrite(std::uint64_t offset, std::span<const std::byte> bytes) = 0;
 
+  /// Brings everything so far to the disk itself, and returns how many bytes that are. Throws as
+  /// write() does.
+  virtual std::uint64_t sync();
+
+  /// Goes on after that many bytes, which a process before this one has brought to the disk, and
+  /// which this one may have written again. Only of what keep_outputs() creates. Throws BadInput if
+  /// there are fewer.
+  virtual void go_on_after(std::uint64_t bytes);
+
   /// Writes what is buffered, closes the file and gives it its name. Throws as write() does.
   virtual void commit() = 0;
 
@@ -80,6 +89,12 @@ class FileSystem {
 /// The machine's own files. A closed pipe is seen as ClosedPipe only where SIGPIPE is ignored,
 /// which is main's business.
 FileSystem& disk();
+
+/// The same, but outputs are called NAME.MARK.part until commit(), and stay there if they are
+/// destroyed or the process ends before, however it does. Such a file that is there is opened as it
+/// is, and what is written takes the place of what it holds. `mark` is of six characters. Throws
+/// InvalidArgument for outputs that are no regular files.
+std::unique_ptr<FileSystem> keep_outputs(std::string mark);
 
 /// The same; reading a pipe throws Interrupted when `stop` is requested while it waits for a
 /// writer.

@@ -74,7 +74,20 @@ std::unique_lock<std::recursive_mutex> lock_to_create() {
   return lock;
 }
 
-std::string random_characters() {
+/// As much of a name as leaves room for `more` bytes, without half a UTF-8 character at its end.
+std::string_view shortened(std::string_view name, std::size_t more) {
+  constexpr auto kContinues = [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) == 0x80;
+  };
+  if (name.size() + more <= kLongestName) return name;
+  std::size_t size = kLongestName - more;
+  while (size > 0 && kContinues(name[size])) --size;
+  return name.substr(0, size);
+}
+
+}  // namespace
+
+std::string random_mark() {
   constexpr std::string_view kCharacters =
       "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
   std::array<unsigned char, kRandomCharacters> bytes{};
@@ -91,33 +104,15 @@ std::string random_characters() {
   return text;
 }
 
-/// As much of a name as leaves room for `more` bytes, without half a UTF-8 character at its end.
-std::string_view shortened(std::string_view name, std::size_t more) {
-  constexpr auto kContinues = [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) == 0x80;
-  };
-  if (name.size() + more <= kLongestName) return name;
-  std::size_t size = kLongestName - more;
-  while (size > 0 && kContinues(name[size])) --size;
-  return name.substr(0, size);
+std::string part_path(const std::string& final_path, const std::string& mark) {
+  const fs::path target(final_path);
+  const std::string ending = fmt::format(".{}{}", mark, kEnding);
+  const std::string name = target.filename().string();
+  return (target.parent_path() / fmt::format("{}{}", shortened(name, ending.size()), ending))
+      .string();
 }
 
-/// Calls create(path) with temporary paths for `final_path` until one is not taken. Returns that
-/// path, or "" with the reason in errno.
-std::string under_a_new_name(const std::string& final_path,
-                             const std::function<bool(const std::string&)>& create) {
-  const fs::path target(final_path);
-  const std::string name = target.filename().string();
-  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-    const std::string ending = fmt::format(".{}{}", random_characters(), kEnding);
-    std::string path =
-        (target.parent_path() / fmt::format("{}{}", shortened(name, ending.size()), ending))
-            .string();
-    if (create(path)) return path;
-    if (errno != EEXIST) return "";
-  }
-  return "";
-}
+namespace {
 
 /// Removes what is in a folder now; returns how many files and folders that were.
 std::size_t remove_content(const fs::path& folder);
@@ -154,13 +149,46 @@ std::size_t remove_content(const fs::path& folder) {
   return removed;
 }
 
+/// Removes a file, or a folder with all that is in it, if it is there.
+void remove_path(const std::string& path) {
+  if (::unlink(path.c_str()) != 0 && (errno == EISDIR || errno == EPERM)) remove_folder(path);
+}
+
+/// Of this thread's outputs; "" if each gets one of its own.
+std::string& own_mark() {
+  thread_local std::string mark;
+  return mark;
+}
+
+/// Calls create(path) with temporary paths for `final_path` until one is not taken. Returns that
+/// path, or "" with the reason in errno.
+std::string under_a_new_name(const std::string& final_path,
+                             const std::function<bool(const std::string&)>& create) {
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    const bool is_marked = attempt == 0 && !own_mark().empty();
+    std::string path = part_path(final_path, is_marked ? own_mark() : random_mark());
+    if (is_marked) remove_path(path);
+    if (create(path)) return path;
+    if (errno != EEXIST) return "";
+  }
+  return "";
+}
+
 }  // namespace
+
+MarkedOutputs::MarkedOutputs(std::string mark) { own_mark() = std::move(mark); }
+MarkedOutputs::~MarkedOutputs() { own_mark().clear(); }
 
 UnfinishedFile::UnfinishedFile(std::string final_path, std::string name)
     : final_path_(std::move(final_path)), name_(std::move(name)) {}
 
+UnfinishedFile::UnfinishedFile(std::string final_path, std::string name, const std::string& mark)
+    : UnfinishedFile(std::move(final_path), std::move(name)) {
+  kept_path_ = part_path(final_path_, mark);
+}
+
 UnfinishedFile::~UnfinishedFile() {
-  if (path_.empty()) return;
+  if (path_.empty() || is_kept()) return;
   const std::lock_guard lock(registry().mutex);
   if (registry().files.erase(path_) > 0) ::unlink(path_.c_str());
 }
@@ -168,6 +196,11 @@ UnfinishedFile::~UnfinishedFile() {
 int UnfinishedFile::create() {
   const auto lock = lock_to_create();
   int descriptor = -1;
+  if (is_kept()) {
+    descriptor = ::open(kept_path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor >= 0) path_ = kept_path_;
+    return descriptor;
+  }
   path_ = under_a_new_name(final_path_, [&](const std::string& path) {
     descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     return descriptor >= 0;

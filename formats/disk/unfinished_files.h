@@ -16,7 +16,10 @@ class UnfinishedFile {
   /// Nothing is created yet. `final_path` is what rename() makes of it; `name` is what messages
   /// call it.
   UnfinishedFile(std::string final_path, std::string name);
-  /// Removes the file, unless it has its own name.
+  /// One that is kept, NAME.MARK.part: it stays there until rename(), however the run ends, and
+  /// create() opens it as it is where it is there.
+  UnfinishedFile(std::string final_path, std::string name, const std::string& mark);
+  /// Removes the file, unless it has its own name or is kept.
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
@@ -30,11 +33,29 @@ class UnfinishedFile {
 
   /// The temporary path; "" before create() and after rename().
   [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] bool is_kept() const { return !kept_path_.empty(); }
 
  private:
   std::string final_path_;
   std::string name_;
   std::string path_;
+  std::string kept_path_{};
+};
+
+/// The temporary path of a file, of six characters that mark it: NAME.MARK.part.
+std::string part_path(const std::string& final_path, const std::string& mark);
+
+/// Six characters, other ones each time.
+std::string random_mark();
+
+/// While it exists, what this thread creates under a temporary name has this mark in it, and what
+/// is there of that name goes: a process before this one has left it, which was killed.
+class MarkedOutputs {
+ public:
+  explicit MarkedOutputs(std::string mark);
+  ~MarkedOutputs();
+  MarkedOutputs(const MarkedOutputs&) = delete;
+  MarkedOutputs& operator=(const MarkedOutputs&) = delete;
 };
 
 /// While it exists, remove_unfinished_files() also removes this file, which another process has

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace spillway {
 
@@ -36,6 +37,14 @@ struct TriangulateOptions {
   /// that goes to a pipe).
   bool trust_headers = true;
   Kernel kernel = Kernel::kSpillway;
+  /// A folder by which the run can go on if it is killed: the same call goes on from the last
+  /// checkpoint there and makes the same mesh, to the last byte. It is made if it is not there, has
+  /// the run's scratch files, too, and is removed when the run is complete. Empty: none. Files can
+  /// be gone on with, not points and sinks of a program. Points of pipes can once all are read.
+  /// Refused with kInvalidArgument if another process uses it, and if its run is of other inputs,
+  /// options or another version, with what differs.
+  std::string resume_folder{};
+  double checkpoint_seconds = 60;  ///< between two checkpoints; longer where they take 2 % of it
   /// For the command, which plays runs again; a program has none.
   std::shared_ptr<RunTrace> trace{};
 };
@@ -51,7 +60,8 @@ struct TriangulateOptions {
 ///                     no simplex
 ///   kInterrupted      the context's stop token asked for it
 ///   kClosedPipe       nobody reads the output any more
-/// What source and sink throw passes through. Scratch files are gone when it returns or throws.
+/// What source and sink throw passes through. Scratch files are gone when it returns or throws,
+/// but those of a resume_folder when it throws.
 SPILLWAY_API Report triangulate(PointSource& source, MeshSink& sink,
                                 const TriangulateOptions& options, const Context& context);
 

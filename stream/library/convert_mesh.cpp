@@ -2,17 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cstddef>
+#include <cstdint>
 #include <optional>
-#include <utility>
-#include <vector>
 
-#include "formats/points/attributes/record_selection.h"
 #include "src/error.h"
 #include "src/geometry/simplex_name.h"
-#include "src/parallel/parallel.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/given_crs.h"
+#include "stream/library/meshes/mesh_passage.h"
 #include "stream/library/meshes/opened_mesh.h"
 #include "stream/library/meshes/program_mesh.h"
 #include "stream/library/meshes/program_sink.h"
@@ -21,59 +18,9 @@
 namespace spillway::detail {
 namespace {
 
-/// A mesh on its way from a reader to a sink, whose vertices keep some of their attributes.
-class MeshPassage {
- public:
-  MeshPassage(MeshStreamReader& reader, const AttributeLayout& kept, BlockSink& blocks,
-              RunWatch& watch)
-      : reader_(reader), blocks_(blocks), watch_(watch), kept_(reader.header().attributes, kept) {}
-
-  /// Several blocks are absorbed at a time.
-  void run(unsigned threads) {
-    std::vector<Slot> slots(threads + 1);
-    const auto source = [&](std::size_t slot) { return read(slots[slot]); };
-    const std::vector<PipelineStep> steps = {
-        {.in_order = false,
-         .work =
-             [&](std::size_t slot) {
-               MeshBlock& block = slots[slot].block;
-               kept_.apply(block.attributes, block.vertices.size());
-               blocks_.absorb(block);
-             }},
-        {.in_order = true, .work = [&](std::size_t slot) { write(slots[slot]); }}};
-    with_threads(threads, [&] { run_pipeline(slots.size(), source, steps); });
-  }
-
-  [[nodiscard]] std::uint64_t simplices() const { return simplices_; }
-
- private:
-  struct Slot {
-    MeshBlock block;
-    std::size_t simplices = 0;
-  };
-
-  bool read(Slot& slot) {
-    slot.block.clear();
-    const bool more = reader_.read(slot.block);
-    slot.simplices = slot.block.corners.size() / (reader_.header().dimension + 1);
-    return more;
-  }
-
-  void write(Slot& slot) {
-    blocks_.write(std::move(slot.block));
-    watch_.tell(simplices_ += slot.simplices, reader_.fraction_read());
-  }
-
-  MeshStreamReader& reader_;
-  BlockSink& blocks_;
-  RunWatch& watch_;
-  RecordSelection kept_;
-  std::uint64_t simplices_ = 0;
-};
-
 Report convert(MeshStreamReader& reader, const std::string& name,
-               const std::optional<OpenedMesh::Extent2>& extent, const std::string& crs,
-               EngineSink& sink, const Context& context, RunWatch& watch) {
+               const std::optional<VertexExtent>& extent, const std::string& crs, EngineSink& sink,
+               const Context& context, RunWatch& watch) {
   const int dimension = reader.header().dimension;
   const AttributeLayout& there = reader.header().attributes;
   sink.check_attributes(there);
@@ -83,11 +30,11 @@ Report convert(MeshStreamReader& reader, const std::string& name,
   BlockSink& blocks = sink.start(start);
   if (extent) sink.extent_known(extent->box, extent->vertices);
   watch.begin(simplices_of(dimension), simplices_of(dimension));
-  MeshPassage passage(reader, start.header.attributes, blocks, watch);
-  passage.run(sink.feeding_threads(context.threads()));
+  const std::uint64_t simplices = pass_mesh(reader, start.header.attributes, blocks, watch,
+                                            sink.feeding_threads(context.threads()));
   Report report;
   report.dimension = dimension;
-  report.triangulate_seconds = watch.end(passage.simplices());
+  report.triangulate_seconds = watch.end(simplices);
   report.mesh = reader.totals();
   report.lost = sink.lost_attributes(there, false);
   report.on_lattice = reader.header().lattice.has_value();
@@ -118,7 +65,7 @@ Report convert(MeshSource& source, MeshSink& sink, const Context& context) {
   auto* target = OwnParts::of(sink);
   if (target == nullptr) target = &program_sink.emplace(sink);
   if (!target->is_product()) watch.open("convert", "simplices");
-  std::optional<OpenedMesh::Extent2> extent;
+  std::optional<VertexExtent> extent;
   if (auto* const file = OwnParts::of(source)) {
     file->take();
     if (target->tells_hash()) file->check_totals(watch);

@@ -28,4 +28,7 @@ struct Run {
   [[nodiscard]] MeshStart start() const;
 };
 
+/// Triangulates in this process, and gives all blocks to `blocks`, which are not finished yet.
+Report triangulate_to(BlockSink& blocks, ScratchFolder& scratch, Run& run);
+
 }  // namespace spillway::detail

@@ -11,6 +11,7 @@
 #include "stream/library/meshes/program_sink.h"
 #include "stream/library/own_parts.h"
 #include "stream/library/points/program_points.h"
+#include "stream/library/resumable_run.h"
 #include "stream/library/run.h"
 #include "stream/pipeline.h"
 #include "stream/plan/run_trace.h"
@@ -27,6 +28,10 @@ void check(const TriangulateOptions& options) {
   check_choice(options.division, Division::kConstantAxis, "division");
   check_choice(options.kernel, Kernel::kCgal, "kernel");
   check_max_edge(options.max_edge);
+  if (!(options.checkpoint_seconds >= 0)) {
+    throw InvalidArgument(
+        fmt::format("checkpoints are not {} seconds apart", options.checkpoint_seconds));
+  }
   if (options.children < 2 || options.children > 1024) {
     throw InvalidArgument(
         fmt::format("2 to 1024 parts are merged at a time, not {}", options.children));
@@ -87,13 +92,20 @@ void check(const RunPoints& points, int dimension) {
 
 /// All of it in this process.
 Report triangulate_here(Run& run) {
+  Report report = triangulate_to(run.sink.start(run.start()), *run.scratch, run);
+  run.sink.complete(run.watch, report);
+  return report;
+}
+
+}  // namespace
+
+Report triangulate_to(BlockSink& blocks, ScratchFolder& scratch, Run& run) {
   PointStream& points = *run.points.stream;
-  BlockSink& blocks = run.sink.start(run.start());
   Report report;
   static_cast<RunFigures&>(report) =
       run.options.dimension == 2
-          ? triangulate_stream<2>(points, blocks, *run.scratch, run.budget, run.stream)
-          : triangulate_stream<3>(points, blocks, *run.scratch, run.budget, run.stream);
+          ? triangulate_stream<2>(points, blocks, scratch, run.budget, run.stream)
+          : triangulate_stream<3>(points, blocks, scratch, run.budget, run.stream);
   if (report.threads < run.stream.threads && run.context.options().detail) {
     run.context.options().detail(
         fmt::format("{} of {} threads used: more of them need a larger memory limit",
@@ -104,11 +116,8 @@ Report triangulate_here(Run& run) {
   if (run.points.files != nullptr) report.skipped_files = run.points.files->skipped();
   report.on_lattice = points.lattice().has_value();
   refuse_empty_mesh(report, run.options.max_edge);
-  run.sink.complete(run.watch, report);
   return report;
 }
-
-}  // namespace
 
 MeshStart Run::start() const {
   MeshStart start;
@@ -158,7 +167,12 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   run.stream.record_size = run.points.attributes.record_size();
   check(run.points, options.dimension);
   target->check_attributes(run.points.offered);
-  Report report = executor != nullptr ? executor->triangulate(run) : triangulate_here(run);
+  Report report;
+  if (!options.resume_folder.empty()) {
+    report = triangulate_resumably(run, *points);
+  } else {
+    report = executor != nullptr ? executor->triangulate(run) : triangulate_here(run);
+  }
   report.lost = target->lost_attributes(run.points.offered, true);
   return report;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <unordered_set>
+#include <vector>
 
 #include "formats/meshes/common/stream_numbers.h"
 #include "src/delaunay/common/hash.h"
@@ -49,6 +50,13 @@ class OpenFacets {
   }
 
   [[nodiscard]] std::uint64_t count() const { return open_.size(); }
+
+  template <typename State>
+  void state(State& state) {
+    std::vector<Facet> facets(open_.begin(), open_.end());
+    state(facets);
+    if constexpr (State::kReads) open_ = {facets.begin(), facets.end()};
+  }
 
   /// The facets in any order, each as D numbers in ascending order.
   [[nodiscard]] auto begin() const { return open_.begin(); }

@@ -1,8 +1,19 @@
 #include "stream/output/sequencer.h"
 
+#include <stdexcept>
 #include <utility>
 
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
+
 namespace spillway::detail {
+namespace {
+
+std::uint64_t table_bytes(std::uint64_t blocks) {
+  return sizeof(std::vector<std::uint64_t>) + blocks * sizeof(std::uint64_t);
+}
+
+}  // namespace
 
 template <int D>
 Sequencer<D>::Sequencer(BlockSink& sink, MemoryBudget& budget, const OutputOptions& output,
@@ -16,7 +27,7 @@ Sequencer<D>::~Sequencer() {
 
 template <int D>
 void Sequencer<D>::open_slot(std::uint32_t slot, std::uint32_t blocks) {
-  const std::uint64_t bytes = sizeof(std::vector<std::uint64_t>) + blocks * sizeof(std::uint64_t);
+  const std::uint64_t bytes = table_bytes(blocks);
   budget_.take(bytes, "the table of blocks");
   const std::lock_guard lock(mutex_);
   table_bytes_ += bytes;
@@ -124,6 +135,35 @@ MeshTotals Sequencer<D>::totals() const {
   totals.canonical_hash = hash_.value();
   return totals;
 }
+
+template <int D>
+std::uint32_t Sequencer<D>::slots_written() const {
+  const std::lock_guard lock(mutex_);
+  return next_.slot;
+}
+
+template <int D>
+template <typename State>
+void Sequencer<D>::state(State& state) {
+  if (!waiting_.empty() || next_.block != 0) {
+    throw std::logic_error("blocks wait for others when a state is saved: a fault of the program");
+  }
+  state.section("sequence of blocks");
+  if constexpr (!State::kReads) first_vertex_.resize(next_.slot);
+  state(next_, first_vertex_, vertices_, simplices_, hash_, open_facets_);
+  if constexpr (State::kReads) {
+    if (vertices_ > 0 || simplices_ > 0) tell_first_block_ = nullptr;
+    std::uint64_t bytes = 0;
+    for (const auto& blocks : first_vertex_) bytes += table_bytes(blocks.size());
+    budget_.take(bytes, "the table of blocks");
+    table_bytes_ += bytes;
+  }
+}
+
+template void Sequencer<2>::state(StateReader&);
+template void Sequencer<2>::state(StateWriter&);
+template void Sequencer<3>::state(StateReader&);
+template void Sequencer<3>::state(StateWriter&);
 
 template class Sequencer<2>;
 template class Sequencer<3>;

@@ -55,6 +55,12 @@ class Sequencer {
   /// The facets of one simplex only, where simplices are left out; once all blocks are written.
   [[nodiscard]] const OpenFacets<D>& open_facets() const { return open_facets_; }
 
+  /// How many slots have been written, all of whose blocks have come. What of later slots has come
+  /// waits: there may be none of it for state().
+  [[nodiscard]] std::uint32_t slots_written() const;
+  template <typename State>
+  void state(State& state);
+
   /// Vertices, simplices, hash and, where simplices were left out, hull facets of all blocks.
   [[nodiscard]] MeshTotals totals() const;
 

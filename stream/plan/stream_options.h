@@ -9,6 +9,7 @@
 #include "src/delaunay/base_case/base_case.h"
 #include "src/delaunay/division/divide.h"
 #include "src/geometry/box.h"
+#include "stream/checkpoint/checkpoints.h"
 #include "stream/output/heights.h"
 #include "stream/plan/run_trace.h"
 
@@ -31,6 +32,9 @@ struct StreamOptions {
   bool input_index = false;
   std::size_t record_size = 0;  ///< bytes of the attributes that points carry
   RunTrace* trace = nullptr;    ///< told what the run does, if there is one
+  /// Goes on from its last checkpoint, and makes others, if there is one. Points and blocks go on
+  /// (PointStream::goes_on), but for points that have all been read.
+  Checkpoints* checkpoints = nullptr;
   /// Triangulate while points are being read, where regions of the source tell where they lie.
   bool early = false;
   /// Told the box around all points in x and y, in the coordinates in which the source gives them,

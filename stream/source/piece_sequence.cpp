@@ -57,6 +57,7 @@ void PieceSequence::read_again(bool in_that_order) {
   take_turns(std::move(turns));
   turn_ = 0;
   turn_begun_ = false;
+  fetched_of_turn_ = 0;
   records_read_ = 0;
   records_before_ = 0;
 }
@@ -155,9 +156,27 @@ bool PieceSequence::fetch(SourcePiece& piece) {
     piece.reader = input.reader;
     input.records += piece.raw.records();
     records_read_ += piece.raw.records();
+    ++fetched_of_turn_;
     return true;
   }
   return false;
+}
+
+/// The inputs before this turn have been read: those that are open are not read any more.
+void PieceSequence::go_on_in_turn(std::uint64_t fetched) {
+  for (Input& input : inputs_) {
+    if (input.turns_left == 0) input.reader.reset();
+  }
+  turn_begun_ = false;
+  if (turn_ == turns_.size()) return;
+  begin_turn();
+  RawPoints raw;
+  for (fetched_of_turn_ = 0; fetched_of_turn_ < fetched; ++fetched_of_turn_) {
+    raw.clear();
+    if (!inputs_[current()].reader->fetch(raw)) {
+      throw BadInput(header_of(current()).name, "it ends earlier than when the run began");
+    }
+  }
 }
 
 void PieceSequence::end_turn() {
@@ -165,6 +184,7 @@ void PieceSequence::end_turn() {
   const PointHeader& header = header_of(number);
   Input& input = inputs_[number];
   turn_begun_ = false;
+  fetched_of_turn_ = 0;
   ++turn_;
   if (--input.turns_left > 0) return;
   options_.detail(fmt::format("{}: {}{}{}, {} records read", header.name, header.format,

@@ -63,6 +63,16 @@ class PieceSequence {
   /// Whether indices count through all inputs also in pieces.
   [[nodiscard]] bool numbers_pieces() const { return records_.has_value(); }
 
+  /// After some pieces, and not by begin_piece(). Reading it fetches once more what of the current
+  /// turn was fetched.
+  template <typename State>
+  void state(State& state) {
+    std::uint64_t fetched = fetched_of_turn_;
+    state(turn_, fetched, records_read_, records_before_);
+    for (Input& input : inputs_) state(input.records, input.turns_left);
+    if constexpr (State::kReads) go_on_in_turn(fetched);
+  }
+
   /// How far the inputs have been read, from 0 to 1; nothing if that is unknown.
   [[nodiscard]] std::optional<double> fraction_read() const;
 
@@ -86,6 +96,7 @@ class PieceSequence {
   bool fetch_of_piece(SourcePiece& piece);
   [[nodiscard]] std::uint64_t first_index_of(std::size_t input) const;
   void end_turn();
+  void go_on_in_turn(std::uint64_t fetched);
 
   FileSystem& files_;
   const SourceFacts& facts_;
@@ -97,6 +108,7 @@ class PieceSequence {
   std::vector<std::uint64_t> first_indices_;  ///< by input, if the order is not the inputs' own
   std::size_t turn_ = 0;                      ///< that is being read
   bool turn_begun_ = false;
+  std::uint64_t fetched_of_turn_ = 0;            ///< pieces
   std::deque<std::size_t> open_;                 ///< inputs with an open reader, the latest last
   std::uint64_t records_read_ = 0;               ///< of all inputs
   std::uint64_t records_before_ = 0;             ///< of all inputs before the current one

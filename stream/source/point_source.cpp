@@ -154,6 +154,22 @@ bool PointSource::read_again(bool as_planned) {
   return true;
 }
 
+void PointSource::save(StateWriter& state) {
+  state.section("points");
+  if (thins()) return state(thinned_blocks_);
+  state(pieces_, counts_, untold_);
+}
+
+void PointSource::restore(StateReader& state) {
+  state.section("points");
+  if (!thins()) return state(pieces_, counts_, untold_);
+  std::uint64_t blocks = 0;
+  state(blocks);
+  SourcePiece piece;
+  while (thinned_blocks_ < blocks && fetch(piece)) {
+  }
+}
+
 void PointSource::settle_crs(CrsNeed need) {
   facts_.crs = settled_crs(facts_, need, {options_.crs, options_.warn, options_.detail});
 }
@@ -185,6 +201,7 @@ bool PointSource::fetch(SourcePiece& piece) {
   }
   if (!thinned_) thin_inputs();
   piece.reader.reset();
+  ++thinned_blocks_;
   return thinning_->next(piece.raw.decoded);
 }
 

@@ -139,6 +139,11 @@ class PointSource : public PointStream {
   /// Nothing if a filter is set; or if it may be too large, and points come from a pipe.
   [[nodiscard]] std::optional<Box<2>> told_extent() const override;
   bool read_again(bool as_planned) override;
+  /// Not of pipes.
+  [[nodiscard]] bool goes_on() const override { return any_order(); }
+  /// Inputs that are thinned are read and thinned once more to go on.
+  void save(StateWriter& state) override;
+  void restore(StateReader& state) override;
 
   [[nodiscard]] PointCounts counts() const override;
   [[nodiscard]] std::uint64_t points_read() const override;
@@ -170,8 +175,9 @@ class PointSource : public PointStream {
   RecordSelection without_filtered_;
   std::optional<Thinning> thinning_;
   bool thinned_ = false;
-  bool tells_ = true;                ///< this process looked at the files first
-  mutable std::mutex counts_mutex_;  ///< guards the next two
+  std::uint64_t thinned_blocks_ = 0;  ///< fetched so far
+  bool tells_ = true;                 ///< this process looked at the files first
+  mutable std::mutex counts_mutex_;   ///< guards the next two
   PointCounts counts_;
   std::vector<std::string> untold_;
 };

@@ -4,6 +4,8 @@
 #include <optional>
 #include <span>
 
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 #include "stream/source/point_filter.h"
@@ -46,6 +48,13 @@ class PointStream {
   /// All pieces are to come once more: as planned, or as if there were no plan. False if they
   /// cannot. No piece may be on its way.
   virtual bool read_again(bool /*as_planned*/) { return false; }
+
+  /// Whether another process reads the same points again, and so can go on after some pieces.
+  [[nodiscard]] virtual bool goes_on() const { return false; }
+  /// Tells where it is between two pieces, none of which is on its way; and goes on from there,
+  /// before any piece, but after keep_to().
+  virtual void save(StateWriter& /*state*/) {}
+  virtual void restore(StateReader& /*state*/) {}
 
   /// What became of the records so far.
   [[nodiscard]] virtual PointCounts counts() const = 0;

@@ -30,6 +30,11 @@ class PointSpan {
   };
   [[nodiscard]] const Facts& facts() const { return facts_; }
 
+  template <typename State>
+  void state(State& state) {
+    state(facts_.points, facts_.others, full_);
+  }
+
   /// What is known of all points, given what is known of this part and of another.
   void add(const Facts& other);
 

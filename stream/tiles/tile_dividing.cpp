@@ -423,23 +423,16 @@ std::uint64_t TileTree::points_to_divide() const {
 }
 
 std::uint64_t TileTree::divide_large(const DivisionProgress& progress) {
-  std::uint64_t all = points_to_divide();
-  std::uint64_t done = 0;
+  std::uint64_t all = dealt_again_ + points_to_divide();
   double fraction = 0;  // what is found to be too large again does not take it back
-  while (points_to_divide() > 0) {
-    Batch batch;
-    for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
-      if (!too_large(tiles_[t])) continue;
-      std::vector<LatticePoint> sample = sample_of_all(tiles_[t]);
-      divide(t, std::move(sample),
-             tiles_for(static_cast<double>(tiles_[t].points), capacity_, kKnownFill), batch);
-    }
-    const std::uint64_t points = left_over_points_;
-    deal_again(take_left_over(), [&](std::uint64_t some) {
-      fraction = std::max(fraction, static_cast<double>(done + some) / static_cast<double>(all));
-      progress(done + some, std::min(1.0, fraction));
+  while (dealing_again_ || points_to_divide() > 0) {
+    if (!dealing_again_) begin_dealing_again();
+    deal_again([&](std::uint64_t some) {
+      const std::uint64_t done = dealt_again_ + some;
+      all = std::max(all, done);
+      fraction = std::max(fraction, static_cast<double>(done) / static_cast<double>(all));
+      progress(done, std::min(1.0, fraction));
     });
-    done += points;
     for (Tile& tile : tiles_) {
       tile.expected = 0;
       tile.expected_box = {};
@@ -447,7 +440,19 @@ std::uint64_t TileTree::divide_large(const DivisionProgress& progress) {
     cut_long();
     all += points_to_divide();
   }
-  return done;
+  return std::exchange(dealt_again_, 0);
+}
+
+/// Tiles that are too large are divided, and what is left over is going to be dealt.
+void TileTree::begin_dealing_again() {
+  Batch batch;
+  for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
+    if (!too_large(tiles_[t])) continue;
+    std::vector<LatticePoint> sample = sample_of_all(tiles_[t]);
+    divide(t, std::move(sample),
+           tiles_for(static_cast<double>(tiles_[t].points), capacity_, kKnownFill), batch);
+  }
+  dealing_again_.emplace(take_left_over(), runs_);
 }
 
 /// Those of a cut before those of the cuts below it, so that what is dealt after each other goes to
@@ -490,13 +495,11 @@ std::size_t TileTree::sample_stride() const {
   return std::max<std::size_t>(1, capacity_ / kManySamples);
 }
 
-void TileTree::deal_again(std::vector<TileSegment> segments,
-                          const std::function<void(std::uint64_t points)>& progress) {
-  SegmentReader reader(std::move(segments), runs_);
-  run_batches(
+void TileTree::deal_again(const std::function<void(std::uint64_t points)>& progress) {
+  run_to_rest(
       [&](Batch& batch) {
-        progress(reader.points());
-        if (!reader.fetch(batch.stored)) return false;
+        progress(dealing_again_->points());
+        if (!dealing_again_->fetch(batch.stored)) return false;
         batch.arrival = batch.stored.arrival;
         batch.run = batch.stored.run;
         return true;
@@ -506,7 +509,9 @@ void TileTree::deal_again(std::vector<TileSegment> segments,
         decode_all_points(batch.stored.bytes, batch.stored.where, points);
       },
       {});
-  runs_ = reader.last_run();
+  runs_ = dealing_again_->last_run();
+  dealt_again_ += dealing_again_->points();
+  dealing_again_.reset();
 }
 
 }  // namespace spillway::detail

@@ -121,6 +121,34 @@ void TileTree::take_below(CutTree::NodeRef ref) {
   taken_.emplace(number, std::move(tile));
 }
 
+std::uint64_t TileTree::spill_complete() {
+  std::uint64_t memory = 0;
+  Batch batch;
+  const std::lock_guard lock(taken_mutex_);
+  for (auto& [number, tile] : taken_) {
+    if (tile.held.empty()) continue;
+    memory += tile.held_bytes();
+    if (!tile.file) tile.file = folder_.create("tile");
+    for (HeldPoints& held : std::exchange(tile.held, {})) {
+      const std::uint64_t points = held.buffer.size();
+      auto stretch = std::make_shared<FileStretch>(tile.file);
+      tile.segments.push_back({.stretch = stretch,
+                               .first_spill = tile.spills,
+                               .end_spill = tile.spills + 1,
+                               .points = points,
+                               .arrival = arrival_of(held),
+                               .box = held.box});
+      ++tile.spills;
+      batch.spills.push_back({std::move(held.buffer), std::move(stretch), points, {}, {}});
+    }
+  }
+  parallel_for(batch.spills.size(), 1, [&](std::size_t, std::size_t s, std::size_t) {
+    encode_points(batch.spills[s].points, batch.spills[s].bytes);
+  });
+  write(batch);
+  return memory;
+}
+
 template <int D>
 std::optional<TileNode<D>> TileTree::take_nodes() {
   take_below(cuts_.root());

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "src/delaunay/border/point_sketch.h"
@@ -23,6 +24,37 @@ struct TileNode {
 
   [[nodiscard]] std::uint64_t size() const { return points; }
   [[nodiscard]] bool leaf() const { return children.empty(); }
+
+  template <typename State>
+  void state(State& state) {
+    state(box, points, stored);
+    std::uint64_t count = children.size();
+    state(count);
+    for (std::uint64_t c = 0; c < count; ++c)
+      state(State::kReads ? children.emplace_back() : children[c]);
+    sketch_state(state);
+  }
+
+ private:
+  template <typename State>
+  void sketch_state(State& state) {
+    bool there = sketch != nullptr;
+    state(there);
+    if (!there) return;
+    std::vector<Box<D>> boxes;
+    std::vector<Plate<D>> plates;
+    if constexpr (!State::kReads) {
+      if (sketch->boxes.levels() > 0) {
+        boxes.assign(sketch->boxes.level(0).begin(), sketch->boxes.level(0).end());
+      }
+      plates = sketch->plates;
+    }
+    state(boxes, plates);
+    if constexpr (State::kReads) {
+      sketch = std::make_shared<const PointSketch<D>>(
+          PointSketch<D>{RunBoxes<D>(std::move(boxes)), std::move(plates)});
+    }
+  }
 };
 
 /// A balanced tree over tiles, of which there is at least one: the two sides of a node have about

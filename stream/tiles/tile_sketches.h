@@ -28,6 +28,11 @@ class TileSketches {
   void sketch(TileNode<D>& node, const std::function<const Tile&(std::uint32_t)>& stored,
               std::uint64_t all_points) const;
 
+  template <typename State>
+  void state(State& state) {
+    state(cells_begun_);
+  }
+
  private:
   [[nodiscard]] std::size_t cells_for(std::uint64_t points, std::uint64_t all_points) const;
   [[nodiscard]] bool is_known_hollow(const Tile& tile, const HeldPoints& held) const;

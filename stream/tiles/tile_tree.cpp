@@ -60,7 +60,7 @@ TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageT
 }
 
 void TileTree::fill(const PointFeed& source, const CellDone& done) {
-  run_batches(
+  run_to_rest(
       [&](Batch& batch) {
         if (!source.fetch(batch.piece)) return false;
         if (options_.plan != nullptr) {
@@ -119,6 +119,24 @@ void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
        }}};
   run_pipeline(
       batches.size(), [&](std::size_t slot) { return fetch(batches[slot]); }, steps);
+}
+
+/// As run_batches(), which comes to an end each time that a checkpoint is due, and is begun again.
+void TileTree::run_to_rest(const std::function<bool(Batch&)>& fetch,
+                           const std::function<void(Batch&, PointBlock&)>& decode,
+                           const CellDone& done) {
+  for (bool at_rest = true; at_rest;) {
+    at_rest = false;
+    bool is_first = true;
+    run_batches(
+        [&](Batch& batch) {
+          at_rest = !is_first && checkpointing_.due();
+          is_first = false;
+          return !at_rest && fetch(batch);
+        },
+        decode, done);
+    if (at_rest) checkpointing_.save();
+  }
 }
 
 /// Groups a batch's points by tile.

@@ -16,6 +16,7 @@
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/runtime/stage_times.h"
+#include "stream/checkpoint/checkpointing.h"
 #include "stream/tiles/cuts/cut_tree.h"
 #include "stream/tiles/cuts/dealt_points.h"
 #include "stream/tiles/point_batch.h"
@@ -66,6 +67,8 @@ class TileTree {
 
   /// Points that fill() has left over, and those of tiles that are too large.
   [[nodiscard]] std::uint64_t points_to_divide() const;
+  /// Whether there are some, or a division was begun before state().
+  [[nodiscard]] bool is_to_divide() const { return dealing_again_ || points_to_divide() > 0; }
 
   /// Deals those points once more, by all threads, and what is too large again of them. Returns how
   /// many points were dealt again, those dealt twice counted twice.
@@ -82,6 +85,16 @@ class TileTree {
 
   /// The cells of the plan that `done` was not told of, which are complete now that all is divided.
   std::vector<std::uint32_t> finish();
+
+  /// What waits of complete tiles goes to the disk, while no other thread is at work. Returns the
+  /// bytes of memory that it took.
+  std::uint64_t spill_complete();
+
+  /// From now on fill() and divide_large() come to rest when a checkpoint is due, for state() to be
+  /// told. Who goes on from it calls the one of them that was under way once more, after state().
+  void rest_for(const Checkpointing& checkpointing) { checkpointing_ = checkpointing; }
+  template <typename State>
+  void state(State& state);
 
   /// The balanced tree of tiles, none of which is too large any more, neighbours that fit together
   /// made one; nothing if there are no points. Of all points, once and at the end, or of those in
@@ -164,8 +177,10 @@ class TileTree {
   void append_left_over(CutTree::NodeRef ref, std::vector<TileSegment>& segments);
   [[nodiscard]] std::size_t sample_stride() const;
   [[nodiscard]] std::vector<LatticePoint> sample_of_all(const Tile& tile) const;
-  void deal_again(std::vector<TileSegment> segments,
-                  const std::function<void(std::uint64_t points)>& progress);
+  void begin_dealing_again();
+  void deal_again(const std::function<void(std::uint64_t points)>& progress);
+  void run_to_rest(const std::function<bool(Batch&)>& fetch,
+                   const std::function<void(Batch&, PointBlock&)>& decode, const CellDone& done);
 
   template <int D>
   struct Joinable;
@@ -198,6 +213,8 @@ class TileTree {
   std::unordered_map<std::uint32_t, Tile> taken_;    ///< complete, by their number
   std::vector<std::vector<TileSegment>> left_over_;  ///< by cut
   std::uint64_t left_over_points_ = 0;
+  std::optional<SegmentReader> dealing_again_;  ///< what is being dealt once more
+  std::uint64_t dealt_again_ = 0;               ///< points, before these
   std::mutex stretches_mutex_;  ///< guards what is known of stretches, which are written meanwhile
   std::uint64_t batches_ = 0;
   std::uint64_t arrivals_ = 0;  ///< handed out so far
@@ -210,6 +227,7 @@ class TileTree {
   std::uint64_t bytes_written_ = 0;
   bool divided_ = false;  ///< the first division has been made
   bool filled_ = false;
+  Checkpointing checkpointing_;
 };
 
 }  // namespace spillway::detail

@@ -62,6 +62,10 @@ struct Border {
     });
     return positions;
   }
+  template <typename State>
+  void state(State& state) {
+    state(dimension, vertices, simplices, exposure, attributes);
+  }
   [[nodiscard]] std::uint64_t bytes() const {
     return vertices.size() * sizeof(vertices[0]) + simplices.size() * sizeof(simplices[0]) +
            exposure.size() * sizeof(exposure[0]) + attributes.size();

@@ -53,9 +53,23 @@ class MergeForest {
                                                                              : nullptr;
   }
 
+  [[nodiscard]] bool empty() const {
+    const std::lock_guard lock(mutex_);
+    return nodes_.empty();
+  }
+
+  /// Calls f(node) for those that are done, but not what is above them, in the order of their
+  /// numbers. While none is being worked off.
+  template <typename F>
+  void visit_left_over(F&& f) {
+    for (Node& node : nodes_) {
+      if (node.done_ && (node.parent_ == nullptr || !node.parent_->done_)) f(node);
+    }
+  }
+
  private:
-  std::mutex mutex_;        ///< guards all that follows, and what is private of nodes
-  std::deque<Node> nodes_;  ///< which stay where they are
+  mutable std::mutex mutex_;  ///< guards all that follows, and what is private of nodes
+  std::deque<Node> nodes_;    ///< which stay where they are
 };
 
 }  // namespace spillway::detail

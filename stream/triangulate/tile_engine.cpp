@@ -65,6 +65,7 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, Scrat
   if (expected.plan == nullptr) return;
   cells_.emplace(*expected.plan);
   parts_.resize(cells_->parts());
+  begin_triangulating(expected_points_, expected_points_);
 }
 
 template <int D>
@@ -142,18 +143,21 @@ void TileEngine<D>::spill(const PointFeed& feed) {
                                span_.add(block.points);
                              }};
   if (!cells_) return tree_.fill(spanned);
-  begin_triangulating(expected_points_, expected_points_);
   TaskGroup beside;
+  beside_ = &beside;
   try {
+    add_restored_cells();
+    lanes_.work_beside(beside);
     tree_.fill(spanned, [&](std::uint32_t cell) {
       add_cell(cell);
       lanes_.work_beside(beside);
     });
-    beside.wait();
+    lanes_.come_to_rest(beside);
   } catch (...) {
     lanes_.give_up();
     throw;
   }
+  beside_ = nullptr;
 }
 
 template <int D>
@@ -188,6 +192,12 @@ void TileEngine<D>::begin_triangulating(std::uint64_t points, std::uint64_t all_
 }
 
 template <int D>
+const std::optional<TileNode<D>>& TileEngine<D>::take_nodes() {
+  if (!root_) root_ = tree_.template take_nodes<D>();
+  return root_;
+}
+
+template <int D>
 Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& outside) {
   const Stopwatch watch(figures_.triangulate_seconds);
   std::uint64_t all_points = root.points;
@@ -207,6 +217,7 @@ std::uint64_t TileEngine<D>::triangulate_rest() {
   lease_held_points();
   points_before_ = counts_.points;
   tells_progress_ = true;
+  add_restored_cells();
   for (const std::uint32_t cell : tree_.finish()) add_cell(cell);
   lanes_.work_off();
   if (!top_->border.simplices.empty()) {
@@ -236,7 +247,13 @@ void TileEngine<D>::estimate_shortages(std::uint64_t all_points) {
 /// The tiles of a cell are ready, and merges with what is complete beside it follow.
 template <int D>
 void TileEngine<D>::add_cell(std::uint32_t cell) {
-  auto complete = cells_->complete(cell, tree_.template take_cell<D>(cell));
+  add_cell(cell, tree_.template take_cell<D>(cell));
+}
+
+template <int D>
+void TileEngine<D>::add_cell(std::uint32_t cell, std::optional<TileNode<D>> tiles) {
+  complete_cells_.push_back({cell, tiles});
+  auto complete = cells_->complete(cell, std::move(tiles));
   const auto surrounded = [](const auto& part) {
     return std::make_shared<const Surroundings>(Surroundings{part.node, part.outside});
   };
@@ -288,10 +305,15 @@ typename TileEngine<D>::Node* TileEngine<D>::add_nodes(
 }
 
 template <int D>
-typename TileEngine<D>::Node* TileEngine<D>::add_node(State state, std::vector<Node*> children) {
+typename TileEngine<D>::Node* TileEngine<D>::add_node(NodeState state,
+                                                      std::vector<Node*> children) {
   for (const Node* child : children) state.level = std::max(state.level, child->level + 1);
   const auto [node, ready] = forest_.add(std::move(state), std::move(children));
-  if (ready) lanes_.add(*node);
+  if (nodes_before_.has(node->number)) {
+    take_kept_border(*node);
+  } else if (ready) {
+    lanes_.add(*node);
+  }
   return node;
 }
 
@@ -303,7 +325,9 @@ typename TileEngine<D>::Lanes TileEngine<D>::make_lanes() {
            .begin = [this](Node& node, const Node* next) { load(node, next); },
            .finish = [this](Node& node) { work_off(node); },
            .follow = [this](Node& node) { merge_above(node); },
-           .give_up = [this] { give_up(); }}};
+           .give_up = [this] { give_up(); },
+           .rests = [this](const Node& next) { return rests_before(next); },
+           .at_rest = [this] { save_at_rest(); }}};
 }
 
 /// Points that are loaded for a node, of what others may have, too: a tile may be larger than
@@ -317,11 +341,15 @@ std::uint64_t TileEngine<D>::loaded_points(const Node& node) const {
 /// reading of the one after it begins.
 template <int D>
 void TileEngine<D>::load(Node& node, const Node* next) {
+  raise(last_begun_, node.number);
+  read_ahead_ = nullptr;
   if (!node.children.empty()) return;
   sequencer_.wait_for_room(plan_.waiting_bytes, node.number);
   const std::lock_guard lock(load_mutex_);
   node.stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.read(*node.tree);
   if (next == nullptr || !next->children.empty() || !tree_.on_disk(*next->tree)) return;
+  if (rests_before(*next)) return;
+  read_ahead_ = next;
   reading_ahead_ = in_background([this, tile = next->tree] { return tree_.read(*tile); });
 }
 
@@ -366,6 +394,7 @@ void TileEngine<D>::give_up() {
 
 template <int D>
 void TileEngine<D>::merge_node(Node& node) {
+  raise(last_begun_, node.number);
   std::vector<Border<D>> borders;
   for (Node* child : node.children) borders.push_back(std::exchange(child->border, {}));
   growth_.begin_merge(node.tree->size(), borders);

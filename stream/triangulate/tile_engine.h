@@ -15,6 +15,7 @@
 #include "src/geometry/lattice.h"
 #include "src/parallel/parallel.h"
 #include "src/runtime/memory_budget.h"
+#include "stream/checkpoint/checkpointing.h"
 #include "stream/output/sequencer.h"
 #include "stream/output/stream_place.h"
 #include "stream/plan/memory_plan.h"
@@ -24,12 +25,16 @@
 #include "stream/triangulate/border_growth.h"
 #include "stream/triangulate/cell_tree.h"
 #include "stream/triangulate/merge_forest.h"
+#include "stream/triangulate/nodes_before.h"
 #include "stream/triangulate/sample_forecast.h"
 #include "stream/triangulate/task_sums.h"
 #include "stream/triangulate/tile_triangulation.h"
 #include "stream/triangulate/work_lanes.h"
 
 namespace spillway::detail {
+
+/// The steps of a run that an engine takes.
+enum class EnginePhase : std::uint8_t { kSpill, kDivide, kTriangulate };
 
 /// What is known of the points to come.
 struct ExpectedPoints {
@@ -62,12 +67,24 @@ class TileEngine {
     tree_.expect(extent, std::move(sample));
   }
 
+  /// From now on the engine comes to rest when a checkpoint is due, for state() to be told.
+  void rest_for(Checkpointing checkpointing);
+  /// Reading it, before any step: of these only those from phase() on are to be called then.
+  template <typename State>
+  void state(State& state);
+  /// The step that is under way, or comes next.
+  [[nodiscard]] EnginePhase phase() const { return phase_; }
+  void begin_phase(EnginePhase phase) { phase_ = phase; }
+  /// Saves the state now, between two steps.
+  void save() { save_at_rest(); }
+
   /// Deals all points of the feed into tiles. With a plan, triangulates tiles that are complete.
   void spill(const PointFeed& feed);
 
   /// After spill(): points of tiles that are too large, and are to be divided before take_nodes();
   /// and their division, which returns how many points were dealt again.
   [[nodiscard]] std::uint64_t points_to_divide() const { return tree_.points_to_divide(); }
+  [[nodiscard]] bool is_to_divide() const { return tree_.is_to_divide(); }
   std::uint64_t divide_large();
 
   /// What the points of the feed span.
@@ -81,8 +98,8 @@ class TileEngine {
 
   [[nodiscard]] std::uint64_t points() const { return tree_.points(); }
 
-  /// The tree of tiles, once; nothing if there are no points.
-  [[nodiscard]] std::optional<TileNode<D>> take_nodes() { return tree_.template take_nodes<D>(); }
+  /// The tree of tiles; nothing if there are no points.
+  [[nodiscard]] const std::optional<TileNode<D>>& take_nodes();
 
   /// Triangulates the tiles of `root`, one by one, and merges them. What nothing `outside` can
   /// change has gone to the sink when it returns; the rest is returned.
@@ -121,7 +138,7 @@ class TileEngine {
     std::vector<std::shared_ptr<TileNode<D>>> outside;
   };
   /// What a node has, which is a tile or a merge of tiles. Its number is its slot of the stream.
-  struct State {
+  struct NodeState {
     const TileNode<D>* tree = nullptr;
     Outside<D> outside;
     std::shared_ptr<const Surroundings> surroundings;  ///< that the two point to, or none
@@ -130,7 +147,7 @@ class TileEngine {
     StoredTile stored{};                               ///< of a tile that is being worked off
     Border<D> border{};                                ///< once it is done
   };
-  using Forest = MergeForest<State>;
+  using Forest = MergeForest<NodeState>;
   using Node = typename Forest::Node;
   using Lanes = WorkLanes<Node>;
 
@@ -142,9 +159,14 @@ class TileEngine {
   void lease_held_points();
   void begin_triangulating(std::uint64_t points, std::uint64_t all_points);
   void add_cell(std::uint32_t cell);
+  void add_cell(std::uint32_t cell, std::optional<TileNode<D>> tiles);
+  void add_restored_cells();
+  [[nodiscard]] bool rests_before(const Node& node) const;
+  void save_at_rest();
   Node* add_nodes(const TileNode<D>& tree, const Outside<D>& outside,
                   const std::shared_ptr<const Surroundings>& surroundings);
-  Node* add_node(State state, std::vector<Node*> children);
+  Node* add_node(NodeState state, std::vector<Node*> children);
+  void take_kept_border(Node& node);
   [[nodiscard]] Lanes make_lanes();
   [[nodiscard]] std::uint64_t loaded_points(const Node& node) const;
   void load(Node& node, const Node* next);
@@ -169,9 +191,18 @@ class TileEngine {
   TileContext<D> context_;
   Forest forest_;
   Lanes lanes_ = make_lanes();
-  std::optional<CellTree<D>> cells_;  ///< with a plan
-  std::vector<Node*> parts_;          ///< of these, by number, as far as they are complete
-  Node* top_ = nullptr;  ///< the part that was added last: at the end that of all points
+  std::atomic<EnginePhase> phase_ = EnginePhase::kSpill;
+  Checkpointing checkpointing_;
+  TaskGroup* beside_ = nullptr;  ///< what is triangulated while points are read
+  std::optional<TileNode<D>> root_;
+  NodesBefore<D> nodes_before_;
+  std::vector<CompleteCell<D>> complete_cells_;    ///< with a plan, in that order
+  bool has_restored_cells_ = false;                ///< which are still to be added
+  std::atomic<std::uint32_t> last_begun_ = 0;      ///< the highest number of a node so far
+  std::atomic<const Node*> read_ahead_ = nullptr;  ///< its tile has left the tree
+  std::optional<CellTree<D>> cells_;               ///< with a plan
+  std::vector<Node*> parts_;  ///< of these, by number, as far as they are complete
+  Node* top_ = nullptr;       ///< the part that was added last: at the end that of all points
   std::atomic<bool> tells_progress_ = false;  ///< of triangulating: reading has ended
   std::uint64_t points_before_ = 0;           ///< triangulated while points were read
   /// Simplices and bytes of the border that is left at the end, as they are counted.

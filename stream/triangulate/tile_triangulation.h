@@ -31,8 +31,9 @@ struct TileOptions {
 };
 
 /// Sets `most` to `now` if that is more; for any thread.
-inline void raise(std::atomic<std::uint64_t>& most, std::uint64_t now) {
-  std::uint64_t seen = most;
+template <typename Number>
+void raise(std::atomic<Number>& most, Number now) {
+  Number seen = most;
   while (seen < now && !most.compare_exchange_weak(seen, now)) {
   }
 }
@@ -55,6 +56,11 @@ class ResidentBorders {
     simplices_ -= simplices;
     bytes_ -= bytes;
     budget_.give_back(bytes);
+  }
+  /// Of what is in memory add() tells.
+  template <typename State>
+  void state(State& state) {
+    state(most_simplices_, most_bytes_);
   }
   [[nodiscard]] std::uint64_t most_simplices() const { return most_simplices_; }
   [[nodiscard]] std::uint64_t most_bytes() const { return most_bytes_; }
@@ -82,6 +88,12 @@ struct StreamCounts {
   std::atomic<std::uint64_t> leaves = 0;
   std::atomic<std::uint64_t> densest_leaf = 0;    ///< simplices for each of its points, rounded up
   std::atomic<std::uint64_t> retriangulated = 0;  ///< points in triangulations of borders
+
+  template <typename State>
+  void state(State& state) {
+    state(borders, points, duplicates, hull_facets, left_out, final_in_leaves, final_in_tiles,
+          leaves, densest_leaf, retriangulated);
+  }
 };
 
 /// What all tiles and merges of a run share; used by many threads at once.

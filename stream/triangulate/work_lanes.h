@@ -30,6 +30,9 @@ class WorkLanes {
     std::function<void(Node&)> finish;  ///< then; of many at a time. Its weight is free after it
     std::function<void(Node&)> follow;  ///< then: what was waiting for it alone
     std::function<void()> give_up;      ///< ends all waiting in the two, after a failure
+    /// Whether work is to come to rest before this node is begun.
+    std::function<bool(const Node& next)> rests = [](const Node&) { return false; };
+    std::function<void()> at_rest = [] {};  ///< nothing is under way: work goes on after it
   };
 
   WorkLanes(unsigned threads, std::uint64_t room, Work work)
@@ -48,8 +51,16 @@ class WorkLanes {
     if (failed_) group.wait();
     group_ = &group;
     begin_lanes();
-    while (much_ready()) {
+    while (much_ready() && !is_to_rest()) {
       if (!work_off_one(false)) group.wait();
+    }
+  }
+
+  /// Ends what is under way of work_beside(), up to a node before which work is to rest.
+  void come_to_rest(TaskGroup& group) {
+    for (group.wait(); has_ready() && !is_to_rest(); group.wait()) {
+      while (work_off_one(false)) {
+      }
     }
   }
 
@@ -58,10 +69,11 @@ class WorkLanes {
     TaskGroup group;
     group_ = &group;
     try {
-      begin_lanes();
-      while (work_off_one(false)) {
-      }
-      group.wait();
+      do {
+        begin_lanes();
+        come_to_rest(group);
+        if (has_ready()) work_.at_rest();
+      } while (has_ready());
     } catch (...) {
       give_up();
       throw;
@@ -79,6 +91,16 @@ class WorkLanes {
     const std::lock_guard lock(mutex_);
     if (ready_.size() <= 1) return false;
     return ready_.size() > most_lanes_ || ready_weight_ > room_ / kReadyShare;
+  }
+
+  [[nodiscard]] bool has_ready() const {
+    const std::lock_guard lock(mutex_);
+    return !ready_.empty();
+  }
+
+  [[nodiscard]] bool is_to_rest() const {
+    const std::lock_guard lock(mutex_);
+    return !ready_.empty() && work_.rests(*ready_.front());
   }
 
   void begin_lanes() {
@@ -101,7 +123,7 @@ class WorkLanes {
     if (!none_is_begun) return false;
     const std::lock_guard lock(mutex_);
     if (failed_ || lanes_ >= most_lanes_ || ready_.size() <= starting_) return false;
-    if (!has_room(*ready_.front())) return false;
+    if (!has_room(*ready_.front()) || work_.rests(*ready_.front())) return false;
     ++lanes_;
     ++starting_;
     return true;
@@ -138,7 +160,7 @@ class WorkLanes {
     Node* next = nullptr;
     {
       const std::lock_guard lock(mutex_);
-      if (failed_ || ready_.empty() || !has_room(*ready_.front())) {
+      if (failed_ || ready_.empty() || !has_room(*ready_.front()) || work_.rests(*ready_.front())) {
         if (is_lane) --lanes_;
         return nullptr;
       }

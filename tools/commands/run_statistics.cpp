@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "formats/disk/output_check.h"
 #include "src/distributed/ranks.h"
+#include "tools/process/interrupts.h"
 #include "tools/process/rank_job.h"
 #include "tools/report/command_trace.h"
 #include "tools/report/json_text.h"
@@ -40,6 +42,10 @@ void check_statistics_file(const TriangulationOptions& options, const std::strin
 TracedReport triangulate_and_trace(const TriangulationOptions& options, PointSource& points,
                                    MeshSink& sink, TriangulateOptions how, const Context& context,
                                    std::optional<RunRecorder>* recorder) {
+  std::optional<InterruptAdvice> advice;
+  if (!how.resume_folder.empty()) {
+    advice.emplace(fmt::format("the same command goes on with the run in {}", how.resume_folder));
+  }
   const auto trace = std::make_shared<CommandTrace>(options.tasks_path, recorder);
   how.trace = trace;
   TracedReport report{triangulate(points, sink, how, context)};

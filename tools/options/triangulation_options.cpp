@@ -8,6 +8,7 @@
 
 #include "src/distributed/ranks.h"
 #include "src/parallel/parallel.h"
+#include "tools/report/usage_error.h"
 
 namespace spillway::detail {
 namespace {
@@ -47,6 +48,17 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
       .group(kResourceGroup)
       .show_default();
   add_memory_options(app, options.memory);
+  app.add_option("--resume", options.resume_folder,
+                 "Keep the state of the run in this folder; after it was killed, the same command "
+                 "goes on from there")
+      .value_name("DIR")
+      .group(kResourceGroup);
+  take_number_between(app.add_option("--checkpoint-every", options.checkpoint_seconds,
+                                     "Seconds between two states that --resume keeps"),
+                      0, 1e6)
+      .value_name("S")
+      .group(kResourceGroup)
+      .show_default();
   app.add_flag("--distrust-headers", options.distrust_headers,
                "Read all points before triangulating, as headers may lie about their extent")
       .group(kTuningGroup);
@@ -108,6 +120,11 @@ std::optional<double> max_edge(const TriangulationOptions& options) {
 }
 
 TriangulateOptions triangulate_options(const TriangulationOptions& options, int dimension) {
+  if (options.resume_folder.empty()) {
+    refuse_given(*options.app, {"--checkpoint-every"}, "without --resume");
+  } else if (!options.tasks_path.empty()) {
+    throw UsageError("--tasks has no effect with --resume, as some may be done by another process");
+  }
   TriangulateOptions how;
   how.dimension = dimension;
   how.heights = heights_by_name(options.duplicates);
@@ -118,6 +135,8 @@ TriangulateOptions triangulate_options(const TriangulationOptions& options, int 
   how.children = options.children;
   if (options.kernel == "cgal") how.kernel = Kernel::kCgal;
   how.trust_headers = !options.distrust_headers;
+  how.resume_folder = options.resume_folder;
+  how.checkpoint_seconds = *parse_number(options.checkpoint_seconds);
   return how;
 }
 

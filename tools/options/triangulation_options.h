@@ -33,6 +33,8 @@ struct TriangulationOptions {
   std::string division = "least-border";
   unsigned children = 2;
   std::string kernel = "spillway";
+  std::string resume_folder;
+  std::string checkpoint_seconds = "60";
   ReportOptions report;
 };
 
@@ -42,9 +44,9 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options);
 
 /// Of these the names of those that have no effect where a mesh is read, beside those of
 /// add_input_options().
-inline constexpr std::array<std::string_view, 8> kTriangulationOptionNames = {
-    "--duplicates", "--distrust-headers", "--tasks",    "--base-case",
-    "--tile",       "--division",         "--children", "--kernel"};
+inline constexpr std::array<std::string_view, 10> kTriangulationOptionNames = {
+    "--duplicates", "--distrust-headers", "--tasks",  "--base-case", "--tile",
+    "--division",   "--children",         "--kernel", "--resume",    "--checkpoint-every"};
 
 /// Throws UsageError if --duplicates is given, though points of equal x and y are no duplicates:
 /// in three dimensions.

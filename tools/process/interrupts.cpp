@@ -37,7 +37,8 @@ std::string message_of(int number, std::vector<std::string> outputs) {
 
 struct FirstAction {
   std::mutex mutex;
-  std::function<void()> what;  // guarded by mutex
+  std::function<void()> what;  // guarded by mutex, as is the next one
+  std::string advice{};
 };
 
 FirstAction& first_action() {
@@ -57,7 +58,7 @@ sigset_t interrupts() {
   try {
     if (first_action().what) first_action().what();
     const std::vector<std::string> outputs = remove_unfinished_files();
-    if (tell) last_message(message_of(number, outputs));
+    if (tell) last_message(message_of(number, outputs) + first_action().advice);
   } catch (const std::exception&) {  // no memory for words
   }
   if (distributed::launch().ranks > 1) std::this_thread::sleep_for(kOtherRanks);
@@ -90,6 +91,16 @@ InterruptAction::InterruptAction(std::function<void()> action) {
 InterruptAction::~InterruptAction() {
   const std::lock_guard lock(first_action().mutex);
   first_action().what = nullptr;
+}
+
+InterruptAdvice::InterruptAdvice(std::string advice) {
+  const std::lock_guard lock(first_action().mutex);
+  first_action().advice = "; " + std::move(advice);
+}
+
+InterruptAdvice::~InterruptAdvice() {
+  const std::lock_guard lock(first_action().mutex);
+  first_action().advice.clear();
 }
 
 }  // namespace spillway::detail

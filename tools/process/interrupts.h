@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 namespace spillway::detail {
 
@@ -25,6 +26,16 @@ class InterruptAction {
   ~InterruptAction();
   InterruptAction(const InterruptAction&) = delete;
   InterruptAction& operator=(const InterruptAction&) = delete;
+};
+
+/// While it exists, the message about such a signal ends with this. There is one of these at a
+/// time.
+class InterruptAdvice {
+ public:
+  explicit InterruptAdvice(std::string advice);
+  ~InterruptAdvice();
+  InterruptAdvice(const InterruptAdvice&) = delete;
+  InterruptAdvice& operator=(const InterruptAdvice&) = delete;
 };
 
 }  // namespace spillway::detail

@@ -34,6 +34,11 @@ class ColourDepth {
   /// True also of colours that are bytes, and where there are none.
   [[nodiscard]] bool is_bytes() const { return !exceeds_; }
 
+  template <typename State>
+  void state(State& state) {
+    state(exceeds_);
+  }
+
  private:
   std::optional<ColourFields> fields_;  ///< of 16 bits
   std::size_t record_size_;

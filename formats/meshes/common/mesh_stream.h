@@ -18,6 +18,9 @@
 
 namespace spillway::detail {
 
+class StateReader;
+class StateWriter;
+
 /// What a mesh stream says before its first block.
 struct MeshStreamHeader {
   int dimension = 2;                    ///< 2: triangles with z carried along, 3: tetrahedra
@@ -90,6 +93,13 @@ class BlockSink {
   /// Takes the next block of the stream, absorbed or not: its vertices get the next stream numbers.
   /// By one thread at a time, so that what only write() uses needs no guard.
   virtual void write(MeshBlock&& block) = 0;
+
+  /// Whether another process can go on with it, after the blocks so far.
+  [[nodiscard]] virtual bool goes_on() const { return false; }
+  /// Brings what has come of all blocks so far to the disk, and tells what else another process
+  /// needs to go on; and goes on from that, before any block. While no block is on its way.
+  virtual void save(StateWriter& state);
+  virtual void restore(StateReader& state);
 
   /// Combines what has come and ends. Called once, after the last block.
   virtual void finish(const MeshTotals& totals) = 0;

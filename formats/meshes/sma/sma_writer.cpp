@@ -16,6 +16,8 @@
 #include "formats/meshes/common/mesh_notes.h"
 #include "formats/meshes/common/stream_numbers.h"
 #include "formats/meshes/sma/sma_reader.h"
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -79,6 +81,16 @@ class SmaWriter : public MeshStreamWriter {
   }
 
   [[nodiscard]] std::uint64_t bytes_written() const override { return bytes_; }
+
+  [[nodiscard]] bool goes_on() const override { return true; }
+  void save(StateWriter& state) override {
+    file_->sync();
+    this->state(state);
+  }
+  void restore(StateReader& state) override {
+    this->state(state);
+    file_->go_on_after(bytes_);
+  }
 
  private:
   [[noreturn]] void fail(const std::string& what) const { throw CannotWrite(file_->name(), what); }
@@ -144,6 +156,12 @@ class SmaWriter : public MeshStreamWriter {
   [[nodiscard]] std::int64_t written(std::size_t i) const {
     const auto number = static_cast<std::int64_t>(corners_[i]);
     return relative_[i] ? number - static_cast<std::int64_t>(vertices_) : number + 1;
+  }
+
+  template <typename State>
+  void state(State& state) {
+    state.section("sma");
+    state(vertices_, triangles_, bytes_);
   }
 
   void put(std::string_view text) {

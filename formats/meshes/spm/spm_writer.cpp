@@ -10,6 +10,8 @@
 #include "formats/meshes/spm/spm_block.h"
 #include "formats/meshes/spm/spm_encoding.h"
 #include "formats/meshes/spm/spm_format.h"
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 #include "src/error.h"
 
 namespace spillway::detail {
@@ -62,6 +64,16 @@ class SpmWriter : public MeshStreamWriter {
 
   [[nodiscard]] std::uint64_t bytes_written() const override { return bytes_; }
 
+  [[nodiscard]] bool goes_on() const override { return true; }
+  void save(StateWriter& state) override {
+    file_->sync();
+    this->state(state);
+  }
+  void restore(StateReader& state) override {
+    this->state(state);
+    file_->go_on_after(bytes_);
+  }
+
  private:
   [[noreturn]] void fail(const std::string& what,
                          ErrorCode code = ErrorCode::kInvalidArgument) const {
@@ -102,6 +114,12 @@ class SpmWriter : public MeshStreamWriter {
   void put(std::span<const std::byte> bytes) {
     file_->write(bytes);
     bytes_ += bytes.size();
+  }
+
+  template <typename State>
+  void state(State& state) {
+    state.section("spm");
+    state(vertices_, simplices_, bytes_);
   }
 
   std::unique_ptr<OutputFile> file_;

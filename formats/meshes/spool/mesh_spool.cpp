@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "formats/meshes/common/mesh_block.h"
 #include "formats/meshes/spm/spm_reader.h"
 #include "formats/meshes/spm/spm_writer.h"
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 
 namespace spillway::detail {
 
@@ -45,12 +48,24 @@ class ByteSpool {
     return bytes.size();
   }
 
+  /// Of what lies in a folder that is kept.
+  template <typename State>
+  void state(State& state) {
+    state.file(file_);
+    state(buffer_);
+  }
+  /// Only the first `size` bytes are left, which are as many as were told.
+  void check_size(std::uint64_t size) const {
+    if (size != this->size())
+      throw std::logic_error("a spool of another size: a fault of the program");
+  }
+
  private:
   [[nodiscard]] std::uint64_t on_disk() const { return file_ ? file_->size() : 0; }
 
   ScratchFolder& scratch_;
   std::size_t memory_;
-  std::unique_ptr<ScratchFile> file_;
+  std::shared_ptr<ScratchFile> file_;
   std::vector<std::byte> buffer_;
 };
 
@@ -66,6 +81,8 @@ class SpoolOutput : public OutputFile {
     return false;
   }
   void commit() override {}
+  std::uint64_t sync() override { return store_.size(); }  // the folder is, as a whole
+  void go_on_after(std::uint64_t bytes) override { store_.check_size(bytes); }
   [[nodiscard]] const std::string& name() const override { return name_; }
 
  private:
@@ -114,6 +131,18 @@ void MeshSpool::write(MeshBlock&& block) {
 }
 
 void MeshSpool::finish(const MeshTotals& totals) { encoder_->finish(totals); }
+
+void MeshSpool::save(StateWriter& state) {
+  state(colours_);
+  store_->state(state);
+  encoder_->save(state);
+}
+
+void MeshSpool::restore(StateReader& state) {
+  state(colours_);
+  store_->state(state);
+  encoder_->restore(state);
+}
 
 std::uint64_t MeshSpool::bytes_written() const { return store_->size(); }
 

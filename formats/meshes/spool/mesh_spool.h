@@ -33,6 +33,10 @@ class MeshSpool : public MeshStreamWriter {
   void write(MeshBlock&& block) override;
   void finish(const MeshTotals& totals) override;
   [[nodiscard]] std::uint64_t bytes_written() const override;
+  /// If `scratch` is a folder that is kept.
+  [[nodiscard]] bool goes_on() const override { return true; }
+  void save(StateWriter& state) override;
+  void restore(StateReader& state) override;
 
   [[nodiscard]] const MeshStreamHeader& header() const { return header_; }
 

@@ -8,8 +8,9 @@
 #include <string>
 #include <utility>
 #include <vector>
-#include <vector>
 
+#include "formats/disk/file_system.h"
+#include "formats/disk/scratch_folder.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/vectors/vector_formats.h"
 #include "src/error.h"
@@ -30,6 +31,10 @@ struct MeshStart {
   bool is_triangulated = false;  ///< here and now, so that long edges do not come
   bool has_heights = true;       ///< the points have z
   std::string name{};            ///< of the first input, for messages
+  /// Of a run that can go on: where files are created and scratch files lie, so that they outlive
+  /// the process. Null for others.
+  FileSystem* files = nullptr;
+  ScratchFolder* scratch = nullptr;
 };
 
 /// Throws Error (kInvalidArgument) for a longest edge that is not above 0.
@@ -116,6 +121,10 @@ class EngineSink {
   virtual void give_share(ShareSender& /*sender*/) {}
   /// As complete(), with what other processes give.
   virtual void finalize(RunWatch& watch, Report& report, OtherShares& others) = 0;
+
+  /// Whether another process can go on with it in the midst of the blocks (BlockSink::goes_on). If
+  /// not, it is made of the whole mesh in the end.
+  [[nodiscard]] virtual bool goes_on() const { return false; }
 
   /// The mesh file that it is: processes put these together by their bytes. Null for others.
   [[nodiscard]] virtual const MeshTarget* as_mesh_file() const { return nullptr; }

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include "formats/bytes/word_list.h"
 #include "formats/disk/extension.h"
 #include "formats/disk/file_system.h"
 #include "formats/disk/output_check.h"
-#include "formats/bytes/word_list.h"
 #include "formats/meshes/common/colour.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_stream_writer.h"
+#include "formats/meshes/sma/sma_format.h"
+#include "formats/meshes/spm/spm_format.h"
 #include "formats/meshes/vector/vector_format.h"
 #include "src/geometry/simplex_name.h"
 #include "stream/library/context/context_state.h"
@@ -41,7 +43,8 @@ MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, cons
     : OwnSink(context),
       target_(mesh_target(path, options.format, options.parts)),
       attributes_(options.attributes),
-      scratch_(context.state().scratch(context)) {
+      scratch_(context.state().scratch(context)),
+      run_scratch_(scratch_.get()) {
   if (target_.parts && context.options().executor == nullptr) {
     throw InvalidArgument("parts are a file for each rank, and there is one process",
                           {.remedy = Remedy::kRanks});
@@ -86,16 +89,27 @@ std::vector<std::string> MeshFile::lost_attributes(const AttributeLayout& there,
 BlockSink& MeshFile::open(const MeshStart& start) {
   simplices_ = simplices_of(start.header.dimension);
   header_ = start.header;
-  writer_ = open_mesh_stream_writer(disk(), target_.path, *target_.format, header_, *scratch_);
+  if (start.files != nullptr) files_ = start.files;
+  if (start.scratch != nullptr) run_scratch_ = start.scratch;
+  return open_writer();
+}
+
+BlockSink& MeshFile::open_writer() {
+  writer_.reset();
+  writer_ = open_mesh_stream_writer(*files_, target_.path, *target_.format, header_, *run_scratch_);
   return *writer_;
+}
+
+/// What is spooled, and streams of blocks that are written from front to back.
+bool MeshFile::goes_on() const {
+  return target_.format->open_block_writer == nullptr || target_.format == &kSpmMesh ||
+         target_.format == &kSmaMesh;
 }
 
 BlockSink* MeshFile::begin_again() {
   if (!can_be_tried(target_.path)) return nullptr;
   header_.extent.reset();  // headers of points have told it
-  writer_.reset();
-  writer_ = open_mesh_stream_writer(disk(), target_.path, *target_.format, header_, *scratch_);
-  return writer_.get();
+  return &open_writer();
 }
 
 void MeshFile::finalize(RunWatch& watch, Report& report, OtherShares& /*others*/) {

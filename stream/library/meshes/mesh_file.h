@@ -44,15 +44,19 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   /// What has left through a pipe is gone.
   BlockSink* begin_again() override;
   void finalize(RunWatch& watch, Report& report, OtherShares& others) override;
+  [[nodiscard]] bool goes_on() const override;
   [[nodiscard]] const MeshTarget* as_mesh_file() const override { return &target_; }
 
  private:
   BlockSink& open(const MeshStart& start) override;
+  BlockSink& open_writer();
   [[nodiscard]] AttributeChoice asked_attributes(bool triangulated) const;
 
   MeshTarget target_;
   std::optional<std::vector<std::string>> attributes_;  ///< names, if the caller chooses
   std::shared_ptr<ScratchFolder> scratch_;
+  FileSystem* files_ = &disk();
+  ScratchFolder* run_scratch_;  ///< this one, or that of a run that can go on
   MeshStreamHeader header_;
   std::unique_ptr<MeshStreamWriter> writer_;
   const char* simplices_ = "";  ///< what they are called

@@ -98,7 +98,7 @@ const Mesh& OpenedMesh::whole(RunWatch& watch) const {
   return *mesh_;
 }
 
-OpenedMesh::Extent2 OpenedMesh::find_extent(RunWatch& watch) {
+VertexExtent OpenedMesh::find_extent(RunWatch& watch) {
   if (!is_stream_) {
     reader(watch, false);
     const auto& whole = static_cast<const WholeMesh&>(*reader_);
@@ -106,17 +106,8 @@ OpenedMesh::Extent2 OpenedMesh::find_extent(RunWatch& watch) {
   }
   keep_copy(watch);
   const std::unique_ptr<MeshStreamReader> reader = open_stream();
-  Extent2 found;
-  if (reader->header().dimension != 2) return found;
-  watch.begin("extent", "vertices");
-  for (MeshBlock block; reader->read(block);) {
-    for (const LatticePoint& vertex : block.vertices) {
-      found.box.expand(Point<2>{vertex[0], vertex[1]});
-    }
-    watch.tell(found.vertices += block.vertices.size(), reader->fraction_read());
-  }
-  watch.end(found.vertices);
-  return found;
+  if (reader->header().dimension != 2) return {};
+  return find_vertices(*reader, watch);
 }
 
 void OpenedMesh::check_totals(RunWatch& watch) {

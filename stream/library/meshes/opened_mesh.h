@@ -14,6 +14,7 @@
 #include "src/geometry/box.h"
 #include "stream/checker/checker.h"
 #include "stream/library/context/run_watch.h"
+#include "stream/library/meshes/mesh_passage.h"
 #include "stream/source/input_crs.h"
 
 namespace spillway::detail {
@@ -56,11 +57,7 @@ class OpenedMesh final : public spillway::MeshSource {
   /// The box around all vertices in x and y, as their blocks give them, and the number of these. To
   /// be called before reader(); a stream is read once more for that, from a pipe into a scratch
   /// file.
-  struct Extent2 {
-    Box<2> box;
-    std::uint64_t vertices = 0;
-  };
-  Extent2 find_extent(RunWatch& watch);
+  VertexExtent find_extent(RunWatch& watch);
 
   /// Throws Error if the totals are not those of what the mesh holds, or if no totals can tell
   /// what it holds. A stream is read once more for that, as by find_extent().

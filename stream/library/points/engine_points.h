@@ -7,6 +7,7 @@
 
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
+#include "stream/checkpoint/run_identity.h"
 #include "stream/library/context/run_watch.h"
 #include "stream/source/point_stream.h"
 #include "stream/source/source_crs.h"
@@ -47,6 +48,10 @@ class EnginePoints {
   /// To be called once, and not beside the program's own reading. What follows is told to `watch`,
   /// which must live as long as points are read, and each point has its index if `index`.
   virtual RunPoints begin(RunWatch& watch, bool index) = 0;
+
+  /// Tells of what the points are, so that another process can be known to read the same. False if
+  /// none can.
+  virtual bool identify(RunIdentity& /*identity*/) const { return false; }
 
   /// What making points out of it is called: "convert", ...
   [[nodiscard]] virtual const char* phase() const { return "convert"; }

@@ -140,7 +140,7 @@ void check_levels(const std::vector<PointHeader>& headers, const ContextOptions&
 
 FilePoints::FilePoints(const std::vector<std::string>& paths, const PointOptions& options,
                        const Context& context)
-    : dimension_(options.dimension),
+    : options_(options),
       name_(paths.empty() ? "" : paths.front()),
       scratch_(context.state().scratch(context)),
       context_(context) {
@@ -259,7 +259,7 @@ RunPoints FilePoints::begin(RunWatch& watch, bool index) {
   input_->set_index(index || is_shared_);
   return {.stream = input_.get(),
           .files = input_.get(),
-          .dimension = dimension_,
+          .dimension = options_.dimension,
           .has_heights = input_->has_heights(),
           .heights_on_lattice = input_->heights_on_lattice(),
           .attributes = input_->attributes(),

@@ -24,6 +24,7 @@ class FilePoints final : public spillway::PointSource, public EnginePoints {
 
   void settle_crs(CrsNeed need) override;
   RunPoints begin(RunWatch& watch, bool index) override;
+  bool identify(RunIdentity& identity) const override;
 
   [[nodiscard]] detail::PointSource& input() { return *input_; }
 
@@ -33,7 +34,7 @@ class FilePoints final : public spillway::PointSource, public EnginePoints {
   void check_input(const PointOptions& options, const Context& context) const;
   [[nodiscard]] AttributeLayout offered() const;
 
-  int dimension_;
+  PointOptions options_;
   bool is_shared_ = false;  ///< by ranks, who tell points by their index
   std::string name_;
   std::shared_ptr<ScratchFolder> scratch_;  ///< for thinning, so it outlives input_

@@ -68,6 +68,16 @@ class CutTree {
   [[nodiscard]] const Box<3>& cell(std::uint32_t tile) const { return cells_[tile]; }
   [[nodiscard]] std::array<NodeRef, 2> sides(NodeRef ref) const { return cuts_[ref].sides; }
 
+  template <typename State>
+  void state(State& state) {
+    state(root_, tiles_, cuts_, parents_, cells_);
+    if constexpr (State::kReads) {
+      since_.resize(tiles_);
+      cuts_since_.resize(tiles_);
+      renew_lookup();
+    }
+  }
+
  private:
   void split_sample(std::uint32_t tile, LatticePoint* begin, LatticePoint* end, std::size_t parts);
   /// 1 or 0.

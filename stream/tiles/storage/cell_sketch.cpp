@@ -115,8 +115,16 @@ void CellSketch::gather(std::span<const LatticePoint> points) {
   }
 }
 
+std::vector<CellSketch::NumberedCell> CellSketch::in_order() const {
+  std::vector<NumberedCell> cells;
+  cells.reserve(cells_.size());
+  for (const auto& [number, cell] : cells_) cells.push_back({number, cell});
+  std::ranges::sort(cells, {}, &NumberedCell::number);
+  return cells;
+}
+
 void CellSketch::gather(const CellSketch& other) {
-  for (const auto& [number, cell] : other.cells_) {
+  for (const auto& [number, cell] : other.in_order()) {
     while (!reaches(cell.box.lo)) coarsen();
     Cell moved = cell;
     Point<3> shift{};  // of the origin
@@ -168,7 +176,7 @@ void CellSketch::measure(std::span<const LatticePoint> points) {
 
 void CellSketch::measure(const CellSketch& other) {
   begin_measuring();
-  for (const auto& [number, cell] : other.cells_) {
+  for (const auto& [number, cell] : other.in_order()) {
     cells_.at(number_of(cell.box.lo)).plate.expand(cell.plate);
   }
 }

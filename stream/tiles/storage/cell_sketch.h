@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <span>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "src/delaunay/border/point_sketch.h"
 #include "src/geometry/box.h"
@@ -19,6 +21,7 @@ namespace spillway::detail {
 /// points come, in whatever spans. All points are to be gathered, and then measured once more.
 class CellSketch {
  public:
+  CellSketch() = default;
   /// Only the first `dimension` axes count. Most points will lie in `box`.
   CellSketch(int dimension, std::size_t most_cells, const Box<3>& box);
 
@@ -37,6 +40,17 @@ class CellSketch {
   [[nodiscard]] std::size_t size() const { return cells_.size(); }
   template <int D>
   [[nodiscard]] PointSketch<D> sketch() const;
+
+  template <typename State>
+  void state(State& state) {
+    state(dimension_, most_cells_, origin_, exponent_, scale_, scaled_origin_, measuring_);
+    std::vector<NumberedCell> cells = in_order();
+    state(cells);
+    if constexpr (State::kReads) {
+      cells_.clear();
+      for (const NumberedCell& cell : cells) cells_.emplace(cell.number, cell.cell);
+    }
+  }
 
   /// What a cell takes in memory, about.
   static constexpr std::size_t kCellBytes = 256;
@@ -57,6 +71,13 @@ class CellSketch {
     void add(const Cell& other);
     void begin_plate(const Point<3>& origin, int dimension);
   };
+  struct NumberedCell {
+    Number number{};
+    Cell cell{};
+  };
+  /// Of a table they come in any order.
+  [[nodiscard]] std::vector<NumberedCell> in_order() const;
+
   /// However large cells are, there may be one on each side of the origin on each axis.
   static constexpr std::size_t kFewestCells = 8;
 
@@ -70,9 +91,9 @@ class CellSketch {
   void coarsen();
   void begin_measuring();
 
-  int dimension_;
-  std::size_t most_cells_;
-  Point<3> origin_;
+  int dimension_ = 2;
+  std::size_t most_cells_ = kFewestCells;
+  Point<3> origin_{};
   int exponent_ = 0;  ///< of two, of the side of a cell
   double scale_ = 1;  ///< that power's reciprocal
   Point<3> scaled_origin_{};

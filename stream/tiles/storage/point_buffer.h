@@ -80,6 +80,12 @@ class PointBuffer {
     for (std::size_t p = 0; p < pages_.size(); ++p) f(view_of(p).points);
   }
 
+  /// The same, f(PointsView), with what points carry.
+  template <typename F>
+  void visit_all(F&& f) const {
+    for (std::size_t p = 0; p < pages_.size(); ++p) f(view_of(p));
+  }
+
   /// Calls f(PointsView) for kPagePoints points at a time at most, in order, where they lie, and
   /// lets go of them.
   template <typename F>

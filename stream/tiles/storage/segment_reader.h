@@ -20,6 +20,7 @@ struct StoredBlocks {
 /// Reads segments one after the other, and lets go of each after that.
 class SegmentReader {
  public:
+  SegmentReader() = default;
   /// All of them have been written. Runs are counted after `last_run`.
   explicit SegmentReader(std::vector<TileSegment> segments, std::uint64_t last_run = 0)
       : segments_(std::move(segments)), run_(last_run) {}
@@ -32,6 +33,11 @@ class SegmentReader {
   [[nodiscard]] std::uint64_t points() const { return points_; }
   [[nodiscard]] std::uint64_t last_run() const { return run_; }
 
+  template <typename State>
+  void state(State& state) {
+    state(segments_, segment_, done_, points_done_, run_, points_);
+  }
+
  private:
   void read(const FileStretch& stretch, StoredBlocks& blocks);
 
@@ -39,7 +45,7 @@ class SegmentReader {
   std::size_t segment_ = 0;
   std::uint64_t done_ = 0;         ///< bytes of the segment
   std::uint64_t points_done_ = 0;  ///< of the segment
-  std::uint64_t run_;
+  std::uint64_t run_ = 0;
   std::uint64_t points_ = 0;
 };
 

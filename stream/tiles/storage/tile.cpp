@@ -1,6 +1,32 @@
 #include "stream/tiles/storage/tile.h"
 
+#include "stream/tiles/storage/tile_block.h"
+
 namespace spillway::detail {
+
+/// As in a tile's file, some pages at a time.
+void HeldPoints::buffer_state(StateWriter& state) {
+  std::uint64_t points = buffer.size();
+  state(points);
+  std::vector<std::byte> encoded;
+  buffer.visit_all([&](const PointsView& some) {
+    encoded.clear();
+    append_all_points(encoded, some);
+    state(encoded);
+  });
+}
+
+void HeldPoints::buffer_state(StateReader& state) {
+  std::uint64_t points = 0;
+  state(points);
+  std::vector<std::byte> encoded;
+  PointBlock block;
+  for (buffer = {}; buffer.size() < points;) {
+    state(encoded);
+    decode_all_points(encoded, {state.name(), {}}, block);
+    buffer.append(PointsView::of(block));
+  }
+}
 
 std::size_t Tile::room() const {
   std::size_t room = 0;

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "formats/disk/scratch_folder.h"
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 #include "src/error.h"
 #include "src/geometry/box.h"
 #include "stream/tiles/storage/point_buffer.h"
@@ -20,6 +22,16 @@ struct HeldPoints {
   Box<3> box{};
   std::optional<std::uint64_t> arrival{};  ///< of the first, if there are later points
   std::uint64_t run = 0;
+
+  template <typename State>
+  void state(State& state) {
+    state(box, arrival, run);
+    buffer_state(state);
+  }
+
+ private:
+  void buffer_state(StateWriter& state);
+  void buffer_state(StateReader& state);
 };
 
 /// What is known of a tile while it gets points.
@@ -41,6 +53,24 @@ struct Tile {
   [[nodiscard]] std::size_t room() const;     ///< of what is held, in points
   [[nodiscard]] std::size_t waiting() const;  ///< points held
   [[nodiscard]] std::uint64_t held_bytes() const;
+
+  template <typename State>
+  void state(State& state) {
+    state(box, points, expected, expected_box, held, last_left_over, segments);
+    state.file(file);
+    state(spills, used, cut_at, cell, hollow);
+  }
+};
+
+/// A tile and its number.
+struct NumberedTile {
+  std::uint32_t number = 0;
+  Tile tile;
+
+  template <typename State>
+  void state(State& state) {
+    state(number, tile);
+  }
 };
 
 /// Points on their way from one tile's buffer to its file.

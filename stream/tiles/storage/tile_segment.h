@@ -17,6 +17,7 @@ namespace spillway::detail {
 /// the order in which they are spilled, but later.
 class FileStretch {
  public:
+  FileStretch() = default;
   explicit FileStretch(std::shared_ptr<ScratchFile> file) : file_(std::move(file)) {}
 
   [[nodiscard]] ScratchFile& file() const { return *file_; }
@@ -28,6 +29,13 @@ class FileStretch {
 
   /// Becomes a part of the stretch before it. Under the mutex.
   void join(const std::shared_ptr<FileStretch>& before);
+
+  /// Once all has been written.
+  template <typename State>
+  void state(State& state) {
+    state.file(file_);
+    state(offset_, size_);
+  }
 
  private:
   void count(std::uint64_t offset, std::uint64_t bytes);
@@ -54,6 +62,11 @@ struct TileSegment {
 
   /// No part of it has a later one. A segment has points.
   [[nodiscard]] std::uint64_t last_arrival() const { return arrival + points - 1; }
+
+  template <typename State>
+  void state(State& state) {
+    state(stretch, first_spill, end_spill, points, arrival, follows, box, sketches);
+  }
 };
 
 /// Joins neighbours in `segments`, those of a tile in the order of their arrival, until at most

@@ -1,0 +1,175 @@
+#include "stream/checkpoint/checkpoint_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "formats/disk/output_target.h"
+#include "formats/disk/private_file.h"
+#include "formats/disk/unfinished_files.h"
+#include "src/error.h"
+
+namespace spillway::detail {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRunFile = "run";
+constexpr const char* kStateFile = "state";
+constexpr const char* kScratch = "scratch";
+constexpr const char* kUnfinishedEnd = ".new";
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+std::string made_folder(const std::string& path) {
+  if (::mkdir(path.c_str(), 0777) == 0 || errno == EEXIST) return path;
+  const int error = errno;
+  throw SystemRefusal(fmt::format("cannot create the folder {}: {}", path, reason(error)), path,
+                      error);
+}
+
+}  // namespace
+
+CheckpointFolder::CheckpointFolder(const std::string& path, const RunIdentity& identity,
+                                   std::optional<std::uint64_t> cap)
+    : path_(made_folder(path)), lock_(path, O_RDONLY | O_DIRECTORY) {
+  lock();
+  take(identity);
+  outputs_ = keep_outputs(mark_);
+  scratch_ = std::make_unique<KeptScratchFolder>(path_of(kScratch), cap);
+  if (!has_checkpoint()) scratch_->remove_others();
+}
+
+std::string CheckpointFolder::path_of(const std::string& file_name) const {
+  return (fs::path(path_) / file_name).string();
+}
+
+void CheckpointFolder::refuse(const std::string& why) const {
+  throw Error(fmt::format("cannot go on with the run in {}: {}", path_, why),
+              ErrorCode::kInvalidArgument, {.file = path_});
+}
+
+/// The system lets go of it when the process ends, however it does. Where a file system has no
+/// locks there is none.
+void CheckpointFolder::lock() {
+  if (lock_.get() < 0) {
+    const int error = errno;
+    throw SystemRefusal(fmt::format("cannot use {} as a folder: {}", path_, reason(error)), path_,
+                        error);
+  }
+  if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    refuse("another process is at work on it");
+  }
+}
+
+/// Begins a run in a folder that is empty, or goes on with that of the same identity.
+void CheckpointFolder::take(const RunIdentity& identity) {
+  if (const auto state = open(kRunFile)) {
+    RunIdentity earlier;
+    state->section("run");
+    (*state)(mark_, earlier);
+    state->finish();
+    const std::string difference = identity.difference_from(earlier);
+    if (!difference.empty()) {
+      refuse(difference + "; give the same again, or another folder, or remove this one");
+    }
+    return;
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_)) {
+    // What is left of a process that was killed before it had begun.
+    const std::string name = entry.path().filename().string();
+    if (name == std::string(kRunFile) + kUnfinishedEnd) continue;
+    throw Error(fmt::format("{} is no folder of a run that can go on, and not empty: it has {} in "
+                            "it; give another folder",
+                            path_, name),
+                ErrorCode::kInvalidArgument, {.file = path_});
+  }
+  mark_ = random_mark();
+  save(kRunFile, [&](StateWriter& state) {
+    state.section("run");
+    RunIdentity own = identity;
+    state(mark_, own);
+  });
+}
+
+bool CheckpointFolder::has_unfinished(const std::string& final_path) const {
+  return fs::exists(part_path(output_target(final_path).path, mark_));
+}
+
+bool CheckpointFolder::has(const std::string& file_name) const {
+  return disk().exists(path_of(file_name));
+}
+
+bool CheckpointFolder::has_checkpoint() const { return has(kStateFile); }
+
+std::unique_ptr<StateReader> CheckpointFolder::open(const std::string& file_name) {
+  if (!has(file_name)) return nullptr;
+  return std::make_unique<StateReader>(disk().open(path_of(file_name)), path_);
+}
+
+void CheckpointFolder::remove_unfinished(const std::string& final_path) const {
+  std::error_code ignored;
+  fs::remove(part_path(output_target(final_path).path, mark_), ignored);
+}
+
+std::unique_ptr<StateReader> CheckpointFolder::open_checkpoint() {
+  auto state = open(kStateFile);
+  if (!state) return nullptr;
+  state->use_scratch(*scratch_);
+  state->section("checkpoint");
+  std::uint64_t files_made = 0;
+  (*state)(files_made);
+  scratch_->go_on_after(files_made);
+  return state;
+}
+
+void CheckpointFolder::restored(StateReader& state) {
+  state.finish();
+  scratch_->remove_others();
+}
+
+void CheckpointFolder::save_checkpoint(const std::function<void(StateWriter&)>& write) {
+  save(kStateFile, [&](StateWriter& state) {
+    state.section("checkpoint");
+    std::uint64_t files_made = scratch_->files_made();
+    state(files_made);
+    write(state);
+    scratch_->sync();
+  });
+  scratch_->release();
+}
+
+void CheckpointFolder::forget_checkpoint() { fs::remove(path_of(kStateFile)); }
+
+void CheckpointFolder::save(const std::string& file_name,
+                            const std::function<void(StateWriter&)>& write) {
+  const std::string path = path_of(file_name);
+  const std::string unfinished = path + kUnfinishedEnd;
+  StateWriter state(create_private_file(unfinished, unfinished));
+  write(state);
+  state.finish();
+  if (::rename(unfinished.c_str(), path.c_str()) != 0 || ::fsync(lock_.get()) != 0) {
+    const int error = errno;
+    throw SystemRefusal(fmt::format("cannot write {}: {}", path, reason(error)), path, error);
+  }
+}
+
+void CheckpointFolder::remove() {
+  // First that by which another run would go on, so that one which is killed here begins anew.
+  forget_checkpoint();
+  std::error_code ignored;
+  fs::remove_all(path_of(kScratch), ignored);
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_, ignored)) {
+    fs::remove(entry.path(), ignored);
+  }
+  fs::remove(path_, ignored);
+}
+
+}  // namespace spillway::detail

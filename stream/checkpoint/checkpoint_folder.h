@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "formats/disk/file_system.h"
+#include "formats/disk/kept_scratch.h"
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
+#include "stream/checkpoint/run_identity.h"
+
+namespace spillway::detail {
+
+/// The folder of a run that can go on: what the run is of ("run"), its last checkpoint ("state"),
+/// and the scratch files that this refers to ("scratch"). One run at a time has it.
+class CheckpointFolder {
+ public:
+  /// Makes the folder, or takes the one that a run of the same identity has left. Throws Error if
+  /// another run uses it, if it is of a run with another identity, which tells what differs, or if
+  /// it has something else in it. Scratch files take `cap` bytes at most at a time.
+  CheckpointFolder(const std::string& path, const RunIdentity& identity,
+                   std::optional<std::uint64_t> cap);
+  CheckpointFolder(const CheckpointFolder&) = delete;
+  CheckpointFolder& operator=(const CheckpointFolder&) = delete;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// Where outputs are created, so that they outlive this process.
+  [[nodiscard]] FileSystem& outputs() { return *outputs_; }
+  /// Of six characters, by which unfinished outputs of the run are told from others.
+  [[nodiscard]] const std::string& mark() const { return mark_; }
+  /// Whether an output of that final path is still unfinished.
+  [[nodiscard]] bool has_unfinished(const std::string& final_path) const;
+  void remove_unfinished(const std::string& final_path) const;
+  [[nodiscard]] KeptScratchFolder& scratch() { return *scratch_; }
+  [[nodiscard]] std::string path_of(const std::string& file_name) const;
+
+  [[nodiscard]] bool has_checkpoint() const;
+  /// The last checkpoint of a process before this one; null if there is none.
+  [[nodiscard]] std::unique_ptr<StateReader> open_checkpoint();
+  /// All has been read of it, and of the scratch files it needs all have been reopened.
+  void restored(StateReader& state);
+  /// Replaces the last checkpoint by a new one, which survives whatever happens from now on.
+  void save_checkpoint(const std::function<void(StateWriter&)>& write);
+  /// The run begins anew: there is no checkpoint any more.
+  void forget_checkpoint();
+
+  /// A file of a few values, which is there as a whole or not at all.
+  void save(const std::string& file_name, const std::function<void(StateWriter&)>& write);
+  [[nodiscard]] bool has(const std::string& file_name) const;
+  /// Null if it is not there.
+  [[nodiscard]] std::unique_ptr<StateReader> open(const std::string& file_name);
+
+  /// The run is complete: removes the folder.
+  void remove();
+
+ private:
+  void lock();
+  void take(const RunIdentity& identity);
+  [[noreturn]] void refuse(const std::string& why) const;
+
+  std::string path_;
+  OpenedFile lock_;  ///< the folder, locked as long as it is open
+  std::string mark_;
+  std::unique_ptr<FileSystem> outputs_;
+  std::unique_ptr<KeptScratchFolder> scratch_;
+};
+
+}  // namespace spillway::detail

@@ -1,0 +1,37 @@
+#include "stream/checkpoint/run_identity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace spillway::detail {
+
+std::string RunIdentity::difference_from(const RunIdentity& earlier) const {
+  constexpr std::size_t kMostNamed = 3;
+  std::vector<std::string> differences;
+  const auto find = [](const std::vector<Fact>& facts, const std::string& name) {
+    return std::ranges::find(facts, name, &Fact::name);
+  };
+  for (const Fact& fact : facts_) {
+    const auto was = find(earlier.facts_, fact.name);
+    if (was == earlier.facts_.end()) {
+      differences.push_back(fmt::format("there was no {}", fact.name));
+    } else if (was->value != fact.value) {
+      differences.push_back(fmt::format("{} is {}, and was {}", fact.name, fact.value, was->value));
+    }
+  }
+  for (const Fact& fact : earlier.facts_) {
+    if (find(facts_, fact.name) == facts_.end()) {
+      differences.push_back(fmt::format("there is no {} any more", fact.name));
+    }
+  }
+  if (differences.size() > kMostNamed) {
+    const std::size_t more = differences.size() - kMostNamed;
+    differences.resize(kMostNamed);
+    differences.push_back(fmt::format("{} more", more));
+  }
+  return fmt::format("{}", fmt::join(differences, "; "));
+}
+
+}  // namespace spillway::detail

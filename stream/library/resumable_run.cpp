@@ -1,0 +1,245 @@
+#include "stream/library/resumable_run.h"
+
+#include <fmt/format.h>
+#include <spillway/version.h>
+
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "formats/disk/output_check.h"
+#include "formats/disk/unfinished_files.h"
+#include "formats/meshes/spm/spm_reader.h"
+#include "formats/meshes/spm/spm_writer.h"
+#include "src/error.h"
+#include "src/geometry/simplex_name.h"
+#include "src/runtime/memory_budget.h"
+#include "stream/checkpoint/checkpoint_folder.h"
+#include "stream/checkpoint/checkpoints.h"
+#include "stream/library/context/executor.h"
+#include "stream/library/meshes/mesh_file.h"
+#include "stream/library/meshes/mesh_passage.h"
+#include "stream/source/point_source.h"
+
+namespace spillway::detail {
+namespace {
+
+constexpr const char* kFiguresFile = "figures";
+constexpr const char* kMeshFile = "mesh.spm";
+
+/// The state of checkpoints is laid out in this way.
+constexpr int kStateVersion = 1;
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw InvalidArgument("a run by which another can go on: " + why);
+}
+
+void refuse_what_cannot_go_on(const Run& run) {
+  if (run.context.options().executor != nullptr) refuse("it is of one process, not of ranks");
+  if (run.points.files == nullptr) refuse("its points are of files, and these are a program's");
+  const RunTrace* const trace = run.options.trace.get();
+  if (trace != nullptr && (trace->takes_nodes() || trace->takes_steps())) {
+    refuse("its tasks are not told, as some may be done by another process");
+  }
+  const MeshTarget* const target = run.sink.as_mesh_file();
+  if (target != nullptr && !can_be_tried(target->path)) {
+    refuse(fmt::format("its output is a file, and {} is none",
+                       target->path == "-" ? "standard output" : target->path));
+  }
+}
+
+RunIdentity identity_of(const Run& run, const EnginePoints& points) {
+  RunIdentity identity;
+  const auto add = [&](const char* name, const auto& value) {
+    identity.add(name, fmt::format("{}", value));
+  };
+  const TriangulateOptions& options = run.options;
+  add("version", fmt::format("{} (state {})", SPILLWAY_VERSION_TEXT, kStateVersion));
+  if (!points.identify(identity)) refuse("another process does not read the same points");
+  add("dimension", options.dimension);
+  add("heights", static_cast<int>(options.heights));
+  add("longest edge", options.max_edge ? fmt::format("{}", *options.max_edge) : "any");
+  add("input index", options.input_index);
+  add("tile", options.tile_points);
+  add("base case", options.leaf_points);
+  add("division", static_cast<int>(options.division));
+  add("children", options.children);
+  add("trust in headers", options.trust_headers);
+  add("kernel", static_cast<int>(options.kernel));
+  add("memory", memory_size_text(run.context.memory()));
+  if (const MeshTarget* const target = run.sink.as_mesh_file()) {
+    add("output", std::filesystem::absolute(target->path).string());
+    add("format", target->format->name);
+  }
+  return identity;
+}
+
+/// What is known of a triangulation that is complete, for whoever has only to complete its output.
+template <typename State>
+void transfer_figures(State& state, Report& report) {
+  state.section("figures");
+  state(report.mesh, report.left_out, report.threads, report.tiles, report.leaves,
+        report.tile_capacity, report.leaf_size, report.spilled_points, report.spilled_bytes,
+        report.final_in_leaves, report.final_in_tiles, report.final_by_level, report.retriangulated,
+        report.border_simplices, report.border_bytes, report.divided_points,
+        report.first_block_read_points, report.tile_shapes, report.dimension, report.points,
+        report.on_lattice);
+}
+
+/// A run and its folder.
+class ResumableRun {
+ public:
+  ResumableRun(Run& run, const EnginePoints& points)
+      : run_(run),
+        folder_(run.options.resume_folder, identity_of(run, points), run.context.scratch_limit()),
+        checkpoints_(folder_, run.options.checkpoint_seconds) {
+    run.stream.checkpoints = &checkpoints_;
+  }
+
+  Report run() {
+    tell();
+    try {
+      Report report = run_.sink.goes_on() ? run_to_sink() : run_to_mesh();
+      folder_.remove();
+      return report;
+    } catch (const Error& error) {
+      if (!folder_.has_checkpoint() && !has_mesh()) {
+        give_up();
+      } else if (error.code() == ErrorCode::kInputOutput) {
+        say(fmt::format("when that is mended, the same command goes on with the run in {}",
+                        folder_.path()));
+      }
+      throw;
+    }
+  }
+
+ private:
+  void say(const std::string& text) const {
+    if (run_.context.options().warning) run_.context.options().warning(text);
+  }
+
+  void tell() const {
+    if (has_mesh()) {
+      say(fmt::format("goes on with the mesh in {}", folder_.path()));
+    } else if (folder_.has_checkpoint()) {
+      say(fmt::format("goes on with the run in {}", folder_.path()));
+    } else if (!run_.points.stream->goes_on()) {
+      say(fmt::format("{} is read only once: the run can go on when it has been read to its end",
+                      run_.points.name == "-" ? "standard input" : run_.points.name));
+    }
+  }
+
+  /// Nothing has been done that another process could go on with.
+  void give_up() {
+    if (const MeshTarget* const target = run_.sink.as_mesh_file()) {
+      folder_.remove_unfinished(target->path);
+    }
+    folder_.remove();
+  }
+
+  /// Blocks go where they go in the end.
+  Report run_to_sink() {
+    Report report;
+    if (is_complete()) {
+      read_figures(report);
+      tell_file(report);
+      return report;
+    }
+    MeshStart start = run_.start();
+    start.files = &folder_.outputs();
+    start.scratch = &folder_.scratch();
+    report = triangulate_to(run_.sink.start(start), folder_.scratch(), run_);
+    save_figures(report);
+    run_.sink.complete(run_.watch, report);
+    return report;
+  }
+
+  /// Only a stream of blocks has got its name with the last of them: what is spooled is made once
+  /// more of its spool.
+  [[nodiscard]] bool is_complete() {
+    const MeshTarget* const target = run_.sink.as_mesh_file();
+    return target != nullptr && target->format->open_block_writer != nullptr &&
+           folder_.has(kFiguresFile) && !folder_.has_unfinished(target->path);
+  }
+
+  void tell_file(Report& report) const {
+    const MeshTarget& target = *run_.sink.as_mesh_file();
+    report.output_format = target.format->name;
+    report.output_bytes = std::filesystem::file_size(target.path);
+  }
+
+  /// Blocks go to a mesh in the folder, and all of it to the sink.
+  Report run_to_mesh() {
+    const MarkedOutputs marked(folder_.mark());
+    BlockSink& blocks = run_.sink.start(run_.start());  // what it refuses is refused at once
+    const std::string path = folder_.path_of(kMeshFile);
+    Report report;
+    if (has_mesh()) {
+      read_figures(report);
+    } else {
+      make_mesh(path, report);
+    }
+    make_product(path, blocks, report);
+    return report;
+  }
+
+  [[nodiscard]] bool has_mesh() const {
+    return folder_.has(kFiguresFile) && folder_.has(kMeshFile);
+  }
+
+  void make_mesh(const std::string& path, Report& report) {
+    std::unique_ptr<MeshStreamWriter> writer;
+    const auto begin = [&]() -> BlockSink* {
+      writer.reset();
+      writer = open_spm_writer(folder_.outputs().create(path), run_.start().header);
+      return writer.get();
+    };
+    run_.stream.needs_extent = false;
+    run_.stream.extent_known = [](const Box<2>&, std::uint64_t) {};
+    run_.stream.begin_again = begin;
+    report = triangulate_to(*begin(), folder_.scratch(), run_);
+    save_figures(report);
+    writer->finish(report.mesh);
+    folder_.forget_checkpoint();
+    folder_.scratch().release();
+  }
+
+  void make_product(const std::string& path, BlockSink& blocks, Report& report) {
+    if (run_.sink.wants_extent() && run_.options.dimension == 2) {
+      const VertexExtent extent = find_vertices(*open_mesh(path), run_.watch);
+      run_.sink.extent_known(extent.box, extent.vertices);
+    }
+    const std::unique_ptr<MeshStreamReader> reader = open_mesh(path);
+    const char* const simplices = simplices_of(run_.options.dimension);
+    run_.watch.begin(simplices, simplices);
+    run_.watch.end(pass_mesh(*reader, reader->header().attributes, blocks, run_.watch,
+                             run_.sink.feeding_threads(run_.context.threads())));
+    run_.sink.complete(run_.watch, report);
+  }
+
+  [[nodiscard]] static std::unique_ptr<MeshStreamReader> open_mesh(const std::string& path) {
+    return open_spm_reader(std::make_unique<InputBytes>(disk().open(path)));
+  }
+
+  void save_figures(Report& report) {
+    folder_.save(kFiguresFile, [&](StateWriter& state) { transfer_figures(state, report); });
+  }
+  void read_figures(Report& report) {
+    const std::unique_ptr<StateReader> state = folder_.open(kFiguresFile);
+    transfer_figures(*state, report);
+    state->finish();
+  }
+
+  Run& run_;
+  CheckpointFolder folder_;
+  Checkpoints checkpoints_;
+};
+
+}  // namespace
+
+Report triangulate_resumably(Run& run, const EnginePoints& points) {
+  refuse_what_cannot_go_on(run);
+  return ResumableRun(run, points).run();
+}
+
+}  // namespace spillway::detail

@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+"""Kills runs with --resume at random moments, again and again until they end, and compares bytes.
+
+    kill_driver.py COMMAND [--kills 50] [--seed 1] [--family NAME] [--damages 40] [--points 150000]
+
+Each family is a kind of run. What it writes must be what the same run writes that nobody kills, and
+nothing else may be left. With --damages, checkpoints and scratch files of killed runs are damaged:
+a bit flipped, the end cut off, or a file missing. Then a run must end with an error that names the
+file, or with the same bytes. Exits with 1 at the first run that does not.
+"""
+import argparse
+import filecmp
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+TERRAIN = ["generate", "terrain", "-o", "terrain.las", "-n"]
+SURVEY = ["generate", "terrain", "--grid", "5x5", "-o", "survey#.las", "-n"]
+SPACE = ["generate", "uniform", "--dim", "3", "-o", "space.npy", "-n"]
+SURFACE = ["generate", "ellipsoid", "--dim", "3", "-o", "surface.npy", "-n"]
+PLANE = ["--tile", "5000", "--memory", "64M"]
+IN_SPACE = ["--dim", "3", "--tile", "5000", "--memory", "96M"]
+
+# Name: input, share of the points, arguments, output.
+FAMILIES = {
+    "spilled": (TERRAIN, 1, ["triangulate", "terrain.las", *PLANE], "x.spm"),
+    "planned": (SURVEY, 1, ["triangulate", "survey*.las", *PLANE], "x.spm"),
+    "planned_space": (SURVEY, 0.3, ["triangulate", "survey*.las", *IN_SPACE], "x.spm"),
+    "space": (SPACE, 0.3, ["triangulate", "space.npy", *IN_SPACE], "x.spm"),
+    "surface": (SURFACE, 0.5, ["triangulate", "surface.npy", *IN_SPACE], "x.spm"),
+    "spooled": (TERRAIN, 1, ["triangulate", "terrain.las", "--id", *PLANE], "x.ply"),
+    "text": (TERRAIN, 1, ["triangulate", "terrain.las", "--max-edge", "4", *PLANE], "x.sma"),
+    "thinned": (TERRAIN, 1, ["triangulate", "terrain.las", "--thin", "2:lowest", *PLANE], "x.spm"),
+    "stl": (TERRAIN, 0.5, ["triangulate", "terrain.las", *PLANE], "x.stl"),
+    "dem": (TERRAIN, 1, ["dem", "terrain.las", "--resolution", "2", *PLANE], "x.tif"),
+    "contour": (TERRAIN, 0.5, ["contour", "terrain.las", "--interval", "20", *PLANE], "x.shp"),
+}
+
+
+class Failed(Exception):
+    pass
+
+
+class Runs:
+    """Runs of one family, in a folder of its own."""
+
+    def __init__(self, command, family, points, seed):
+        self.command = command
+        source, share, self.arguments, self.output = FAMILIES[family]
+        self.random = random.Random(f"{family} {seed}")
+        self.call([*source, str(int(points * share)), "--seed", str(seed), "-q"])
+        started = time.monotonic()
+        self.call(self.run_of("undisturbed"))
+        self.seconds = time.monotonic() - started
+        self.reference = pathlib.Path("undisturbed") / self.output
+        self.check_clean("undisturbed")
+
+    def call(self, arguments):
+        done = subprocess.run([self.command, *arguments], capture_output=True, text=True)
+        if done.returncode != 0:
+            raise Failed(f"{' '.join(arguments)}: {done.stderr}")
+
+    def run_of(self, folder):
+        os.makedirs(folder, exist_ok=True)
+        return [*self.arguments, "-o", f"{folder}/{self.output}", "--resume", f"{folder}/run",
+                "--checkpoint-every", "0.02"]
+
+    def run_for(self, folder, seconds):
+        """The exit code and messages; None for the code if it was killed."""
+        process = subprocess.Popen([self.command, *self.run_of(folder)], stderr=subprocess.PIPE,
+                                   stdout=subprocess.DEVNULL, text=True)
+        try:
+            _, messages = process.communicate(timeout=seconds)
+            return process.returncode, messages
+        except subprocess.TimeoutExpired:
+            process.kill()
+            return None, process.communicate()[1]
+
+    def check_clean(self, folder):
+        left = [name for name in os.listdir(folder) if name == "run" or name.endswith(".part")]
+        if left:
+            raise Failed(f"a run that is complete has left {', '.join(left)}")
+
+    def check_same(self, folder):
+        if not filecmp.cmp(pathlib.Path(folder) / self.output, self.reference, shallow=False):
+            raise Failed("the output is another one than that of the run that was not killed")
+        self.check_clean(folder)
+
+    def kill_until_done(self):
+        """How often it was killed, and how often it went on from a checkpoint."""
+        shutil.rmtree("killed", ignore_errors=True)
+        kills = 0
+        went_on = 0
+        while True:
+            # Longer and longer, as the last steps of a run may be long ones.
+            most = 0.6 * self.seconds * (1 + 0.1 * kills)
+            code, messages = self.run_for("killed", self.random.uniform(0.02, most))
+            went_on += "goes on" in messages
+            if code is None:
+                kills += 1
+            elif code != 0:
+                raise Failed(f"after {kills} kills: {messages}")
+            else:
+                self.check_same("killed")
+                return kills, went_on
+
+    def killed_run(self):
+        """Leaves the folder of a run that was killed once it had a checkpoint."""
+        while True:
+            shutil.rmtree("killed", ignore_errors=True)
+            code, _ = self.run_for("killed", self.random.uniform(0.1, 0.9) * self.seconds)
+            if code is None and os.path.exists("killed/run/state"):
+                return
+
+    def damage(self):
+        """Damages a file of a killed run, and returns what became of the run."""
+        shutil.rmtree("damaged", ignore_errors=True)
+        shutil.copytree("killed", "damaged")
+        files = [path for path in pathlib.Path("damaged/run").rglob("*")
+                 if path.is_file() and path.stat().st_size > 0]
+        path = self.random.choice(files if self.random.random() < 0.5 else
+                                  [p for p in files if p.parent.name != "scratch"])
+        size = path.stat().st_size
+        place = self.random.randrange(size)
+        kind = self.random.choice(["flipped", "flipped", "cut off", "missing"])
+        if kind == "flipped":
+            with open(path, "r+b") as file:
+                file.seek(place)
+                byte = file.read(1)[0]
+                file.seek(place)
+                file.write(bytes([byte ^ (1 << self.random.randrange(8))]))
+        elif kind == "cut off":
+            os.truncate(path, place)
+        else:
+            path.unlink()
+        # The same paths: the folder is where the killed run had it.
+        shutil.rmtree("killed.kept", ignore_errors=True)
+        os.rename("killed", "killed.kept")
+        os.rename("damaged", "killed")
+        code, messages = self.run_for("killed", 60 + 20 * self.seconds)
+        what = f"{kind} at {place} of {size} bytes of {path.relative_to('damaged')}"
+        try:
+            if code == 0:
+                self.check_same("killed")
+                return "same"
+            if code is None or code < 0:
+                raise Failed(f"the run does not end well (code {code})")
+            if "killed/run" not in messages and "part" not in messages:
+                raise Failed(f"the message names no file of the run: {messages}")
+            return "refused"
+        except Failed as failure:
+            raise Failed(f"{what}: {failure}") from None
+        finally:
+            shutil.rmtree("killed", ignore_errors=True)
+            os.rename("killed.kept", "killed")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("command")
+    parser.add_argument("--kills", type=int, default=50, help="of each family at least")
+    parser.add_argument("--damages", type=int, default=0, help="of each family, in place of kills")
+    parser.add_argument("--points", type=float, default=150_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--family", choices=FAMILIES, action="append")
+    options = parser.parse_args()
+    command = os.path.abspath(options.command)
+    for family in options.family or FAMILIES:
+        with tempfile.TemporaryDirectory(prefix="spillway-kills-") as folder:
+            os.chdir(folder)
+            try:
+                runs = Runs(command, family, options.points, options.seed)
+                counts = {"kills": 0, "went on": 0, "runs": 0}
+                while counts["kills"] < options.kills and not options.damages:
+                    kills, went_on = runs.kill_until_done()
+                    counts["kills"] += kills
+                    counts["went on"] += went_on
+                    counts["runs"] += 1
+                if options.damages:
+                    counts = {"refused": 0, "same": 0}
+                for number in range(options.damages):
+                    if number % 10 == 0:
+                        runs.killed_run()
+                    counts[runs.damage()] += 1
+                print(f"{family}: {', '.join(f'{n} {what}' for what, n in counts.items())}",
+                      flush=True)
+            except Failed as failure:
+                print(f"{family}, seed {options.seed}: {failure}", file=sys.stderr)
+                return 1
+            finally:
+                os.chdir("/")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
