@@ -58,7 +58,7 @@ class WorkLanes {
 
   /// Ends what is under way of work_beside(), up to a node before which work is to rest.
   void come_to_rest(TaskGroup& group) {
-    for (group.wait(); has_ready() && !is_to_rest(); group.wait()) {
+    for (group.wait(); has_ready() && !failed_ && !is_to_rest(); group.wait()) {
       while (work_off_one(false)) {
       }
     }
@@ -72,8 +72,8 @@ class WorkLanes {
       do {
         begin_lanes();
         come_to_rest(group);
-        if (has_ready()) work_.at_rest();
-      } while (has_ready());
+        if (is_to_rest()) work_.at_rest();
+      } while (has_ready() && !failed_);
     } catch (...) {
       give_up();
       throw;

@@ -46,8 +46,9 @@ constexpr std::array kNeeded = {
     Needed{"contour", "interval", "levels", "the height between two contours"}};
 
 /// Options that a batch shares out among its jobs, or decides for them.
-constexpr std::array<std::string_view, 9> kShared = {
-    "threads", "memory", "tmpdir", "max-tmp", "progress", "quiet", "verbose", "output", "stats"};
+constexpr std::array<std::string_view, 11> kShared = {
+    "threads", "memory", "tmpdir", "max-tmp", "progress",        "quiet",
+    "verbose", "output", "stats",  "resume",  "checkpoint-every"};
 
 OutputKind kind_by_name(const Job& job, const std::string& name) {
   const std::size_t dot = name.find('.');

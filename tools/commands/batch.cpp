@@ -95,6 +95,7 @@ void add_options_of_subcommands(const CommandLine& root, CommandLine& app, Batch
       if (!flag.starts_with("--")) continue;
       const std::string name = flag.substr(2);
       const bool own = name == "help" || name == "output" || name == "stats" || name == "tasks" ||
+                       name == "resume" || name == "checkpoint-every" ||
                        name.starts_with("simulate-") || name == "output-format";
       if (own || app.has_option(flag)) continue;
       const std::string group = "Passed on to the jobs";

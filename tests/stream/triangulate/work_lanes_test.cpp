@@ -52,7 +52,18 @@ class WorkLanesTest : public ::testing::TestWithParam<unsigned> {
              .begin = [this](Item& item, const Item* next) { begin(item, next); },
              .finish = [this](Item& item) { finish(item); },
              .follow = [](Item& item) { item.followed += item.finished; },
-             .give_up = [this] { given_up_ = true; }}};
+             .give_up = [this] { given_up_ = true; },
+             .rests = [this](const Item& next) { return rests_before_ == &next; },
+             .at_rest = [this] { rest(); }}};
+  }
+  /// All before the item that lanes rest before are done, and no other one has been begun.
+  void rest() {
+    ++rests_;
+    const std::ptrdiff_t done = rests_before_ - items_.data();
+    EXPECT_EQ(begun_.size(), static_cast<std::size_t>(done));
+    for (std::ptrdiff_t i = 0; i < done; ++i) EXPECT_EQ(items_[i].followed, 1);
+    const auto all = static_cast<std::ptrdiff_t>(items_.size());
+    rests_before_ = done + 50 < all ? &items_[done + 50] : nullptr;
   }
   void run(const std::function<void()>& work) { with_threads(GetParam(), work); }
 
@@ -81,6 +92,8 @@ class WorkLanesTest : public ::testing::TestWithParam<unsigned> {
   std::atomic<std::uint64_t> under_way_ = 0;
   std::atomic<std::uint64_t> most_ = 0;
   Item* fails_at_ = nullptr;
+  std::atomic<Item*> rests_before_ = nullptr;
+  int rests_ = 0;
   std::atomic<bool> given_up_ = false;
 };
 
@@ -104,6 +117,34 @@ TEST_P(WorkLanesTest, WorksBesideWhoBringsMore) {
     group.wait();
     lanes.work_off();
   });
+  expect_all_in_order();
+}
+
+TEST_P(WorkLanesTest, RestsBeforeAnItemWithNothingUnderWayAndGoesOn) {
+  rests_before_ = &items_[30];
+  WorkLanes<Item> lanes = this->lanes();
+  for (Item& item : items_) lanes.add(item);
+  run([&] { lanes.work_off(); });
+  EXPECT_EQ(rests_, 4);
+  expect_all_in_order();
+}
+
+TEST_P(WorkLanesTest, ComesToRestBesideWhoBringsMore) {
+  rests_before_ = &items_[80];
+  WorkLanes<Item> lanes = this->lanes();
+  run([&] {
+    TaskGroup group;
+    for (Item& item : items_) {
+      lanes.add(item);
+      lanes.work_beside(group);
+      if (&item != &items_[120]) continue;
+      lanes.come_to_rest(group);
+      rest();
+      rests_before_ = nullptr;
+    }
+    lanes.come_to_rest(group);
+  });
+  EXPECT_EQ(rests_, 1);
   expect_all_in_order();
 }
 

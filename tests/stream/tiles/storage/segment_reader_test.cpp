@@ -45,7 +45,7 @@ std::string error_of(const std::vector<TileSegment>& segments) {
 }
 
 TEST(SegmentReader, OfNoSegmentsIsAtItsEnd) {
-  SegmentReader reader({});
+  SegmentReader reader{std::vector<TileSegment>()};
   StoredBlocks blocks;
   EXPECT_FALSE(reader.fetch(blocks));
   EXPECT_EQ(reader.points(), 0U);
