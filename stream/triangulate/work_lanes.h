@@ -58,10 +58,11 @@ class WorkLanes {
 
   /// Ends what is under way of work_beside(), up to a node before which work is to rest.
   void come_to_rest(TaskGroup& group) {
-    for (group.wait(); has_ready() && !failed_ && !is_to_rest(); group.wait()) {
+    do {
       while (work_off_one(false)) {
       }
-    }
+      group.wait();
+    } while (has_ready() && !failed_ && !is_to_rest());
   }
 
   /// Works off all that is ready, and what is added meanwhile.
