@@ -185,13 +185,13 @@ struct RunState {
   Trust& trust;
   SeenExtent& seen;
 
-  void save(StateWriter& state) {
+  void save(StateWriter& state) const {
     state(trust, seen, engine);
     source.save(state);
     sink.save(state);
   }
   /// All but the trust.
-  void restore(StateReader& state) {
+  void restore(StateReader& state) const {
     state(seen, engine);
     source.restore(state);
     sink.restore(state);
@@ -201,15 +201,13 @@ struct RunState {
 /// Points that do not come again are read to their end before there is a checkpoint.
 template <int D>
 void keep_checkpoints(RunState<D> run, Checkpoints& checkpoints) {
-  run.engine.rest_for({.due =
-                           [&checkpoints, run, again = run.source.goes_on()] {
-                             return (again || run.engine.phase() != EnginePhase::kSpill) &&
-                                    checkpoints.due();
-                           },
-                       .save =
-                           [&checkpoints, run]() mutable {
-                             checkpoints.save([&run](StateWriter& state) { run.save(state); });
-                           }});
+  run.engine.rest_for(
+      {.due =
+           [&checkpoints, run, again = run.source.goes_on()] {
+             return (again || run.engine.phase() != EnginePhase::kSpill) && checkpoints.due();
+           },
+       .save = [&checkpoints,
+                run] { checkpoints.save([&run](StateWriter& state) { run.save(state); }); }});
 }
 
 /// Goes on from `restored`, if it is set, which is used up.
@@ -227,7 +225,7 @@ RunFigures run_once(PointStream& source, BlockSink& sink, ScratchFolder& scratch
   if (options.checkpoints != nullptr) keep_checkpoints(state, *options.checkpoints);
   with_threads(engine.threads(), [&] {
     if (restored) {
-      RunState<D>(state).restore(*restored);
+      state.restore(*restored);
       options.checkpoints->folder().restored(*restored);
       restored.reset();
     }

@@ -154,6 +154,15 @@ void remove_path(const std::string& path) {
   if (::unlink(path.c_str()) != 0 && (errno == EISDIR || errno == EPERM)) remove_folder(path);
 }
 
+/// Brings names in a file's folder to the disk itself, where the file system has that.
+void sync_folder_of(const std::string& path) {
+  const std::string folder = fs::path(path).parent_path().string();
+  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
 /// Of this thread's outputs; "" if each gets one of its own.
 std::string& own_mark() {
   thread_local std::string mark;
@@ -199,6 +208,7 @@ int UnfinishedFile::create() {
   if (is_kept()) {
     descriptor = ::open(kept_path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor >= 0) path_ = kept_path_;
+    if (descriptor >= 0) sync_folder_of(kept_path_);
     return descriptor;
   }
   path_ = under_a_new_name(final_path_, [&](const std::string& path) {
@@ -212,6 +222,7 @@ int UnfinishedFile::create() {
 int UnfinishedFile::rename() {
   const auto lock = lock_to_create();
   if (::rename(path_.c_str(), final_path_.c_str()) != 0) return errno;
+  if (is_kept()) sync_folder_of(final_path_);
   registry().files.erase(path_);
   path_.clear();
   return 0;

@@ -64,7 +64,6 @@ class SpooledMeshWriter : public MeshStreamWriter {
   [[nodiscard]] std::uint64_t bytes_written() const override { return bytes_; }
 
   /// Nothing goes to the files before all has come.
-  [[nodiscard]] bool goes_on() const override { return true; }
   void save(StateWriter& state) override { spool_.save(state); }
   void restore(StateReader& state) override { spool_.restore(state); }
 

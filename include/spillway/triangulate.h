@@ -39,8 +39,9 @@ struct TriangulateOptions {
   Kernel kernel = Kernel::kSpillway;
   /// A folder by which the run can go on if it is killed: the same call goes on from the last
   /// checkpoint there and makes the same mesh, to the last byte. It is made if it is not there, has
-  /// the run's scratch files, too, and is removed when the run is complete. Empty: none. Files can
-  /// be gone on with, not points and sinks of a program. Points of pipes can once all are read.
+  /// the run's scratch files, too, and is removed when the run is complete. Empty: none. Points of
+  /// files can be gone on with, those of pipes once all are read, those of a program not. A sink of
+  /// a program, and what is made of a mesh, gets its blocks when all of them are known.
   /// Refused with kInvalidArgument if another process uses it, and if its run is of other inputs,
   /// options or another version, with what differs.
   std::string resume_folder{};

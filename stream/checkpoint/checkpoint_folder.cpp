@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRunFile = "run";
+constexpr const char* kRunFile = "spillway-run";
 constexpr const char* kStateFile = "state";
 constexpr const char* kScratch = "scratch";
 constexpr const char* kUnfinishedEnd = ".new";
@@ -38,8 +38,8 @@ std::string made_folder(const std::string& path) {
 }  // namespace
 
 CheckpointFolder::CheckpointFolder(const std::string& path, const RunIdentity& identity,
-                                   std::optional<std::uint64_t> cap)
-    : path_(made_folder(path)), lock_(path, O_RDONLY | O_DIRECTORY) {
+                                   std::vector<std::string> files, std::optional<std::uint64_t> cap)
+    : path_(made_folder(path)), lock_(path, O_RDONLY | O_DIRECTORY), files_(std::move(files)) {
   lock();
   take(identity);
   outputs_ = keep_outputs(mark_);
@@ -146,7 +146,11 @@ void CheckpointFolder::save_checkpoint(const std::function<void(StateWriter&)>& 
   scratch_->release();
 }
 
-void CheckpointFolder::forget_checkpoint() { fs::remove(path_of(kStateFile)); }
+void CheckpointFolder::forget_checkpoint() {
+  fs::remove(path_of(kStateFile));
+  ::fsync(lock_.get());  // before its files go; failing that, it is found to be damaged
+  scratch_->release();
+}
 
 void CheckpointFolder::save(const std::string& file_name,
                             const std::function<void(StateWriter&)>& write) {
@@ -161,15 +165,19 @@ void CheckpointFolder::save(const std::string& file_name,
   }
 }
 
+/// Nothing but what is the run's. The file that tells of the run goes last, so that a process which
+/// is killed here leaves what another one understands.
 void CheckpointFolder::remove() {
-  // First that by which another run would go on, so that one which is killed here begins anew.
-  forget_checkpoint();
   std::error_code ignored;
+  const auto remove_file = [&](const std::string& name) {
+    fs::remove(path_of(name), ignored);
+    fs::remove(path_of(name + kUnfinishedEnd), ignored);
+  };
+  remove_file(kStateFile);
   fs::remove_all(path_of(kScratch), ignored);
-  for (const fs::directory_entry& entry : fs::directory_iterator(path_, ignored)) {
-    fs::remove(entry.path(), ignored);
-  }
-  fs::remove(path_, ignored);
+  for (const std::string& name : files_) remove_file(name);
+  remove_file(kRunFile);
+  fs::remove(path_, ignored);  // what is not empty stays
 }
 
 }  // namespace spillway::detail

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "formats/disk/file_system.h"
 #include "formats/disk/kept_scratch.h"
@@ -14,15 +15,16 @@
 
 namespace spillway::detail {
 
-/// The folder of a run that can go on: what the run is of ("run"), its last checkpoint ("state"),
-/// and the scratch files that this refers to ("scratch"). One run at a time has it.
+/// The folder of a run that can go on: what the run is of ("spillway-run"), its last checkpoint
+/// ("state"), and the scratch files that this refers to ("scratch"). One run at a time has it.
 class CheckpointFolder {
  public:
   /// Makes the folder, or takes the one that a run of the same identity has left. Throws Error if
   /// another run uses it, if it is of a run with another identity, which tells what differs, or if
-  /// it has something else in it. Scratch files take `cap` bytes at most at a time.
+  /// it has something else in it. `files` are names of others that the run makes in
+  /// it. Scratch files take `cap` bytes at most at a time.
   CheckpointFolder(const std::string& path, const RunIdentity& identity,
-                   std::optional<std::uint64_t> cap);
+                   std::vector<std::string> files, std::optional<std::uint64_t> cap);
   CheckpointFolder(const CheckpointFolder&) = delete;
   CheckpointFolder& operator=(const CheckpointFolder&) = delete;
 
@@ -44,7 +46,7 @@ class CheckpointFolder {
   void restored(StateReader& state);
   /// Replaces the last checkpoint by a new one, which survives whatever happens from now on.
   void save_checkpoint(const std::function<void(StateWriter&)>& write);
-  /// The run begins anew: there is no checkpoint any more.
+  /// There is no checkpoint any more, and no scratch file that only it needed.
   void forget_checkpoint();
 
   /// A file of a few values, which is there as a whole or not at all.
@@ -53,7 +55,7 @@ class CheckpointFolder {
   /// Null if it is not there.
   [[nodiscard]] std::unique_ptr<StateReader> open(const std::string& file_name);
 
-  /// The run is complete: removes the folder.
+  /// Removes the folder with all that is the run's. What else is in it stays.
   void remove();
 
  private:
@@ -63,6 +65,7 @@ class CheckpointFolder {
 
   std::string path_;
   OpenedFile lock_;  ///< the folder, locked as long as it is open
+  std::vector<std::string> files_;
   std::string mark_;
   std::unique_ptr<FileSystem> outputs_;
   std::unique_ptr<KeptScratchFolder> scratch_;

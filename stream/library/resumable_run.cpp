@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "formats/disk/output_check.h"
@@ -13,7 +15,6 @@
 #include "formats/meshes/spm/spm_writer.h"
 #include "src/error.h"
 #include "src/geometry/simplex_name.h"
-#include "src/runtime/memory_budget.h"
 #include "stream/checkpoint/checkpoint_folder.h"
 #include "stream/checkpoint/checkpoints.h"
 #include "stream/library/context/executor.h"
@@ -25,6 +26,7 @@ namespace spillway::detail {
 namespace {
 
 constexpr const char* kFiguresFile = "figures";
+constexpr const char* kCompleteFile = "complete";
 constexpr const char* kMeshFile = "mesh.spm";
 
 /// The state of checkpoints is laid out in this way.
@@ -66,11 +68,9 @@ RunIdentity identity_of(const Run& run, const EnginePoints& points) {
   add("children", options.children);
   add("trust in headers", options.trust_headers);
   add("kernel", static_cast<int>(options.kernel));
-  add("memory", memory_size_text(run.context.memory()));
-  if (const MeshTarget* const target = run.sink.as_mesh_file()) {
-    add("output", std::filesystem::absolute(target->path).string());
-    add("format", target->format->name);
-  }
+  add("memory",
+      fmt::format("{} bytes, {} without the output", run.context.memory(), run.budget.limit()));
+  run.sink.identify(identity);
   return identity;
 }
 
@@ -91,16 +91,19 @@ class ResumableRun {
  public:
   ResumableRun(Run& run, const EnginePoints& points)
       : run_(run),
-        folder_(run.options.resume_folder, identity_of(run, points), run.context.scratch_limit()),
+        folder_(run.options.resume_folder, identity_of(run, points),
+                {kFiguresFile, kCompleteFile, kMeshFile}, run.context.scratch_limit()),
         checkpoints_(folder_, run.options.checkpoint_seconds) {
     run.stream.checkpoints = &checkpoints_;
   }
 
   Report run() {
     tell();
+    if (folder_.has(kCompleteFile)) return report_of_complete(kCompleteFile);
     try {
       Report report = run_.sink.goes_on() ? run_to_sink() : run_to_mesh();
-      folder_.remove();
+      save_figures(kCompleteFile, report);
+      remove();
       return report;
     } catch (const Error& error) {
       if (!folder_.has_checkpoint() && !has_mesh()) {
@@ -134,38 +137,51 @@ class ResumableRun {
     if (const MeshTarget* const target = run_.sink.as_mesh_file()) {
       folder_.remove_unfinished(target->path);
     }
+    remove();
+  }
+
+  void remove() {
+    folder_.remove_unfinished(folder_.path_of(kMeshFile));
     folder_.remove();
+  }
+
+  /// Of a run whose output was complete when another process ended.
+  Report report_of_complete(const char* file) {
+    Report report;
+    read_figures(file, report);
+    if (const MeshTarget* const target = run_.sink.as_mesh_file()) {
+      std::error_code ignored;
+      report.output_format = target->format->name;
+      report.output_bytes = std::filesystem::file_size(target->path, ignored);
+    }
+    remove();
+    return report;
   }
 
   /// Blocks go where they go in the end.
   Report run_to_sink() {
-    Report report;
-    if (is_complete()) {
-      read_figures(report);
-      tell_file(report);
-      return report;
-    }
+    if (has_its_name()) return report_of_complete(kFiguresFile);
     MeshStart start = run_.start();
     start.files = &folder_.outputs();
     start.scratch = &folder_.scratch();
-    report = triangulate_to(run_.sink.start(start), folder_.scratch(), run_);
-    save_figures(report);
+    Report report = triangulate_to(run_.sink.start(start), folder_.scratch(), run_);
+    save_figures(kFiguresFile, report);
     run_.sink.complete(run_.watch, report);
     return report;
   }
 
-  /// Only a stream of blocks has got its name with the last of them: what is spooled is made once
-  /// more of its spool.
-  [[nodiscard]] bool is_complete() {
+  /// Whether a stream of blocks, which was complete, has got its name, too. What is spooled is made
+  /// once more of its spool.
+  [[nodiscard]] bool has_its_name() const {
     const MeshTarget* const target = run_.sink.as_mesh_file();
-    return target != nullptr && target->format->open_block_writer != nullptr &&
-           folder_.has(kFiguresFile) && !folder_.has_unfinished(target->path);
-  }
-
-  void tell_file(Report& report) const {
-    const MeshTarget& target = *run_.sink.as_mesh_file();
-    report.output_format = target.format->name;
-    report.output_bytes = std::filesystem::file_size(target.path);
+    if (target->format->open_block_writer == nullptr || !folder_.has(kFiguresFile) ||
+        folder_.has_unfinished(target->path)) {
+      return false;
+    }
+    namespace fs = std::filesystem;
+    std::error_code missing;
+    const auto written = fs::last_write_time(target->path, missing);
+    return !missing && written >= fs::last_write_time(folder_.path_of(kFiguresFile));
   }
 
   /// Blocks go to a mesh in the folder, and all of it to the sink.
@@ -175,7 +191,7 @@ class ResumableRun {
     const std::string path = folder_.path_of(kMeshFile);
     Report report;
     if (has_mesh()) {
-      read_figures(report);
+      read_figures(kFiguresFile, report);
     } else {
       make_mesh(path, report);
     }
@@ -198,10 +214,9 @@ class ResumableRun {
     run_.stream.extent_known = [](const Box<2>&, std::uint64_t) {};
     run_.stream.begin_again = begin;
     report = triangulate_to(*begin(), folder_.scratch(), run_);
-    save_figures(report);
+    save_figures(kFiguresFile, report);
     writer->finish(report.mesh);
     folder_.forget_checkpoint();
-    folder_.scratch().release();
   }
 
   void make_product(const std::string& path, BlockSink& blocks, Report& report) {
@@ -221,13 +236,14 @@ class ResumableRun {
     return open_spm_reader(std::make_unique<InputBytes>(disk().open(path)));
   }
 
-  void save_figures(Report& report) {
-    folder_.save(kFiguresFile, [&](StateWriter& state) { transfer_figures(state, report); });
+  void save_figures(const char* file, Report& report) {
+    folder_.save(file, [&](StateWriter& state) { transfer_figures(state, report); });
   }
-  void read_figures(Report& report) {
-    const std::unique_ptr<StateReader> state = folder_.open(kFiguresFile);
+  void read_figures(const char* file, Report& report) {
+    const std::unique_ptr<StateReader> state = folder_.open(file);
     transfer_figures(*state, report);
     state->finish();
+    report.skipped_files = run_.points.files->skipped();
   }
 
   Run& run_;

@@ -156,7 +156,10 @@ bool PointSource::read_again(bool as_planned) {
 
 void PointSource::save(StateWriter& state) {
   state.section("points");
-  if (thins()) return state(thinned_blocks_);
+  if (thins()) {
+    PointCounts all = counts();
+    return state(has_all_thinned_, all, thinned_blocks_);
+  }
   state(pieces_, counts_, untold_);
 }
 
@@ -164,7 +167,12 @@ void PointSource::restore(StateReader& state) {
   state.section("points");
   if (!thins()) return state(pieces_, counts_, untold_);
   std::uint64_t blocks = 0;
-  state(blocks);
+  PointCounts all;
+  state(has_all_thinned_, all, blocks);
+  if (has_all_thinned_) {
+    counts_before_ = all;
+    return;
+  }
   SourcePiece piece;
   while (thinned_blocks_ < blocks && fetch(piece)) {
   }
@@ -202,7 +210,8 @@ bool PointSource::fetch(SourcePiece& piece) {
   if (!thinned_) thin_inputs();
   piece.reader.reset();
   ++thinned_blocks_;
-  return thinning_->next(piece.raw.decoded);
+  has_all_thinned_ = !thinning_->next(piece.raw.decoded);
+  return !has_all_thinned_;
 }
 
 void PointSource::decode(SourcePiece& piece, PointBlock& block) {
@@ -267,6 +276,7 @@ void PointSource::thin_inputs() {
 }
 
 PointCounts PointSource::counts() const {
+  if (counts_before_) return *counts_before_;
   const std::lock_guard lock(counts_mutex_);
   PointCounts counts = counts_;
   counts.lost += lost_in_headers_;

@@ -141,7 +141,7 @@ class PointSource : public PointStream {
   bool read_again(bool as_planned) override;
   /// Not of pipes.
   [[nodiscard]] bool goes_on() const override { return any_order(); }
-  /// Inputs that are thinned are read and thinned once more to go on.
+  /// Inputs that are thinned are read and thinned once more to go on in their midst.
   void save(StateWriter& state) override;
   void restore(StateReader& state) override;
 
@@ -176,8 +176,11 @@ class PointSource : public PointStream {
   std::optional<Thinning> thinning_;
   bool thinned_ = false;
   std::uint64_t thinned_blocks_ = 0;  ///< fetched so far
-  bool tells_ = true;                 ///< this process looked at the files first
-  mutable std::mutex counts_mutex_;   ///< guards the next two
+  bool has_all_thinned_ = false;      ///< they have all been fetched
+  /// Of thinned points that a process before this one has fetched.
+  std::optional<PointCounts> counts_before_;
+  bool tells_ = true;                ///< this process looked at the files first
+  mutable std::mutex counts_mutex_;  ///< guards the next two
   PointCounts counts_;
   std::vector<std::string> untold_;
 };

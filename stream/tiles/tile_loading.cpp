@@ -122,16 +122,23 @@ void TileTree::take_below(CutTree::NodeRef ref) {
 }
 
 std::uint64_t TileTree::spill_complete() {
+  constexpr std::size_t kTogether = 64;
   std::uint64_t memory = 0;
+  std::shared_ptr<ScratchFile> file;  // one of all tiles
   Batch batch;
+  const auto write_some = [&] {
+    parallel_for(batch.spills.size(), 1, [&](std::size_t, std::size_t s, std::size_t) {
+      encode_points(batch.spills[s].points, batch.spills[s].bytes);
+    });
+    write(batch);
+  };
   const std::lock_guard lock(taken_mutex_);
   for (auto& [number, tile] : taken_) {
-    if (tile.held.empty()) continue;
     memory += tile.held_bytes();
-    if (!tile.file) tile.file = folder_.create("tile");
     for (HeldPoints& held : std::exchange(tile.held, {})) {
       const std::uint64_t points = held.buffer.size();
-      auto stretch = std::make_shared<FileStretch>(tile.file);
+      if (!file) file = folder_.create("complete");
+      auto stretch = std::make_shared<FileStretch>(file);
       tile.segments.push_back({.stretch = stretch,
                                .first_spill = tile.spills,
                                .end_spill = tile.spills + 1,
@@ -140,12 +147,10 @@ std::uint64_t TileTree::spill_complete() {
                                .box = held.box});
       ++tile.spills;
       batch.spills.push_back({std::move(held.buffer), std::move(stretch), points, {}, {}});
+      if (batch.spills.size() == kTogether) write_some();
     }
   }
-  parallel_for(batch.spills.size(), 1, [&](std::size_t, std::size_t s, std::size_t) {
-    encode_points(batch.spills[s].points, batch.spills[s].bytes);
-  });
-  write(batch);
+  write_some();
   return memory;
 }
 

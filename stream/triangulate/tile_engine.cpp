@@ -252,7 +252,7 @@ void TileEngine<D>::add_cell(std::uint32_t cell) {
 
 template <int D>
 void TileEngine<D>::add_cell(std::uint32_t cell, std::optional<TileNode<D>> tiles) {
-  complete_cells_.push_back({cell, tiles});
+  if (options_.checkpoints != nullptr) complete_cells_.push_back({cell, tiles});
   auto complete = cells_->complete(cell, std::move(tiles));
   const auto surrounded = [](const auto& part) {
     return std::make_shared<const Surroundings>(Surroundings{part.node, part.outside});

@@ -52,8 +52,8 @@ template <int D>
 template <typename State>
 void TileEngine<D>::state(State& state) {
   state.section("engine");
-  state(phase_, span_, counts_, figures_.final_by_level, figures_.first_block_read_points, tree_,
-        sequencer_, root_, complete_cells_);
+  state(phase_, span_, counts_, figures_.final_by_level, figures_.first_block_read_points,
+        figures_.divided_points, tree_, sequencer_, root_, complete_cells_);
   if (State::kReads || forest_.empty()) {  // those of before are still to be added
     state(nodes_before_);
     has_restored_cells_ = State::kReads || has_restored_cells_;

@@ -44,7 +44,9 @@ TracedReport triangulate_and_trace(const TriangulationOptions& options, PointSou
                                    std::optional<RunRecorder>* recorder) {
   std::optional<InterruptAdvice> advice;
   if (!how.resume_folder.empty()) {
-    advice.emplace(fmt::format("the same command goes on with the run in {}", how.resume_folder));
+    advice.emplace(
+        fmt::format("the same command goes on from the last checkpoint in {}, if there is one",
+                    how.resume_folder));
   }
   const auto trace = std::make_shared<CommandTrace>(options.tasks_path, recorder);
   how.trace = trace;

@@ -94,10 +94,9 @@ class BlockSink {
   /// By one thread at a time, so that what only write() uses needs no guard.
   virtual void write(MeshBlock&& block) = 0;
 
-  /// Whether another process can go on with it, after the blocks so far.
-  [[nodiscard]] virtual bool goes_on() const { return false; }
-  /// Brings what has come of all blocks so far to the disk, and tells what else another process
-  /// needs to go on; and goes on from that, before any block. While no block is on its way.
+  /// For another process to go on after the blocks so far, of sinks that can. Brings what has come
+  /// of all blocks so far to the disk, and tells what else another process needs to go on; and goes
+  /// on from that, before any block. While no block is on its way.
   virtual void save(StateWriter& state);
   virtual void restore(StateReader& state);
 

@@ -82,7 +82,6 @@ class SmaWriter : public MeshStreamWriter {
 
   [[nodiscard]] std::uint64_t bytes_written() const override { return bytes_; }
 
-  [[nodiscard]] bool goes_on() const override { return true; }
   void save(StateWriter& state) override {
     file_->sync();
     this->state(state);

@@ -34,7 +34,6 @@ class MeshSpool : public MeshStreamWriter {
   void finish(const MeshTotals& totals) override;
   [[nodiscard]] std::uint64_t bytes_written() const override;
   /// If `scratch` is a folder that is kept.
-  [[nodiscard]] bool goes_on() const override { return true; }
   void save(StateWriter& state) override;
   void restore(StateReader& state) override;
 

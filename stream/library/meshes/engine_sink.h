@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "formats/vectors/vector_formats.h"
 #include "src/error.h"
 #include "src/geometry/box.h"
+#include "stream/checkpoint/run_identity.h"
 #include "stream/library/context/run_watch.h"
 #include "stream/library/meshes/public_values.h"
 #include "stream/library/points/attribute_records.h"
@@ -36,6 +38,9 @@ struct MeshStart {
   FileSystem* files = nullptr;
   ScratchFolder* scratch = nullptr;
 };
+
+/// Tells an output by what it is and its path, "" if it is none of the disk.
+void identify_product(std::string_view kind, const std::string& path, RunIdentity& identity);
 
 /// Throws Error (kInvalidArgument) for a longest edge that is not above 0.
 void check_max_edge(const std::optional<double>& max_edge);
@@ -122,7 +127,9 @@ class EngineSink {
   /// As complete(), with what other processes give.
   virtual void finalize(RunWatch& watch, Report& report, OtherShares& others) = 0;
 
-  /// Whether another process can go on with it in the midst of the blocks (BlockSink::goes_on). If
+  /// Tells of what makes another output of the same blocks another one.
+  virtual void identify(RunIdentity& identity) const = 0;
+  /// Whether another process can go on with it in the midst of the blocks (BlockSink::save). If
   /// not, it is made of the whole mesh in the end.
   [[nodiscard]] virtual bool goes_on() const { return false; }
 

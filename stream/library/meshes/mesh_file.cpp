@@ -100,6 +100,10 @@ BlockSink& MeshFile::open_writer() {
   return *writer_;
 }
 
+void MeshFile::identify(RunIdentity& identity) const {
+  identify_product(target_.format->name, target_.path, identity);
+}
+
 /// What is spooled, and streams of blocks that are written from front to back.
 bool MeshFile::goes_on() const {
   return target_.format->open_block_writer == nullptr || target_.format == &kSpmMesh ||

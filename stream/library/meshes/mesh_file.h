@@ -44,6 +44,7 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   /// What has left through a pipe is gone.
   BlockSink* begin_again() override;
   void finalize(RunWatch& watch, Report& report, OtherShares& others) override;
+  void identify(RunIdentity& identity) const override;
   [[nodiscard]] bool goes_on() const override;
   [[nodiscard]] const MeshTarget* as_mesh_file() const override { return &target_; }
 

@@ -1,5 +1,6 @@
 #include <spillway/mesh.h>
 
+#include <filesystem>
 #include <utility>
 
 #include "formats/vectors/vector_file.h"
@@ -64,6 +65,11 @@ void tell_lost_layers(const VectorFormat& format, const std::string& path, const
   if (!context.options().warning) return;
   const std::string text = lost_layers_text(format, path);
   if (!text.empty()) context.options().warning("warning: " + text);
+}
+
+void identify_product(std::string_view kind, const std::string& path, RunIdentity& identity) {
+  identity.add("kind of output", std::string(kind));
+  identity.add("output", path.empty() ? "memory" : std::filesystem::absolute(path).string());
 }
 
 void check_max_edge(const std::optional<double>& max_edge) {

@@ -23,6 +23,9 @@ class ProgramSink final : public EngineSink, private BlockSink {
     return attribute_choice(sink_.attributes_wanted());
   }
   [[nodiscard]] bool is_product() const override { return false; }
+  void identify(RunIdentity& identity) const override {
+    identity.add("output", "a sink of the program");
+  }
   void finalize(RunWatch& watch, Report& report, OtherShares& /*others*/) override {
     watch.begin("write", simplices_of(header_.dimension));
     sink_.finish(report.mesh);

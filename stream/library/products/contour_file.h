@@ -23,6 +23,9 @@ class ContourFile final : public OwnSink<ContourSink> {
   ContourFile(const std::string& path, const spillway::ContourOptions& options,
               const Context& context);
 
+  void identify(RunIdentity& identity) const override {
+    identify_product("contours", path_, identity);
+  }
   [[nodiscard]] const ContourReport& report() const override { return report_; }
 
   [[nodiscard]] CrsNeed crs_need() const override { return CrsNeed::kAll; }

@@ -22,6 +22,9 @@ class DemFile final : public OwnSink<DemSink> {
   /// `pixels` must outlive it.
   DemFile(DemPixels& pixels, const spillway::DemOptions& options, const Context& context);
 
+  void identify(RunIdentity& identity) const override {
+    identify_product("raster", path_, identity);
+  }
   [[nodiscard]] const DemReport& report() const override { return report_; }
 
   [[nodiscard]] CrsNeed crs_need() const override { return CrsNeed::kAll; }

@@ -17,6 +17,9 @@ class PictureFile final : public OwnSink<PictureSink> {
  public:
   PictureFile(const std::string& path, const PictureOptions& options, const Context& context);
 
+  void identify(RunIdentity& identity) const override {
+    identify_product("picture", path_, identity);
+  }
   [[nodiscard]] const PictureReport& report() const override { return report_; }
 
   [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override;

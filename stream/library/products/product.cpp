@@ -90,6 +90,9 @@ class ProductSink final : public OwnSink<spillway::MeshSink> {
     if (all_ == nullptr) throw InvalidArgument("a product has a share for all");
   }
 
+  void identify(RunIdentity& identity) const override {
+    identify_product("a product of the program", "", identity);
+  }
   BlockSink* begin_again() override { return &writer_.emplace(header_, *all_); }
 
   [[nodiscard]] bool has_shares() const override { return true; }

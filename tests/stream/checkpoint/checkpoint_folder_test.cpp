@@ -6,6 +6,7 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "src/error.h"
 #include "stream/checkpoint/checkpoints.h"
@@ -33,7 +34,8 @@ class Folder : public ::testing::Test {
   ~Folder() override { fs::remove_all(parent_); }
 
   [[nodiscard]] std::unique_ptr<CheckpointFolder> open(const RunIdentity& identity) const {
-    return std::make_unique<CheckpointFolder>(path(), identity, std::nullopt);
+    return std::make_unique<CheckpointFolder>(path(), identity, std::vector<std::string>{"figures"},
+                                              std::nullopt);
   }
   [[nodiscard]] std::string error_of_opening(const RunIdentity& identity) const {
     try {
@@ -112,6 +114,16 @@ TEST_F(Folder, WithOtherThingsInItIsRefusedAndLeftAlone) {
   std::ofstream(fs::path(path()) / "thesis.txt") << "all of it";
   EXPECT_THAT(error_of_opening(identity_of("1")), HasSubstr("it has thesis.txt in it"));
   EXPECT_TRUE(fs::exists(fs::path(path()) / "thesis.txt"));
+}
+
+TEST_F(Folder, IsRemovedWithNothingThatIsNotTheRuns) {
+  const auto folder = open(identity_of("1"));
+  save(*folder, 3);
+  folder->save("figures", [](StateWriter& state) { state.section("figures"); });
+  std::ofstream(fs::path(path()) / "output.spm") << "all of it";
+  folder->remove();
+  ASSERT_TRUE(fs::exists(fs::path(path()) / "output.spm"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(path()), {}), 1);
 }
 
 TEST_F(Folder, ThatIsThereAndEmptyIsTaken) {

@@ -102,7 +102,7 @@ TEST_F(OpenedMeshTest, AStreamWithoutTotalsIsReadAsAWholeIfTheyAreWanted) {
 
 TEST_F(OpenedMeshTest, TheExtentIsThatOfAllVerticesAsTheirBlocksGiveThem) {
   OpenedMesh stream(write("a.spm"), {}, context_);
-  const OpenedMesh::Extent2 of_stream = stream.find_extent(watch_);
+  const VertexExtent of_stream = stream.find_extent(watch_);
   EXPECT_EQ(of_stream.box, box());
   EXPECT_EQ(of_stream.vertices, mesh_.totals.vertices);
   EXPECT_THAT(phases_, ElementsAre("extent"));
@@ -110,7 +110,7 @@ TEST_F(OpenedMeshTest, TheExtentIsThatOfAllVerticesAsTheirBlocksGiveThem) {
 
   leave_lattice(mesh_);
   OpenedMesh whole(write("a.ply"), {}, context_);
-  const OpenedMesh::Extent2 of_whole = whole.find_extent(watch_);
+  const VertexExtent of_whole = whole.find_extent(watch_);
   EXPECT_EQ(of_whole.box, box());
   EXPECT_EQ(of_whole.vertices, mesh_.totals.vertices);
   expect_all_blocks(whole);
