@@ -26,6 +26,9 @@ class Recorder final : public OwnSink<spillway::MeshSink> {
   explicit Recorder(const Context& context, bool wants_extent = false)
       : OwnSink(context), wants_extent_(wants_extent) {}
 
+  void identify(RunIdentity& identity) const override {
+    identify_product("a recorder", "", identity);
+  }
   [[nodiscard]] bool wants_extent() const override { return wants_extent_; }
   void extent_known(const Box<2>& extent, std::uint64_t points) override {
     calls.emplace_back("extent");
