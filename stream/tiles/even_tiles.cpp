@@ -18,24 +18,25 @@ constexpr double kMostWaiting = 4;
 /// How full tiles are meant to get.
 constexpr double kEvenFill = 0.7;
 
-}  // namespace
+void append_numbers(const CutTree& cuts, CutTree::NodeRef ref,
+                    std::vector<std::uint32_t>& numbers) {
+  if (CutTree::is_tile(ref)) return numbers.push_back(CutTree::tile_at(ref));
+  for (const CutTree::NodeRef side : cuts.sides(ref)) append_numbers(cuts, side, numbers);
+}
 
 /// The tiles in the order of the tree: their numbers depend on threads.
-std::vector<std::uint32_t> TileTree::numbers_in_order() const {
+std::vector<std::uint32_t> numbers_in_order(const CutTree& cuts) {
   std::vector<std::uint32_t> numbers;
-  append_numbers(cuts_.root(), numbers);
+  append_numbers(cuts, cuts.root(), numbers);
   return numbers;
 }
 
-void TileTree::append_numbers(CutTree::NodeRef ref, std::vector<std::uint32_t>& numbers) const {
-  if (CutTree::is_tile(ref)) return numbers.push_back(CutTree::tile_at(ref));
-  for (const CutTree::NodeRef side : cuts_.sides(ref)) append_numbers(side, numbers);
-}
+}  // namespace
 
 /// A plan for the tiles that there are, all of which are complete, in the order of cells.
 RegionPlan TileTree::plan_anew(double most_points) const {
   std::vector<InputRegion> regions;
-  for (const std::uint32_t number : numbers_in_order()) {
+  for (const std::uint32_t number : numbers_in_order(cuts_)) {
     const Tile& tile = tiles_[number];
     const std::uint64_t points = std::min<std::uint64_t>(tile.points, capacity_);  // equal ones
     if (points > 0) regions.push_back({0, tile.box, points});
@@ -58,7 +59,7 @@ void TileTree::divide_evenly() {
   if (points_ == 0) return;
   CutTree cuts = plan_anew(kEvenFill * static_cast<double>(capacity_)).cuts;
   if (cuts.tiles() == 1) return;
-  const std::vector<std::uint32_t> numbers = numbers_in_order();
+  const std::vector<std::uint32_t> numbers = numbers_in_order(cuts_);
   std::vector<Tile> old = std::exchange(tiles_, std::vector<Tile>(cuts.tiles()));
   cuts_ = std::move(cuts);  // no batch is under way
   ++cuts_made_;

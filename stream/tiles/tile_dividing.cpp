@@ -65,6 +65,60 @@ std::vector<LatticePoint> sample_of(const std::vector<Held>& held, std::size_t s
   return sample.take();
 }
 
+/// The points of a buffer on both sides of a cut, or of a second one on each side of the first.
+std::vector<HeldPoints> part(HeldPoints held, const TileCut& first,
+                             const std::array<TileCut, 2>& second) {
+  constexpr std::size_t kParts = 4;
+  std::vector<HeldPoints> parts(kParts);
+  for (HeldPoints& part : parts) {
+    part.arrival = held.arrival;
+    part.run = held.run;
+  }
+  constexpr std::size_t kMost = PointBuffer::kPagePoints;
+  PointBlock dealt;
+  dealt.points.resize(kParts * kMost);
+  held.buffer.drain([&](const PointsView& some) {
+    const std::size_t record = some.record_size();
+    if (!some.index.empty()) dealt.index.resize(dealt.size());
+    dealt.attributes.resize(dealt.size() * record);
+    std::array<std::size_t, kParts> counts{};
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const LatticePoint& point = some.points[i];
+      const std::size_t side = point[first.axis] >= first.value ? 1 : 0;
+      const TileCut& next = second[side];
+      const std::size_t part = 2 * side + (point[next.axis] >= next.value ? 1 : 0);
+      const std::size_t place = part * kMost + counts[part]++;
+      dealt.points[place] = point;
+      if (!some.index.empty()) dealt.index[place] = some.index[i];
+      if (record > 0) {
+        std::memcpy(&dealt.attributes[place * record], &some.attributes[i * record], record);
+      }
+    }
+    for (std::size_t p = 0; p < kParts; ++p) {
+      const PointsView of_part = PointsView::of(dealt).subview(p * kMost, counts[p]);
+      for (const LatticePoint& point : of_part.points) parts[p].box.expand(point);
+      parts[p].buffer.append(of_part);
+    }
+  });
+  return parts;
+}
+
+/// A sample of all points of a tile, also of those on the disk.
+std::vector<LatticePoint> sample_of_all(const Tile& tile, std::size_t stride) {
+  PointSample sample(stride);
+  for (const HeldPoints& held : tile.held) {
+    held.buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
+  }
+  SegmentReader reader(tile.segments);
+  StoredBlocks blocks;
+  PointBlock points;
+  while (reader.fetch(blocks)) {
+    decode_all_points(blocks.bytes, blocks.where, points);
+    sample.add(points.points);
+  }
+  return sample.take();
+}
+
 }  // namespace
 
 /// Whether all points, which are in memory, had better be one tile; it may have so many then.
@@ -330,44 +384,6 @@ void TileTree::cut_in_two(std::uint32_t number, bool complete) {
   }
 }
 
-/// The points of a buffer on both sides of a cut, or of a second one on each side of the first.
-std::vector<HeldPoints> TileTree::part(HeldPoints held, const TileCut& first,
-                                       const std::array<TileCut, 2>& second) {
-  constexpr std::size_t kParts = 4;
-  std::vector<HeldPoints> parts(kParts);
-  for (HeldPoints& part : parts) {
-    part.arrival = held.arrival;
-    part.run = held.run;
-  }
-  constexpr std::size_t kMost = PointBuffer::kPagePoints;
-  PointBlock dealt;
-  dealt.points.resize(kParts * kMost);
-  held.buffer.drain([&](const PointsView& some) {
-    const std::size_t record = some.record_size();
-    if (!some.index.empty()) dealt.index.resize(dealt.size());
-    dealt.attributes.resize(dealt.size() * record);
-    std::array<std::size_t, kParts> counts{};
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      const LatticePoint& point = some.points[i];
-      const std::size_t side = point[first.axis] >= first.value ? 1 : 0;
-      const TileCut& next = second[side];
-      const std::size_t part = 2 * side + (point[next.axis] >= next.value ? 1 : 0);
-      const std::size_t place = part * kMost + counts[part]++;
-      dealt.points[place] = point;
-      if (!some.index.empty()) dealt.index[place] = some.index[i];
-      if (record > 0) {
-        std::memcpy(&dealt.attributes[place * record], &some.attributes[i * record], record);
-      }
-    }
-    for (std::size_t p = 0; p < kParts; ++p) {
-      const PointsView of_part = PointsView::of(dealt).subview(p * kMost, counts[p]);
-      for (const LatticePoint& point : of_part.points) parts[p].box.expand(point);
-      parts[p].buffer.append(of_part);
-    }
-  });
-  return parts;
-}
-
 void TileTree::deal_to_halves(HeldPoints held, const TileCut& cut,
                               const std::array<std::uint32_t, 2>& halves) {
   std::vector<HeldPoints> parts = part(std::move(held), cut, {kNoCut, kNoCut});
@@ -426,7 +442,16 @@ std::uint64_t TileTree::divide_large(const DivisionProgress& progress) {
   std::uint64_t all = dealt_again_ + points_to_divide();
   double fraction = 0;  // what is found to be too large again does not take it back
   while (dealing_again_ || points_to_divide() > 0) {
-    if (!dealing_again_) begin_dealing_again();
+    if (!dealing_again_) {
+      Batch batch;
+      for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
+        if (!too_large(tiles_[t])) continue;
+        std::vector<LatticePoint> sample = sample_of_all(tiles_[t], sample_stride());
+        divide(t, std::move(sample),
+               tiles_for(static_cast<double>(tiles_[t].points), capacity_, kKnownFill), batch);
+      }
+      dealing_again_.emplace(take_left_over(), runs_);
+    }
     deal_again([&](std::uint64_t some) {
       const std::uint64_t done = dealt_again_ + some;
       all = std::max(all, done);
@@ -441,18 +466,6 @@ std::uint64_t TileTree::divide_large(const DivisionProgress& progress) {
     all += points_to_divide();
   }
   return std::exchange(dealt_again_, 0);
-}
-
-/// Tiles that are too large are divided, and what is left over is going to be dealt.
-void TileTree::begin_dealing_again() {
-  Batch batch;
-  for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
-    if (!too_large(tiles_[t])) continue;
-    std::vector<LatticePoint> sample = sample_of_all(tiles_[t]);
-    divide(t, std::move(sample),
-           tiles_for(static_cast<double>(tiles_[t].points), capacity_, kKnownFill), batch);
-  }
-  dealing_again_.emplace(take_left_over(), runs_);
 }
 
 /// Those of a cut before those of the cuts below it, so that what is dealt after each other goes to
@@ -472,22 +485,6 @@ void TileTree::append_left_over(CutTree::NodeRef ref, std::vector<TileSegment>& 
     std::ranges::move(left_over_[ref], std::back_inserter(segments));
   }
   for (const CutTree::NodeRef side : cuts_.sides(ref)) append_left_over(side, segments);
-}
-
-/// A sample of all points of a tile, also of those on the disk.
-std::vector<LatticePoint> TileTree::sample_of_all(const Tile& tile) const {
-  PointSample sample(sample_stride());
-  for (const HeldPoints& held : tile.held) {
-    held.buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
-  }
-  SegmentReader reader(tile.segments);
-  StoredBlocks blocks;
-  PointBlock points;
-  while (reader.fetch(blocks)) {
-    decode_all_points(blocks.bytes, blocks.where, points);
-    sample.add(points.points);
-  }
-  return sample.take();
 }
 
 /// Of samples by which many tiles are made at once.

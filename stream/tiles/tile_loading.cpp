@@ -21,6 +21,74 @@ std::uint64_t arrival_of(const Held& held) {
   return held.arrival.value_or(kLast - 1);
 }
 
+/// Calls one of the two for each part of a tile, in the order in which they came.
+template <typename OnDisk, typename InMemory>
+void visit_parts(Tile tile, const OnDisk& on_disk, const InMemory& in_memory) {
+  std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
+  std::ranges::stable_sort(tile.held, {}, arrival_of<HeldPoints>);
+  auto held = tile.held.begin();
+  const auto visit_held_before = [&](std::uint64_t arrival) {
+    for (; held != tile.held.end() && arrival_of(*held) < arrival; ++held) in_memory(held->buffer);
+  };
+  for (TileSegment& segment : tile.segments) {
+    visit_held_before(segment.arrival);
+    on_disk(std::move(segment));
+  }
+  visit_held_before(kLast);
+}
+
+void append_stored(Tile tile, std::vector<StoredTile::Segment>& stored) {
+  visit_parts(
+      std::move(tile),
+      [&](const TileSegment& segment) {
+        const FileStretch& stretch = *segment.stretch;
+        StoredTile::Segment& read = stored.emplace_back();
+        read.where = {stretch.file().name(), at_byte(stretch.offset())};
+        read.bytes.resize(stretch.size());
+        stretch.file().read(stretch.offset(), read.bytes);
+      },
+      [&](PointBuffer& buffer) {
+        stored.push_back({{}, {}, std::move(buffer)});
+      });
+}
+
+/// Whether two tiles may become one: a compact one, or a thin one of two that are long.
+template <int D>
+bool fit_together(const TileNode<D>& a, const TileNode<D>& b, std::size_t capacity) {
+  const std::uint64_t points = a.points + b.points;
+  if (points > capacity) return false;
+  Box<D> both = a.box;
+  both.expand(b.box);
+  const double times = aspect(both);
+  if (times <= kMostAspect) return true;
+  return std::min(aspect(a.box), aspect(b.box)) > kMostAspect &&
+         !too_long(static_cast<double>(points), times, capacity);
+}
+
+/// Makes one point of a tile of points that are one vertex.
+StoredTile one_of(Tile tile, int dimension, Heights heights) {
+  EqualPoints all(dimension, heights);
+  visit_parts(
+      std::move(tile),
+      [&](TileSegment segment) {
+        SegmentReader reader({std::move(segment)});
+        StoredBlocks blocks;
+        PointBlock points;
+        while (reader.fetch(blocks)) {
+          decode_all_points(blocks.bytes, blocks.where, points);
+          all.add(PointsView::of(points));
+        }
+      },
+      [&](PointBuffer& buffer) {
+        buffer.drain([&](const PointsView& points) { all.add(points); });
+      });
+  StoredTile stored;
+  stored.points = 1;
+  stored.left_out = all.count() - 1;
+  stored.segments.emplace_back().buffer.append(PointsView::of(all.choose()));
+  return stored;
+}
+
 }  // namespace
 
 /// What is below a node: one tile that may be joined with its neighbour, or others.
@@ -29,19 +97,6 @@ struct TileTree::Joinable {
   std::optional<TileNode<D>> tile{};
   bool others = false;
 };
-
-/// Whether two tiles may become one: a compact one, or a thin one of two that are long.
-template <int D>
-bool TileTree::fit_together(const TileNode<D>& a, const TileNode<D>& b) const {
-  const std::uint64_t points = a.points + b.points;
-  if (points > capacity_) return false;
-  Box<D> both = a.box;
-  both.expand(b.box);
-  const double times = aspect(both);
-  if (times <= kMostAspect) return true;
-  return std::min(aspect(a.box), aspect(b.box)) > kMostAspect &&
-         !too_long(static_cast<double>(points), times, capacity_);
-}
 
 /// Appends all tiles below a node but the one that is returned.
 template <int D>
@@ -63,7 +118,7 @@ TileTree::Joinable<D> TileTree::join_below(CutTree::NodeRef ref,
   auto& [below, above] = sides;
   if (!below.tile && !below.others) return std::move(above);
   if (!above.tile && !above.others) return std::move(below);
-  if (below.tile && above.tile && fit_together(*below.tile, *above.tile)) {
+  if (below.tile && above.tile && fit_together(*below.tile, *above.tile, capacity_)) {
     TileNode<D>& joined = *below.tile;
     joined.box.expand(above.tile->box);
     joined.points += above.tile->points;
@@ -184,66 +239,11 @@ Tile TileTree::take(std::uint32_t number) {
   return taken.empty() ? Tile{} : std::move(taken.mapped());
 }
 
-/// Calls one of the two for each part of a tile, in the order in which they came.
-template <typename OnDisk, typename InMemory>
-void TileTree::visit_parts(Tile tile, const OnDisk& on_disk, const InMemory& in_memory) {
-  std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
-  std::ranges::stable_sort(tile.held, {}, arrival_of<HeldPoints>);
-  auto held = tile.held.begin();
-  const auto visit_held_before = [&](std::uint64_t arrival) {
-    for (; held != tile.held.end() && arrival_of(*held) < arrival; ++held) in_memory(held->buffer);
-  };
-  for (TileSegment& segment : tile.segments) {
-    visit_held_before(segment.arrival);
-    on_disk(std::move(segment));
-  }
-  visit_held_before(kLast);
-}
-
-void TileTree::append_stored(Tile tile, std::vector<StoredTile::Segment>& stored) {
-  visit_parts(
-      std::move(tile),
-      [&](const TileSegment& segment) {
-        const FileStretch& stretch = *segment.stretch;
-        StoredTile::Segment& read = stored.emplace_back();
-        read.where = {stretch.file().name(), at_byte(stretch.offset())};
-        read.bytes.resize(stretch.size());
-        stretch.file().read(stretch.offset(), read.bytes);
-      },
-      [&](PointBuffer& buffer) {
-        stored.push_back({{}, {}, std::move(buffer)});
-      });
-}
-
-/// Makes one point of a tile of points that are one vertex.
-StoredTile TileTree::one_of(Tile tile) const {
-  EqualPoints all(options_.dimension, *options_.one_of_equal);
-  visit_parts(
-      std::move(tile),
-      [&](TileSegment segment) {
-        SegmentReader reader({std::move(segment)});
-        StoredBlocks blocks;
-        PointBlock points;
-        while (reader.fetch(blocks)) {
-          decode_all_points(blocks.bytes, blocks.where, points);
-          all.add(PointsView::of(points));
-        }
-      },
-      [&](PointBuffer& buffer) {
-        buffer.drain([&](const PointsView& points) { all.add(points); });
-      });
-  StoredTile stored;
-  stored.points = 1;
-  stored.left_out = all.count() - 1;
-  stored.segments.emplace_back().buffer.append(PointsView::of(all.choose()));
-  return stored;
-}
-
 template <int D>
 StoredTile TileTree::read(const TileNode<D>& node) {
   StageTimer timer(times_, Stage::kLoad, StepOrder::kInOrder);
   if (options_.one_of_equal && node.points > capacity_ && node.box.lo == node.box.hi) {
-    return one_of(take(node.stored.front()));
+    return one_of(take(node.stored.front()), options_.dimension, *options_.one_of_equal);
   }
   StoredTile stored;
   stored.points = node.points;

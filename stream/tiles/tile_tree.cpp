@@ -89,9 +89,7 @@ void TileTree::fill(const std::function<bool(PointBlock&)>& source) {
                      PointBlock& block) { std::swap(piece.raw.decoded, block); }});
 }
 
-void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
-                           const std::function<void(Batch&, PointBlock&)>& decode,
-                           const CellDone& done) {
+void TileTree::run_batches(const Fetch& fetch, const Decode& decode, const CellDone& done) {
   std::vector<Batch> batches(options_.batches);
   SpareBlocks spare;
   const std::vector<PipelineStep> steps = {
@@ -122,9 +120,7 @@ void TileTree::run_batches(const std::function<bool(Batch&)>& fetch,
 }
 
 /// As run_batches(), which comes to an end each time that a checkpoint is due, and is begun again.
-void TileTree::run_to_rest(const std::function<bool(Batch&)>& fetch,
-                           const std::function<void(Batch&, PointBlock&)>& decode,
-                           const CellDone& done) {
+void TileTree::run_to_rest(const Fetch& fetch, const Decode& decode, const CellDone& done) {
   for (bool at_rest = true; at_rest;) {
     at_rest = false;
     bool is_first = true;
@@ -293,18 +289,17 @@ void TileTree::spill_some(Batch& batch) {
   }
 }
 
-/// False where tiles have been made for all points that are to come.
-bool TileTree::may_be_cut_later() const {
-  return options_.plan != nullptr || !options_.expected || !options_.extent;
-}
-
 void TileTree::spill(std::uint32_t number, Batch& batch) {
   Tile& tile = tiles_[number];
   if (!tile.file) tile.file = folder_.create("tile");
   room_ -= tile.room();
   std::vector<HeldPoints> parts = std::exchange(tile.held, {});
-  if (!filled_ && may_be_cut_later()) {
-    for (HeldPoints& held : std::exchange(parts, {})) append_segments_of(std::move(held), parts);
+  const bool tiles_are_made = options_.plan == nullptr && options_.expected && options_.extent;
+  if (!filled_ && !tiles_are_made) {  // it may be cut later
+    std::vector<HeldPoints> whole = std::exchange(parts, {});
+    for (HeldPoints& held : whole) {
+      append_segments_of(std::move(held), parts);
+    }
   }
   for (HeldPoints& held : parts) {
     auto stretch = std::make_shared<FileStretch>(tile.file);

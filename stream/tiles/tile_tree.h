@@ -129,9 +129,11 @@ class TileTree {
 
  private:
   using Batch = PointBatch;
+  using Fetch = std::function<bool(Batch&)>;
+  using Decode = std::function<void(Batch&, PointBlock&)>;
   /// Sends batches through the steps: `fetch` fills them in order, `decode` makes their points.
-  void run_batches(const std::function<bool(Batch&)>& fetch,
-                   const std::function<void(Batch&, PointBlock&)>& decode, const CellDone& done);
+  void run_batches(const Fetch& fetch, const Decode& decode, const CellDone& done);
+  void run_to_rest(const Fetch& fetch, const Decode& decode, const CellDone& done);
   void deal(Batch& batch, const PointBlock& points) const;
   void append(Batch& batch);
   void append_dealt(const DealtPoints& dealt, Batch& batch);
@@ -140,7 +142,6 @@ class TileTree {
   void put(HeldPoints& held, Tile& tile, const PointsView& points, const Box<3>& box);
   [[nodiscard]] std::size_t most_room() const;
   void spill_some(Batch& batch);
-  [[nodiscard]] bool may_be_cut_later() const;
   void spill(std::uint32_t number, Batch& batch);
   void encode(Batch& batch);
   void write(Batch& batch);
@@ -155,8 +156,6 @@ class TileTree {
               Batch& batch, bool representative = true);
   void judge_tiles(std::span<const LatticePoint> sample);
   void deal_held(HeldPoints held, Batch& batch);
-  [[nodiscard]] std::vector<std::uint32_t> numbers_in_order() const;
-  void append_numbers(CutTree::NodeRef ref, std::vector<std::uint32_t>& numbers) const;
   [[nodiscard]] RegionPlan plan_anew(double most_points) const;
   [[nodiscard]] bool outgrown(const Tile& tile) const;
   [[nodiscard]] bool too_large(const Tile& tile) const;
@@ -166,9 +165,6 @@ class TileTree {
   void cut_long_below(CutTree::NodeRef ref);
   [[nodiscard]] bool to_be_cut(std::uint32_t number, bool complete) const;
   void cut_in_two(std::uint32_t number, bool complete);
-  [[nodiscard]] static std::vector<HeldPoints> part(HeldPoints held, const TileCut& first,
-                                                    const std::array<TileCut, 2>& second);
-  void append_segments_of(HeldPoints held, std::vector<HeldPoints>& segments) const;
   void deal_to_halves(HeldPoints held, const TileCut& cut,
                       const std::array<std::uint32_t, 2>& halves);
   void set_cell_root(std::uint32_t tile, std::uint32_t cell, CutTree::NodeRef cut);
@@ -176,16 +172,11 @@ class TileTree {
   [[nodiscard]] std::vector<TileSegment> take_left_over();
   void append_left_over(CutTree::NodeRef ref, std::vector<TileSegment>& segments);
   [[nodiscard]] std::size_t sample_stride() const;
-  [[nodiscard]] std::vector<LatticePoint> sample_of_all(const Tile& tile) const;
-  void begin_dealing_again();
+  void append_segments_of(HeldPoints held, std::vector<HeldPoints>& segments) const;
   void deal_again(const std::function<void(std::uint64_t points)>& progress);
-  void run_to_rest(const std::function<bool(Batch&)>& fetch,
-                   const std::function<void(Batch&, PointBlock&)>& decode, const CellDone& done);
 
   template <int D>
   struct Joinable;
-  template <int D>
-  [[nodiscard]] bool fit_together(const TileNode<D>& a, const TileNode<D>& b) const;
   template <int D>
   Joinable<D> join_below(CutTree::NodeRef ref, std::vector<TileNode<D>>& tiles) const;
   template <int D>
@@ -193,10 +184,6 @@ class TileTree {
   [[nodiscard]] std::uint64_t points_to_come() const;
   void take_below(CutTree::NodeRef ref);
   [[nodiscard]] Tile take(std::uint32_t number);
-  template <typename OnDisk, typename InMemory>
-  static void visit_parts(Tile tile, const OnDisk& on_disk, const InMemory& in_memory);
-  static void append_stored(Tile tile, std::vector<StoredTile::Segment>& stored);
-  [[nodiscard]] StoredTile one_of(Tile tile) const;
 
   TileTreeOptions options_;
   ScratchFolder& folder_;

@@ -327,7 +327,7 @@ typename TileEngine<D>::Lanes TileEngine<D>::make_lanes() {
            .follow = [this](Node& node) { merge_above(node); },
            .give_up = [this] { give_up(); },
            .rests = [this](const Node& next) { return rests_before(next); },
-           .at_rest = [this] { save_at_rest(); }}};
+           .at_rest = [this] { save(); }}};
 }
 
 /// Points that are loaded for a node, of what others may have, too: a tile may be larger than

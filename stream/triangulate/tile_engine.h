@@ -75,14 +75,14 @@ class TileEngine {
   /// The step that is under way, or comes next.
   [[nodiscard]] EnginePhase phase() const { return phase_; }
   void begin_phase(EnginePhase phase) { phase_ = phase; }
-  /// Saves the state now, between two steps.
-  void save() { save_at_rest(); }
+  /// Comes to rest and saves the state, between two steps or in the midst of one.
+  void save();
 
   /// Deals all points of the feed into tiles. With a plan, triangulates tiles that are complete.
   void spill(const PointFeed& feed);
 
-  /// After spill(): points of tiles that are too large, and are to be divided before take_nodes();
-  /// and their division, which returns how many points were dealt again.
+  /// After spill(): points of tiles that are too large; and their division before take_nodes(),
+  /// which returns how many points were dealt again.
   [[nodiscard]] std::uint64_t points_to_divide() const { return tree_.points_to_divide(); }
   [[nodiscard]] bool is_to_divide() const { return tree_.is_to_divide(); }
   std::uint64_t divide_large();
@@ -162,7 +162,6 @@ class TileEngine {
   void add_cell(std::uint32_t cell, std::optional<TileNode<D>> tiles);
   void add_restored_cells();
   [[nodiscard]] bool rests_before(const Node& node) const;
-  void save_at_rest();
   Node* add_nodes(const TileNode<D>& tree, const Outside<D>& outside,
                   const std::shared_ptr<const Surroundings>& surroundings);
   Node* add_node(NodeState state, std::vector<Node*> children);

@@ -11,7 +11,7 @@ namespace spillway::detail {
 template <int D>
 void TileEngine<D>::rest_for(Checkpointing checkpointing) {
   checkpointing_ = std::move(checkpointing);
-  tree_.rest_for({.due = checkpointing_.due, .save = [this] { save_at_rest(); }});
+  tree_.rest_for({.due = checkpointing_.due, .save = [this] { save(); }});
 }
 
 /// Not before one whose tile has left the tree, nor where blocks of a later one wait for its own.
@@ -21,7 +21,7 @@ bool TileEngine<D>::rests_before(const Node& node) const {
 }
 
 template <int D>
-void TileEngine<D>::save_at_rest() {
+void TileEngine<D>::save() {
   if (beside_ != nullptr) lanes_.come_to_rest(*beside_);
   held_points_.give_back(tree_.spill_complete());
   checkpointing_.save();
@@ -68,14 +68,14 @@ void TileEngine<D>::state(State& state) {
 
 template void TileEngine<2>::rest_for(Checkpointing);
 template bool TileEngine<2>::rests_before(const Node&) const;
-template void TileEngine<2>::save_at_rest();
+template void TileEngine<2>::save();
 template void TileEngine<2>::take_kept_border(Node&);
 template void TileEngine<2>::add_restored_cells();
 template void TileEngine<2>::state(StateReader&);
 template void TileEngine<2>::state(StateWriter&);
 template void TileEngine<3>::rest_for(Checkpointing);
 template bool TileEngine<3>::rests_before(const Node&) const;
-template void TileEngine<3>::save_at_rest();
+template void TileEngine<3>::save();
 template void TileEngine<3>::take_kept_border(Node&);
 template void TileEngine<3>::add_restored_cells();
 template void TileEngine<3>::state(StateReader&);
