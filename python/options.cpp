@@ -129,7 +129,9 @@ void bind_triangulate_options(py::module_& module) {
       .def_readwrite("tile_points", &TriangulateOptions::tile_points)
       .def_readwrite("leaf_points", &TriangulateOptions::leaf_points)
       .def_readwrite("children", &TriangulateOptions::children)
-      .def_readwrite("trust_headers", &TriangulateOptions::trust_headers);
+      .def_readwrite("trust_headers", &TriangulateOptions::trust_headers)
+      .def_readwrite("resume_folder", &TriangulateOptions::resume_folder)
+      .def_readwrite("checkpoint_seconds", &TriangulateOptions::checkpoint_seconds);
   bind_choice(bound, "duplicates", &TriangulateOptions::heights,
               {"first", "lowest", "highest", "mean"});
   bind_choice(bound, "division", &TriangulateOptions::division,

@@ -80,6 +80,8 @@ class DivisionOptions(TypedDict, total=False):
     division: str | None
     children: int | None
     kernel: str | None
+    resume: PathLike | None
+    checkpoint_every: float | None
 
 
 class ConvertOptions(FilterOptions, PlaceOptions, JoinOptions, RunOptions, total=False):
@@ -388,6 +390,21 @@ _OPTIONS = {
         "division",
         attribute("kernel"),
     ),
+    "resume": _Option(
+        "path, optional",
+        "A folder by which the run can go on if it is killed: the same call goes on from the last "
+        "checkpoint there, and gives the same result. It is made, and removed when the run is "
+        "complete. Not for arrays.",
+        "division",
+        attribute("resume_folder", lambda path: as_path(path, "resume")),
+    ),
+    "checkpoint_every": _Option(
+        "float, optional",
+        "Seconds between two checkpoints. By default 60; longer where checkpoints would take more "
+        "than 2 % of the run.",
+        "division",
+        attribute("checkpoint_seconds"),
+    ),
 }
 
 
@@ -514,6 +531,8 @@ def point_options(options: Mapping[str, Any], dim: int) -> _spillway.PointOption
 
 def triangulate_options(options: Mapping[str, Any], dim: int) -> _spillway.TriangulateOptions:
     """How they are triangulated."""
+    if not is_given(options.get("resume")):
+        refuse(options, ["checkpoint_every"], "without resume")
     made = _spillway.TriangulateOptions()
     made.dimension = dim
     _fill(made, "division", options)

@@ -102,6 +102,8 @@ class TriangulateOptions:
     division: str
     children: int
     trust_headers: bool
+    resume_folder: bytes | str
+    checkpoint_seconds: float
     kernel: str
 
 class DemOptions:

@@ -33,19 +33,19 @@ constexpr const char* kMeshFile = "mesh.spm";
 constexpr int kStateVersion = 1;
 
 [[noreturn]] void refuse(const std::string& why) {
-  throw InvalidArgument("a run by which another can go on: " + why);
+  throw InvalidArgument("this run cannot be resumed: " + why);
 }
 
 void refuse_what_cannot_go_on(const Run& run) {
-  if (run.context.options().executor != nullptr) refuse("it is of one process, not of ranks");
-  if (run.points.files == nullptr) refuse("its points are of files, and these are a program's");
+  if (run.context.options().executor != nullptr) refuse("it is one of several ranks");
+  if (run.points.files == nullptr) refuse("its points are a program's, not of files");
   const RunTrace* const trace = run.options.trace.get();
   if (trace != nullptr && (trace->takes_nodes() || trace->takes_steps())) {
-    refuse("its tasks are not told, as some may be done by another process");
+    refuse("its tasks are to be told, of which some may be done by another process");
   }
   const MeshTarget* const target = run.sink.as_mesh_file();
   if (target != nullptr && !can_be_tried(target->path)) {
-    refuse(fmt::format("its output is a file, and {} is none",
+    refuse(fmt::format("its output, {}, is not a file",
                        target->path == "-" ? "standard output" : target->path));
   }
 }
@@ -109,7 +109,7 @@ class ResumableRun {
       if (!folder_.has_checkpoint() && !has_mesh()) {
         give_up();
       } else if (error.code() == ErrorCode::kInputOutput) {
-        say(fmt::format("when that is mended, the same command goes on with the run in {}",
+        say(fmt::format("when that is mended, the same run goes on from what is in {}",
                         folder_.path()));
       }
       throw;

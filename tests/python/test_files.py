@@ -10,6 +10,8 @@ import pathlib
 import pickle
 import re
 import signal
+import subprocess
+import sys
 import threading
 import unittest
 import warnings
@@ -535,6 +537,56 @@ class Errors(InFolder):
         with self.assertRaises(spillway.errors.OutOfBudgetError):
             spillway.triangulate(points, "mesh.spm", memory="32M", tmpdir="tmp", max_tmp="64K")
         self.assert_nothing_is_left()
+
+
+class Resume(InFolder):
+    def run_of(self, output, **options):
+        names = {"resume": "run", "checkpoint_every": 0.02, "memory": "64M", "tile": 5000}
+        return spillway.triangulate("hills.las", output, **{**names, **options})
+
+    def test_a_program_that_is_killed_goes_on(self):
+        command("generate", "terrain", "-n", 150_000, "-o", "hills.las")
+        whole = self.run_of("whole.spm")
+        program = (
+            "import os, spillway\n"
+            "def kill(done):\n"
+            "    if done > 0.2 and os.path.exists('run/state'): os.kill(os.getpid(), 9)\n"
+            "spillway.triangulate('hills.las', 'a.spm', resume='run', checkpoint_every=0.02,\n"
+            "                     memory='64M', tile=5000, progress=kill)\n"
+        )
+        killed = subprocess.run([sys.executable, "-c", program])
+        self.assertEqual(killed.returncode, -9)
+        self.assertFalse(os.path.exists("a.spm"))
+        with self.assertRaisesRegex(ValueError, "tile is 6000, and was 5000"):
+            self.run_of("a.spm", tile=6000)
+        with self.assertWarnsRegex(spillway.Warning, "goes on with the run in run"):
+            report = self.run_of(pathlib.Path("a.spm"), resume=pathlib.Path("run"))
+        self.assertEqual(report.canonical_hash, whole.canonical_hash)
+        self.assertEqual(bytes_of("a.spm"), bytes_of("whole.spm"))
+        self.assert_nothing_is_left("hills.las", "a.spm", "whole.spm")
+
+    def test_what_cannot_go_on_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "cannot be resumed: its points are a program's"):
+            spillway.triangulate(random_points(100, 2), "a.spm", resume="run")
+        with self.assertRaisesRegex(ValueError, "checkpoint_every has no effect without resume"):
+            spillway.triangulate("hills.las", "a.spm", checkpoint_every=5)
+        command("generate", "terrain", "-n", 1000, "-o", "hills.las")
+        with self.assertRaisesRegex(ValueError, "checkpoints are not -1 seconds apart"):
+            spillway.triangulate("hills.las", "a.spm", resume="run", checkpoint_every=-1)
+        with self.assertRaisesRegex(TypeError, "resume is of type int; give a path"):
+            spillway.triangulate("hills.las", "a.spm", resume=1)
+        self.assert_nothing_is_left("hills.las")
+
+    def test_blocks_and_pixels_take_a_folder_too(self):
+        command("generate", "terrain", "-n", 20_000, "-o", "hills.las")
+        for call in (
+            lambda **resume: spillway.dem("hills.las", resolution=2, **resume).values,
+            lambda **resume: np.concatenate(
+                [block.vertices for block in spillway.blocks("hills.las", tile=5000, **resume)]
+            ),
+        ):
+            np.testing.assert_array_equal(call(resume="run"), call())
+        self.assert_nothing_is_left("hills.las")
 
 
 class LongWork(InFolder):
