@@ -68,7 +68,10 @@ void run(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
   const std::optional<TileNode<D>>& root = engine.take_nodes();
   if (!root) refuse_empty_input(source.counts());
   refuse_flat_points(engine.span(), engine.points());
-  options.extent_known(plane_of(root->box), root->points);
+  // A sink that went on has it already.
+  if (engine.phase() != EnginePhase::kTriangulate) {
+    options.extent_known(plane_of(root->box), root->points);
+  }
   if constexpr (D == 2) budget.set_enough(enough_memory<D>(root->points, options.record_size));
   begin(EnginePhase::kTriangulate, engine, options);
   engine.triangulate(*root, {});

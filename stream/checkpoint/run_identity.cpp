@@ -1,11 +1,30 @@
 #include "stream/checkpoint/run_identity.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstddef>
 
 namespace spillway::detail {
+namespace {
+
+/// What changes when a file does.
+std::string state_of_file(const std::string& path) {
+  struct stat status {};
+  if (path == "-" || ::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) {
+    return "a pipe";
+  }
+  return fmt::format("{} bytes of {:%Y-%m-%d %H:%M:%S}.{:09} UTC", status.st_size,
+                     fmt::gmtime(status.st_mtim.tv_sec), status.st_mtim.tv_nsec);
+}
+
+}  // namespace
+
+void RunIdentity::add_file(std::string name, const std::string& path) {
+  add(std::move(name), fmt::format("{} ({})", path, state_of_file(path)));
+}
 
 std::string RunIdentity::difference_from(const RunIdentity& earlier) const {
   constexpr std::size_t kMostNamed = 3;

@@ -14,6 +14,9 @@ class RunIdentity {
     facts_.emplace_back(std::move(name), std::move(value));
   }
 
+  /// A file of that path, as it is now: its size and time of change.
+  void add_file(std::string name, const std::string& path);
+
   /// What differs, in words: "--dim is 3, and was 2"; "" if nothing does. At most a few facts.
   [[nodiscard]] std::string difference_from(const RunIdentity& earlier) const;
 

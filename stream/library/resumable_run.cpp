@@ -102,6 +102,7 @@ class ResumableRun {
     if (folder_.has(kCompleteFile)) return report_of_complete(kCompleteFile);
     try {
       Report report = run_.sink.goes_on() ? run_to_sink() : run_to_mesh();
+      tell_cost();
       save_figures(kCompleteFile, report);
       remove();
       return report;
@@ -132,6 +133,12 @@ class ResumableRun {
     }
   }
 
+  void tell_cost() const {
+    if (!run_.context.options().detail) return;
+    run_.context.options().detail(
+        fmt::format("{} checkpoints took {:.2f} s", checkpoints_.count(), checkpoints_.seconds()));
+  }
+
   /// Nothing has been done that another process could go on with.
   void give_up() {
     if (const MeshTarget* const target = run_.sink.as_mesh_file()) {
@@ -160,6 +167,7 @@ class ResumableRun {
 
   /// Blocks go where they go in the end.
   Report run_to_sink() {
+    const MarkedOutputs marked(folder_.mark());
     if (has_its_name()) return report_of_complete(kFiguresFile);
     MeshStart start = run_.start();
     start.files = &folder_.outputs();
@@ -170,12 +178,12 @@ class ResumableRun {
     return report;
   }
 
-  /// Whether a stream of blocks, which was complete, has got its name, too. What is spooled is made
-  /// once more of its spool.
+  /// Whether a stream of blocks, which was complete, has got its name, too. What is spooled, and
+  /// pixels that are kept, are written once more.
   [[nodiscard]] bool has_its_name() const {
     const MeshTarget* const target = run_.sink.as_mesh_file();
-    if (target->format->open_block_writer == nullptr || !folder_.has(kFiguresFile) ||
-        folder_.has_unfinished(target->path)) {
+    if (target == nullptr || target->format->open_block_writer == nullptr ||
+        !folder_.has(kFiguresFile) || folder_.has_unfinished(target->path)) {
       return false;
     }
     namespace fs = std::filesystem;

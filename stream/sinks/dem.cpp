@@ -10,6 +10,8 @@
 #include <mutex>
 #include <utility>
 
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 #include "src/error.h"
 #include "src/geometry/longest_edge.h"
 #include "src/parallel/parallel.h"
@@ -367,6 +369,26 @@ void Dem::finish_tile(std::uint64_t number, std::span<const std::vector<std::byt
     }
   }
   pixels_with_data_ += with_data;
+}
+
+void Dem::save(StateWriter& state) {
+  state.section("dem");
+  bool begun = store_.has_value();
+  state(begun, grid_, left_out_);
+  if (begun) store_->save(state);
+}
+
+void Dem::restore(StateReader& state) {
+  state.section("dem");
+  bool begun = false;
+  PixelGrid grid;
+  std::uint64_t left_out = 0;
+  state(begun, grid, left_out);
+  store_.reset();
+  if (!begun) return;
+  begin(grid);
+  left_out_ = left_out;
+  store_->restore(state);
 }
 
 void Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,

@@ -85,6 +85,11 @@ class Dem {
   [[nodiscard]] std::vector<std::uint64_t> tiles() const { return store_->tiles(); }
   std::vector<std::byte> take_tile(std::uint64_t tile) { return store_->take_tile(tile); }
 
+  /// For another process to go on with the raster, begun or not; and on from there, in a Dem of the
+  /// same options. While nobody paints.
+  void save(StateWriter& state);
+  void restore(StateReader& state);
+
   /// Pixels of the first band that have a value; after write().
   [[nodiscard]] std::uint64_t pixels_with_data() const { return pixels_with_data_; }
   /// Triangles with too long an edge.

@@ -3,6 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 #include "stream/sinks/dem.h"
 #include "stream/sinks/simplex_sink.h"
 
@@ -13,6 +15,15 @@ class DemWriter final : public SimplexSink<PlacedPoint> {
  public:
   /// `dem` must outlive it, and must have begun before the first block comes.
   explicit DemWriter(Dem& dem) : SimplexSink(2), dem_(dem) {}
+
+  void save(StateWriter& state) override {
+    this->state(state);
+    dem_.save(state);
+  }
+  void restore(StateReader& state) override {
+    this->state(state);
+    dem_.restore(state);
+  }
 
  private:
   [[nodiscard]] std::vector<PlacedPoint> values_of(

@@ -13,6 +13,8 @@
 #include "formats/blocks/block.h"
 #include "formats/blocks/columns.h"
 #include "formats/bytes/bytes.h"
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 
 namespace spillway::detail {
 namespace {
@@ -341,6 +343,49 @@ void RasterStore::add_pixels(std::span<const std::byte> stored, const FileSpot& 
     for (std::uint32_t i = begin; i < begin + length; ++i) {
       pixels[i] = combined(pixels[i], of_ordinal(*ordinal++), bands_[i / kTilePixels]);
     }
+  }
+}
+
+void RasterStore::save(StateWriter& state) {
+  state.section("raster");
+  state.file(file_);
+  std::uint64_t count = tiles_.size();
+  state(closed_tiles_, count);
+  for (const auto& [number, tile] : tiles_) {
+    SavedTile saved{number, tile.decided, tile.closed, tile.packed, tile.spilled};
+    if (!tile.pixels.empty()) saved.packed = encode(tile.pixels, runs_of(tile.pixels));
+    state(saved);
+  }
+}
+
+void RasterStore::restore(StateReader& state) {
+  state.section("raster");
+  state.file(file_);
+  std::uint64_t count = 0;
+  state(closed_tiles_, count);
+  for (; count > 0; --count) {
+    SavedTile saved;
+    state(saved);
+    take_back(std::move(saved), {state.name()});
+  }
+}
+
+/// Closed tiles stay packed.
+void RasterStore::take_back(SavedTile saved, const FileSpot& where) {
+  Tile& tile = tiles_[saved.number];
+  tile.decided = saved.decided;
+  tile.closed = saved.closed;
+  tile.spilled = std::move(saved.spilled);
+  if (saved.packed.empty()) return;
+  if (tile.closed) {
+    packed_bytes_ += saved.packed.size();
+    packed_.push_back(saved.number);
+    tile.packed = std::move(saved.packed);
+  } else {
+    ++in_memory_;
+    tile.pixels.assign(tile_floats(), kNothing);
+    add_pixels(saved.packed, where, tile.pixels);
+    tile.place = idle_.insert(idle_.end(), saved.number);
   }
 }
 

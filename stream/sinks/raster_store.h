@@ -20,6 +20,9 @@
 
 namespace spillway::detail {
 
+class StateReader;
+class StateWriter;
+
 /// What is in a pixel of one band. Nothing is not-a-number. All else is put there by put_pixel(),
 /// and what comes out in the end does not depend on the order.
 enum class PixelRule : std::uint8_t {
@@ -116,6 +119,11 @@ class RasterStore {
   [[nodiscard]] std::uint64_t spilled_bytes() const;
   [[nodiscard]] std::uint64_t closed_tiles() const;
 
+  /// For another process to go on; and on from there, in a new store of the same bands. While no
+  /// hand holds a tile.
+  void save(StateWriter& state);
+  void restore(StateReader& state);
+
  private:
   struct SpilledPixels {
     std::uint64_t offset = 0;
@@ -131,8 +139,23 @@ class RasterStore {
     std::vector<SpilledPixels> spilled;        ///< on the disk
   };
 
+  /// A tile as it is saved.
+  struct SavedTile {
+    std::uint64_t number = 0;
+    std::uint32_t decided = 0;
+    bool closed = false;
+    std::vector<std::byte> packed;  ///< what is in memory
+    std::vector<SpilledPixels> spilled;
+
+    template <typename State>
+    void state(State& state) {
+      state(number, decided, closed, packed, spilled);
+    }
+  };
+
   float* hold(std::uint64_t number);
   void let_go(std::uint64_t number, std::uint32_t decided);
+  void take_back(SavedTile saved, const FileSpot& where);
   std::vector<float> empty_tile(std::unique_lock<std::mutex>& lock);
   bool make_room(std::unique_lock<std::mutex>& lock);
   void pack_closed(std::unique_lock<std::mutex>& lock);
@@ -159,7 +182,7 @@ class RasterStore {
   std::uint64_t packed_bytes_ = 0;
   std::uint64_t closed_tiles_ = 0;
   mutable std::mutex file_mutex_;  ///< guards file_ while it grows; taken without mutex_
-  std::unique_ptr<ScratchFile> file_;
+  std::shared_ptr<ScratchFile> file_;
 };
 
 }  // namespace spillway::detail

@@ -73,6 +73,13 @@ class SimplexSink : public BlockSink {
     take_simplices(values, block.mesh.corners);
   }
 
+ protected:
+  /// Of a new one, if it is read.
+  template <typename State>
+  void state(State& state) {
+    state(live_);
+  }
+
  private:
   /// What vertices, as they come, are. By many threads at once, as what follows.
   [[nodiscard]] virtual std::vector<Value> values_of(

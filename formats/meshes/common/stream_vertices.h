@@ -52,6 +52,21 @@ class StreamVertices : public LiveVertices<Value> {
   /// For blocks of another form: so many vertices have come.
   void announce(std::uint64_t count) { announced_ += count; }
 
+  /// Of a new one, if it is read.
+  template <typename State>
+  void state(State& state) {
+    std::vector<std::uint64_t> numbers;
+    std::vector<Value> values;
+    this->for_each([&](std::uint64_t number, const Value& value) {
+      numbers.push_back(number);
+      values.push_back(value);
+    });
+    state(announced_, numbers, values);
+    if constexpr (State::kReads) {
+      for (std::size_t v = 0; v < numbers.size(); ++v) this->enter(numbers[v], values[v]);
+    }
+  }
+
  private:
   std::uint64_t announced_ = 0;
   std::vector<bool> finalized_;  ///< of the block that is settled, by short number

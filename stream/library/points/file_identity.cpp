@@ -1,8 +1,6 @@
 // By what files and options another process is known to read the same points.
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <string>
 #include <utility>
@@ -11,16 +9,6 @@
 
 namespace spillway::detail {
 namespace {
-
-/// What changes when a file does.
-std::string state_of_file(const std::string& path) {
-  struct stat status {};
-  if (path == "-" || ::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) {
-    return "a pipe";
-  }
-  return fmt::format("{} bytes of {:%Y-%m-%d %H:%M:%S}.{:09} UTC", status.st_size,
-                     fmt::gmtime(status.st_mtim.tv_sec), status.st_mtim.tv_nsec);
-}
 
 std::string text_of(const Returns& returns) {
   return fmt::format("first {}, last {}, single {}, numbers {}", returns.first, returns.last,
@@ -35,8 +23,7 @@ bool FilePoints::identify(RunIdentity& identity) const {
   };
   add("number of files", input_->paths().size());
   for (std::size_t i = 0; i < input_->paths().size(); ++i) {
-    const std::string& path = input_->paths()[i];
-    identity.add(fmt::format("input {}", i + 1), fmt::format("{} ({})", path, state_of_file(path)));
+    identity.add_file(fmt::format("input {}", i + 1), input_->paths()[i]);
   }
   add("format of points", options_.format);
   add("columns", fmt::join(options_.columns, " "));

@@ -157,7 +157,10 @@ unsigned DemFile::feeding_threads(unsigned threads) const {
 bool DemFile::wants_extent() const { return !dem_options_.grid.bounds && options_.like.empty(); }
 
 void DemFile::ask_gdal() {
-  if (pixels_ == nullptr) gdal().check_raster_driver(file_options(path_, options_, {}));
+  if (pixels_ == nullptr) {
+    const RasterOptions of_any_raster;
+    gdal().check_raster_driver(file_options(path_, options_, of_any_raster));
+  }
   if (options_.like.empty()) return;
   like_ = gdal().read_raster_grid(options_.like);
   dem_options_.grid.given = like_.pixels;
@@ -176,10 +179,37 @@ BlockSink& DemFile::open(const MeshStart& start) {
   if (!start.is_triangulated) dem_options_.max_edge = options_.max_edge;
   // Pixels of other meshes may be painted twice, and those of ranks by others, too.
   dem_options_.closes_tiles = start.is_triangulated && context().options().executor == nullptr;
-  dem_.emplace(dem_options_, start.header.lattice, *scratch_);
+  dem_.emplace(dem_options_, start.header.lattice,
+               start.scratch != nullptr ? *start.scratch : *scratch_);
   // What is too large is told before the points are read.
   if (!wants_extent()) dem_->begin(Box<2>{});
   return writer_.emplace(*dem_);
+}
+
+/// What pixels are; how the file keeps them may be another choice.
+void DemFile::identify(RunIdentity& identity) const {
+  identify_product("raster", path_, identity);
+  const auto add = [&](const char* name, const auto& value) {
+    identity.add(name, fmt::format("{}", value));
+  };
+  std::vector<std::string> names;
+  for (const DemProduct product : options_.products) {
+    names.push_back(dem_product_names()[static_cast<std::size_t>(product)]);
+  }
+  identity.add("product", fmt::format("{}", fmt::join(names, ",")));
+  if (options_.like.empty()) {
+    add("side of a pixel", options_.resolution);
+    add("bounds of the raster", options_.bounds
+                                    ? fmt::format("{} to {}", fmt::join(options_.bounds->low, " "),
+                                                  fmt::join(options_.bounds->high, " "))
+                                    : "all points");
+    add("align", options_.align);
+  } else {
+    identity.add_file("raster to be like", options_.like);
+  }
+  add("azimuth", options_.azimuth);
+  add("altitude", options_.altitude);
+  add("factor of z", options_.z_factor ? fmt::format("{}", *options_.z_factor) : "by units");
 }
 
 void DemFile::extent_known(const Box<2>& extent, std::uint64_t vertices) {

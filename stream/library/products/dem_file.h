@@ -22,9 +22,8 @@ class DemFile final : public OwnSink<DemSink> {
   /// `pixels` must outlive it.
   DemFile(DemPixels& pixels, const spillway::DemOptions& options, const Context& context);
 
-  void identify(RunIdentity& identity) const override {
-    identify_product("raster", path_, identity);
-  }
+  void identify(RunIdentity& identity) const override;
+  [[nodiscard]] bool goes_on() const override { return true; }
   [[nodiscard]] const DemReport& report() const override { return report_; }
 
   [[nodiscard]] CrsNeed crs_need() const override { return CrsNeed::kAll; }

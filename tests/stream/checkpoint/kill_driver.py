@@ -38,6 +38,8 @@ FAMILIES = {
     "thinned": (TERRAIN, 1, ["triangulate", "terrain.las", "--thin", "2:lowest", *PLANE], "x.spm"),
     "stl": (TERRAIN, 0.5, ["triangulate", "terrain.las", *PLANE], "x.stl"),
     "dem": (TERRAIN, 1, ["dem", "terrain.las", "--resolution", "2", *PLANE], "x.tif"),
+    "dem_planned": (SURVEY, 1, ["dem", "survey*.las", "--resolution", "0.5", "--product",
+                                "height,slope,density", *PLANE], "x.tif"),
     "contour": (TERRAIN, 0.5, ["contour", "terrain.las", "--interval", "20", *PLANE], "x.shp"),
 }
 

@@ -7,7 +7,7 @@ spillway_test(checkpoint_test unit
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
   set(driver ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/kill_driver.py $<TARGET_FILE:spillway>)
-  add_test(NAME Checkpoints.killed_runs_end_with_the_same_bytes COMMAND ${driver} --kills 6 --points 100000)
+  add_test(NAME Checkpoints.killed_runs_end_with_the_same_bytes COMMAND ${driver} --kills 5 --points 100000)
   add_test(NAME Checkpoints.damaged_states_make_no_other_mesh
     COMMAND ${driver} --damages 10 --points 50000 --family spilled --family planned --family spooled --family dem)
   set_tests_properties(Checkpoints.killed_runs_end_with_the_same_bytes Checkpoints.damaged_states_make_no_other_mesh

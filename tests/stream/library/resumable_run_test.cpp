@@ -1,11 +1,13 @@
 // Runs with a resume_folder, as a program sees them; tests/stream/checkpoint kills them.
 
 #include <gmock/gmock.h>
+#include <spillway/dem.h>
 #include <spillway/generate.h>
 #include <spillway/triangulate.h>
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -50,7 +52,7 @@ class ResumableRun : public ::testing::Test {
   }
 
   fs::path folder_;
-  Context context_{{.memory = "32M", .threads = 2}};
+  Context context_{{.memory = "64M", .threads = 2}};
 };
 
 TEST_F(ResumableRun, MakesTheSameMeshAndRemovesItsFolder) {
@@ -81,7 +83,29 @@ TEST_F(ResumableRun, RefusesPointsOfAProgramAndStandardOutput) {
   EXPECT_THAT(error_of(*in_memory, *mesh, options()), HasSubstr("a program's"));
   const auto source = points();
   const auto pipe = create_mesh("-", {.format = "spm"}, context_);
-  EXPECT_THAT(error_of(*source, *pipe, options()), HasSubstr("standard output is none"));
+  EXPECT_THAT(error_of(*source, *pipe, options()), HasSubstr("standard output, is not a file"));
+  EXPECT_FALSE(fs::exists(path("run")));
+}
+
+TEST_F(ResumableRun, GoesOnWithARasterOfTheSamePixelsAlone) {
+  DemOptions raster{.resolution = 1};
+  const auto run = [&](const std::string& name, const TriangulateOptions& how) {
+    const auto source = points();
+    return error_of(*source, *create_dem(path(name), raster, context_), how);
+  };
+  EXPECT_EQ(run("usual.tif", {.tile_points = 100}), "");
+  const Context ended({.memory = "64M", .threads = 2, .progress = [](const Progress& progress) {
+                         if (progress.phase == "write") throw std::runtime_error("the end");
+                       }});
+  const auto source = open_points({path("points.txt")}, {}, ended);
+  EXPECT_THROW(triangulate(*source, *create_dem(path("dem.tif"), raster, ended), options(), ended),
+               std::runtime_error);
+  EXPECT_TRUE(fs::exists(path("run/state")));
+  raster.resolution = 2;
+  EXPECT_THAT(run("dem.tif", options()), HasSubstr("side of a pixel is 2, and was 1"));
+  raster.resolution = 1;
+  EXPECT_EQ(run("dem.tif", options()), "");
+  EXPECT_EQ(bytes_of("dem.tif"), bytes_of("usual.tif"));
   EXPECT_FALSE(fs::exists(path("run")));
 }
 

@@ -8,10 +8,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <random>
 #include <set>
 #include <thread>
 
+#include "formats/disk/kept_scratch.h"
+#include "formats/disk/private_file.h"
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 #include "src/error.h"
 #include "tests/error_facts.h"
 
@@ -271,6 +276,55 @@ TEST_F(RasterStoreTest, PutsTilesOnTheDiskThatAreClosedBeforeOthers) {
   for (std::uint64_t t = 0; t < 100; ++t) fill_tile(hand, t);
   EXPECT_EQ(hand.tile(1000), open);
   EXPECT_EQ(*hand.tile(1000), 7);
+}
+
+/// Another process goes on from what was saved in the midst, whatever was on the disk then, and
+/// whatever the first one put there afterwards.
+TEST_F(RasterStoreTest, GoesOnFromWhatWasSaved) {
+  constexpr std::uint64_t kTiles = 25;
+  namespace fs = std::filesystem;
+  std::string folder = ::testing::TempDir() + "raster_store_test_XXXXXX";
+  ASSERT_NE(::mkdtemp(folder.data()), nullptr);
+  const std::string file = folder + "/state";
+  const std::vector<Put> puts = random_puts(3000, kTiles, 3);
+  const std::vector<Put> first(puts.begin(), puts.begin() + 1700);
+  const std::vector<Put> rest(puts.begin() + 1700, puts.end());
+  RasterStore large(kAllRules, std::uint64_t{1} << 30, *scratch_);
+  {
+    RasterStore::Hand hand(large);
+    fill_tile(hand, kTiles, true);
+  }
+  put_all(large, puts);
+  const auto expected = take_all(large, kTiles + 1);
+  const auto last_only = [](std::uint64_t number) {
+    return number == kTiles ? std::uint32_t{RasterStore::kTilePixels} : 0;
+  };
+  for (const std::uint64_t tiles : {1, 12, 100}) {
+    const std::uint64_t memory = tiles * kAllRules.size() * kTileBytes;
+    {
+      KeptScratchFolder scratch(folder + "/scratch", std::nullopt);
+      RasterStore killed(kAllRules, memory, scratch, last_only);
+      {
+        RasterStore::Hand hand(killed);
+        fill_tile(hand, kTiles, true);
+      }
+      put_all(killed, first);
+      StateWriter writer(create_private_file(file, file));
+      killed.save(writer);
+      writer.finish();
+      put_all(killed, rest);
+    }
+    KeptScratchFolder scratch(folder + "/scratch", std::nullopt);
+    StateReader reader(disk().open(file), folder);
+    reader.use_scratch(scratch);
+    RasterStore store(kAllRules, memory, scratch, last_only);
+    store.restore(reader);
+    reader.finish();
+    EXPECT_EQ(store.closed_tiles(), 1U);
+    put_all(store, rest);
+    EXPECT_TRUE(take_all(store, kTiles + 1) == expected) << tiles;
+  }
+  fs::remove_all(folder);
 }
 
 TEST_F(RasterStoreTest, NamesItsTilesInAscendingOrder) {
