@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRunFile = "spillway-run";
 constexpr const char* kStateFile = "state";
+constexpr const char* kPreparedFile = "state.prepared";
 constexpr const char* kScratch = "scratch";
 constexpr const char* kUnfinishedEnd = ".new";
 
@@ -44,7 +45,7 @@ CheckpointFolder::CheckpointFolder(const std::string& path, const RunIdentity& i
   take(identity);
   outputs_ = keep_outputs(mark_);
   scratch_ = std::make_unique<KeptScratchFolder>(path_of(kScratch), cap);
-  if (!has_checkpoint()) scratch_->remove_others();
+  if (!has_checkpoint() && !has(kPreparedFile)) scratch_->remove_others();
 }
 
 std::string CheckpointFolder::path_of(const std::string& file_name) const {
@@ -119,15 +120,32 @@ void CheckpointFolder::remove_unfinished(const std::string& final_path) const {
   fs::remove(part_path(output_target(final_path).path, mark_), ignored);
 }
 
+std::unique_ptr<StateReader> CheckpointFolder::open_state(const std::string& file_name,
+                                                          std::uint64_t& files_made) {
+  auto state = open(file_name);
+  if (!state) return nullptr;
+  state->section("checkpoint");
+  (*state)(files_made);
+  return state;
+}
+
 std::unique_ptr<StateReader> CheckpointFolder::open_checkpoint() {
-  auto state = open(kStateFile);
+  std::uint64_t files_made = 0;
+  auto state = open_state(kStateFile, files_made);
   if (!state) return nullptr;
   state->use_scratch(*scratch_);
-  state->section("checkpoint");
-  std::uint64_t files_made = 0;
-  (*state)(files_made);
   scratch_->go_on_after(files_made);
   return state;
+}
+
+std::unique_ptr<StateReader> CheckpointFolder::look_at_checkpoint() {
+  std::uint64_t ignored = 0;
+  return open_state(kStateFile, ignored);
+}
+
+std::unique_ptr<StateReader> CheckpointFolder::look_at_prepared() {
+  std::uint64_t ignored = 0;
+  return open_state(kPreparedFile, ignored);
 }
 
 void CheckpointFolder::restored(StateReader& state) {
@@ -135,14 +153,19 @@ void CheckpointFolder::restored(StateReader& state) {
   scratch_->remove_others();
 }
 
-void CheckpointFolder::save_checkpoint(const std::function<void(StateWriter&)>& write) {
-  save(kStateFile, [&](StateWriter& state) {
+void CheckpointFolder::save_state(const std::string& file_name,
+                                  const std::function<void(StateWriter&)>& write) {
+  save(file_name, [&](StateWriter& state) {
     state.section("checkpoint");
     std::uint64_t files_made = scratch_->files_made();
     state(files_made);
     write(state);
     scratch_->sync();
   });
+}
+
+void CheckpointFolder::save_checkpoint(const std::function<void(StateWriter&)>& write) {
+  save_state(kStateFile, write);
   scratch_->release();
 }
 
@@ -152,6 +175,27 @@ void CheckpointFolder::forget_checkpoint() {
   scratch_->release();
 }
 
+void CheckpointFolder::prepare_checkpoint(const std::function<void(StateWriter&)>& write) {
+  save_state(kPreparedFile, write);
+}
+
+void CheckpointFolder::accept_prepared() {
+  rename(path_of(kPreparedFile), path_of(kStateFile));
+  scratch_->release();
+}
+
+void CheckpointFolder::drop_prepared() {
+  std::error_code ignored;
+  fs::remove(path_of(kPreparedFile), ignored);
+}
+
+/// Survives whatever happens from now on.
+void CheckpointFolder::rename(const std::string& from, const std::string& to) const {
+  if (::rename(from.c_str(), to.c_str()) == 0 && ::fsync(lock_.get()) == 0) return;
+  const int error = errno;
+  throw SystemRefusal(fmt::format("cannot write {}: {}", to, reason(error)), to, error);
+}
+
 void CheckpointFolder::save(const std::string& file_name,
                             const std::function<void(StateWriter&)>& write) {
   const std::string path = path_of(file_name);
@@ -159,10 +203,7 @@ void CheckpointFolder::save(const std::string& file_name,
   StateWriter state(create_private_file(unfinished, unfinished));
   write(state);
   state.finish();
-  if (::rename(unfinished.c_str(), path.c_str()) != 0 || ::fsync(lock_.get()) != 0) {
-    const int error = errno;
-    throw SystemRefusal(fmt::format("cannot write {}: {}", path, reason(error)), path, error);
-  }
+  rename(unfinished, path);
 }
 
 /// Nothing but what is the run's. The file that tells of the run goes last, so that a process which
@@ -174,6 +215,7 @@ void CheckpointFolder::remove() {
     fs::remove(path_of(name + kUnfinishedEnd), ignored);
   };
   remove_file(kStateFile);
+  remove_file(kPreparedFile);
   fs::remove_all(path_of(kScratch), ignored);
   for (const std::string& name : files_) remove_file(name);
   remove_file(kRunFile);

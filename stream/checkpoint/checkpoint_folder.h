@@ -49,6 +49,15 @@ class CheckpointFolder {
   /// There is no checkpoint any more, and no scratch file that only it needed.
   void forget_checkpoint();
 
+  /// For processes whose checkpoints are of use together only: what is prepared becomes the last
+  /// checkpoint when it is accepted. Until then that of before is there, too.
+  void prepare_checkpoint(const std::function<void(StateWriter&)>& write);
+  void accept_prepared();
+  void drop_prepared();
+  /// As open_checkpoint(), to look at it.
+  [[nodiscard]] std::unique_ptr<StateReader> look_at_checkpoint();
+  [[nodiscard]] std::unique_ptr<StateReader> look_at_prepared();
+
   /// A file of a few values, which is there as a whole or not at all.
   void save(const std::string& file_name, const std::function<void(StateWriter&)>& write);
   [[nodiscard]] bool has(const std::string& file_name) const;
@@ -61,6 +70,10 @@ class CheckpointFolder {
  private:
   void lock();
   void take(const RunIdentity& identity);
+  void save_state(const std::string& file_name, const std::function<void(StateWriter&)>& write);
+  [[nodiscard]] std::unique_ptr<StateReader> open_state(const std::string& file_name,
+                                                        std::uint64_t& files_made);
+  void rename(const std::string& from, const std::string& to) const;
   [[noreturn]] void refuse(const std::string& why) const;
 
   std::string path_;

@@ -28,8 +28,12 @@ bool Checkpoints::is_past(Seconds interval) const {
 }
 
 void Checkpoints::save(const std::function<void(StateWriter&)>& write) {
+  measure([&] { folder_.save_checkpoint(write); });
+}
+
+void Checkpoints::measure(const std::function<void()>& save) {
   const Clock::time_point begin = Clock::now();
-  folder_.save_checkpoint(write);
+  save();
   const Clock::time_point end = Clock::now();
   const Seconds cost = end - begin;
   cost_ = cost.count();

@@ -24,6 +24,8 @@ class Checkpoints {
 
   /// No thread is at work.
   void save(const std::function<void(StateWriter&)>& write);
+  /// Counts and times a checkpoint that is saved in another way.
+  void measure(const std::function<void()>& save);
 
   [[nodiscard]] CheckpointFolder& folder() { return folder_; }
   /// How many there were, and what they took.

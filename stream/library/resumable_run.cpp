@@ -37,7 +37,6 @@ constexpr int kStateVersion = 1;
 }
 
 void refuse_what_cannot_go_on(const Run& run) {
-  if (run.context.options().executor != nullptr) refuse("it is one of several ranks");
   if (run.points.files == nullptr) refuse("its points are a program's, not of files");
   const RunTrace* const trace = run.options.trace.get();
   if (trace != nullptr && (trace->takes_nodes() || trace->takes_steps())) {
@@ -50,7 +49,10 @@ void refuse_what_cannot_go_on(const Run& run) {
   }
 }
 
+}  // namespace
+
 RunIdentity identity_of(const Run& run, const EnginePoints& points) {
+  refuse_what_cannot_go_on(run);
   RunIdentity identity;
   const auto add = [&](const char* name, const auto& value) {
     identity.add(name, fmt::format("{}", value));
@@ -74,6 +76,14 @@ RunIdentity identity_of(const Run& run, const EnginePoints& points) {
   return identity;
 }
 
+std::string once_only_notice(const Run& run) {
+  if (run.points.stream->goes_on()) return "";
+  return fmt::format("{} is read only once: the run can go on when it has been read to its end",
+                     run.points.name == "-" ? "standard input" : run.points.name);
+}
+
+namespace {
+
 /// What is known of a triangulation that is complete, for whoever has only to complete its output.
 template <typename State>
 void transfer_figures(State& state, Report& report) {
@@ -89,10 +99,10 @@ void transfer_figures(State& state, Report& report) {
 /// A run and its folder.
 class ResumableRun {
  public:
-  ResumableRun(Run& run, const EnginePoints& points)
+  explicit ResumableRun(Run& run)
       : run_(run),
-        folder_(run.options.resume_folder, identity_of(run, points),
-                {kFiguresFile, kCompleteFile, kMeshFile}, run.context.scratch_limit()),
+        folder_(run.options.resume_folder, *run.identity, {kFiguresFile, kCompleteFile, kMeshFile},
+                run.context.scratch_limit()),
         checkpoints_(folder_, run.options.checkpoint_seconds) {
     run.stream.checkpoints = &checkpoints_;
   }
@@ -127,9 +137,8 @@ class ResumableRun {
       say(fmt::format("goes on with the mesh in {}", folder_.path()));
     } else if (folder_.has_checkpoint()) {
       say(fmt::format("goes on with the run in {}", folder_.path()));
-    } else if (!run_.points.stream->goes_on()) {
-      say(fmt::format("{} is read only once: the run can go on when it has been read to its end",
-                      run_.points.name == "-" ? "standard input" : run_.points.name));
+    } else if (const std::string notice = once_only_notice(run_); !notice.empty()) {
+      say(notice);
     }
   }
 
@@ -261,9 +270,6 @@ class ResumableRun {
 
 }  // namespace
 
-Report triangulate_resumably(Run& run, const EnginePoints& points) {
-  refuse_what_cannot_go_on(run);
-  return ResumableRun(run, points).run();
-}
+Report triangulate_resumably(Run& run) { return ResumableRun(run).run(); }
 
 }  // namespace spillway::detail

@@ -1,13 +1,22 @@
 #pragma once
 
+#include <string>
+
 #include "stream/library/points/engine_points.h"
 #include "stream/library/run.h"
 
 namespace spillway::detail {
 
-/// A run with a TriangulateOptions::resume_folder: goes on with what another process has left
-/// there. A sink that cannot go on in the midst of the blocks gets them from a mesh in that folder,
-/// when this is complete. Throws Error if the run cannot go on as a whole.
-Report triangulate_resumably(Run& run, const EnginePoints& points);
+/// What tells a run with a TriangulateOptions::resume_folder from others. Throws Error if it cannot
+/// go on as a whole.
+RunIdentity identity_of(const Run& run, const EnginePoints& points);
+
+/// What users are told at the start of such a run, "" for nothing: that its points do not come
+/// again.
+std::string once_only_notice(const Run& run);
+
+/// Goes on with what another process has left in the folder. A sink that cannot go on in the midst
+/// of the blocks gets them from a mesh in that folder, when this is complete.
+Report triangulate_resumably(Run& run);
 
 }  // namespace spillway::detail

@@ -3,9 +3,11 @@
 #include <spillway/triangulate.h>
 
 #include <memory>
+#include <optional>
 
 #include "formats/disk/scratch_folder.h"
 #include "src/runtime/memory_budget.h"
+#include "stream/checkpoint/run_identity.h"
 #include "stream/library/context/run_watch.h"
 #include "stream/library/meshes/engine_sink.h"
 #include "stream/library/points/engine_points.h"
@@ -23,6 +25,7 @@ struct Run {
   StreamOptions stream;
   MemoryBudget budget;  ///< without what the sink takes for itself
   std::shared_ptr<ScratchFolder> scratch;
+  std::optional<RunIdentity> identity{};  ///< of a run that can go on, if it is killed
 
   /// What the mesh's header says.
   [[nodiscard]] MeshStart start() const;

@@ -167,11 +167,12 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   run.stream.record_size = run.points.attributes.record_size();
   check(run.points, options.dimension);
   target->check_attributes(run.points.offered);
+  if (!options.resume_folder.empty()) run.identity = identity_of(run, *points);
   Report report;
-  if (!options.resume_folder.empty()) {
-    report = triangulate_resumably(run, *points);
+  if (executor != nullptr) {
+    report = executor->triangulate(run);
   } else {
-    report = executor != nullptr ? executor->triangulate(run) : triangulate_here(run);
+    report = run.identity ? triangulate_resumably(run) : triangulate_here(run);
   }
   report.lost = target->lost_attributes(run.points.offered, true);
   return report;

@@ -175,13 +175,15 @@ MeshOutput::MeshOutput(const MeshStreamHeader& header, const std::string& name,
                        ScratchFolder& scratch)
     : spool_(header, name, scratch) {}
 
-void MeshOutput::finish_spool(const RankMesh& mesh) {
+void MeshOutput::finish_spool(const RankMesh& mesh) { finish_own_blocks(spool_, mesh); }
+
+void finish_own_blocks(MeshSpool& spool, const RankMesh& mesh) {
   MeshTotals totals;
   if (mesh.own_section) {
     totals.vertices = mesh.sections[*mesh.own_section].vertices;
     totals.simplices = mesh.sections[*mesh.own_section].simplices;
   }
-  spool_.finish(totals);
+  spool.finish(totals);
 }
 
 std::unique_ptr<MeshOutput> open_mesh_output(FileSystem& files, const MeshTarget& target,

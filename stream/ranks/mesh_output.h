@@ -44,6 +44,9 @@ class MeshOutput {
   MeshSpool spool_;
 };
 
+/// Ends a spool that has got the blocks of this rank's own tiles.
+void finish_own_blocks(MeshSpool& spool, const RankMesh& mesh);
+
 /// Creates the output's files, still under temporary names. Rank 0's header counts where they
 /// differ. `scratch` and `ranks` must outlive the output. Collective. Throws Error or
 /// InvalidArgument at rank 0 if that cannot be done or the format does not hold the mesh, while the

@@ -4,16 +4,19 @@
 
 #include <utility>
 
+#include "formats/meshes/spool/mesh_spool.h"
 #include "src/error.h"
 #include "src/geometry/simplex_name.h"
 #include "src/runtime/packing.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/meshes/mesh_file.h"
+#include "stream/library/meshes/mesh_passage.h"
 #include "stream/library/run.h"
 #include "stream/pipeline.h"
 #include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/mesh_output.h"
 #include "stream/ranks/rank_pipeline.h"
+#include "stream/ranks/resumable_share.h"
 #include "stream/ranks/share_messages.h"
 #include "stream/ranks/shared_report.h"
 
@@ -45,19 +48,27 @@ class RankExecutor final : public Executor {
     if (source == nullptr) {
       throw InvalidArgument("ranks share points of files, and these are of a program");
     }
-    if (const MeshTarget* const target = run.sink.as_mesh_file()) {
-      return write_mesh(run, *source, *target);
+    if (run.sink.as_mesh_file() == nullptr && !run.sink.has_shares()) {
+      throw InvalidArgument("this sink takes the mesh of one process: triangulate without ranks");
     }
-    if (run.sink.has_shares()) return combine_shares(run, *source);
-    throw InvalidArgument("this sink takes the mesh of one process: triangulate without ranks");
+    if (!run.identity) return make_output(run, *source, nullptr);
+    ResumableShare share(run, ranks_);
+    return share.complete(make_output(run, *source, &share.checkpoints()));
   }
 
  private:
-  RankMesh triangulate(Run& run, detail::PointSource& source, BlockSink& blocks) const {
-    return run.options.dimension == 2 ? triangulate_over_ranks<2>(source, blocks, *run.scratch,
-                                                                  run.budget, run.stream, ranks_)
-                                      : triangulate_over_ranks<3>(source, blocks, *run.scratch,
-                                                                  run.budget, run.stream, ranks_);
+  Report make_output(Run& run, detail::PointSource& source, RankCheckpoints* checkpoints) const {
+    const MeshTarget* const target = run.sink.as_mesh_file();
+    return target != nullptr ? write_mesh(run, source, *target, checkpoints)
+                             : combine_shares(run, source, checkpoints);
+  }
+
+  RankMesh triangulate(Run& run, detail::PointSource& source, BlockSink& blocks,
+                       RankCheckpoints* checkpoints) const {
+    const auto triangulate_shared =
+        run.options.dimension == 2 ? triangulate_over_ranks<2> : triangulate_over_ranks<3>;
+    return triangulate_shared(source, blocks, *run.scratch, run.budget, run.stream, ranks_,
+                              checkpoints);
   }
 
   /// The first rank tells what others found in the inputs.
@@ -87,9 +98,10 @@ class RankExecutor final : public Executor {
     return report;
   }
 
-  Report write_mesh(Run& run, detail::PointSource& source, const MeshTarget& target) const {
+  Report write_mesh(Run& run, detail::PointSource& source, const MeshTarget& target,
+                    RankCheckpoints* checkpoints) const {
     const auto output = open_mesh_output(disk(), target, run.start().header, *run.scratch, ranks_);
-    RankMesh mesh = triangulate(run, source, output->writer());
+    RankMesh mesh = triangulate(run, source, output->writer(), checkpoints);
     Report report = this->report(run, source, mesh);
     run.watch.begin("write", simplices_of(run.options.dimension));
     report.output_format = target.format->name;
@@ -98,10 +110,15 @@ class RankExecutor final : public Executor {
     return report;
   }
 
-  Report combine_shares(Run& run, detail::PointSource& source) const {
+  Report combine_shares(Run& run, detail::PointSource& source, RankCheckpoints* checkpoints) const {
     EngineSink& sink = run.sink;
-    BlockSink& blocks = sink.start(run.start());
-    const RankMesh mesh = triangulate(run, source, blocks);
+    MeshStart start = run.start();
+    if (checkpoints != nullptr) start.scratch = run.scratch.get();
+    BlockSink& blocks = sink.start(start);
+    const bool by_way_of_mesh = checkpoints != nullptr && !sink.goes_on();
+    const RankMesh mesh = by_way_of_mesh
+                              ? triangulate_by_way_of_mesh(run, source, blocks, *checkpoints)
+                              : triangulate(run, source, blocks, checkpoints);
     sink.number_share(mesh.own_section ? mesh.sections[*mesh.own_section].first_vertex : 0);
     for (const MergedSection& merged : mesh.merged) {
       sink.take_merged({.first_vertex = mesh.sections[merged.section].first_vertex,
@@ -119,6 +136,22 @@ class RankExecutor final : public Executor {
       sender.end();
     }
     return report;
+  }
+
+  /// For a sink that cannot go on in the midst of the blocks: it gets them when all are there.
+  RankMesh triangulate_by_way_of_mesh(Run& run, detail::PointSource& source, BlockSink& blocks,
+                                      RankCheckpoints& checkpoints) const {
+    const MeshStreamHeader header = run.start().header;
+    MeshSpool spool(header, run.points.name, *run.scratch);
+    RankMesh mesh = triangulate(run, source, spool, &checkpoints);
+    finish_own_blocks(spool, mesh);
+    const char* const simplices = simplices_of(run.options.dimension);
+    run.watch.begin(simplices, simplices);
+    run_collective_step(ranks_, [&] {
+      run.watch.end(pass_mesh(*spool.open(), header.attributes, blocks, run.watch,
+                              run.sink.feeding_threads(run.context.threads())));
+    });
+    return mesh;
   }
 
   const distributed::Ranks& ranks_;

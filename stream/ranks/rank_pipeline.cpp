@@ -45,26 +45,34 @@ template <int D>
 class RankRun {
  public:
   RankRun(PointSource& source, BlockSink& sink, ScratchFolder& scratch, MemoryBudget& budget,
-          const StreamOptions& options, const Ranks& ranks)
+          const StreamOptions& options, const Ranks& ranks, RankCheckpoints* checkpoints)
       : source_(source),
+        sink_(sink),
         scratch_(scratch),
         budget_(budget),
         options_(options),
         ranks_(ranks),
+        checkpoints_(checkpoints),
         engine_({source.lattice(), expected_share(), std::nullopt, is_indexed(options)}, sink,
-                scratch, budget, options) {}
+                scratch, budget, options) {
+    if (checkpoints_ == nullptr) return;
+    engine_.rest_for({.due = [this] { return rests(); }, .save = [this] { save(); }});
+  }
 
   RankMesh run() {
     with_threads(engine_.threads(), [&] {
-      const RankDivision division = read();
-      divide_tiles();
+      if (checkpoints_ != nullptr) restore();
+      if (engine_.phase() == EnginePhase::kSpill) read();
+      if (engine_.phase() == EnginePhase::kDivide) divide_tiles();
       options_.begin_phase("triangulate");
       const std::optional<TileNode<D>> own = engine_.take_nodes();
-      const RankTree<D> tree(division, own, ranks_);
+      const RankTree<D> tree(division_, own, ranks_);
       if (tree.nodes().empty()) refuse_empty();
       const TileNode<D>& all = *tree.nodes().back().tiles;
       refuse_flat(all.points);
       run_collective_step(ranks_, [&] { options_.extent_known(plane_of(all.box), all.points); });
+      if (restored_) restore_sink();
+      engine_.begin_phase(EnginePhase::kTriangulate);
       if constexpr (D == 2) {
         budget_.set_enough(enough_memory<D>(all.points, options_.record_size) +
                            all.points * (kMergedBytes + options_.record_size));
@@ -91,46 +99,120 @@ class RankRun {
                     : std::nullopt;
   }
 
-  RankDivision read() {
+  void read() {
     options_.begin_phase("read");
-    // How much of the reading it is that comes before the exchange is not known.
-    PieceTable pieces(source_, ranks_, scratch_, engine_.times(),
-                      [&] { options_.progress(source_.points_read(), std::nullopt); });
-    auto [division, sample] = divide_among_ranks<D>(pieces, ranks_);
-    const auto cell = division.cell_of(ranks_.rank());
-    if (cell && source_.extent()) {
-      engine_.expect(common_part(*cell, *source_.extent()), std::move(sample));
-    }
+    find_pieces();
+    const MemoryLease lease(budget_, bytes_under_way(), "points on their way between ranks");
     const distributed::Traffic before = distributed::traffic();
-    const ExchangeRound most = round();
-    const std::uint64_t all_ranks = most.pieces_of_rank * static_cast<std::uint64_t>(ranks_.size());
-    const MemoryLease lease(
-        budget_,
-        most.pieces_of_rank * piece_bytes() + std::min(most.pieces, all_ranks) * arriving_bytes(),
-        "points on their way between ranks");
-    PointExchange exchange(pieces, division, ranks_, most, is_indexed(options_), engine_.times());
-    const auto report = [&] { options_.progress(source_.points_read(), exchange.fraction()); };
-    engine_.spill(
-        {.fetch = [&](SourcePiece& batch) { return exchange.fetch(batch, report); },
-         .decode = [&](SourcePiece& batch, PointBlock& block) { exchange.decode(batch, block); }});
+    exchange_.emplace(*pieces_, division_, ranks_, most_, is_indexed(options_), engine_.times());
+    if (checkpoints_ != nullptr) exchange_->rest_when([this] { return checkpoints_->due(); });
+    if (restored_) {
+      (*restored_)(*exchange_);
+      restore_sink();
+    }
+    const auto report = [&] { options_.progress(source_.points_read(), exchange_->fraction()); };
+    engine_.spill({.fetch = [&](SourcePiece& batch) { return exchange_->fetch(batch, report); },
+                   .decode = [&](SourcePiece& batch,
+                                 PointBlock& block) { exchange_->decode(batch, block); }});
     const distributed::Traffic after = distributed::traffic();
     result_.exchanged_bytes = after.bytes - before.bytes;
     result_.exchanged_messages = after.messages - before.messages;
-    result_.exchanged_points = exchange.points_sent();
-    if (options_.input_index && !pieces.numbered()) {
-      engine_.replace_indices([before = exchange.records_before()](std::span<std::uint64_t> index) {
-        count_through(index, before);
-      });
+    result_.exchanged_points = exchange_->points_sent();
+    if (options_.input_index && !pieces_->numbered()) {
+      records_before_ = exchange_->records_before();
+      count_indices_through();
     }
+    exchange_.reset();
+    pieces_.reset();
     options_.end_phase(of_all_ranks(source_.points_read()));
-    return std::move(division);
+    engine_.begin_phase(EnginePhase::kDivide);
+  }
+
+  /// What there is to read, and which rank gets what.
+  void find_pieces() {
+    if (restored_) {
+      pieces_.emplace(source_, ranks_, engine_.times(), *restored_);
+      return;
+    }
+    // How much of the reading it is that comes before the exchange is not known.
+    pieces_.emplace(source_, ranks_, scratch_, engine_.times(),
+                    [&] { options_.progress(source_.points_read(), std::nullopt); });
+    auto [division, sample] = divide_among_ranks<D>(*pieces_, ranks_);
+    division_ = std::move(division);
+    const auto cell = division_.cell_of(ranks_.rank());
+    if (cell && source_.extent()) {
+      engine_.expect(common_part(*cell, *source_.extent()), std::move(sample));
+    }
+    most_ = round();
+  }
+
+  [[nodiscard]] std::uint64_t bytes_under_way() const {
+    const std::uint64_t all_ranks =
+        most_.pieces_of_rank * static_cast<std::uint64_t>(ranks_.size());
+    return most_.pieces_of_rank * piece_bytes() +
+           std::min(most_.pieces, all_ranks) * arriving_bytes();
+  }
+
+  /// Indices that name pieces count through all inputs when they are needed.
+  void count_indices_through() {
+    if (records_before_.empty()) return;
+    engine_.replace_indices(
+        [this](std::span<std::uint64_t> index) { count_through(index, records_before_); });
+  }
+
+  /// Ranks come to rest together while points go from one to another, and each by itself while its
+  /// tiles are triangulated.
+  [[nodiscard]] bool rests() const {
+    if (exchange_) return exchange_->rests();
+    return engine_.phase() == EnginePhase::kTriangulate && checkpoints_->due();
+  }
+
+  void save() {
+    const auto write = [this](StateWriter& state) {
+      this->state(state);
+      source_.save_counts(state);
+      if (exchange_) state(*pieces_, *exchange_);
+      sink_.save(state);
+    };
+    if (engine_.phase() == EnginePhase::kTriangulate) {
+      checkpoints_->save_alone(write);
+    } else {
+      checkpoints_->save_together(write);
+    }
+    if (exchange_) exchange_->rested();
+  }
+
+  /// Of what is there in each phase.
+  template <typename State>
+  void state(State& state) {
+    state.section("rank");
+    state(division_, most_, records_before_, result_.exchanged_bytes, result_.exchanged_messages,
+          result_.exchanged_points, engine_);
+  }
+
+  /// All but what is made later: pieces, the exchange, and the sink's state, which comes last.
+  void restore() {
+    restored_ = checkpoints_->open();
+    if (!restored_) return;
+    state(*restored_);
+    source_.restore_counts(*restored_);
+    count_indices_through();
+  }
+
+  void restore_sink() {
+    sink_.restore(*restored_);
+    checkpoints_->restored(*restored_);
+    restored_.reset();
   }
 
   /// A phase of all ranks if any has tiles that are too large.
   void divide_tiles() {
-    if (of_all_ranks(engine_.points_to_divide()) == 0) return;
-    options_.begin_phase("divide");
-    options_.end_phase(of_all_ranks(engine_.divide_large()));
+    if (of_all_ranks(engine_.points_to_divide()) > 0) {
+      options_.begin_phase("divide");
+      options_.end_phase(of_all_ranks(engine_.divide_large()));
+    }
+    // From here on each rank goes on by itself.
+    if (checkpoints_ != nullptr && !restored_) engine_.save();
   }
 
   /// The sum of what each rank counts. Collective.
@@ -289,10 +371,18 @@ class RankRun {
   }
 
   PointSource& source_;
+  BlockSink& sink_;
   ScratchFolder& scratch_;
   MemoryBudget& budget_;
   const StreamOptions& options_;
   const Ranks& ranks_;
+  RankCheckpoints* const checkpoints_;     ///< or null
+  std::unique_ptr<StateReader> restored_;  ///< until all of it is read
+  RankDivision division_{CutTree(D), {}};
+  ExchangeRound most_;
+  std::optional<PieceTable> pieces_;  ///< these two while points are read
+  std::optional<PointExchange> exchange_;
+  std::vector<std::uint64_t> records_before_;  ///< each piece, if indices name pieces
   TileEngine<D> engine_;
   std::vector<SectionDraft> drafts_;  ///< before numbers are known
   RankMesh result_;
@@ -303,14 +393,14 @@ class RankRun {
 template <int D>
 RankMesh triangulate_over_ranks(PointSource& source, BlockSink& sink, ScratchFolder& scratch,
                                 MemoryBudget& budget, const StreamOptions& options,
-                                const Ranks& ranks) {
-  return RankRun<D>(source, sink, scratch, budget, options, ranks).run();
+                                const Ranks& ranks, RankCheckpoints* checkpoints) {
+  return RankRun<D>(source, sink, scratch, budget, options, ranks, checkpoints).run();
 }
 
 template RankMesh triangulate_over_ranks<2>(PointSource&, BlockSink&, ScratchFolder&, MemoryBudget&,
-                                            const StreamOptions&, const Ranks&);
+                                            const StreamOptions&, const Ranks&, RankCheckpoints*);
 template RankMesh triangulate_over_ranks<3>(PointSource&, BlockSink&, ScratchFolder&, MemoryBudget&,
-                                            const StreamOptions&, const Ranks&);
+                                            const StreamOptions&, const Ranks&, RankCheckpoints*);
 
 std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<std::string> paths,
                                                 PointSourceOptions options, const Ranks& ranks) {

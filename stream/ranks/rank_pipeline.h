@@ -13,6 +13,7 @@
 #include "src/runtime/memory_budget.h"
 #include "stream/plan/run_trace.h"
 #include "stream/plan/stream_options.h"
+#include "stream/ranks/rank_checkpoints.h"
 #include "stream/source/point_source.h"
 
 namespace spillway::detail {
@@ -55,14 +56,15 @@ struct RankMesh {
 
 /// The pipeline over ranks: they share the reading of `source`, whose points have an index; each
 /// gets the points of its part of space and triangulates them against the boxes of all tiles
-/// everywhere; what is left at the borders between them they merge together.
-/// `sink` takes what the tiles of this rank make final, and is not finished yet; `scratch` and
-/// `budget` are those of the rank. Collective. Errors that all ranks share are thrown by rank 0,
-/// while the others wait to be ended.
+/// everywhere; what is left at the borders between them they merge together. With `checkpoints` it
+/// goes on from the last one. `sink` takes what the tiles of this rank make final, and is not
+/// finished yet; `scratch` and `budget` are those of the rank. Collective. Errors that all ranks
+/// share are thrown by rank 0, while the others wait to be ended.
 template <int D>
 RankMesh triangulate_over_ranks(PointSource& source, BlockSink& sink, ScratchFolder& scratch,
                                 MemoryBudget& budget, const StreamOptions& options,
-                                const distributed::Ranks& ranks);
+                                const distributed::Ranks& ranks,
+                                RankCheckpoints* checkpoints = nullptr);
 
 /// The inputs, looked at by rank 0 alone, as a source for triangulate_over_ranks(), points with
 /// their index; only rank 0's `paths` count. Collective.

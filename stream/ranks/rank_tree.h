@@ -38,8 +38,8 @@ class RankTree {
     [[nodiscard]] bool is_merge() const { return level > 0; }
     /// The section that a member writes in a step of a merge (MergeStep), or its tiles'.
     [[nodiscard]] std::uint32_t section(int member, MergeStep step = MergeStep::kAnnounce) const {
-      return first_section + static_cast<std::uint32_t>(static_cast<int>(step) * (end - first) +
-                                                        member - first);
+      return first_section +
+             static_cast<std::uint32_t>(static_cast<int>(step) * (end - first) + member - first);
     }
     [[nodiscard]] std::uint32_t sections() const {
       return static_cast<std::uint32_t>((end - first) * (is_merge() ? kMergeSteps : 1));

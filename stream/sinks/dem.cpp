@@ -384,7 +384,6 @@ void Dem::restore(StateReader& state) {
   PixelGrid grid;
   std::uint64_t left_out = 0;
   state(begun, grid, left_out);
-  store_.reset();
   if (!begun) return;
   begin(grid);
   left_out_ = left_out;

@@ -154,6 +154,23 @@ bool PointSource::read_again(bool as_planned) {
   return true;
 }
 
+void PointSource::save_counts(StateWriter& state) {
+  state.section("counts");
+  PointCounts own = thins() ? counts() : counts_;
+  state(own, untold_);
+}
+
+void PointSource::restore_counts(StateReader& state) {
+  state.section("counts");
+  PointCounts own;
+  state(own, untold_);
+  if (thins()) {
+    counts_before_ = own;
+  } else {
+    counts_ = own;
+  }
+}
+
 void PointSource::save(StateWriter& state) {
   state.section("points");
   if (thins()) {

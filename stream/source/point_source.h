@@ -144,6 +144,10 @@ class PointSource : public PointStream {
   /// Inputs that are thinned are read and thinned once more to go on in their midst.
   void save(StateWriter& state) override;
   void restore(StateReader& state) override;
+  /// The same of a source that is read by pieces, by begin_piece(): which of them comes next is
+  /// known to who reads them. Of inputs that are thinned when all have been read.
+  void save_counts(StateWriter& state);
+  void restore_counts(StateReader& state);
 
   [[nodiscard]] PointCounts counts() const override;
   [[nodiscard]] std::uint64_t points_read() const override;

@@ -17,6 +17,16 @@ PieceTable::PieceTable(PointSource& source, const distributed::Ranks& ranks, Scr
   store_own_inputs(scratch, progress);
 }
 
+PieceTable::PieceTable(PointSource& source, const distributed::Ranks& ranks, StageTimes& times,
+                       StateReader& saved)
+    : source_(source),
+      ranks_(ranks),
+      times_(times),
+      numbered_(source.thins() || source.numbers_pieces()) {
+  choose_owners();
+  state(saved);
+}
+
 /// Until all is stored, `end` is the number of pieces of an input alone.
 void PieceTable::choose_owners() {
   if (source_.thins()) {

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "formats/disk/scratch_folder.h"
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 #include "src/distributed/ranks.h"
 #include "src/runtime/stage_times.h"
 #include "stream/source/point_source.h"
@@ -23,6 +25,17 @@ class PieceTable {
   /// while inputs are read from front to back.
   PieceTable(PointSource& source, const distributed::Ranks& ranks, ScratchFolder& scratch,
              StageTimes& times, const std::function<void()>& progress);
+  /// The table that a process before this one has saved. Not collective.
+  PieceTable(PointSource& source, const distributed::Ranks& ranks, StageTimes& times,
+             StateReader& saved);
+
+  template <typename State>
+  void state(State& state) {
+    state.section("pieces");
+    for (Input& input : inputs_) state(input.end);
+    state(stored_);
+    state.file(file_);
+  }
 
   /// Number of pieces.
   [[nodiscard]] std::uint64_t size() const { return inputs_.back().end; }
@@ -66,7 +79,7 @@ class PieceTable {
   bool numbered_;
   std::vector<Input> inputs_;
   std::vector<std::vector<Stored>> stored_;  ///< by input
-  std::unique_ptr<ScratchFile> file_;
+  std::shared_ptr<ScratchFile> file_;
 };
 
 }  // namespace spillway::detail

@@ -59,14 +59,16 @@ void PointExchange::choose_own_pieces() {
 }
 
 bool PointExchange::fetch(SourcePiece& batch, const std::function<void()>& progress) {
+  batch.raw.clear();
   while (arrived_.empty()) {
+    if (rests_) return true;
     if (round_ == rounds_) return false;
     next_round();
+    agree_to_rest();
     progress();
   }
   Arrived next = std::move(arrived_.front());
   arrived_.pop_front();
-  batch.raw.clear();
   batch.raw.decoded = std::move(next.block);
   batch.raw.bytes = std::move(next.bytes);
   return true;
@@ -101,6 +103,14 @@ void PointExchange::next_round() {
     parallel_for(own.size(), 1, [&](std::size_t, std::size_t p, std::size_t) { deal(own[p]); });
   });
   send(own);
+}
+
+/// Collective.
+void PointExchange::agree_to_rest() {
+  if (!rest_due_) return;
+  std::uint64_t due = rest_due_() ? 1 : 0;
+  ranks_.reduce(std::span(&due, 1), distributed::Reduction::kMost);
+  rests_ = due > 0;
 }
 
 std::vector<std::uint64_t> PointExchange::records_before() {

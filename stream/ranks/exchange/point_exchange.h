@@ -29,8 +29,21 @@ class PointExchange {
   PointExchange(PieceTable& pieces, const RankDivision& division, const distributed::Ranks& ranks,
                 const ExchangeRound& most, bool indexed, StageTimes& times);
 
+  /// From now on all ranks come to rest after a round if this is true at one of them.
+  void rest_when(std::function<bool()> due) { rest_due_ = std::move(due); }
+  /// Whether this rank is to come to rest before it fetches more. Then rested() is to be called.
+  [[nodiscard]] bool rests() const { return rests_ && arrived_.empty(); }
+  void rested() { rests_ = false; }
+
+  /// What another process needs to go on, at rest.
+  template <typename State>
+  void state(State& state) {
+    state.section("exchange");
+    state(next_own_, round_, records_, points_sent_);
+  }
+
   /// Takes the next points of this rank; false at the end. Collective, in that all ranks call it
-  /// until it is false. `progress` is called after each round.
+  /// until it is false. `progress` is called after each round. Gives none if rests().
   bool fetch(SourcePiece& batch, const std::function<void()>& progress);
 
   /// Makes points of what fetch() gave; by many threads at a time.
@@ -62,6 +75,7 @@ class PointExchange {
 
   void choose_own_pieces();
   void next_round();
+  void agree_to_rest();
   [[nodiscard]] bool is_all_own(const PointBlock& block) const;
   void deal(OwnPiece& piece) const;
   void send(std::vector<OwnPiece>& own);
@@ -81,6 +95,8 @@ class PointExchange {
   std::vector<std::uint64_t> records_;  ///< by piece; only of this rank's
   std::uint64_t points_sent_ = 0;
   std::deque<Arrived> arrived_;
+  std::function<bool()> rest_due_;
+  bool rests_ = false;
 };
 
 /// Puts indices that count through all inputs in place of those that name pieces.

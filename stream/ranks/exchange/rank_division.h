@@ -19,6 +19,11 @@ struct RankDivision {
 
   /// Where the points of a rank lie: from `lo` on, below `hi`. Nothing if it gets none.
   [[nodiscard]] std::optional<Box<3>> cell_of(int rank) const;
+
+  template <typename State>
+  void state(State& state) {
+    state(cuts, rank_of_tile);
+  }
 };
 
 /// What a rank knows before points are exchanged: the division, the same at all ranks, and a sample

@@ -14,19 +14,22 @@ import os
 import pathlib
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import time
 
 TERRAIN = ["generate", "terrain", "-o", "terrain.las", "-n"]
+TABLE = ["generate", "terrain", "-o", "terrain.csv", "-n"]
 SURVEY = ["generate", "terrain", "--grid", "5x5", "-o", "survey#.las", "-n"]
 SPACE = ["generate", "uniform", "--dim", "3", "-o", "space.npy", "-n"]
 SURFACE = ["generate", "ellipsoid", "--dim", "3", "-o", "surface.npy", "-n"]
+MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
 PLANE = ["--tile", "5000", "--memory", "64M"]
 IN_SPACE = ["--dim", "3", "--tile", "5000", "--memory", "96M"]
 
-# Name: input, share of the points, arguments, output.
+# Name: input, share of the points, arguments, output; and the number of ranks, if there are any.
 FAMILIES = {
     "spilled": (TERRAIN, 1, ["triangulate", "terrain.las", *PLANE], "x.spm"),
     "planned": (SURVEY, 1, ["triangulate", "survey*.las", *PLANE], "x.spm"),
@@ -41,6 +44,12 @@ FAMILIES = {
     "dem_planned": (SURVEY, 1, ["dem", "survey*.las", "--resolution", "0.5", "--product",
                                 "height,slope,density", *PLANE], "x.tif"),
     "contour": (TERRAIN, 0.5, ["contour", "terrain.las", "--interval", "20", *PLANE], "x.shp"),
+    "ranks": (SURVEY, 1, ["triangulate", "survey*.las", "--id", *PLANE], "x.spm", 3),
+    "ranks_text": (TABLE, 0.5, ["triangulate", "terrain.csv", "--id", *PLANE], "x.ply", 2),
+    "ranks_space": (SPACE, 0.3, ["triangulate", "space.npy", *IN_SPACE], "x.vtu", 2),
+    "ranks_dem": (TERRAIN, 1, ["dem", "terrain.las", "--resolution", "2", *PLANE], "x.tif", 2),
+    "ranks_contour": (TERRAIN, 0.5, ["contour", "terrain.las", "--interval", "20", *PLANE],
+                      "x.shp", 2),
 }
 
 
@@ -48,14 +57,39 @@ class Failed(Exception):
     pass
 
 
+def descendants(process):
+    """The processes that this one has begun, and those that they have."""
+    parents = {}
+    for entry in pathlib.Path("/proc").iterdir():
+        try:
+            parents[int(entry.name)] = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+        except (ValueError, OSError):
+            pass
+    found = [process]
+    for parent in found:
+        found += [child for child, of in parents.items() if of == parent]
+    return found[1:]
+
+
+def kill(processes):
+    for process in processes:
+        try:
+            os.kill(process, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+
 class Runs:
     """Runs of one family, in a folder of its own."""
 
     def __init__(self, command, family, points, seed):
-        self.command = command
-        source, share, self.arguments, self.output = FAMILIES[family]
+        source, share, self.arguments, self.output, *ranks = FAMILIES[family]
+        self.ranks = ranks[0] if ranks else 0
+        self.command = [command]
         self.random = random.Random(f"{family} {seed}")
         self.call([*source, str(int(points * share)), "--seed", str(seed), "-q"])
+        if self.ranks:
+            self.command = [*MPIRUN, "-n", str(self.ranks), command]
         started = time.monotonic()
         self.call(self.run_of("undisturbed"))
         self.seconds = time.monotonic() - started
@@ -63,7 +97,7 @@ class Runs:
         self.check_clean("undisturbed")
 
     def call(self, arguments):
-        done = subprocess.run([self.command, *arguments], capture_output=True, text=True)
+        done = subprocess.run([*self.command, *arguments], capture_output=True, text=True)
         if done.returncode != 0:
             raise Failed(f"{' '.join(arguments)}: {done.stderr}")
 
@@ -73,15 +107,22 @@ class Runs:
                 "--checkpoint-every", "0.02"]
 
     def run_for(self, folder, seconds):
-        """The exit code and messages; None for the code if it was killed."""
-        process = subprocess.Popen([self.command, *self.run_of(folder)], stderr=subprocess.PIPE,
+        """The exit code and messages; None for the code if it was killed: all of it, or a rank."""
+        process = subprocess.Popen([*self.command, *self.run_of(folder)], stderr=subprocess.PIPE,
                                    stdout=subprocess.DEVNULL, text=True)
         try:
             _, messages = process.communicate(timeout=seconds)
             return process.returncode, messages
         except subprocess.TimeoutExpired:
-            process.kill()
-            return None, process.communicate()[1]
+            ranks = descendants(process.pid)
+            if ranks and self.random.random() < 0.5:
+                kill([self.random.choice(ranks)])
+                try:
+                    return None, process.communicate(timeout=5)[1]
+                except subprocess.TimeoutExpired:  # some versions of mpirun wait for ever
+                    pass
+            kill([process.pid, *ranks])
+            return None, process.communicate()[1]  # ends when all of them have
 
     def check_clean(self, folder):
         left = [name for name in os.listdir(folder) if name == "run" or name.endswith(".part")]
@@ -172,7 +213,11 @@ def main():
     parser.add_argument("--family", choices=FAMILIES, action="append")
     options = parser.parse_args()
     command = os.path.abspath(options.command)
+    os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     for family in options.family or FAMILIES:
+        if len(FAMILIES[family]) > 4 and not shutil.which("mpirun"):
+            print(f"{family}: skipped, as there is no mpirun")
+            continue
         with tempfile.TemporaryDirectory(prefix="spillway-kills-") as folder:
             os.chdir(folder)
             try:

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "src/distributed/ranks.h"
+#include "stream/checkpoint/checkpoints.h"
+
+namespace spillway::detail {
+
+/// The checkpoints of a run over ranks, each in a folder of its own. While ranks depend on each
+/// other they make one together: it has a number, and is of use only if all ranks have it. What a
+/// rank makes alone after the last one of these goes with it.
+class RankCheckpoints {
+ public:
+  /// Agrees on the last checkpoint that all ranks have. If there is none, what some have is
+  /// forgotten. Collective. `folder` must outlive it.
+  RankCheckpoints(CheckpointFolder& folder, double seconds, const distributed::Ranks& ranks);
+
+  /// Whether there is one to go on from; and whether only some ranks had one.
+  [[nodiscard]] bool goes_on() const { return number_ > 0; }
+  [[nodiscard]] bool lacked_some() const { return lacked_some_; }
+
+  /// The checkpoint to go on from; null if there is none. When it is read, restored() is to be
+  /// called.
+  [[nodiscard]] std::unique_ptr<StateReader> open();
+  void restored(StateReader& state) { folder_.restored(state); }
+
+  [[nodiscard]] bool due() const { return pace_.due(); }
+  /// All ranks replace their last checkpoints, or none does. Collective.
+  void save_together(const std::function<void(StateWriter&)>& write);
+  /// This rank does.
+  void save_alone(const std::function<void(StateWriter&)>& write);
+
+ private:
+  /// Number of a checkpoint; 0 for none.
+  static std::uint64_t number_in(const std::unique_ptr<StateReader>& state);
+  void agree();
+
+  CheckpointFolder& folder_;
+  const distributed::Ranks& ranks_;
+  Checkpoints pace_;
+  std::uint64_t number_ = 0;  ///< of the last one that all have made together
+  bool lacked_some_ = false;
+};
+
+}  // namespace spillway::detail
