@@ -48,6 +48,12 @@ CheckpointFolder::CheckpointFolder(const std::string& path, const RunIdentity& i
   if (!has_checkpoint() && !has(kPreparedFile)) scratch_->remove_others();
 }
 
+CheckpointFolder::CheckpointFolder(const std::string& path, std::vector<std::string> files)
+    : path_(path), lock_(path, O_RDONLY | O_DIRECTORY), files_(std::move(files)) {
+  lock();
+  if (!read_run()) refuse_other_files();
+}
+
 std::string CheckpointFolder::path_of(const std::string& file_name) const {
   return (fs::path(path_) / file_name).string();
 }
@@ -70,19 +76,17 @@ void CheckpointFolder::lock() {
   }
 }
 
-/// Begins a run in a folder that is empty, or goes on with that of the same identity.
-void CheckpointFolder::take(const RunIdentity& identity) {
-  if (const auto state = open(kRunFile)) {
-    RunIdentity earlier;
-    state->section("run");
-    (*state)(mark_, earlier);
-    state->finish();
-    const std::string difference = identity.difference_from(earlier);
-    if (!difference.empty()) {
-      refuse(difference + "; give the same again, or another folder, or remove this one");
-    }
-    return;
-  }
+std::optional<RunIdentity> CheckpointFolder::read_run() {
+  const auto state = open(kRunFile);
+  if (!state) return {};
+  RunIdentity identity;
+  state->section("run");
+  (*state)(mark_, identity);
+  state->finish();
+  return identity;
+}
+
+void CheckpointFolder::refuse_other_files() const {
   for (const fs::directory_entry& entry : fs::directory_iterator(path_)) {
     // What is left of a process that was killed before it had begun.
     const std::string name = entry.path().filename().string();
@@ -92,6 +96,18 @@ void CheckpointFolder::take(const RunIdentity& identity) {
                             path_, name),
                 ErrorCode::kInvalidArgument, {.file = path_});
   }
+}
+
+/// Begins a run in a folder that is empty, or goes on with that of the same identity.
+void CheckpointFolder::take(const RunIdentity& identity) {
+  if (const std::optional<RunIdentity> earlier = read_run()) {
+    const std::string difference = identity.difference_from(*earlier);
+    if (!difference.empty()) {
+      refuse(difference + "; give the same again, or another folder, or remove this one");
+    }
+    return;
+  }
+  refuse_other_files();
   mark_ = random_mark();
   save(kRunFile, [&](StateWriter& state) {
     state.section("run");
@@ -118,6 +134,19 @@ std::unique_ptr<StateReader> CheckpointFolder::open(const std::string& file_name
 void CheckpointFolder::remove_unfinished(const std::string& final_path) const {
   std::error_code ignored;
   fs::remove(part_path(output_target(final_path).path, mark_), ignored);
+}
+
+void CheckpointFolder::remove_all_unfinished_beside(const std::string& final_path) const {
+  if (mark_.empty()) return;
+  const fs::path folder = fs::absolute(output_target(final_path).path).parent_path();
+  const std::string ending = part_path("", mark_);
+  std::vector<fs::path> left;
+  std::error_code ignored;
+  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+       entry.increment(ignored)) {
+    if (entry->path().filename().string().ends_with(ending)) left.push_back(entry->path());
+  }
+  for (const fs::path& path : left) fs::remove_all(path, ignored);
 }
 
 std::unique_ptr<StateReader> CheckpointFolder::open_state(const std::string& file_name,

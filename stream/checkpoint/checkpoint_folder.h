@@ -25,6 +25,8 @@ class CheckpointFolder {
   /// it. Scratch files take `cap` bytes at most at a time.
   CheckpointFolder(const std::string& path, const RunIdentity& identity,
                    std::vector<std::string> files, std::optional<std::uint64_t> cap);
+  /// Takes what a run has left, whatever it is of, to remove it. Throws Error likewise.
+  CheckpointFolder(const std::string& path, std::vector<std::string> files);
   CheckpointFolder(const CheckpointFolder&) = delete;
   CheckpointFolder& operator=(const CheckpointFolder&) = delete;
 
@@ -36,6 +38,8 @@ class CheckpointFolder {
   /// Whether an output of that final path is still unfinished.
   [[nodiscard]] bool has_unfinished(const std::string& final_path) const;
   void remove_unfinished(const std::string& final_path) const;
+  /// Removes all that the run has left unfinished in the folder of an output.
+  void remove_all_unfinished_beside(const std::string& final_path) const;
   [[nodiscard]] KeptScratchFolder& scratch() { return *scratch_; }
   [[nodiscard]] std::string path_of(const std::string& file_name) const;
 
@@ -69,6 +73,9 @@ class CheckpointFolder {
 
  private:
   void lock();
+  /// The identity of the run in the folder, with its mark; nothing if there is none in it.
+  [[nodiscard]] std::optional<RunIdentity> read_run();
+  void refuse_other_files() const;
   void take(const RunIdentity& identity);
   void save_state(const std::string& file_name, const std::function<void(StateWriter&)>& write);
   [[nodiscard]] std::unique_ptr<StateReader> open_state(const std::string& file_name,

@@ -8,6 +8,7 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "formats/disk/output_check.h"
 #include "formats/disk/unfinished_files.h"
@@ -28,6 +29,12 @@ namespace {
 constexpr const char* kFiguresFile = "figures";
 constexpr const char* kCompleteFile = "complete";
 constexpr const char* kMeshFile = "mesh.spm";
+
+/// What a run makes in its folder beside its checkpoint.
+const std::vector<std::string>& own_files() {
+  static const std::vector<std::string> names = {kFiguresFile, kCompleteFile, kMeshFile};
+  return names;
+}
 
 /// The state of checkpoints is laid out in this way.
 constexpr int kStateVersion = 1;
@@ -96,13 +103,17 @@ void transfer_figures(State& state, Report& report) {
         report.on_lattice);
 }
 
+void remove_run(CheckpointFolder& folder) {
+  folder.remove_unfinished(folder.path_of(kMeshFile));
+  folder.remove();
+}
+
 /// A run and its folder.
 class ResumableRun {
  public:
   explicit ResumableRun(Run& run)
       : run_(run),
-        folder_(run.options.resume_folder, *run.identity, {kFiguresFile, kCompleteFile, kMeshFile},
-                run.context.scratch_limit()),
+        folder_(run.options.resume_folder, *run.identity, own_files(), run.context.scratch_limit()),
         checkpoints_(folder_, run.options.checkpoint_seconds) {
     run.stream.checkpoints = &checkpoints_;
   }
@@ -117,7 +128,8 @@ class ResumableRun {
       remove();
       return report;
     } catch (const Error& error) {
-      if (!folder_.has_checkpoint() && !has_mesh()) {
+      const bool has_nothing = !folder_.has_checkpoint() && !has_mesh();
+      if (has_nothing || error.facts().remedy == Remedy::kMemory) {
         give_up();
       } else if (error.code() == ErrorCode::kInputOutput) {
         say(fmt::format("when that is mended, the same run goes on from what is in {}",
@@ -148,7 +160,8 @@ class ResumableRun {
         fmt::format("{} checkpoints took {:.2f} s", checkpoints_.count(), checkpoints_.seconds()));
   }
 
-  /// Nothing has been done that another process could go on with.
+  /// Nothing has been done that another process could go on with, or only with more memory, which
+  /// is another run.
   void give_up() {
     if (const MeshTarget* const target = run_.sink.as_mesh_file()) {
       folder_.remove_unfinished(target->path);
@@ -156,10 +169,7 @@ class ResumableRun {
     remove();
   }
 
-  void remove() {
-    folder_.remove_unfinished(folder_.path_of(kMeshFile));
-    folder_.remove();
-  }
+  void remove() { remove_run(folder_); }
 
   /// Of a run whose output was complete when another process ended.
   Report report_of_complete(const char* file) {
@@ -271,5 +281,11 @@ class ResumableRun {
 }  // namespace
 
 Report triangulate_resumably(Run& run) { return ResumableRun(run).run(); }
+
+void discard_run(const std::string& path, const std::string& output) {
+  CheckpointFolder folder(path, own_files());
+  folder.remove_all_unfinished_beside(output);
+  remove_run(folder);
+}
 
 }  // namespace spillway::detail

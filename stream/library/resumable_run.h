@@ -19,4 +19,9 @@ std::string once_only_notice(const Run& run);
 /// of the blocks gets them from a mesh in that folder, when this is complete.
 Report triangulate_resumably(Run& run);
 
+/// Removes what a run has left in its folder, and what it has begun of its output, `output`, for
+/// good. Throws Error if the folder is of something else, is damaged, or if another process uses
+/// it.
+void discard_run(const std::string& folder, const std::string& output);
+
 }  // namespace spillway::detail

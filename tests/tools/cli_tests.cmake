@@ -54,7 +54,8 @@ spillway_command_test(cli_progress_tests cli
   tools/report/cli_progress_test.cpp tools/report/progress_lines.cpp)
 
 spillway_command_test(cli_batch_tests cli
-  tools/commands/cli_batch_test.cpp tools/commands/cli_contour_test.cpp)
+  tools/commands/cli_batch_resume_test.cpp tools/commands/cli_batch_test.cpp
+  tools/commands/cli_contour_test.cpp)
 
 if(SPILLWAY_GDAL)
   spillway_command_test(cli_dem_tests cli

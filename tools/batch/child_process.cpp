@@ -51,6 +51,7 @@ bool is_interrupted(int exit_code) {
 /// What a process has open of an output under a temporary name: a file, or a folder of files.
 std::vector<fs::path> unfinished_files_of(pid_t id, const std::string& output) {
   std::vector<fs::path> files;
+  if (output.empty()) return files;
   std::error_code ignored;  // closed in between, or not to be seen
   const fs::path folder = fs::canonical(fs::absolute(output, ignored).parent_path(), ignored);
   const fs::path final_path = folder / fs::path(output).filename();

@@ -30,7 +30,8 @@ class ChildProcesses {
   ChildProcesses& operator=(const ChildProcesses&) = delete;
 
   /// Starts this program with these arguments, to make the file `output`, without standard input
-  /// and output; its messages go to the descriptor `log`. Throws Error with the system's reason.
+  /// and output; its messages go to the descriptor `log`. With "" for `output`, stop() leaves what
+  /// is unfinished of it. Throws Error with the system's reason.
   pid_t start(const std::vector<std::string>& arguments, const std::string& output, int log);
 
   /// Waits until one of the children has ended. There must be one.

@@ -6,15 +6,23 @@
 #include <algorithm>
 #include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
+#include <set>
 #include <string>
+#include <system_error>
+#include <vector>
 
+#include "formats/disk/unfinished_files.h"
 #include "tools/report/json_text.h"
 #include "tools/report/text_output.h"
 
 namespace spillway::detail {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// A file's path, size and time of change; the latter two are null where there is none.
 Json fingerprint(const std::string& path) {
@@ -26,12 +34,16 @@ Json fingerprint(const std::string& path) {
   return json;
 }
 
+/// Whether a job's outputs are compared, too: not before it is complete.
+enum class Outputs { kComplete, kUnfinished };
+
 /// All that decides whether a job has to be done again.
-Json description(const JobRun& run, const Json& inputs) {
+Json description(const JobRun& run, const Json& inputs, Outputs outputs) {
   Json json;
   json["version"] = SPILLWAY_VERSION;
   json["steps"] = Json::array();
-  json["outputs"] = Json::array();
+  const bool complete = outputs == Outputs::kComplete;
+  if (complete) json["outputs"] = Json::array();
   for (const JobStep& step : run.steps) {
     // A temporary file's name is another one each time.
     std::vector<std::string> arguments = step.arguments;
@@ -40,10 +52,39 @@ Json description(const JobRun& run, const Json& inputs) {
         std::replace(arguments.begin(), arguments.end(), other.output, std::string("-"));
     }
     json["steps"].push_back(arguments);
-    if (!step.temporary) json["outputs"].push_back(fingerprint(step.output));
+    if (complete && !step.temporary) json["outputs"].push_back(fingerprint(step.output));
   }
   json["inputs"] = inputs;
   return json;
+}
+
+/// Null if there is no record, or none that makes sense.
+Json read_record(const JobRun& run) {
+  std::ifstream file(run.record);
+  if (!file) return nullptr;
+  try {
+    return parse_json(std::string(std::istreambuf_iterator(file), {}));
+  } catch (const JsonError&) {
+    return nullptr;
+  }
+}
+
+/// Whether a record is of the same job. One with inputs that are not there is not: the job itself
+/// says so.
+bool is_of_job(const Json& record, const JobRun& run, Outputs outputs) {
+  const Json* const job = record.find("job");
+  if (job == nullptr) return false;
+  try {
+    return *job == description(run, input_fingerprints(run.job), outputs);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+/// Whether a job that is not done can go on with what it has left.
+bool can_go_on(const JobRun& run) {
+  return !run.resume_folder.empty() && !run.inputs.is_null() && run.memory > 0 &&
+         (run.status == "running" || fs::exists(run.resume_folder));
 }
 
 }  // namespace
@@ -59,23 +100,48 @@ Json input_fingerprints(const Job& job) {
 void save_record(const JobRun& run) {
   Json json = {{"name", run.job.name}, {"status", run.status}, {"seconds", run.seconds}};
   json["error"] = run.error.empty() ? Json(nullptr) : Json(run.error);
-  // A failed job may have failed for want of its inputs.
-  json["job"] = run.status == "done" ? description(run, run.inputs) : Json(nullptr);
+  json["job"] = nullptr;  // a failed job may have failed for want of its inputs
+  if (run.status == "done") {
+    json["job"] = description(run, run.inputs, Outputs::kComplete);
+  } else if (can_go_on(run)) {
+    json["job"] = description(run, run.inputs, Outputs::kUnfinished);
+    json["memory"] = run.memory;
+  }
   write_text(run.record, json_text(json, 2) + "\n");
 }
 
-bool is_complete_and_unchanged(const JobRun& run) {
-  std::ifstream file(run.record);
-  if (!file) return false;
-  try {
-    const Json record = parse_json(std::string(std::istreambuf_iterator(file), {}));
-    const Json* const status = record.find("status");
-    const Json* const job = record.find("job");
-    return status != nullptr && *status == Json("done") && job != nullptr &&
-           *job == description(run, input_fingerprints(run.job));
-  } catch (const std::exception&) {
-    return false;  // no record, or inputs that are not there: the job itself says so
+void remove_unfinished_records(const std::string& folder, const std::vector<JobRun>& runs) {
+  const std::size_t added = part_path("", random_mark()).size();
+  std::set<std::string> names;
+  for (const JobRun& run : runs) names.insert(fs::path(run.record).filename());
+  std::vector<fs::path> left;
+  std::error_code ignored;
+  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+       entry.increment(ignored)) {
+    const std::string name = entry->path().filename();
+    if (name.size() > added && name.ends_with(".part") &&
+        names.contains(name.substr(0, name.size() - added))) {
+      left.push_back(entry->path());
+    }
   }
+  for (const fs::path& path : left) fs::remove(path, ignored);
+}
+
+bool is_complete_and_unchanged(const JobRun& run) {
+  const Json record = read_record(run);
+  const Json* const status = record.find("status");
+  return status != nullptr && *status == Json("done") && is_of_job(record, run, Outputs::kComplete);
+}
+
+std::optional<std::uint64_t> memory_to_go_on_with(const JobRun& run) {
+  if (run.resume_folder.empty() || !fs::exists(run.resume_folder)) return {};
+  const Json record = read_record(run);
+  if (!is_of_job(record, run, Outputs::kUnfinished)) return {};
+  const Json* const memory = record.find("memory");
+  if (memory == nullptr || !memory->is_number()) return {};
+  const double bytes = memory->number();
+  if (!(bytes >= 1 && bytes < 0x1p53)) return {};
+  return static_cast<std::uint64_t>(bytes);
 }
 
 }  // namespace spillway::detail

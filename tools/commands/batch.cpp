@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "formats/disk/scratch_folder.h"
@@ -20,8 +21,10 @@
 #include "src/distributed/ranks.h"
 #include "src/parallel/parallel.h"
 #include "src/runtime/memory_budget.h"
+#include "stream/library/resumable_run.h"
 #include "tools/batch/child_process.h"
 #include "tools/batch/job_buffers.h"
+#include "tools/batch/job_folder.h"
 #include "tools/batch/job_log.h"
 #include "tools/batch/job_record.h"
 #include "tools/batch/job_steps.h"
@@ -57,6 +60,7 @@ struct BatchOptions {
   unsigned at_a_time = 0;
   unsigned threads = 0;
   bool resume = false;
+  std::string checkpoint_seconds = "60";
   std::optional<double> buffer;
   MemoryOptions memory;
   ReportOptions report;
@@ -160,7 +164,7 @@ class Batch {
     prepare();
     progress_.begin("batch", "jobs");
     while (!waiting_.empty() || !running_.empty()) {
-      while (!waiting_.empty() && running_.size() < at_a_time()) start_next();
+      while (next_can_start()) start_next();
       if (!running_.empty()) finish_step(children_.wait_for_any());
       progress_.update(ended_, static_cast<double>(ended_) / static_cast<double>(runs_.size()));
     }
@@ -203,14 +207,20 @@ class Batch {
       runs_.push_back(std::move(run));
     }
     make_output_folder(options_.folder);
+    if (options_.resume) remove_unfinished_records(options_.folder, runs_);
     for (JobRun& run : runs_) {
       if (options_.resume && is_complete_and_unchanged(run)) {
         run.status = "unchanged";
         ++ended_;
       } else {
+        run.resume_folder = resume_folder(run.job, run.steps.front());
+        if (options_.resume) run.memory = memory_to_go_on_with(run).value_or(0);
         waiting_.push_back(&run);
       }
     }
+    // What had begun gets its memory again before others take theirs.
+    std::stable_partition(waiting_.begin(), waiting_.end(),
+                          [](const JobRun* run) { return run->memory > 0; });
     limit_ = options_.at_a_time == 0 ? static_cast<unsigned>(free_threads_) : options_.at_a_time;
     limit_ =
         std::min<std::uint64_t>(limit_, std::max<std::uint64_t>(1, free_memory_ / kLeastMemory));
@@ -239,26 +249,61 @@ class Batch {
     return std::min<std::uint64_t>(limit_, running_.size() + waiting_.size());
   }
 
+  [[nodiscard]] bool next_can_start() const {
+    if (waiting_.empty() || running_.size() >= at_a_time()) return false;
+    if (running_.empty()) return true;
+    const std::uint64_t had = waiting_.front()->memory;
+    return had > 0 ? had <= free_memory_ : free_memory_ / free_shares() >= kLeastMemory;
+  }
+
+  /// Jobs that could be started now.
+  [[nodiscard]] std::size_t free_shares() const { return at_a_time() - running_.size(); }
+
   /// Gives the next job its share of what is free: as much as leaves the same for each that could
-  /// be started now.
+  /// be started now, or what it had before, if it goes on.
   void start_next() {
-    const std::size_t shares = at_a_time() - running_.size();
+    const std::size_t shares = free_shares();
     Running job;
     job.run = waiting_.front();
     waiting_.pop_front();
     job.threads = std::max(1, free_threads_ / static_cast<int>(shares));
-    job.memory = free_memory_ / shares;
+    const bool goes_on = job.run->memory > 0 && job.run->memory <= free_memory_;
+    job.memory = goes_on ? job.run->memory : free_memory_ / shares;
     free_threads_ -= job.threads;
     free_memory_ -= job.memory;
     job.start = Clock::now();
     job.run->status = "running";
     try {
       job.run->inputs = input_fingerprints(job.run->job);
+      if (std::filesystem::exists(job.run->resume_folder)) take_folder(*job.run, goes_on);
+      job.run->memory = job.memory;
+      if (keeps_checkpoints(*job.run)) save_record(*job.run);
       job.log = std::make_shared<JobLog>(job.run->log);
       start_step(job);
     } catch (const std::exception& error) {
       finish_job(job, error.what());
     }
+  }
+
+  /// Whether a job goes on in the midst when this batch was killed.
+  [[nodiscard]] bool keeps_checkpoints(const JobRun& run) const {
+    return options_.resume && !run.resume_folder.empty();
+  }
+
+  /// Of a job that has left a folder: it goes on with that, or begins again without it.
+  void take_folder(JobRun& run, bool goes_on) {
+    wait_until_unused(run.resume_folder);
+    if (goes_on) {
+      progress_.say(fmt::format("{}: goes on with {}", run.job.name, run.resume_folder));
+      return;
+    }
+    const std::uint64_t had = std::exchange(run.memory, 0);  // no longer to go on with
+    discard_run(run.resume_folder, run.steps.front().output);
+    progress_.say(fmt::format(
+        "{}: begins again, {}", run.job.name,
+        !options_.resume ? "as --resume is not given"
+        : had > 0 ? fmt::format("as it had {} of memory, more than there is", memory_size_text(had))
+                  : "as its options, its inputs or the version are other ones than before"));
   }
 
   void start_step(const Running& job) {
@@ -276,7 +321,12 @@ class Batch {
     }
     add("tmpdir", temporary_);
     add("progress", "none");
-    const std::string& output = job.run->steps[job.step].output;
+    const bool can_go_on = job.step == 0 && keeps_checkpoints(*job.run);
+    if (can_go_on) {
+      add("resume", job.run->resume_folder);
+      add("checkpoint-every", options_.checkpoint_seconds);
+    }
+    const std::string output = can_go_on ? "" : job.run->steps[job.step].output;
     running_[children_.start(arguments, output, job.log->descriptor())] = job;
   }
 
@@ -386,7 +436,9 @@ Subcommand add_batch(CommandLine& root) {
                                      "Also read points of other jobs within M of a job's own"),
                       0, kMostBuffer)
       .value_name("M");
-  app.add_flag("--resume", options->resume, "Leave out jobs that are complete and unchanged");
+  app.add_flag(
+      "--resume", options->resume,
+      "Leave out jobs that are complete and unchanged, and go on with those that had begun");
   take_whole_number(app.add_option("--threads", options->threads,
                                    "Threads of all jobs together; 0: all there are"),
                     0, kMostThreads)
@@ -394,9 +446,18 @@ Subcommand add_batch(CommandLine& root) {
       .group(kResourceGroup)
       .show_default();
   add_memory_options(app, options->memory);
+  take_number_between(app.add_option("--checkpoint-every", options->checkpoint_seconds,
+                                     "Seconds between two states that --resume keeps of a job"),
+                      0, 1e6)
+      .value_name("S")
+      .group(kResourceGroup)
+      .show_default();
   add_report_options(app, options->report);
   add_options_of_subcommands(root, app, *options);
-  return {&app, [options, &root] { return Batch(root, *options).run(); }};
+  return {&app, [options, &root, &app] {
+            if (!options->resume) refuse_given(app, {"--checkpoint-every"}, "without --resume");
+            return Batch(root, *options).run();
+          }};
 }
 
 }  // namespace spillway::detail

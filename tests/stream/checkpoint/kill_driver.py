@@ -6,7 +6,8 @@
 Each family is a kind of run. What it writes must be what the same run writes that nobody kills, and
 nothing else may be left. With --damages, checkpoints and scratch files of killed runs are damaged:
 a bit flipped, the end cut off, or a file missing. Then a run must end with an error that names the
-file, or with the same bytes. Exits with 1 at the first run that does not.
+file, or with the same bytes; the family "batch" has no part in that. Exits with 1 at the first run
+that does not.
 """
 import argparse
 import filecmp
@@ -23,13 +24,16 @@ import time
 TERRAIN = ["generate", "terrain", "-o", "terrain.las", "-n"]
 TABLE = ["generate", "terrain", "-o", "terrain.csv", "-n"]
 SURVEY = ["generate", "terrain", "--grid", "5x5", "-o", "survey#.las", "-n"]
+TILES = ["generate", "terrain", "--grid", "2x2", "-o", "tile#.las", "-n"]
 SPACE = ["generate", "uniform", "--dim", "3", "-o", "space.npy", "-n"]
 SURFACE = ["generate", "ellipsoid", "--dim", "3", "-o", "surface.npy", "-n"]
 MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
+RESUME = ["--checkpoint-every", "0.02", "--resume"]
 PLANE = ["--tile", "5000", "--memory", "64M"]
 IN_SPACE = ["--dim", "3", "--tile", "5000", "--memory", "96M"]
 
-# Name: input, share of the points, arguments, output; and the number of ranks, if there are any.
+# Name: input, share of the points, arguments, output or, of a batch, a pattern of its outputs; and
+# the number of ranks, if there are any.
 FAMILIES = {
     "spilled": (TERRAIN, 1, ["triangulate", "terrain.las", *PLANE], "x.spm"),
     "planned": (SURVEY, 1, ["triangulate", "survey*.las", *PLANE], "x.spm"),
@@ -44,6 +48,8 @@ FAMILIES = {
     "dem_planned": (SURVEY, 1, ["dem", "survey*.las", "--resolution", "0.5", "--product",
                                 "height,slope,density", *PLANE], "x.tif"),
     "contour": (TERRAIN, 0.5, ["contour", "terrain.las", "--interval", "20", *PLANE], "x.shp"),
+    "batch": (TILES, 1, ["batch", "tile*.las", "--to", "spm,ply", "-j", "2", "--tile", "5000",
+                         "--memory", "256M"], "*.[ps]??"),
     "ranks": (SURVEY, 1, ["triangulate", "survey*.las", "--id", *PLANE], "x.spm", 3),
     "ranks_text": (TABLE, 0.5, ["triangulate", "terrain.csv", "--id", *PLANE], "x.ply", 2),
     "ranks_space": (SPACE, 0.3, ["triangulate", "space.npy", *IN_SPACE], "x.vtu", 2),
@@ -93,7 +99,6 @@ class Runs:
         started = time.monotonic()
         self.call(self.run_of("undisturbed"))
         self.seconds = time.monotonic() - started
-        self.reference = pathlib.Path("undisturbed") / self.output
         self.check_clean("undisturbed")
 
     def call(self, arguments):
@@ -103,8 +108,9 @@ class Runs:
 
     def run_of(self, folder):
         os.makedirs(folder, exist_ok=True)
-        return [*self.arguments, "-o", f"{folder}/{self.output}", "--resume", f"{folder}/run",
-                "--checkpoint-every", "0.02"]
+        if self.arguments[0] == "batch":
+            return [*self.arguments, "--output-dir", folder, *RESUME]
+        return [*self.arguments, "-o", f"{folder}/{self.output}", *RESUME, f"{folder}/run"]
 
     def run_for(self, folder, seconds):
         """The exit code and messages; None for the code if it was killed: all of it, or a rank."""
@@ -125,13 +131,16 @@ class Runs:
             return None, process.communicate()[1]  # ends when all of them have
 
     def check_clean(self, folder):
-        left = [name for name in os.listdir(folder) if name == "run" or name.endswith(".part")]
+        left = [name for name in os.listdir(folder)
+                if name == "run" or name.endswith((".part", ".resume"))]
         if left:
             raise Failed(f"a run that is complete has left {', '.join(left)}")
 
     def check_same(self, folder):
-        if not filecmp.cmp(pathlib.Path(folder) / self.output, self.reference, shallow=False):
-            raise Failed("the output is another one than that of the run that was not killed")
+        for reference in pathlib.Path("undisturbed").glob(self.output):
+            if not filecmp.cmp(pathlib.Path(folder) / reference.name, reference, shallow=False):
+                raise Failed(f"{reference.name} is another one than that of the run that was not "
+                             "killed")
         self.check_clean(folder)
 
     def kill_until_done(self):
@@ -214,7 +223,8 @@ def main():
     options = parser.parse_args()
     command = os.path.abspath(options.command)
     os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    for family in options.family or FAMILIES:
+    families = [family for family in FAMILIES if not options.damages or family != "batch"]
+    for family in options.family or families:
         if len(FAMILIES[family]) > 4 and not shutil.which("mpirun"):
             print(f"{family}: skipped, as there is no mpirun")
             continue

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "src/error.h"
+
 namespace spillway {
 namespace {
 
@@ -107,6 +109,18 @@ TEST_F(ResumableRun, GoesOnWithARasterOfTheSamePixelsAlone) {
   EXPECT_EQ(run("dem.tif", options()), "");
   EXPECT_EQ(bytes_of("dem.tif"), bytes_of("usual.tif"));
   EXPECT_FALSE(fs::exists(path("run")));
+}
+
+TEST_F(ResumableRun, LeavesTheMeshForWhatFailsButNotForWantOfMemory) {
+  const auto folder_after = [&](ErrorCode code, Remedy remedy) {
+    const auto sink =
+        mesh_to([&](const MeshBlock&) { throw detail::Error("no", code, {.remedy = remedy}); });
+    const auto source = points();
+    EXPECT_EQ(error_of(*source, *sink, options()), "no");
+    return fs::exists(path("run"));
+  };
+  EXPECT_TRUE(folder_after(ErrorCode::kInputOutput, Remedy::kNone));
+  EXPECT_FALSE(folder_after(ErrorCode::kOutOfBudget, Remedy::kMemory));
 }
 
 TEST_F(ResumableRun, RefusesNegativeSeconds) {
