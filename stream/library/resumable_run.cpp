@@ -121,6 +121,7 @@ class ResumableRun {
   Report run() {
     tell();
     if (folder_.has(kCompleteFile)) return report_of_complete(kCompleteFile);
+    if (has_its_name()) return report_of_complete(kFiguresFile);
     try {
       Report report = run_.sink.goes_on() ? run_to_sink() : run_to_mesh();
       tell_cost();
@@ -187,7 +188,6 @@ class ResumableRun {
   /// Blocks go where they go in the end.
   Report run_to_sink() {
     const MarkedOutputs marked(folder_.mark());
-    if (has_its_name()) return report_of_complete(kFiguresFile);
     MeshStart start = run_.start();
     start.files = &folder_.outputs();
     start.scratch = &folder_.scratch();
@@ -201,7 +201,7 @@ class ResumableRun {
   /// pixels that are kept, are written once more.
   [[nodiscard]] bool has_its_name() const {
     const MeshTarget* const target = run_.sink.as_mesh_file();
-    if (target == nullptr || target->format->open_block_writer == nullptr ||
+    if (target == nullptr || !run_.sink.goes_on() || target->format->open_block_writer == nullptr ||
         !folder_.has(kFiguresFile) || folder_.has_unfinished(target->path)) {
       return false;
     }

@@ -69,6 +69,25 @@ TEST_F(ResumableRun, MakesTheSameMeshAndRemovesItsFolder) {
   EXPECT_FALSE(fs::exists(path("run")));
 }
 
+TEST_F(ResumableRun, EndsWhenItsOutputWasComplete) {
+  const Context ended({.memory = "64M", .threads = 2, .detail = [](std::string_view text) {
+                         if (text.find("checkpoints took") != text.npos) {
+                           throw std::runtime_error("the end");
+                         }
+                       }});
+  const auto killed = open_points({path("points.txt")}, {}, ended);
+  EXPECT_THROW(triangulate(*killed, *create_mesh(path("mesh.spm"), {}, ended), options(), ended),
+               std::runtime_error);
+  const std::string bytes = bytes_of("mesh.spm");
+  EXPECT_FALSE(bytes.empty());
+  const auto source = points();
+  const Report report =
+      triangulate(*source, *create_mesh(path("mesh.spm"), {}, context_), options(), context_);
+  EXPECT_EQ(report.mesh.points, 2000U);
+  EXPECT_EQ(bytes_of("mesh.spm"), bytes);
+  EXPECT_FALSE(fs::exists(path("run")));
+}
+
 TEST_F(ResumableRun, GivesASinkOfTheProgramAllBlocksInTheEnd) {
   std::uint64_t triangles = 0;
   const auto sink = mesh_to([&](const MeshBlock& block) { triangles += block.corners.size() / 3; });
