@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Kills runs with --resume at random moments, again and again until they end, and compares bytes.
 
-    kill_driver.py COMMAND [--kills 50] [--seed 1] [--family NAME] [--damages 40] [--points 150000]
+    kill_driver.py COMMAND [--kills 50 | --damages 40 | --full-disks 5] [--seed 1] [--family NAME]
+                   [--points 150000]
 
 Each family is a kind of run. What it writes must be what the same run writes that nobody kills, and
 nothing else may be left. With --damages, checkpoints and scratch files of killed runs are damaged:
 a bit flipped, the end cut off, or a file missing. Then a run must end with an error that names the
-file, or with the same bytes; the family "batch" has no part in that. Exits with 1 at the first run
-that does not.
+file, or with the same bytes. With --full-disks, outputs and states are on a disk that gets full, and
+then gets more room. Exits with 1 at the first run that does not end so, and with 77 if it is
+skipped.
 """
 import argparse
 import filecmp
@@ -57,6 +59,9 @@ FAMILIES = {
     "ranks_contour": (TERRAIN, 0.5, ["contour", "terrain.las", "--interval", "20", *PLANE],
                       "x.shp", 2),
 }
+
+
+SKIPPED = 77
 
 
 class Failed(Exception):
@@ -120,7 +125,7 @@ class Runs:
             _, messages = process.communicate(timeout=seconds)
             return process.returncode, messages
         except subprocess.TimeoutExpired:
-            ranks = descendants(process.pid)
+            ranks = descendants(process.pid) if self.ranks else []
             if ranks and self.random.random() < 0.5:
                 kill([self.random.choice(ranks)])
                 try:
@@ -166,7 +171,8 @@ class Runs:
         while True:
             shutil.rmtree("killed", ignore_errors=True)
             code, _ = self.run_for("killed", self.random.uniform(0.1, 0.9) * self.seconds)
-            if code is None and os.path.exists("killed/run/state"):
+            states = len(list(pathlib.Path("killed/run").rglob("state")))
+            if code is None and states >= max(1, self.ranks):
                 return
 
     def damage(self):
@@ -212,18 +218,54 @@ class Runs:
             os.rename("killed.kept", "killed")
 
 
+    def fill_disk(self):
+        """How often a run ended as the disk was full, before there was room enough."""
+        shutil.rmtree("killed", ignore_errors=True)
+        os.mkdir("killed")
+        size = sum(file.stat().st_size for file in pathlib.Path("undisturbed").glob(self.output))
+        room = self.random.uniform(0.1, 1) * size
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={int(room)}", "none", "killed"],
+                       check=True)
+        try:
+            times_full = 0
+            while True:
+                code, messages = self.run_for("killed", 60 + 20 * self.seconds)
+                if code == 0:
+                    self.check_same("killed")
+                    return times_full
+                if code is None or code < 0 or "No space left on device" not in messages:
+                    raise Failed(f"on a disk of {int(room)} bytes, code {code}: {messages}")
+                times_full += 1
+                room *= 1.5
+                subprocess.run(["mount", "-o", f"remount,size={int(room)}", "killed"], check=True)
+        finally:
+            subprocess.run(["umount", "-l", "killed"], check=True)
+
+
+def can_mount():
+    with tempfile.TemporaryDirectory() as folder:
+        if subprocess.run(["mount", "-t", "tmpfs", "none", folder], capture_output=True).returncode:
+            return False
+        return subprocess.run(["umount", folder]).returncode == 0
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("command")
     parser.add_argument("--kills", type=int, default=50, help="of each family at least")
     parser.add_argument("--damages", type=int, default=0, help="of each family, in place of kills")
+    parser.add_argument("--full-disks", type=int, default=0, help="likewise; needs to be root")
     parser.add_argument("--points", type=float, default=150_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--family", choices=FAMILIES, action="append")
     options = parser.parse_args()
     command = os.path.abspath(options.command)
     os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    families = [family for family in FAMILIES if not options.damages or family != "batch"]
+    others = options.damages or options.full_disks
+    families = [family for family in FAMILIES if not others or family != "batch"]
+    if options.full_disks and not can_mount():
+        print("skipped: a small disk cannot be mounted, which root may")
+        return SKIPPED
     for family in options.family or families:
         if len(FAMILIES[family]) > 4 and not shutil.which("mpirun"):
             print(f"{family}: skipped, as there is no mpirun")
@@ -233,7 +275,7 @@ def main():
             try:
                 runs = Runs(command, family, options.points, options.seed)
                 counts = {"kills": 0, "went on": 0, "runs": 0}
-                while counts["kills"] < options.kills and not options.damages:
+                while counts["kills"] < options.kills and not others:
                     kills, went_on = runs.kill_until_done()
                     counts["kills"] += kills
                     counts["went on"] += went_on
@@ -244,6 +286,10 @@ def main():
                     if number % 10 == 0:
                         runs.killed_run()
                     counts[runs.damage()] += 1
+                if options.full_disks:
+                    counts = {"times full": 0, "runs": options.full_disks}
+                for number in range(options.full_disks):
+                    counts["times full"] += runs.fill_disk()
                 print(f"{family}: {', '.join(f'{n} {what}' for what, n in counts.items())}",
                       flush=True)
             except Failed as failure:

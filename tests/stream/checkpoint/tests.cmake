@@ -10,6 +10,11 @@ if(Python3_FOUND)
   add_test(NAME Checkpoints.killed_runs_end_with_the_same_bytes COMMAND ${driver} --kills 5 --points 100000)
   add_test(NAME Checkpoints.damaged_states_make_no_other_mesh
     COMMAND ${driver} --damages 10 --points 50000 --family spilled --family planned --family spooled --family dem)
+  add_test(NAME Checkpoints.runs_on_a_full_disk_go_on_when_there_is_room
+    COMMAND ${driver} --full-disks 2 --points 50000 --family spilled --family planned --family spooled --family stl
+            --family dem --family ranks)
+  set_tests_properties(Checkpoints.runs_on_a_full_disk_go_on_when_there_is_room
+    PROPERTIES LABELS fault TIMEOUT 300 SKIP_RETURN_CODE 77)
   set_tests_properties(Checkpoints.killed_runs_end_with_the_same_bytes Checkpoints.damaged_states_make_no_other_mesh
     PROPERTIES LABELS fault TIMEOUT 600)
 endif()
