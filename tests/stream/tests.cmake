@@ -68,7 +68,7 @@ spillway_mpi_test(rank_unit_test
           stream/ranks/exchange/rank_division_test.cpp stream/ranks/shared_report_test.cpp
           stream/ranks/rank_executor_test.cpp stream/ranks/share_messages_test.cpp
           stream/ranks/mesh_attributes_over_ranks_test.cpp stream/ranks/stream_sections_test.cpp
-          stream/ranks/exchange/collective_step_test.cpp
+          stream/ranks/exchange/collective_step_test.cpp stream/ranks/rank_checkpoints_test.cpp
   LIBS spillway_stream_ranks
   RANKS 1 2 3 5
   TIMEOUT 300)

@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 """Kills runs with --resume at random moments, again and again until they end, and compares bytes.
 
-    kill_driver.py COMMAND [--kills 50 | --damages 40 | --full-disks 5] [--seed 1] [--family NAME]
-                   [--points 150000]
+    kill_driver.py COMMAND [--kills 50 | --damages 40 | --full-disks 5 | --soak 20] [--seed 1]
+                   [--family NAME] [--points 150000]
 
 Each family is a kind of run. What it writes must be what the same run writes that nobody kills, and
 nothing else may be left. With --damages, checkpoints and scratch files of killed runs are damaged:
 a bit flipped, the end cut off, or a file missing. Then a run must end with an error that names the
 file, or with the same bytes. With --full-disks, outputs and states are on a disk that gets full, and
-then gets more room. Exits with 1 at the first run that does not end so, and with 77 if it is
-skipped.
+then gets more room. With --soak 20 --points 2e8, one large run is killed every 20 seconds, and its
+time told beside that of one that nobody kills. Exits with 1 at the first run that does not end so,
+and with 77 if it is skipped.
 """
 import argparse
 import filecmp
@@ -30,7 +31,6 @@ TILES = ["generate", "terrain", "--grid", "2x2", "-o", "tile#.las", "-n"]
 SPACE = ["generate", "uniform", "--dim", "3", "-o", "space.npy", "-n"]
 SURFACE = ["generate", "ellipsoid", "--dim", "3", "-o", "surface.npy", "-n"]
 MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
-RESUME = ["--checkpoint-every", "0.02", "--resume"]
 PLANE = ["--tile", "5000", "--memory", "64M"]
 IN_SPACE = ["--dim", "3", "--tile", "5000", "--memory", "96M"]
 
@@ -50,6 +50,7 @@ FAMILIES = {
     "dem_planned": (SURVEY, 1, ["dem", "survey*.las", "--resolution", "0.5", "--product",
                                 "height,slope,density", *PLANE], "x.tif"),
     "contour": (TERRAIN, 0.5, ["contour", "terrain.las", "--interval", "20", *PLANE], "x.shp"),
+    "soak": (TERRAIN, 1, ["triangulate", "terrain.las", "--memory", "256M"], "x.spm"),
     "batch": (TILES, 1, ["batch", "tile*.las", "--to", "spm,ply", "-j", "2", "--tile", "5000",
                          "--memory", "256M"], "*.[ps]??"),
     "ranks": (SURVEY, 1, ["triangulate", "survey*.las", "--id", *PLANE], "x.spm", 3),
@@ -93,7 +94,8 @@ def kill(processes):
 class Runs:
     """Runs of one family, in a folder of its own."""
 
-    def __init__(self, command, family, points, seed):
+    def __init__(self, command, family, points, seed, checkpoint_seconds=0.02):
+        self.checkpoint_seconds = checkpoint_seconds
         source, share, self.arguments, self.output, *ranks = FAMILIES[family]
         self.ranks = ranks[0] if ranks else 0
         self.command = [command]
@@ -113,9 +115,11 @@ class Runs:
 
     def run_of(self, folder):
         os.makedirs(folder, exist_ok=True)
+        pace = ["--checkpoint-every", str(self.checkpoint_seconds)]
         if self.arguments[0] == "batch":
-            return [*self.arguments, "--output-dir", folder, *RESUME]
-        return [*self.arguments, "-o", f"{folder}/{self.output}", *RESUME, f"{folder}/run"]
+            return [*self.arguments, "--output-dir", folder, *pace, "--resume"]
+        return [*self.arguments, "-o", f"{folder}/{self.output}", *pace, "--resume",
+                f"{folder}/run"]
 
     def run_for(self, folder, seconds):
         """The exit code and messages; None for the code if it was killed: all of it, or a rank."""
@@ -165,6 +169,22 @@ class Runs:
             else:
                 self.check_same("killed")
                 return kills, went_on
+
+    def soak(self, seconds):
+        """Seconds of a run that cannot go on, of one that can, and of one that is killed again and
+        again after `seconds`; and how often that was."""
+        started = time.monotonic()
+        self.call([*self.arguments, "-o", "usual.spm"])
+        usual = time.monotonic() - started
+        os.remove("usual.spm")
+        started = time.monotonic()
+        kills = 0
+        while self.run_for("killed", seconds)[0] is None:
+            kills += 1
+        killed = time.monotonic() - started
+        self.check_same("killed")
+        return {"s of the usual run": round(usual), "s of one that can go on": round(self.seconds),
+                "s of one that was killed": round(killed), "times": kills}
 
     def killed_run(self):
         """Leaves the folder of a run that was killed once it had a checkpoint."""
@@ -255,14 +275,18 @@ def main():
     parser.add_argument("--kills", type=int, default=50, help="of each family at least")
     parser.add_argument("--damages", type=int, default=0, help="of each family, in place of kills")
     parser.add_argument("--full-disks", type=int, default=0, help="likewise; needs to be root")
+    parser.add_argument("--soak", type=float, help="seconds after which one large run is killed")
     parser.add_argument("--points", type=float, default=150_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--family", choices=FAMILIES, action="append")
     options = parser.parse_args()
     command = os.path.abspath(options.command)
     os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    others = options.damages or options.full_disks
-    families = [family for family in FAMILIES if not others or family != "batch"]
+    others = options.damages or options.full_disks or options.soak
+    families = [family for family in FAMILIES
+                if family != "soak" and not (others and family == "batch")]
+    if options.soak:
+        families = ["soak"]
     if options.full_disks and not can_mount():
         print("skipped: a small disk cannot be mounted, which root may")
         return SKIPPED
@@ -273,7 +297,8 @@ def main():
         with tempfile.TemporaryDirectory(prefix="spillway-kills-") as folder:
             os.chdir(folder)
             try:
-                runs = Runs(command, family, options.points, options.seed)
+                runs = Runs(command, family, options.points, options.seed,
+                            options.soak / 4 if options.soak else 0.02)
                 counts = {"kills": 0, "went on": 0, "runs": 0}
                 while counts["kills"] < options.kills and not others:
                     kills, went_on = runs.kill_until_done()
@@ -286,6 +311,8 @@ def main():
                     if number % 10 == 0:
                         runs.killed_run()
                     counts[runs.damage()] += 1
+                if options.soak:
+                    counts = runs.soak(options.soak)
                 if options.full_disks:
                     counts = {"times full": 0, "runs": options.full_disks}
                 for number in range(options.full_disks):

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 
+#include "formats/disk/private_file.h"
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 #include "src/runtime/packing.h"
 #include "tests/stream/ranks/shared_inputs.h"
 
@@ -79,6 +82,46 @@ Arrivals expect_arrival(Road& road, const ExchangeRound& most,
   world().reduce(std::span(&sent, 1), distributed::Reduction::kSum);
   arrivals.sent = sent;
   return arrivals;
+}
+
+/// Another process goes on where all ranks have come to rest, and nothing comes twice or is lost.
+TEST(PointExchange, GoesOnAfterARoundAtWhichAllRanksCameToRest) {
+  const SharedFolder folder;
+  const auto points = points_of_seed(300'000, 4);
+  Road road(write_inputs(folder, points, 2, "npy"));
+  const std::string file = folder / ("state" + std::to_string(world().rank()));
+  std::uint64_t arrived = 0;
+  const auto fetch_until_rest = [&](PointExchange& exchange) {
+    SourcePiece batch;
+    PointBlock block;
+    while (!exchange.rests()) {
+      if (!exchange.fetch(batch, [] {})) return false;
+      exchange.decode(batch, block);
+      arrived += block.points.size();
+    }
+    return true;
+  };
+  const auto make = [&] {
+    auto exchange = std::make_unique<PointExchange>(road.pieces, road.division, world(),
+                                                    ExchangeRound{1, 100}, true, road.times);
+    // It is enough that one rank wants to.
+    exchange->rest_when([] { return world().rank() == 0; });
+    return exchange;
+  };
+  auto exchange = make();
+  int rests = 0;
+  for (; fetch_until_rest(*exchange); ++rests) {
+    StateWriter writer(create_private_file(file, file));
+    writer(*exchange);
+    writer.finish();
+    exchange = make();
+    StateReader reader(disk().open(file), file);
+    reader(*exchange);
+    reader.finish();
+  }
+  EXPECT_GT(rests, 0);
+  world().reduce(std::span(&arrived, 1), distributed::Reduction::kSum);
+  EXPECT_EQ(arrived, points.size());
 }
 
 TEST(PointExchange, BringsEveryPointToItsRankHoweverFewPiecesAreUnderWay) {
