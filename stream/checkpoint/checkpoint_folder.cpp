@@ -29,18 +29,34 @@ constexpr const char* kUnfinishedEnd = ".new";
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
-std::string made_folder(const std::string& path) {
-  if (::mkdir(path.c_str(), 0777) == 0 || errno == EEXIST) return path;
+std::string made_folder(std::string path) {
+  make_folder(path);
+  return path;
+}
+
+}  // namespace
+
+/// One that is made survives whatever happens from now on.
+void make_folder(const std::string& path) {
+  if (::mkdir(path.c_str(), 0777) == 0) {
+    const OpenedFile parent(fs::absolute(fs::path(path) / "..").lexically_normal(),
+                            O_RDONLY | O_DIRECTORY);
+    if (parent.get() >= 0) ::fsync(parent.get());  // where a system cannot, it needs not
+    return;
+  }
+  if (errno == EEXIST) return;
   const int error = errno;
   throw SystemRefusal(fmt::format("cannot create the folder {}: {}", path, reason(error)), path,
                       error);
 }
 
-}  // namespace
-
 CheckpointFolder::CheckpointFolder(const std::string& path, const RunIdentity& identity,
-                                   std::vector<std::string> files, std::optional<std::uint64_t> cap)
-    : path_(made_folder(path)), lock_(path, O_RDONLY | O_DIRECTORY), files_(std::move(files)) {
+                                   std::vector<std::string> files, std::optional<std::uint64_t> cap,
+                                   std::string run_folder)
+    : path_(made_folder(path)),
+      run_folder_(run_folder.empty() ? path : std::move(run_folder)),
+      lock_(path, O_RDONLY | O_DIRECTORY),
+      files_(std::move(files)) {
   lock();
   take(identity);
   outputs_ = keep_outputs(mark_);
@@ -49,7 +65,10 @@ CheckpointFolder::CheckpointFolder(const std::string& path, const RunIdentity& i
 }
 
 CheckpointFolder::CheckpointFolder(const std::string& path, std::vector<std::string> files)
-    : path_(path), lock_(path, O_RDONLY | O_DIRECTORY), files_(std::move(files)) {
+    : path_(path),
+      run_folder_(path),
+      lock_(path, O_RDONLY | O_DIRECTORY),
+      files_(std::move(files)) {
   lock();
   if (!read_run()) refuse_other_files();
 }
@@ -59,7 +78,7 @@ std::string CheckpointFolder::path_of(const std::string& file_name) const {
 }
 
 void CheckpointFolder::refuse(const std::string& why) const {
-  throw Error(fmt::format("cannot go on with the run in {}: {}", path_, why),
+  throw Error(fmt::format("cannot go on with the run in {}: {}", run_folder_, why),
               ErrorCode::kInvalidArgument, {.file = path_});
 }
 
@@ -128,7 +147,7 @@ bool CheckpointFolder::has_checkpoint() const { return has(kStateFile); }
 
 std::unique_ptr<StateReader> CheckpointFolder::open(const std::string& file_name) {
   if (!has(file_name)) return nullptr;
-  return std::make_unique<StateReader>(disk().open(path_of(file_name)), path_);
+  return std::make_unique<StateReader>(disk().open(path_of(file_name)), run_folder_);
 }
 
 void CheckpointFolder::remove_unfinished(const std::string& final_path) const {
@@ -233,6 +252,16 @@ void CheckpointFolder::save(const std::string& file_name,
   write(state);
   state.finish();
   rename(unfinished, path);
+}
+
+/// An output may be several files, and libraries write some of them.
+void CheckpointFolder::bring_to_disk(const std::string& output) {
+  const OpenedFile folder(fs::absolute(output_target(output).path).parent_path(),
+                          O_RDONLY | O_DIRECTORY);
+  if (folder.get() < 0) return;  // the output is no file
+  if (::syncfs(folder.get()) == 0) return;
+  const int error = errno;
+  throw SystemRefusal(fmt::format("cannot write {}: {}", output, reason(error)), output, error);
 }
 
 /// Nothing but what is the run's. The file that tells of the run goes last, so that a process which

@@ -15,6 +15,9 @@
 
 namespace spillway::detail {
 
+/// Makes a folder, if it is not there. Throws Error with the system's reason.
+void make_folder(const std::string& path);
+
 /// The folder of a run that can go on: what the run is of ("spillway-run"), its last checkpoint
 /// ("state"), and the scratch files that this refers to ("scratch"). One run at a time has it.
 class CheckpointFolder {
@@ -22,9 +25,11 @@ class CheckpointFolder {
   /// Makes the folder, or takes the one that a run of the same identity has left. Throws Error if
   /// another run uses it, if it is of a run with another identity, which tells what differs, or if
   /// it has something else in it. `files` are names of others that the run makes in
-  /// it. Scratch files take `cap` bytes at most at a time.
+  /// it. Scratch files take `cap` bytes at most at a time. `run_folder` is what messages name, if
+  /// it is not the folder itself but one that it is in.
   CheckpointFolder(const std::string& path, const RunIdentity& identity,
-                   std::vector<std::string> files, std::optional<std::uint64_t> cap);
+                   std::vector<std::string> files, std::optional<std::uint64_t> cap,
+                   std::string run_folder = "");
   /// Takes what a run has left, whatever it is of, to remove it. Throws Error likewise.
   CheckpointFolder(const std::string& path, std::vector<std::string> files);
   CheckpointFolder(const CheckpointFolder&) = delete;
@@ -68,6 +73,9 @@ class CheckpointFolder {
   /// Null if it is not there.
   [[nodiscard]] std::unique_ptr<StateReader> open(const std::string& file_name);
 
+  /// Brings all in the folder of an output, and so the output, to the disk itself: without its
+  /// state it could not be made again.
+  static void bring_to_disk(const std::string& output);
   /// Removes the folder with all that is the run's. What else is in it stays.
   void remove();
 
@@ -84,7 +92,8 @@ class CheckpointFolder {
   [[noreturn]] void refuse(const std::string& why) const;
 
   std::string path_;
-  OpenedFile lock_;  ///< the folder, locked as long as it is open
+  std::string run_folder_;  ///< for messages
+  OpenedFile lock_;         ///< the folder, locked as long as it is open
   std::vector<std::string> files_;
   std::string mark_;
   std::unique_ptr<FileSystem> outputs_;

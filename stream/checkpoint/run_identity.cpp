@@ -26,6 +26,11 @@ void RunIdentity::add_file(std::string name, const std::string& path) {
   add(std::move(name), fmt::format("{} ({})", path, state_of_file(path)));
 }
 
+std::string RunIdentity::value_of(std::string_view name) const {
+  const auto found = std::ranges::find(facts_, name, &Fact::name);
+  return found == facts_.end() ? "" : found->value;
+}
+
 std::string RunIdentity::difference_from(const RunIdentity& earlier) const {
   constexpr std::size_t kMostNamed = 3;
   std::vector<std::string> differences;

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace spillway::detail {
+
+/// The fact that is the path of what the run makes.
+inline constexpr const char* kOutputFact = "output";
 
 /// What a run is of: a checkpoint is of use only to a run of which all of this is the same.
 class RunIdentity {
@@ -16,6 +20,9 @@ class RunIdentity {
 
   /// A file of that path, as it is now: its size and time of change.
   void add_file(std::string name, const std::string& path);
+
+  /// "" if there is no fact of that name.
+  [[nodiscard]] std::string value_of(std::string_view name) const;
 
   /// What differs, in words: "--dim is 3, and was 2"; "" if nothing does. At most a few facts.
   [[nodiscard]] std::string difference_from(const RunIdentity& earlier) const;

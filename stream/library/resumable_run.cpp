@@ -120,12 +120,13 @@ class ResumableRun {
 
   Report run() {
     tell();
-    if (folder_.has(kCompleteFile)) return report_of_complete(kCompleteFile);
+    if (is_complete()) return report_of_complete(kCompleteFile);
     if (has_its_name()) return report_of_complete(kFiguresFile);
     try {
       Report report = run_.sink.goes_on() ? run_to_sink() : run_to_mesh();
       tell_cost();
-      save_figures(kCompleteFile, report);
+      CheckpointFolder::bring_to_disk(run_.identity->value_of(kOutputFact));
+      if (run_.sink.as_mesh_file() != nullptr) save_figures(kCompleteFile, report);
       remove();
       return report;
     } catch (const Error& error) {
@@ -171,6 +172,13 @@ class ResumableRun {
   }
 
   void remove() { remove_run(folder_); }
+
+  /// Whether another process has ended before it had removed all. Of what is no mesh file more is
+  /// told than these figures, so that its last step is done again.
+  [[nodiscard]] bool is_complete() const {
+    const MeshTarget* const target = run_.sink.as_mesh_file();
+    return target != nullptr && folder_.has(kCompleteFile) && disk().exists(target->path);
+  }
 
   /// Of a run whose output was complete when another process ended.
   Report report_of_complete(const char* file) {

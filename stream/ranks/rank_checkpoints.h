@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "src/distributed/ranks.h"
 #include "stream/checkpoint/checkpoints.h"
@@ -19,7 +20,7 @@ class RankCheckpoints {
   RankCheckpoints(CheckpointFolder& folder, double seconds, const distributed::Ranks& ranks);
 
   /// Whether there is one to go on from; and whether only some ranks had one.
-  [[nodiscard]] bool goes_on() const { return number_ > 0; }
+  [[nodiscard]] bool goes_on() const { return last_.number > 0; }
   [[nodiscard]] bool lacked_some() const { return lacked_some_; }
 
   /// The checkpoint to go on from; null if there is none. When it is read, restored() is to be
@@ -34,14 +35,28 @@ class RankCheckpoints {
   void save_alone(const std::function<void(StateWriter&)>& write);
 
  private:
-  /// Number of a checkpoint; 0 for none.
-  static std::uint64_t number_in(const std::unique_ptr<StateReader>& state);
+  /// What tells a checkpoint that ranks have made together from others.
+  struct Name {
+    std::string beginning;     ///< of the run: drawn anew each time that it begins
+    std::uint64_t number = 0;  ///< since then; 0 for none
+    template <typename State>
+    void state(State& state) {
+      state(beginning, number);
+    }
+    bool operator==(const Name&) const = default;
+  };
+
+  static Name name_in(const std::unique_ptr<StateReader>& state);
+  [[nodiscard]] Name latest_of(const Name& own) const;
+  void begin();
   void agree();
+  [[nodiscard]] std::function<void(StateWriter&)> named(
+      const std::function<void(StateWriter&)>& write);
 
   CheckpointFolder& folder_;
   const distributed::Ranks& ranks_;
   Checkpoints pace_;
-  std::uint64_t number_ = 0;  ///< of the last one that all have made together
+  Name last_;  ///< that all have made together
   bool lacked_some_ = false;
 };
 

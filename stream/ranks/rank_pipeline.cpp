@@ -63,7 +63,8 @@ class RankRun {
     with_threads(engine_.threads(), [&] {
       if (checkpoints_ != nullptr) restore();
       if (engine_.phase() == EnginePhase::kSpill) read();
-      if (engine_.phase() == EnginePhase::kDivide) divide_tiles();
+      // What was saved in that phase was so at its end, and other ranks may have gone on alone.
+      if (engine_.phase() == EnginePhase::kDivide && !restored_) divide_tiles();
       options_.begin_phase("triangulate");
       const std::optional<TileNode<D>> own = engine_.take_nodes();
       const RankTree<D> tree(division_, own, ranks_);
@@ -103,7 +104,7 @@ class RankRun {
     options_.begin_phase("read");
     find_pieces();
     const MemoryLease lease(budget_, bytes_under_way(), "points on their way between ranks");
-    const distributed::Traffic before = distributed::traffic();
+    traffic_ = distributed::traffic();
     exchange_.emplace(*pieces_, division_, ranks_, most_, is_indexed(options_), engine_.times());
     if (checkpoints_ != nullptr) exchange_->rest_when([this] { return checkpoints_->due(); });
     if (restored_) {
@@ -114,9 +115,7 @@ class RankRun {
     engine_.spill({.fetch = [&](SourcePiece& batch) { return exchange_->fetch(batch, report); },
                    .decode = [&](SourcePiece& batch,
                                  PointBlock& block) { exchange_->decode(batch, block); }});
-    const distributed::Traffic after = distributed::traffic();
-    result_.exchanged_bytes = after.bytes - before.bytes;
-    result_.exchanged_messages = after.messages - before.messages;
+    count_traffic();
     result_.exchanged_points = exchange_->points_sent();
     if (options_.input_index && !pieces_->numbered()) {
       records_before_ = exchange_->records_before();
@@ -153,6 +152,14 @@ class RankRun {
            std::min(most_.pieces, all_ranks) * arriving_bytes();
   }
 
+  /// Counts what has been sent since it was called last.
+  void count_traffic() {
+    const distributed::Traffic now = distributed::traffic();
+    result_.exchanged_bytes += now.bytes - traffic_.bytes;
+    result_.exchanged_messages += now.messages - traffic_.messages;
+    traffic_ = now;
+  }
+
   /// Indices that name pieces count through all inputs when they are needed.
   void count_indices_through() {
     if (records_before_.empty()) return;
@@ -168,6 +175,7 @@ class RankRun {
   }
 
   void save() {
+    if (exchange_) count_traffic();
     const auto write = [this](StateWriter& state) {
       this->state(state);
       source_.save_counts(state);
@@ -211,8 +219,7 @@ class RankRun {
       options_.begin_phase("divide");
       options_.end_phase(of_all_ranks(engine_.divide_large()));
     }
-    // From here on each rank goes on by itself.
-    if (checkpoints_ != nullptr && !restored_) engine_.save();
+    if (checkpoints_ != nullptr) engine_.save();  // from here on each rank saves its own
   }
 
   /// The sum of what each rank counts. Collective.
@@ -382,6 +389,7 @@ class RankRun {
   ExchangeRound most_;
   std::optional<PieceTable> pieces_;  ///< these two while points are read
   std::optional<PointExchange> exchange_;
+  distributed::Traffic traffic_;               ///< when it was counted last
   std::vector<std::uint64_t> records_before_;  ///< each piece, if indices name pieces
   TileEngine<D> engine_;
   std::vector<SectionDraft> drafts_;  ///< before numbers are known

@@ -1,9 +1,7 @@
 #include "stream/ranks/resumable_share.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
-#include <cerrno>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -35,19 +33,20 @@ ResumableShare::ResumableShare(Run& run, const distributed::Ranks& ranks)
 
 /// Ranks of other machines may have disks of their own.
 void ResumableShare::make_run_folder() const {
-  if (::mkdir(run_folder_.c_str(), 0777) != 0 && errno != EEXIST) {
-    const int error = errno;
-    throw SystemRefusal(fmt::format("cannot create the folder {}: {}", run_folder_,
-                                    std::generic_category().message(error)),
-                        run_folder_, error);
-  }
-  for (const fs::directory_entry& entry : fs::directory_iterator(run_folder_)) {
-    const std::string name = entry.path().filename().string();
+  make_folder(run_folder_);
+  std::error_code error;
+  for (fs::directory_iterator entry(run_folder_, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
     if (name.starts_with(kRankFolder)) continue;
     throw Error(fmt::format("{} is no folder of a run over ranks: it has {} in it; give another "
                             "folder",
                             run_folder_, name),
                 ErrorCode::kInvalidArgument, {.file = run_folder_});
+  }
+  if (error) {
+    throw SystemRefusal(fmt::format("cannot use {} as a folder: {}", run_folder_, error.message()),
+                        run_folder_, error.value());
   }
 }
 
@@ -76,11 +75,12 @@ void ResumableShare::tell() const {
 
 /// Ranks whose folder is gone begin again, so none is removed before all outputs have their names.
 Report ResumableShare::complete(Report report) {
-  ranks_.barrier();
+  run_collective_step(
+      ranks_, [&] { CheckpointFolder::bring_to_disk(run_.identity->value_of(kOutputFact)); });
   folder_->remove();
   ranks_.barrier();
   std::error_code not_empty;
-  if (is_first()) fs::remove(run_folder_, not_empty);
+  fs::remove(run_folder_, not_empty);  // each rank, as each may have a disk of its own
   return report;
 }
 

@@ -33,6 +33,7 @@ void transfer_taken(StateWriter& state, TakenTiles& taken) {
 template <typename State>
 void TileTree::state(State& state) {
   state.section("tiles");
+  state(options_.extent, options_.sample);  // as expect() has told
   state(sketches_, cuts_, cuts_made_, tiles_, cell_roots_, cell_done_, regions_begun_);
   transfer_taken(state, taken_);
   state(left_over_, left_over_points_, dealing_again_, dealt_again_, batches_, arrivals_, runs_,

@@ -17,7 +17,11 @@ bool reads_a_mesh(const Job& job) {
   if (job.options.contains("input-format")) return false;
   if (job.options.contains("mesh-format")) return true;
   const std::string& path = job.inputs.front();
-  if (job.inputs.size() > 1 || spillway::stands_for_several(path)) return false;
+  // What a pipe gives can be read once.
+  if (job.inputs.size() > 1 || spillway::stands_for_several(path) ||
+      !std::filesystem::is_regular_file(path)) {
+    return false;
+  }
   try {
     return spillway::kind_of_input(path, Context()) == InputKind::kMesh;
   } catch (const spillway::Error&) {

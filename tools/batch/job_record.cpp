@@ -111,18 +111,15 @@ void save_record(const JobRun& run) {
 }
 
 void remove_unfinished_records(const std::string& folder, const std::vector<JobRun>& runs) {
-  const std::size_t added = part_path("", random_mark()).size();
-  std::set<std::string> names;
-  for (const JobRun& run : runs) names.insert(fs::path(run.record).filename());
   std::vector<fs::path> left;
   std::error_code ignored;
   for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
        entry.increment(ignored)) {
-    const std::string name = entry->path().filename();
-    if (name.size() > added && name.ends_with(".part") &&
-        names.contains(name.substr(0, name.size() - added))) {
-      left.push_back(entry->path());
-    }
+    if (entry->path().extension() != ".part") continue;
+    const bool is_of_record = std::ranges::any_of(runs, [&](const JobRun& run) {
+      return is_temporary_path(entry->path(), (fs::path(folder) / fs::path(run.record).filename()));
+    });
+    if (is_of_record) left.push_back(entry->path());
   }
   for (const fs::path& path : left) fs::remove(path, ignored);
 }

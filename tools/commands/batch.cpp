@@ -303,7 +303,8 @@ class Batch {
         "{}: begins again, {}", run.job.name,
         !options_.resume ? "as --resume is not given"
         : had > 0 ? fmt::format("as it had {} of memory, more than there is", memory_size_text(had))
-                  : "as its options, its inputs or the version are other ones than before"));
+                  : "as its options, its inputs or the version are other ones than before, or "
+                    "nothing is recorded of it"));
   }
 
   void start_step(const Running& job) {

@@ -69,7 +69,7 @@ void tell_lost_layers(const VectorFormat& format, const std::string& path, const
 
 void identify_product(std::string_view kind, const std::string& path, RunIdentity& identity) {
   identity.add("kind of output", std::string(kind));
-  identity.add("output", path.empty() ? "memory" : std::filesystem::absolute(path).string());
+  identity.add(kOutputFact, path.empty() ? "memory" : std::filesystem::absolute(path).string());
 }
 
 void check_max_edge(const std::optional<double>& max_edge) {

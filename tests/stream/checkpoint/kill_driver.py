@@ -32,12 +32,14 @@ SPACE = ["generate", "uniform", "--dim", "3", "-o", "space.npy", "-n"]
 SURFACE = ["generate", "ellipsoid", "--dim", "3", "-o", "surface.npy", "-n"]
 MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
 PLANE = ["--tile", "5000", "--memory", "64M"]
+SMALL = ["--memory", "32M"]  # for some million points
 IN_SPACE = ["--dim", "3", "--tile", "5000", "--memory", "96M"]
 
 # Name: input, share of the points, arguments, output or, of a batch, a pattern of its outputs; and
 # the number of ranks, if there are any.
 FAMILIES = {
-    "spilled": (TERRAIN, 1, ["triangulate", "terrain.las", *PLANE], "x.spm"),
+    "spilled": (TERRAIN, 15, ["triangulate", "terrain.las", *SMALL], "x.spm"),
+    "whole": (TERRAIN, 1, ["triangulate", "terrain.las", *PLANE], "x.spm"),
     "planned": (SURVEY, 1, ["triangulate", "survey*.las", *PLANE], "x.spm"),
     "planned_space": (SURVEY, 0.3, ["triangulate", "survey*.las", *IN_SPACE], "x.spm"),
     "space": (SPACE, 0.3, ["triangulate", "space.npy", *IN_SPACE], "x.spm"),
@@ -54,6 +56,7 @@ FAMILIES = {
     "batch": (TILES, 1, ["batch", "tile*.las", "--to", "spm,ply", "-j", "2", "--tile", "5000",
                          "--memory", "256M"], "*.[ps]??"),
     "ranks": (SURVEY, 1, ["triangulate", "survey*.las", "--id", *PLANE], "x.spm", 3),
+    "ranks_spilled": (TERRAIN, 15, ["triangulate", "terrain.las", *SMALL], "x.spm", 2),
     "ranks_text": (TABLE, 0.5, ["triangulate", "terrain.csv", "--id", *PLANE], "x.ply", 2),
     "ranks_space": (SPACE, 0.3, ["triangulate", "space.npy", *IN_SPACE], "x.vtu", 2),
     "ranks_dem": (TERRAIN, 1, ["dem", "terrain.las", "--resolution", "2", *PLANE], "x.tif", 2),
@@ -160,8 +163,12 @@ class Runs:
         while True:
             # Longer and longer, as the last steps of a run may be long ones.
             most = 0.6 * self.seconds * (1 + 0.1 * kills)
-            code, messages = self.run_for("killed", self.random.uniform(0.02, most))
+            ends = kills >= 40
+            code, messages = self.run_for(
+                "killed", 60 + 20 * self.seconds if ends else self.random.uniform(0.02, most))
             went_on += "goes on" in messages
+            if code is None and ends:
+                raise Failed(f"after {kills} kills the run does not end")
             if code is None:
                 kills += 1
             elif code != 0:

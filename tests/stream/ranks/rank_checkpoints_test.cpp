@@ -6,10 +6,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "tests/stream/ranks/shared_folder.h"
+#include "formats/meshes/spool/mesh_spool.h"
+#include "stream/ranks/rank_pipeline.h"
+#include "tests/stream/ranks/shared_inputs.h"
 
 namespace spillway::detail::testing {
 namespace {
@@ -35,9 +39,13 @@ class RankCheckpointsTest : public ::testing::Test {
       checkpoints.save_together([&](StateWriter& state) { state(value); });
     }
   }
-  /// As of a rank that is killed before it accepts what it has prepared.
-  static void prepare(CheckpointFolder& folder, std::uint64_t number, int value) {
-    folder.prepare_checkpoint([&](StateWriter& state) { state(number, value); });
+  /// As of a rank that is killed before it accepts what it has prepared after its last checkpoint.
+  static void prepare(CheckpointFolder& folder, int value) {
+    std::string beginning;
+    std::uint64_t number = 0;
+    (*folder.look_at_checkpoint())(beginning, number);
+    ++number;
+    folder.prepare_checkpoint([&](StateWriter& state) { state(beginning, number, value); });
   }
   /// From what the next process goes on; 0 if it begins again.
   [[nodiscard]] int restored() const {
@@ -75,7 +83,7 @@ TEST_F(RankCheckpointsTest, GoOnFromThoseThatRanksHaveMadeAlone) {
 
 TEST_F(RankCheckpointsTest, DropWhatNotAllHavePrepared) {
   make_together({1});
-  if (is_last()) prepare(*open(), 2, 2);
+  if (is_last()) prepare(*open(), 2);
   EXPECT_EQ(restored(), 1);
   EXPECT_EQ(restored(), 1);
 }
@@ -84,7 +92,7 @@ TEST_F(RankCheckpointsTest, AcceptWhatIsPreparedIfAnotherRankHasDoneSo) {
   make_together({1});
   {
     const auto folder = open();
-    prepare(*folder, 2, 2);
+    prepare(*folder, 2);
     if (is_last()) folder->accept_prepared();
   }
   EXPECT_EQ(restored(), 2);
@@ -103,6 +111,71 @@ TEST_F(RankCheckpointsTest, BeginAgainIfARankHasLostItsFolder) {
   }
   make_together({7});
   EXPECT_EQ(restored(), 7);
+}
+
+/// As on a disk of a machine that comes back after the run has begun again without it.
+TEST_F(RankCheckpointsTest, BeginAgainIfARankHasACheckpointOfAnotherBeginning) {
+  if (world().size() == 1) GTEST_SKIP() << "needs two ranks";
+  namespace fs = std::filesystem;
+  make_together({1});
+  if (is_last()) fs::rename(path(), path() + ".away");
+  make_together({2});
+  if (is_last()) {
+    fs::remove_all(path());
+    fs::rename(path() + ".away", path());
+  }
+  EXPECT_EQ(restored(), 0);
+}
+
+/// Ends its process, in a way, after so many blocks.
+class EndingSink final : public BlockSink {
+ public:
+  EndingSink(BlockSink& sink, int blocks) : sink_(sink), left_(blocks) {}
+  void absorb(MeshBlock& block) override { sink_.absorb(block); }
+  void write(MeshBlock&& block) override {
+    if (left_-- == 0) throw std::runtime_error("the end");
+    sink_.write(std::move(block));
+  }
+  void save(StateWriter& state) override { sink_.save(state); }
+  void restore(StateReader& state) override { sink_.restore(state); }
+  void finish(const MeshTotals& /*totals*/) override {}
+
+ private:
+  BlockSink& sink_;
+  int left_;
+};
+
+/// Some ranks are to go on in the midst of their tiles, others from where they were divided.
+TEST_F(RankCheckpointsTest, LeadToTheSameMeshThoughNotAllRanksHaveMadeOneAlone) {
+  const auto paths = write_inputs(folder_, points_of_seed(60'000, 7), 2, "npy");
+  const StreamOptions options{
+      .threads = 1, .tile_capacity = 300, .buffered_points = 2000, .leaf_size = 100};
+  constexpr int kAllBlocks = -1;
+  const auto run = [&](CheckpointFolder& folder, RankCheckpoints* checkpoints, int blocks) {
+    const auto source = open_shared_source(disk(), paths, {.dimension = 2}, world());
+    MeshStreamHeader header;
+    header.dimension = 2;
+    header.lattice = source->lattice();
+    MeshSpool spool(header, "mesh", folder.scratch());
+    EndingSink sink(spool, blocks);
+    MemoryBudget budget(std::uint64_t{1} << 30);
+    return triangulate_over_ranks<2>(*source, sink, folder.scratch(), budget, options, world(),
+                                     checkpoints);
+  };
+  std::uint64_t expected = 0;
+  {
+    const auto folder = open();
+    expected = run(*folder, nullptr, kAllBlocks).totals.canonical_hash;
+  }
+  for (const int blocks : {20, 30}) {
+    const auto folder = open();
+    RankCheckpoints checkpoints(*folder, world().rank() == 0 ? 0 : 1e9, world());
+    EXPECT_THROW(run(*folder, &checkpoints, blocks), std::runtime_error);
+  }
+  const auto folder = open();
+  RankCheckpoints checkpoints(*folder, 0, world());
+  EXPECT_TRUE(checkpoints.goes_on());
+  EXPECT_EQ(run(*folder, &checkpoints, kAllBlocks).totals.canonical_hash, expected);
 }
 
 }  // namespace

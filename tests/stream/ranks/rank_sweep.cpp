@@ -49,8 +49,8 @@ std::vector<Point<D>> random_points(Random& random, std::size_t scale) {
     const auto families = family_names();
     const Family family = family_by_name(families[up_to(random, families.size() - 1)]);
     const bool dense = D == 3 && family == Family::kLines;  // n^2/4 tetrahedra
-    return generate_points<D>({family, dense ? std::min<std::uint64_t>(count, 80) : count, D,
-                               random()});
+    return generate_points<D>(
+        {family, dense ? std::min<std::uint64_t>(count, 80) : count, D, random()});
   }
   std::vector<Point<D>> points(count);
   std::array<std::uint64_t, D> extent;
