@@ -7,14 +7,18 @@ spillway_test(checkpoint_test unit
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
   set(driver ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/kill_driver.py $<TARGET_FILE:spillway>)
-  add_test(NAME Checkpoints.killed_runs_end_with_the_same_bytes COMMAND ${driver} --kills 4 --points 100000)
-  add_test(NAME Checkpoints.damaged_states_make_no_other_mesh
-    COMMAND ${driver} --damages 10 --points 50000 --family spilled --family planned --family spooled --family dem)
-  add_test(NAME Checkpoints.runs_on_a_full_disk_go_on_when_there_is_room
-    COMMAND ${driver} --full-disks 1 --points 50000 --family spilled --family planned --family spooled --family stl
-            --family dem --family ranks)
-  set_tests_properties(Checkpoints.runs_on_a_full_disk_go_on_when_there_is_room
-    PROPERTIES LABELS fault TIMEOUT 300 SKIP_RETURN_CODE 77)
-  set_tests_properties(Checkpoints.killed_runs_end_with_the_same_bytes Checkpoints.damaged_states_make_no_other_mesh
-    PROPERTIES LABELS fault TIMEOUT 600)
+  function(checkpoint_test name)
+    add_test(NAME Checkpoints.${name} COMMAND ${driver} ${ARGN})
+    set_tests_properties(Checkpoints.${name} PROPERTIES LABELS fault TIMEOUT 400 SKIP_RETURN_CODE 77)
+  endfunction()
+  checkpoint_test(killed_runs_end_with_the_same_bytes --kills 4 --points 100000 --family spilled --family planned
+    --family planned_space --family space --family surface --family spooled --family text --family thinned)
+  checkpoint_test(killed_products_end_with_the_same_bytes --kills 4 --points 100000 --family stl --family dem
+    --family dem_planned --family contour --family batch)
+  checkpoint_test(killed_ranks_end_with_the_same_bytes --kills 4 --points 60000 --family ranks --family ranks_spilled
+    --family ranks_text --family ranks_space --family ranks_dem --family ranks_contour)
+  checkpoint_test(damaged_states_make_no_other_mesh --damages 8 --points 50000 --family spilled --family planned
+    --family spooled --family stl --family dem --family ranks)
+  checkpoint_test(runs_on_a_full_disk_go_on_when_there_is_room --full-disks 1 --points 50000 --family spilled
+    --family planned --family spooled --family stl --family dem --family ranks)
 endif()
