@@ -29,6 +29,7 @@ class RankCheckpoints {
   void restored(StateReader& state) { folder_.restored(state); }
 
   [[nodiscard]] bool due() const { return pace_.due(); }
+  [[nodiscard]] const Checkpoints& pace() const { return pace_; }
   /// All ranks replace their last checkpoints, or none does. Collective.
   void save_together(const std::function<void(StateWriter&)>& write);
   /// This rank does.

@@ -53,7 +53,12 @@ class RankExecutor final : public Executor {
     }
     if (!run.identity) return make_output(run, *source, nullptr);
     ResumableShare share(run, ranks_);
-    return share.complete(make_output(run, *source, &share.checkpoints()));
+    try {
+      return share.complete(make_output(run, *source, &share.checkpoints()));
+    } catch (const Error& error) {
+      share.tell_how_to_go_on(error);
+      throw;
+    }
   }
 
  private:

@@ -73,8 +73,20 @@ void ResumableShare::tell() const {
   if (const std::string notice = once_only_notice(run_); !notice.empty()) warn(notice);
 }
 
+/// Only the first rank warns, so the error itself tells it.
+void ResumableShare::tell_how_to_go_on(const Error& error) const {
+  if (error.code() != ErrorCode::kInputOutput || !folder_->has_checkpoint()) return;
+  throw Error(fmt::format("{}; when that is mended, the same run goes on from what is in {}",
+                          error.what(), run_folder_),
+              error.code(), error.facts());
+}
+
 /// Ranks whose folder is gone begin again, so none is removed before all outputs have their names.
 Report ResumableShare::complete(Report report) {
+  if (const auto& detail = run_.context.options().detail; detail && is_first()) {
+    detail(fmt::format("{} checkpoints took {:.2f} s at rank 0", checkpoints_->pace().count(),
+                       checkpoints_->pace().seconds()));
+  }
   run_collective_step(
       ranks_, [&] { CheckpointFolder::bring_to_disk(run_.identity->value_of(kOutputFact)); });
   folder_->remove();

@@ -6,6 +6,7 @@
 
 #include "formats/disk/unfinished_files.h"
 #include "src/distributed/ranks.h"
+#include "src/error.h"
 #include "stream/checkpoint/checkpoint_folder.h"
 #include "stream/library/run.h"
 #include "stream/ranks/rank_checkpoints.h"
@@ -22,6 +23,9 @@ class ResumableShare {
   ResumableShare(Run& run, const distributed::Ranks& ranks);
 
   [[nodiscard]] RankCheckpoints& checkpoints() { return *checkpoints_; }
+
+  /// Throws the error again with what to do, if the run can go on when what it tells is mended.
+  void tell_how_to_go_on(const Error& error) const;
 
   /// Removes the folders, as the output is complete, and returns the report. Collective.
   Report complete(Report report);
