@@ -297,8 +297,8 @@ class Batch {
       progress_.say(fmt::format("{}: goes on with {}", run.job.name, run.resume_folder));
       return;
     }
-    const std::uint64_t had = std::exchange(run.memory, 0);  // no longer to go on with
     discard_run(run.resume_folder, run.steps.front().output);
+    const std::uint64_t had = std::exchange(run.memory, 0);  // no longer to go on with
     progress_.say(fmt::format(
         "{}: begins again, {}", run.job.name,
         !options_.resume ? "as --resume is not given"
