@@ -52,9 +52,9 @@ void make_folder(const std::string& path) {
 
 CheckpointFolder::CheckpointFolder(const std::string& path, const RunIdentity& identity,
                                    std::vector<std::string> files, std::optional<std::uint64_t> cap,
-                                   std::string run_folder)
+                                   const std::string& run_folder)
     : path_(made_folder(path)),
-      run_folder_(run_folder.empty() ? path : std::move(run_folder)),
+      run_folder_(run_folder.empty() ? path : run_folder),
       lock_(path, O_RDONLY | O_DIRECTORY),
       files_(std::move(files)) {
   lock();

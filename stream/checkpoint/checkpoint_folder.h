@@ -29,7 +29,7 @@ class CheckpointFolder {
   /// it is not the folder itself but one that it is in.
   CheckpointFolder(const std::string& path, const RunIdentity& identity,
                    std::vector<std::string> files, std::optional<std::uint64_t> cap,
-                   std::string run_folder = "");
+                   const std::string& run_folder = "");
   /// Takes what a run has left, whatever it is of, to remove it. Throws Error likewise.
   CheckpointFolder(const std::string& path, std::vector<std::string> files);
   CheckpointFolder(const CheckpointFolder&) = delete;

@@ -290,10 +290,10 @@ class ResumableRun {
 
 Report triangulate_resumably(Run& run) { return ResumableRun(run).run(); }
 
-void discard_run(const std::string& path, const std::string& output) {
-  CheckpointFolder folder(path, own_files());
-  folder.remove_all_unfinished_beside(output);
-  remove_run(folder);
+void discard_run(const std::string& folder, const std::string& output) {
+  CheckpointFolder left(folder, own_files());
+  left.remove_all_unfinished_beside(output);
+  remove_run(left);
 }
 
 }  // namespace spillway::detail

@@ -315,8 +315,8 @@ void Dem::count(std::span<const PlacedPoint> vertices) {
       const auto row = row_of(grid_, on_lattice_ ? lattice_->to_world(1, vertex[1]) : vertex[1]);
       if (!column || !row) continue;
       float* const pixels = work.hand.tile(tile_number(*row, *column));
-      put_pixel(pixels[band * RasterStore::kTilePixels + *row % kRasterTile * kRasterTile +
-                       *column % kRasterTile],
+      put_pixel(pixels[band * RasterStore::kTilePixels +
+                       std::size_t{*row % kRasterTile} * kRasterTile + *column % kRasterTile],
                 1, PixelRule::kSum, true);
     }
   };
