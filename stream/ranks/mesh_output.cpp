@@ -96,7 +96,7 @@ class CollectedMeshOutput : public MeshOutput {
   std::uint64_t finish(RankMesh& mesh) override {
     std::optional<StreamSections> sections;
     run_collective_step(ranks_, [&] {
-      finish_spool(mesh);
+      finish_own_blocks(spool_, mesh);
       sections.emplace(spool_, mesh);
     });
     const std::vector<std::uint64_t> sizes = sections->sizes(ranks_);
@@ -174,8 +174,6 @@ std::unique_ptr<MeshOutput> open_one_file(FileSystem& files, const MeshTarget& t
 MeshOutput::MeshOutput(const MeshStreamHeader& header, const std::string& name,
                        ScratchFolder& scratch)
     : spool_(header, name, scratch) {}
-
-void MeshOutput::finish_spool(const RankMesh& mesh) { finish_own_blocks(spool_, mesh); }
 
 void finish_own_blocks(MeshSpool& spool, const RankMesh& mesh) {
   MeshTotals totals;

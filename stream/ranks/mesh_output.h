@@ -38,9 +38,6 @@ class MeshOutput {
  protected:
   MeshOutput(const MeshStreamHeader& header, const std::string& name, ScratchFolder& scratch);
 
-  /// Ends the blocks of this rank's own tiles.
-  void finish_spool(const RankMesh& mesh);
-
   MeshSpool spool_;
 };
 

@@ -26,7 +26,14 @@ std::string folder_of_rank(const std::string& run_folder, int rank) {
 ResumableShare::ResumableShare(Run& run, const distributed::Ranks& ranks)
     : run_(run), ranks_(ranks), run_folder_(run.options.resume_folder) {
   run_collective_step(ranks_, [&] { make_run_folder(); });
-  run_collective_step(ranks_, [&] { take_folder(); });
+  // What is refused is so before any rank makes a folder.
+  const std::string own = folder_of_rank(run_folder_, ranks_.rank());
+  run_collective_step(ranks_, [&] {
+    if (fs::exists(own)) take_folder();
+  });
+  run_collective_step(ranks_, [&] {
+    if (!folder_) take_folder();
+  });
   checkpoints_.emplace(*folder_, run.options.checkpoint_seconds, ranks_);
   if (is_first()) tell();
 }
@@ -53,9 +60,9 @@ void ResumableShare::make_run_folder() const {
 void ResumableShare::take_folder() {
   RunIdentity identity = *run_.identity;
   identity.add("number of ranks", fmt::format("{}", ranks_.size()));
-  folder_ =
-      std::make_shared<CheckpointFolder>(folder_of_rank(run_folder_, ranks_.rank()), identity,
-                                         std::vector<std::string>(), run_.context.scratch_limit());
+  folder_ = std::make_shared<CheckpointFolder>(folder_of_rank(run_folder_, ranks_.rank()), identity,
+                                               std::vector<std::string>(),
+                                               run_.context.scratch_limit(), run_folder_);
   marked_.emplace(folder_->mark());
   run_.scratch = std::shared_ptr<ScratchFolder>(folder_, &folder_->scratch());
 }

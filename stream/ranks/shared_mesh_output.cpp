@@ -65,7 +65,7 @@ class SharedMeshOutput : public MeshOutput {
   }
 
   std::uint64_t finish(RankMesh& mesh) override {
-    run_collective_step(ranks_, [&] { finish_spool(mesh); });
+    run_collective_step(ranks_, [&] { finish_own_blocks(spool_, mesh); });
     const std::uint64_t bytes =
         target_.format->records == nullptr ? write_stream(mesh) : write_records(mesh);
     run_collective_step(ranks_, [&] { file_->close(); });

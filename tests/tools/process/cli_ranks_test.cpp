@@ -328,6 +328,15 @@ TEST_F(RanksThatFail, SayOnceWhatIsWrongWithInputOptionsAndOutput) {
   expect_failure("spillway triangulate -q in.las -o b.ply --parts", "start it with mpirun", 2);
 }
 
+/// What is to be removed is the folder that was given, not that of one rank.
+TEST_F(RanksThatFail, NameTheFolderOfTheRunThatTheyCannotGoOnWith) {
+  work_.write("line.txt", "1 1\n2 2\n3 3\n4 4\n");
+  const std::string run = "triangulate -q line.txt -o b.ply --memory 64M --resume state";
+  EXPECT_EQ(work_.run(ranks(2, run)).exit_code, 1);
+  expect_failure(ranks(3, run), "the run in state: number of ranks is 3, and was 2");
+  EXPECT_EQ(work_.succeed("ls state"), "rank-0\nrank-1\n");
+}
+
 TEST_F(RanksThatFail, RefuseDegenerateInputsInBothDimensions) {
   std::string plane;
   std::string equal;
