@@ -5,7 +5,7 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/runtime/memory_budget.h"
-#include "stream/plan/stream_options.h"
+#include "stream/plan/engine_options.h"
 #include "stream/source/point_stream.h"
 
 namespace spillway::detail {

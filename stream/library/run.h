@@ -11,7 +11,7 @@
 #include "stream/library/context/run_watch.h"
 #include "stream/library/meshes/engine_sink.h"
 #include "stream/library/points/engine_points.h"
-#include "stream/plan/stream_options.h"
+#include "stream/plan/engine_options.h"
 
 namespace spillway::detail {
 

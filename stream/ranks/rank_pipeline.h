@@ -11,8 +11,8 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/distributed/ranks.h"
 #include "src/runtime/memory_budget.h"
+#include "stream/plan/engine_options.h"
 #include "stream/plan/run_trace.h"
-#include "stream/plan/stream_options.h"
 #include "stream/ranks/rank_checkpoints.h"
 #include "stream/source/point_source.h"
 

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "formats/points/common/point_reader.h"
-#include "stream/tiles/point_feed.h"
+#include "stream/points/point_feed.h"
 
 namespace spillway::detail {
 

@@ -12,8 +12,8 @@
 
 #include "formats/disk/file_system.h"
 #include "formats/points/common/point_reader.h"
+#include "stream/points/point_feed.h"
 #include "stream/source/source_facts.h"
-#include "stream/tiles/point_feed.h"
 
 namespace spillway::detail {
 

@@ -15,6 +15,7 @@
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
+#include "stream/points/point_feed.h"
 #include "stream/source/header_survey.h"
 #include "stream/source/input_crs.h"
 #include "stream/source/input_regions.h"
@@ -25,7 +26,6 @@
 #include "stream/source/source_crs.h"
 #include "stream/source/source_facts.h"
 #include "stream/source/thinning/thinning.h"
-#include "stream/tiles/point_feed.h"
 
 namespace spillway::detail {
 

@@ -8,8 +8,8 @@
 #include "formats/state/state_writer.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
+#include "stream/points/point_feed.h"
 #include "stream/source/point_filter.h"
-#include "stream/tiles/point_feed.h"
 #include "stream/tiles/regions/region_plan.h"
 
 namespace spillway::detail {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "src/geometry/framed_point.h"
-#include "stream/tiles/storage/points_view.h"
+#include "stream/points/points_view.h"
 
 namespace spillway::detail {
 

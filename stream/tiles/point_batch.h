@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "stream/points/point_feed.h"
 #include "stream/tiles/cuts/dealt_points.h"
-#include "stream/tiles/point_feed.h"
 #include "stream/tiles/storage/segment_reader.h"
 #include "stream/tiles/storage/tile.h"
 

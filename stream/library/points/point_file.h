@@ -17,7 +17,7 @@
 #include "stream/library/points/attribute_records.h"
 #include "stream/library/points/engine_points.h"
 #include "stream/library/points/lattice_rounding.h"
-#include "stream/tiles/storage/points_view.h"
+#include "stream/points/points_view.h"
 
 namespace spillway::detail {
 

@@ -9,8 +9,8 @@
 #include "src/geometry/point.h"
 #include "stream/checker/checker.h"
 #include "stream/library/context/run_watch.h"
+#include "stream/points/encoded_points.h"
 #include "stream/source/point_stream.h"
-#include "stream/tiles/storage/tile_block.h"
 
 namespace spillway::detail {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "stream/tiles/storage/tile_block.h"
+#include "stream/points/encoded_points.h"
 
 namespace spillway::detail {
 

@@ -8,8 +8,8 @@
 
 #include "src/parallel/parallel.h"
 #include "src/runtime/packing.h"
+#include "stream/points/encoded_points.h"
 #include "stream/tiles/cuts/dealt_points.h"
-#include "stream/tiles/storage/tile_block.h"
 
 namespace spillway::detail {
 namespace {

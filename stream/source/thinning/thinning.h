@@ -14,9 +14,9 @@
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
+#include "stream/points/encoded_points.h"
+#include "stream/points/point_buffer.h"
 #include "stream/source/thinning/point_runs.h"
-#include "stream/tiles/storage/point_buffer.h"
-#include "stream/tiles/storage/tile_block.h"
 
 namespace spillway::detail {
 

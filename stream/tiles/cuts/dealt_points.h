@@ -6,8 +6,8 @@
 
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
+#include "stream/points/points_view.h"
 #include "stream/tiles/cuts/cut_tree.h"
-#include "stream/tiles/storage/points_view.h"
 
 namespace spillway::detail {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "stream/tiles/storage/tile_block.h"
+#include "stream/points/encoded_points.h"
 
 namespace spillway::detail {
 namespace {

@@ -1,6 +1,6 @@
 #include "stream/tiles/storage/tile.h"
 
-#include "stream/tiles/storage/tile_block.h"
+#include "stream/points/encoded_points.h"
 
 namespace spillway::detail {
 

@@ -11,7 +11,7 @@
 #include "formats/state/state_writer.h"
 #include "src/error.h"
 #include "src/geometry/box.h"
-#include "stream/tiles/storage/point_buffer.h"
+#include "stream/points/point_buffer.h"
 #include "stream/tiles/storage/tile_segment.h"
 
 namespace spillway::detail {

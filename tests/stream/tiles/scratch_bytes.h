@@ -10,7 +10,7 @@
 
 #include "formats/disk/scratch_folder.h"
 #include "src/error.h"
-#include "stream/tiles/storage/tile_block.h"
+#include "stream/points/encoded_points.h"
 #include "stream/tiles/storage/tile_segment.h"
 
 namespace spillway::detail {

@@ -14,8 +14,8 @@
 #include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
 #include "src/geometry/point.h"
-#include "stream/tiles/storage/point_buffer.h"
-#include "stream/tiles/storage/points_view.h"
+#include "stream/points/point_buffer.h"
+#include "stream/points/points_view.h"
 
 namespace spillway::detail {
 

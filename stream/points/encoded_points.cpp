@@ -1,4 +1,4 @@
-#include "stream/tiles/storage/tile_block.h"
+#include "stream/points/encoded_points.h"
 
 #include <fmt/format.h>
 

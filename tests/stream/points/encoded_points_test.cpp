@@ -1,6 +1,6 @@
 // Points as blocks of a file, and back; corrupt blocks are refused.
 
-#include "stream/tiles/storage/tile_block.h"
+#include "stream/points/encoded_points.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

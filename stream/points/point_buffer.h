@@ -14,7 +14,7 @@
 #include "src/geometry/framed_point.h"
 #include "src/runtime/page_pool.h"
 #include "src/runtime/run_memory.h"
-#include "stream/tiles/storage/points_view.h"
+#include "stream/points/points_view.h"
 
 namespace spillway::detail {
 

@@ -1,6 +1,6 @@
 // Points come out of a buffer as they went in.
 
-#include "stream/tiles/storage/point_buffer.h"
+#include "stream/points/point_buffer.h"
 
 #include <gtest/gtest.h>
 
