@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include "src/delaunay/base_case/base_case.h"
@@ -11,99 +10,15 @@
 #include "src/geometry/lattice_check.h"
 #include "src/parallel/parallel.h"
 #include "stream/plan/memory_plan.h"
+#include "stream/run_stages.h"
 #include "stream/source/false_header.h"
 #include "stream/tiles/regions/region_plan.h"
-#include "stream/triangulate/tile_engine.h"
 
 namespace spillway::detail {
 namespace {
 
 /// How full cells of a plan are meant to get, of what a tile may have: densities differ.
 constexpr double kMostFill = 0.8;
-
-/// Points of a source as a tree of tiles takes them.
-PointFeed feed_of(PointStream& source, const StreamOptions& options, StageTimes& times) {
-  return {.fetch =
-              [&](SourcePiece& piece) {
-                StageTimer timer(times, Stage::kRead, StepOrder::kInOrder);
-                options.progress(source.points_read(), source.fraction_read());
-                const bool fetched = source.fetch(piece);
-                if (!piece.raw.unread) timer.move_bytes(piece.raw.bytes.size());
-                return fetched;
-              },
-          .decode =
-              [&](SourcePiece& piece, PointBlock& block) {
-                StageTimer timer(times, Stage::kRead);
-                if (piece.raw.unread) timer.move_bytes(piece.raw.bytes.size());
-                source.decode(piece, block);
-              }};
-}
-
-template <int D>
-void divide(TileEngine<D>& engine, const StreamOptions& options) {
-  if (!engine.is_to_divide()) return;
-  options.begin_phase("divide");
-  options.end_phase(engine.divide_large());
-}
-
-/// The next phase begins, with a checkpoint if that is due.
-template <int D>
-void begin(EnginePhase phase, TileEngine<D>& engine, const StreamOptions& options) {
-  if (engine.phase() == phase) return;
-  engine.begin_phase(phase);
-  if (options.checkpoints != nullptr && options.checkpoints->due_at_end_of_phase()) engine.save();
-}
-
-template <int D>
-void run(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
-         const StreamOptions& options) {
-  if (engine.phase() == EnginePhase::kSpill) {
-    options.begin_phase("read");
-    engine.spill(feed_of(source, options, engine.times()));
-    options.end_phase(source.points_read());
-    begin(EnginePhase::kDivide, engine, options);
-  }
-  if (engine.phase() == EnginePhase::kDivide) divide(engine, options);
-  options.begin_phase("triangulate");
-  const std::optional<TileNode<D>>& root = engine.take_nodes();
-  if (!root) refuse_empty_input(source.counts());
-  refuse_flat_points(engine.span(), engine.points());
-  // A sink that went on has it already.
-  if (engine.phase() != EnginePhase::kTriangulate) {
-    options.extent_known(plane_of(root->box), root->points);
-  }
-  if constexpr (D == 2) budget.set_enough(enough_memory<D>(root->points, options.record_size));
-  begin(EnginePhase::kTriangulate, engine, options);
-  engine.triangulate(*root, {});
-  options.end_phase(engine.points());
-}
-
-/// The box around the points of a feed, seen by many threads.
-class SeenExtent {
- public:
-  [[nodiscard]] PointFeed watched(PointFeed feed) {
-    return {
-        .fetch = std::move(feed.fetch),
-        .decode = [this, decode = std::move(feed.decode)](SourcePiece& piece, PointBlock& block) {
-          decode(piece, block);
-          const Box<2> box = plane_of(box_around(block.points));
-          const std::lock_guard lock(mutex_);
-          box_.expand(box);
-        }};
-  }
-
-  /// When all is read.
-  [[nodiscard]] const Box<2>& box() const { return box_; }
-
-  template <typename State>
-  void state(State& state) {
-    state(box_);
-  }
-
- private:
-  std::mutex mutex_;  ///< guards the next one
-  Box<2> box_;
-};
 
 /// What headers tell, as far as a run goes by it.
 struct Trust {
@@ -120,47 +35,20 @@ struct Trust {
   }
 };
 
-/// Triangulates while it reads. Throws FalseHeader if a point lies elsewhere, or if all together do
-/// not have the extent on which blocks rely.
-template <int D>
-void run_early(TileEngine<D>& engine, PointStream& source, MemoryBudget& budget,
-               const StreamOptions& options, const std::optional<Box<2>>& extent,
-               SeenExtent& seen) {
-  if constexpr (D == 2) {
-    budget.set_enough(enough_memory<D>(source.expected().value_or(0), options.record_size));
-  }
-  if (engine.phase() == EnginePhase::kSpill) {
-    options.begin_phase("read");
-    PointFeed feed = feed_of(source, options, engine.times());
-    engine.spill(extent ? seen.watched(std::move(feed)) : std::move(feed));
-    options.end_phase(source.points_read());
-    begin(EnginePhase::kDivide, engine, options);
-  }
-  if (engine.points() == 0) refuse_empty_input(source.counts());
-  if (extent && *extent != seen.box() && !options.extent_holds(seen.box())) {
-    throw FalseHeader(
-        Error("the points cannot be read again, and headers tell another extent than theirs",
-              ErrorCode::kBadInput, {.remedy = Remedy::kDistrustHeaders}),
-        "headers tell another extent than that of the points",
-        FalseHeader::Extent{seen.box(), engine.points()});
-  }
-  if (engine.phase() == EnginePhase::kDivide) divide(engine, options);
-  options.begin_phase("triangulate");
-  refuse_flat_points(engine.span(), engine.points());
-  begin(EnginePhase::kTriangulate, engine, options);
-  options.end_phase(engine.triangulate_rest());
+bool needs_extent(const RunSink& sink, int dimension) {
+  return sink.wants_extent() && dimension == 2;
 }
 
 /// With a plan by which tiles are complete while other points are still to be read; without, if the
 /// source does not tell where its points lie, or if too few tiles would be complete early; or if it
 /// does not tell an extent where one is needed.
-Trust trust_in(PointStream& source, int dimension, const MemoryBudget& budget,
-               const StreamOptions& options) {
-  if (!options.early || source.regions().empty()) return {};
-  std::size_t capacity = options.tile_capacity;
+Trust trust_in(PointStream& source, int dimension, const RunSetup& setup) {
+  const EngineOptions& options = setup.options;
+  if (!options.asked.trust_headers || source.regions().empty()) return {};
+  std::size_t capacity = options.asked.tile_points;
   if (capacity == 0) {
-    const MemoryPlan memory = plan_memory(budget.limit(), dimension, options.threads,
-                                          budget.whole(), true, options.record_size);
+    const MemoryPlan memory = plan_memory(setup.budget.limit(), dimension, options.threads,
+                                          setup.budget.whole(), true, options.record_size);
     capacity = tile_capacity_for(source.expected().value_or(0), memory);
   }
   Trust trust;
@@ -169,79 +57,148 @@ Trust trust_in(PointStream& source, int dimension, const MemoryBudget& budget,
                                       .most_points = kMostFill * static_cast<double>(capacity),
                                       .any_order = source.any_order()});
   if (!pays(*trust.plan)) return {};
-  if (options.needs_extent) {
+  if (needs_extent(setup.sink, dimension)) {
     trust.extent = source.told_extent();
-    if (!trust.extent || !options.extent_told(*trust.extent, source.expected().value_or(0))) {
+    if (!trust.extent || !setup.sink.extent_told(*trust.extent, source.expected().value_or(0))) {
       return {};
     }
   }
-  source.keep_to(*trust.plan);
+  source.keep_to(trust.plan->order);
   return trust;
 }
 
-/// What of a run outlives the process.
-template <int D>
-struct RunState {
-  TileEngine<D>& engine;
-  PointStream& source;
-  BlockSink& sink;
-  Trust& trust;
-  SeenExtent& seen;
+/// The points of a source; times how they are read.
+class TimedPoints final : public PointFeed {
+ public:
+  TimedPoints(PointStream& source, RunProgress& progress, StageTimes& times)
+      : source_(source), progress_(progress), times_(times) {}
 
-  void save(StateWriter& state) const {
-    state(trust, seen, engine);
-    source.save(state);
-    sink.save(state);
+  bool fetch(SourcePiece& piece) override {
+    StageTimer timer(times_, Stage::kRead, StepOrder::kInOrder);
+    progress_.tell(source_.points_read(), source_.fraction_read());
+    const bool fetched = source_.fetch(piece);
+    if (!piece.raw.unread) timer.move_bytes(piece.raw.bytes.size());
+    return fetched;
   }
-  /// All but the trust.
-  void restore(StateReader& state) const {
-    state(seen, engine);
-    source.restore(state);
-    sink.restore(state);
+  void decode(SourcePiece& piece, PointBlock& block) override {
+    StageTimer timer(times_, Stage::kRead);
+    if (piece.raw.unread) timer.move_bytes(piece.raw.bytes.size());
+    source_.decode(piece, block);
   }
+
+ private:
+  PointStream& source_;
+  RunProgress& progress_;
+  StageTimes& times_;
 };
 
-/// Points that do not come again are read to their end before there is a checkpoint.
+/// A run in one process. With a plan it triangulates while it reads, and throws FalseHeader if a
+/// point lies elsewhere, or if all together do not have the extent on which blocks rely.
 template <int D>
-void keep_checkpoints(RunState<D> run, Checkpoints& checkpoints) {
-  run.engine.rest_for(
-      {.due =
-           [&checkpoints, run, again = run.source.goes_on()] {
-             return (again || run.engine.phase() != EnginePhase::kSpill) && checkpoints.due();
-           },
-       .save = [&checkpoints,
-                run] { checkpoints.save([&run](StateWriter& state) { run.save(state); }); }});
-}
+class RunHere final : public RunStages<D> {
+ public:
+  RunHere(PointStream& points, BlockSink& blocks, const RunSetup& with, Trust& trust)
+      : RunStages<D>(points,
+                     {.lattice = points.lattice(),
+                      .count = points.expected(),
+                      .extent = points.extent(),
+                      .plan = trust.plan ? &*trust.plan : nullptr,
+                      .see_extent = trust.extent.has_value()},
+                     blocks, with),
+        blocks_(blocks),
+        trust_(trust),
+        again_(points.goes_on()) {
+    if (trust.plan) set_enough(points.expected().value_or(0));
+  }
 
-/// Goes on from `restored`, if it is set, which is used up.
-template <int D>
-RunFigures run_once(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
-                    MemoryBudget& budget, const StreamOptions& options, Trust& trust,
-                    std::unique_ptr<StateReader>& restored) {
-  TileEngine<D> engine({.lattice = source.lattice(),
-                        .count = source.expected(),
-                        .extent = source.extent(),
-                        .plan = trust.plan ? &*trust.plan : nullptr},
-                       sink, scratch, budget, options);
-  SeenExtent seen;
-  const RunState<D> state{engine, source, sink, trust, seen};
-  if (options.checkpoints != nullptr) keep_checkpoints(state, *options.checkpoints);
-  with_threads(engine.threads(), [&] {
-    if (restored) {
-      state.restore(*restored);
-      options.checkpoints->folder().restored(*restored);
-      restored.reset();
+  RunFigures run(std::unique_ptr<StateReader>& restored) {
+    with_threads(this->threads(), [&] {
+      if (restored) restore(*std::exchange(restored, nullptr));
+      this->walk();
+    });
+    release_base_case_memory();
+    if (const auto& trace = options().asked.trace) trace->end({.tasks = engine().task_sums()});
+    return engine().figures();
+  }
+
+ private:
+  using RunStages<D>::engine;
+  using RunStages<D>::source;
+  using RunStages<D>::stage;
+
+  [[nodiscard]] const EngineOptions& options() const { return this->setup().options; }
+
+  void set_enough(std::uint64_t points) const {
+    if constexpr (D == 2) {
+      this->setup().budget.set_enough(enough_memory<D>(points, options().record_size));
     }
-    if (trust.plan) {
-      run_early(engine, source, budget, options, trust.extent, seen);
-    } else {
-      run(engine, source, budget, options);
+  }
+
+  void read() override {
+    TimedPoints timed(source(), this->setup().progress, engine().times());
+    engine().spill(timed);
+    if (!trust_.plan) return;
+    if (engine().points() == 0) refuse_empty_input(source().counts());
+    if (trust_.extent) check_extent();
+  }
+
+  void check_extent() {
+    const Box<2>& seen = engine().seen_extent();
+    if (*trust_.extent == seen || this->setup().sink.extent_holds(seen)) return;
+    throw FalseHeader(
+        Error("the points cannot be read again, and headers tell another extent than theirs",
+              ErrorCode::kBadInput, {.remedy = Remedy::kDistrustHeaders}),
+        "headers tell another extent than that of the points",
+        FalseHeader::Extent{seen, engine().points()});
+  }
+
+  void survey() override {
+    if (trust_.plan) return refuse_flat_points(engine().span(), engine().points());
+    const std::optional<TileNode<D>>& root = engine().take_nodes();
+    if (!root) refuse_empty_input(source().counts());
+    refuse_flat_points(engine().span(), engine().points());
+    // A sink that went on has it already.
+    if (stage() != RunStage::kTriangulate) {
+      this->setup().sink.extent_known(plane_of(root->box), root->points);
     }
-  });
-  release_base_case_memory();
-  if (options.trace != nullptr) options.trace->end({.tasks = engine.task_sums()});
-  return engine.figures();
-}
+    set_enough(root->points);
+  }
+
+  std::uint64_t triangulate() override {
+    if (trust_.plan) return engine().triangulate_rest();
+    engine().triangulate(*engine().take_nodes(), {});
+    return engine().points();
+  }
+
+  [[nodiscard]] bool saves_before(RunStage next) const override {
+    return next != RunStage::kSurvey && options().checkpoints != nullptr &&
+           options().checkpoints->due_at_end_of_phase();
+  }
+  /// Points that do not come again are read to their end before there is a checkpoint.
+  [[nodiscard]] bool rest_is_due() const override {
+    return options().checkpoints != nullptr && (again_ || stage() != RunStage::kRead) &&
+           options().checkpoints->due();
+  }
+  void save() override {
+    options().checkpoints->save([this](StateWriter& state) {
+      state(trust_);
+      this->state(state);
+      source().save(state);
+      blocks_.save(state);
+    });
+  }
+  /// All but the trust.
+  void restore(StateReader& state) {
+    this->state(state);
+    source().restore(state);
+    blocks_.restore(state);
+    options().checkpoints->folder().restored(state);
+  }
+
+  BlockSink& blocks_;
+  Trust& trust_;
+  const bool again_;  ///< the points come again
+};
 
 /// As far as it went when the checkpoint was made.
 void restore_trust(StateReader& state, PointStream& source, Trust& trust) {
@@ -252,43 +209,44 @@ void restore_trust(StateReader& state, PointStream& source, Trust& trust) {
 
 /// Leaves of the trust what has held, and returns where blocks go now; nullptr if points or blocks
 /// are gone for good.
-BlockSink* begin_again(const FalseHeader& found, PointStream& source, const StreamOptions& options,
+BlockSink* begin_again(const FalseHeader& found, PointStream& source, const RunSetup& setup,
                        Trust& trust) {
   const std::uint64_t read = source.points_read();
   const bool boxes_hold = found.extent().has_value();
   if (!source.read_again(boxes_hold)) return nullptr;
-  BlockSink* const sink = options.begin_again();
-  if (sink == nullptr) return nullptr;
+  BlockSink* const blocks = setup.sink.begin_again();
+  if (blocks == nullptr) return nullptr;
+  if (const auto& trace = setup.options.asked.trace) trace->begin_again();
   release_base_case_memory();
-  if (!boxes_hold) options.end_phase(read);
-  options.warn(fmt::format("{}: all points are read again{}", found.finding(),
-                           boxes_hold ? "" : " before any is triangulated"));
+  setup.progress.end_phase(read);
+  setup.progress.warn(fmt::format("{}: all points are read again{}", found.finding(),
+                                  boxes_hold ? "" : " before any is triangulated"));
   if (boxes_hold) {
     trust.extent = found.extent()->box;
-    options.extent_known(found.extent()->box, found.extent()->points);
+    setup.sink.extent_known(found.extent()->box, found.extent()->points);
   } else {
     trust = {};
   }
-  return sink;
+  return blocks;
 }
 
 }  // namespace
 
 template <int D>
-RunFigures triangulate_stream(PointStream& source, BlockSink& sink, ScratchFolder& scratch,
-                              MemoryBudget& budget, const StreamOptions& options) {
-  const MemoryLease inputs(budget, source.known_bytes(), "what is known of the inputs");
+RunFigures triangulate_stream(PointStream& source, BlockSink& blocks, const RunSetup& setup) {
+  const MemoryLease inputs(setup.budget, source.known_bytes(), "what is known of the inputs");
+  Checkpoints* const checkpoints = setup.options.checkpoints;
   std::unique_ptr<StateReader> restored =
-      options.checkpoints != nullptr ? options.checkpoints->folder().open_checkpoint() : nullptr;
-  Trust trust = trust_in(source, D, budget, options);
+      checkpoints != nullptr ? checkpoints->folder().open_checkpoint() : nullptr;
+  Trust trust = trust_in(source, D, setup);
   if (restored) restore_trust(*restored, source, trust);
-  for (BlockSink* blocks = &sink;;) {
+  for (BlockSink* to = &blocks;;) {
     try {
-      return run_once<D>(source, *blocks, scratch, budget, options, trust, restored);
+      return RunHere<D>(source, *to, setup, trust).run(restored);
     } catch (const FalseHeader& found) {
-      if (options.checkpoints != nullptr) options.checkpoints->folder().forget_checkpoint();
-      blocks = begin_again(found, source, options, trust);
-      if (blocks == nullptr) throw;
+      if (checkpoints != nullptr) checkpoints->folder().forget_checkpoint();
+      to = begin_again(found, source, setup, trust);
+      if (to == nullptr) throw;
     }
   }
 }
@@ -300,9 +258,7 @@ void refuse_empty_mesh(const RunFigures& figures, const std::optional<double>& m
               ErrorCode::kDegenerateInput);
 }
 
-template RunFigures triangulate_stream<2>(PointStream&, BlockSink&, ScratchFolder&, MemoryBudget&,
-                                          const StreamOptions&);
-template RunFigures triangulate_stream<3>(PointStream&, BlockSink&, ScratchFolder&, MemoryBudget&,
-                                          const StreamOptions&);
+template RunFigures triangulate_stream<2>(PointStream&, BlockSink&, const RunSetup&);
+template RunFigures triangulate_stream<3>(PointStream&, BlockSink&, const RunSetup&);
 
 }  // namespace spillway::detail

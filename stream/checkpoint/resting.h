@@ -1,15 +1,16 @@
 #pragma once
 
-#include <functional>
-
 namespace spillway::detail {
 
-/// How a stage is asked to come to rest from time to time, so that its state can be saved.
-struct Checkpointing {
+/// Who asks a stage to come to rest from time to time, so that its state can be saved.
+class Resting {
+ public:
+  virtual ~Resting() = default;
+
   /// Whether the stage is to come to rest. For any thread.
-  std::function<bool()> due = [] { return false; };
+  [[nodiscard]] virtual bool rest_is_due() const { return false; }
   /// To be called once it has: no thread of it is at work.
-  std::function<void()> save = [] {};
+  virtual void save() {}
 };
 
 }  // namespace spillway::detail

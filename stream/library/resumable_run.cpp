@@ -21,6 +21,7 @@
 #include "stream/library/context/executor.h"
 #include "stream/library/meshes/mesh_file.h"
 #include "stream/library/meshes/mesh_passage.h"
+#include "stream/plan/run_trace.h"
 #include "stream/source/point_source.h"
 
 namespace spillway::detail {
@@ -37,7 +38,7 @@ const std::vector<std::string>& own_files() {
 }
 
 /// The state of checkpoints is laid out in this way.
-constexpr int kStateVersion = 1;
+constexpr int kStateVersion = 2;
 
 [[noreturn]] void refuse(const std::string& why) {
   throw InvalidArgument("this run cannot be resumed: " + why);
@@ -108,6 +109,26 @@ void remove_run(CheckpointFolder& folder) {
   folder.remove();
 }
 
+/// A mesh that a run writes into its folder.
+class MeshInFolder final : public RunSink {
+ public:
+  MeshInFolder(FileSystem& files, const std::string& path, const MeshStreamHeader& header)
+      : files_(files), path_(path), header_(header) {}
+
+  BlockSink* begin_again() override {
+    writer_.reset();
+    writer_ = open_spm_writer(files_.create(path_), header_);
+    return writer_.get();
+  }
+  void finish(const MeshTotals& totals) { writer_->finish(totals); }
+
+ private:
+  FileSystem& files_;
+  const std::string& path_;
+  const MeshStreamHeader header_;
+  std::unique_ptr<MeshStreamWriter> writer_;
+};
+
 /// A run and its folder.
 class ResumableRun {
  public:
@@ -115,7 +136,7 @@ class ResumableRun {
       : run_(run),
         folder_(run.options.resume_folder, *run.identity, own_files(), run.context.scratch_limit()),
         checkpoints_(folder_, run.options.checkpoint_seconds) {
-    run.stream.checkpoints = &checkpoints_;
+    run.engine.checkpoints = &checkpoints_;
   }
 
   Report run() {
@@ -142,6 +163,10 @@ class ResumableRun {
   }
 
  private:
+  [[nodiscard]] RunSetup setup(RunSink& sink) {
+    return {run_.engine, folder_.scratch(), run_.budget, sink, run_.watch};
+  }
+
   void say(const std::string& text) const {
     if (run_.context.options().warning) run_.context.options().warning(text);
   }
@@ -199,7 +224,7 @@ class ResumableRun {
     MeshStart start = run_.start();
     start.files = &folder_.outputs();
     start.scratch = &folder_.scratch();
-    Report report = triangulate_to(run_.sink.start(start), folder_.scratch(), run_);
+    Report report = triangulate_to(run_.sink.start(start), setup(run_.sink), run_);
     save_figures(kFiguresFile, report);
     run_.sink.complete(run_.watch, report);
     return report;
@@ -239,18 +264,10 @@ class ResumableRun {
   }
 
   void make_mesh(const std::string& path, Report& report) {
-    std::unique_ptr<MeshStreamWriter> writer;
-    const auto begin = [&]() -> BlockSink* {
-      writer.reset();
-      writer = open_spm_writer(folder_.outputs().create(path), run_.start().header);
-      return writer.get();
-    };
-    run_.stream.needs_extent = false;
-    run_.stream.extent_known = [](const Box<2>&, std::uint64_t) {};
-    run_.stream.begin_again = begin;
-    report = triangulate_to(*begin(), folder_.scratch(), run_);
+    MeshInFolder mesh(folder_.outputs(), path, run_.start().header);
+    report = triangulate_to(*mesh.begin_again(), setup(mesh), run_);
     save_figures(kFiguresFile, report);
-    writer->finish(report.mesh);
+    mesh.finish(report.mesh);
     folder_.forget_checkpoint();
   }
 

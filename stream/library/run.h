@@ -11,7 +11,7 @@
 #include "stream/library/context/run_watch.h"
 #include "stream/library/meshes/engine_sink.h"
 #include "stream/library/points/engine_points.h"
-#include "stream/plan/engine_options.h"
+#include "stream/plan/run_setup.h"
 
 namespace spillway::detail {
 
@@ -22,16 +22,18 @@ struct Run {
   RunWatch& watch;
   RunPoints points;
   EngineSink& sink;
-  StreamOptions stream;
+  EngineOptions engine;
   MemoryBudget budget;  ///< without what the sink takes for itself
   std::shared_ptr<ScratchFolder> scratch;
   std::optional<RunIdentity> identity{};  ///< of a run that can go on, if it is killed
 
+  /// For the engine.
+  [[nodiscard]] RunSetup setup() { return {engine, *scratch, budget, sink, watch}; }
   /// What the mesh's header says.
   [[nodiscard]] MeshStart start() const;
 };
 
 /// Triangulates in this process, and gives all blocks to `blocks`, which are not finished yet.
-Report triangulate_to(BlockSink& blocks, ScratchFolder& scratch, Run& run);
+Report triangulate_to(BlockSink& blocks, const RunSetup& setup, Run& run);
 
 }  // namespace spillway::detail

@@ -48,7 +48,7 @@ std::size_t cell_capacity(const SortOptions& options, const MemoryPlan& plan,
 void visit_points(StoredTile& stored, const std::function<void(const PointsView&)>& take) {
   for (StoredTile::Segment& segment : stored.segments) {
     PointBlock points;
-    for (const TileBlock& block : find_blocks(segment.bytes, segment.where)) {
+    for (const EncodedBlock& block : find_blocks(segment.bytes, segment.where)) {
       decode_points(std::span<const std::byte>(segment.bytes).subspan(block.offset, block.size),
                     segment.where, points);
       take(PointsView::of(points));
@@ -82,7 +82,28 @@ std::optional<Box<3>> extent_of(const RunPoints& points, const PointFile& file) 
   return file.placed(*points.extent);
 }
 
-class Sorting {
+/// Points as the file will have them.
+class PlacedPoints final : public PointFeed {
+ public:
+  PlacedPoints(PointStream& points, PointFile& file, RunWatch& watch)
+      : points_(points), file_(file), watch_(watch) {}
+
+  bool fetch(SourcePiece& piece) override {
+    watch_.tell(points_.points_read(), points_.fraction_read());
+    return points_.fetch(piece);
+  }
+  void decode(SourcePiece& piece, PointBlock& block) override {
+    points_.decode(piece, block);
+    file_.place(block);
+  }
+
+ private:
+  PointStream& points_;
+  PointFile& file_;
+  RunWatch& watch_;
+};
+
+class Sorting : private DealingWatch {
  public:
   Sorting(const RunPoints& points, PointFile& file, const Context& context, RunWatch& watch)
       : points_(*points.stream),
@@ -96,13 +117,12 @@ class Sorting {
         scratch_(context.state().scratch(context)),
         tree_({.dimension = file.sorted()->dimension,
                .capacity = capacity_,
-               .grown_capacity = grown_capacity(),
                .buffered_points = buffered_points(plan_),
                .expected = points_.expected(),
                .extent = extent_of(points, file),
                .record_size = record_size_,
                .batches = plan_.batches},
-              *scratch_, times_) {}
+              *scratch_, times_, *this) {}
 
   PointConversion run() {
     watch_.begin("read", "points");
@@ -129,40 +149,30 @@ class Sorting {
   /// Deals the points as the file will have them, so that points that rounding makes equal stay
   /// together.
   void deal() {
-    const auto fetch = [this](SourcePiece& piece) {
-      watch_.tell(points_.points_read(), points_.fraction_read());
-      return points_.fetch(piece);
-    };
-    const auto decode = [this](SourcePiece& piece, PointBlock& block) {
-      points_.decode(piece, block);
-      file_.place(block);
-    };
-    if (file_.decided()) {
-      tree_.fill({.fetch = fetch, .decode = decode});
-      return;
-    }
+    PlacedPoints placed(points_, file_, watch_);
+    if (file_.decided()) return tree_.fill(placed);
     SourcePiece piece;  // the first points decide, so they come before others
     tree_.fill([&](PointBlock& block) {
       block.clear();
-      while (block.size() == 0 && fetch(piece)) decode(piece, block);
+      while (block.size() == 0 && placed.fetch(piece)) placed.decode(piece, block);
       return block.size() > 0;
     });
   }
 
   /// Where it is not known how many points come: what is known of cells must not outgrow memory.
-  std::function<std::size_t(std::uint64_t)> grown_capacity() {
-    if (points_.expected()) return {};
-    return [this](std::uint64_t points) {
-      capacity_ = cell_capacity(*file_.sorted(), plan_, points);
-      return capacity_;
-    };
+  [[nodiscard]] std::size_t capacity_for(std::uint64_t points) override {
+    if (points_.expected()) return 0;
+    return capacity_ = cell_capacity(*file_.sorted(), plan_, points);
+  }
+
+  void dealt_again(std::uint64_t points, double fraction) override {
+    watch_.tell(points, fraction);
   }
 
   void divide() {
     if (tree_.points_to_divide() == 0) return;
     watch_.begin("divide", "points");
-    watch_.end(tree_.divide_large(
-        [&](std::uint64_t points, double fraction) { watch_.tell(points, fraction); }));
+    watch_.end(tree_.divide_large());
   }
 
   void write() {
@@ -189,7 +199,7 @@ class Sorting {
     std::size_t taken = 0;
     const auto read = [&](std::size_t slot) {
       if (taken == cells.size()) return false;
-      slots[slot].stored = tree_.read(*cells[taken++]);
+      slots[slot].stored = tree_.loader().read(*cells[taken++]);
       return true;
     };
     const auto decode = [&](std::size_t slot) {

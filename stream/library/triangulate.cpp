@@ -14,7 +14,6 @@
 #include "stream/library/resumable_run.h"
 #include "stream/library/run.h"
 #include "stream/pipeline.h"
-#include "stream/plan/run_trace.h"
 #include "stream/source/point_source.h"
 
 namespace spillway::detail {
@@ -38,42 +37,6 @@ void check(const TriangulateOptions& options) {
   }
 }
 
-StreamOptions stream_options(const TriangulateOptions& options, const Context& context,
-                             EngineSink& sink, RunWatch& watch) {
-  StreamOptions stream;
-  stream.threads = context.threads();
-  stream.tile_capacity = options.tile_points;
-  stream.leaf_size = options.leaf_points;
-  stream.division = options.division;
-  stream.children = options.children;
-  stream.kernel = options.kernel;
-  stream.heights = options.heights;
-  stream.max_edge = options.max_edge;
-  stream.input_index = options.input_index;
-  stream.trace = options.trace.get();
-  stream.early = options.trust_headers;
-  stream.needs_extent = sink.wants_extent() && options.dimension == 2;
-  stream.extent_told = [&sink](const Box<2>& extent, std::uint64_t points) {
-    return sink.extent_told(extent, points);
-  };
-  stream.extent_holds = [&sink](const Box<2>& extent) { return sink.extent_holds(extent); };
-  stream.begin_again = [&sink, &options] {
-    BlockSink* const blocks = sink.begin_again();
-    if (blocks != nullptr && options.trace) options.trace->begin_again();
-    return blocks;
-  };
-  if (context.options().warning) stream.warn = context.options().warning;
-  stream.extent_known = [&sink](const Box<2>& extent, std::uint64_t points) {
-    sink.extent_known(extent, points);
-  };
-  stream.begin_phase = [&watch](const char* phase) { watch.begin(phase, "points"); };
-  stream.end_phase = [&watch](std::uint64_t points) { watch.end(points); };
-  stream.progress = [&watch](std::uint64_t points, std::optional<double> fraction) {
-    watch.tell(points, fraction);
-  };
-  return stream;
-}
-
 void check(const RunPoints& points, int dimension) {
   if (points.dimension != 0 && points.dimension != dimension) {
     throw InvalidArgument(fmt::format("the files were opened for {} dimensions, not for {}",
@@ -92,24 +55,23 @@ void check(const RunPoints& points, int dimension) {
 
 /// All of it in this process.
 Report triangulate_here(Run& run) {
-  Report report = triangulate_to(run.sink.start(run.start()), *run.scratch, run);
+  Report report = triangulate_to(run.sink.start(run.start()), run.setup(), run);
   run.sink.complete(run.watch, report);
   return report;
 }
 
 }  // namespace
 
-Report triangulate_to(BlockSink& blocks, ScratchFolder& scratch, Run& run) {
+Report triangulate_to(BlockSink& blocks, const RunSetup& setup, Run& run) {
   PointStream& points = *run.points.stream;
   Report report;
-  static_cast<RunFigures&>(report) =
-      run.options.dimension == 2
-          ? triangulate_stream<2>(points, blocks, scratch, run.budget, run.stream)
-          : triangulate_stream<3>(points, blocks, scratch, run.budget, run.stream);
-  if (report.threads < run.stream.threads && run.context.options().detail) {
+  static_cast<RunFigures&>(report) = run.options.dimension == 2
+                                         ? triangulate_stream<2>(points, blocks, setup)
+                                         : triangulate_stream<3>(points, blocks, setup);
+  if (report.threads < run.engine.threads && run.context.options().detail) {
     run.context.options().detail(
         fmt::format("{} of {} threads used: more of them need a larger memory limit",
-                    report.threads, run.stream.threads));
+                    report.threads, run.engine.threads));
   }
   report.dimension = run.options.dimension;
   report.points = points.counts();
@@ -161,10 +123,10 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
           .watch = watch,
           .points = points->begin(watch, index),
           .sink = *target,
-          .stream = stream_options(options, context, *target, watch),
+          .engine = {.asked = options, .threads = context.threads()},
           .budget = MemoryBudget(context.memory() - own, context.memory()),
           .scratch = context.state().scratch(context)};
-  run.stream.record_size = run.points.attributes.record_size();
+  run.engine.record_size = run.points.attributes.record_size();
   check(run.points, options.dimension);
   target->check_attributes(run.points.offered);
   if (!options.resume_folder.empty()) run.identity = identity_of(run, *points);

@@ -52,8 +52,8 @@ void append_all_points(std::vector<std::byte>& bytes, const PointsView& points) 
   }
 }
 
-std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes) {
-  std::vector<TileBlock> blocks;
+std::vector<EncodedBlock> encode_points(PointBuffer& points, std::vector<std::byte>& bytes) {
+  std::vector<EncodedBlock> blocks;
   points.drain_in_chunks([&](const PointBlock& some) {
     const std::size_t begin = bytes.size();
     append_points(bytes, PointsView::of(some));
@@ -62,8 +62,8 @@ std::vector<TileBlock> encode_points(PointBuffer& points, std::vector<std::byte>
   return blocks;
 }
 
-std::vector<TileBlock> find_blocks(std::span<const std::byte> bytes, const FileSpot& where) {
-  std::vector<TileBlock> blocks;
+std::vector<EncodedBlock> find_blocks(std::span<const std::byte> bytes, const FileSpot& where) {
+  std::vector<EncodedBlock> blocks;
   std::size_t offset = 0;
   while (bytes.size() - offset >= kBlockHeadSize) {
     const BlockHead head = decode_block_head(bytes.subspan(offset).first<kBlockHeadSize>(), where);

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 
 #include "formats/points/common/point_reader.h"
@@ -20,12 +19,16 @@ struct SourcePiece {
   std::shared_ptr<const PointReader> reader;  ///< lives until its last piece is decoded
 };
 
-/// Where a tree's points come from.
-struct PointFeed {
+/// Where points come from.
+class PointFeed {
+ public:
+  virtual ~PointFeed() = default;
+
   /// Takes the next piece, in order; false at the end.
-  std::function<bool(SourcePiece&)> fetch;
-  /// Makes points of a piece; called by many threads at a time.
-  std::function<void(SourcePiece&, PointBlock&)> decode;
+  virtual bool fetch(SourcePiece& piece) = 0;
+  /// Replaces `block` by the points of a piece, which is used up. Safe for many threads at a time.
+  /// A block may be empty before the end.
+  virtual void decode(SourcePiece& piece, PointBlock& block) = 0;
 };
 
 }  // namespace spillway::detail

@@ -40,8 +40,8 @@ class RankExecutor final : public Executor {
   }
 
   Report triangulate(Run& run) override {
-    if (run.stream.trace != nullptr &&
-        (run.stream.trace->takes_nodes() || run.stream.trace->takes_steps())) {
+    const RunTrace* const trace = run.options.trace.get();
+    if (trace != nullptr && (trace->takes_nodes() || trace->takes_steps())) {
       throw InvalidArgument("the tasks of a run over ranks are told as sums only");
     }
     detail::PointSource* const source = run.points.files;
@@ -72,8 +72,7 @@ class RankExecutor final : public Executor {
                        RankCheckpoints* checkpoints) const {
     const auto triangulate_shared =
         run.options.dimension == 2 ? triangulate_over_ranks<2> : triangulate_over_ranks<3>;
-    return triangulate_shared(source, blocks, *run.scratch, run.budget, run.stream, ranks_,
-                              checkpoints);
+    return triangulate_shared(source, blocks, run.setup(), ranks_, checkpoints);
   }
 
   /// The first rank tells what others found in the inputs.
@@ -95,7 +94,7 @@ class RankExecutor final : public Executor {
     tell_notices(run, source);
     Report report = shared_report(mesh, source.counts(), ranks_);
     const RunSums sums = shared_sums(mesh, ranks_);
-    if (run.stream.trace != nullptr) run.stream.trace->end(sums);
+    if (run.options.trace) run.options.trace->end(sums);
     report.dimension = run.options.dimension;
     report.skipped_files = source.skipped();
     report.on_lattice = source.lattice().has_value();

@@ -20,7 +20,7 @@
 #include "stream/ranks/exchange/rank_division.h"
 #include "stream/ranks/merges/rank_merges.h"
 #include "stream/ranks/rank_tree.h"
-#include "stream/triangulate/tile_engine.h"
+#include "stream/run_stages.h"
 
 namespace spillway::detail {
 namespace {
@@ -42,105 +42,115 @@ constexpr std::uint64_t kUsualPieces = 4;
 constexpr std::uint64_t kMergedBytes = 300;
 
 template <int D>
-class RankRun {
+class RankRun final : public RunStages<D> {
  public:
-  RankRun(PointSource& source, BlockSink& sink, ScratchFolder& scratch, MemoryBudget& budget,
-          const StreamOptions& options, const Ranks& ranks, RankCheckpoints* checkpoints)
-      : source_(source),
-        sink_(sink),
-        scratch_(scratch),
-        budget_(budget),
-        options_(options),
+  RankRun(PointSource& points, BlockSink& blocks, const RunSetup& with, const Ranks& ranks,
+          RankCheckpoints* checkpoints)
+      : RunStages<D>(points, share_of(points, with.options, ranks), blocks, with),
+        source_(points),
+        blocks_(blocks),
+        options_(with.options),
+        budget_(with.budget),
         ranks_(ranks),
-        checkpoints_(checkpoints),
-        engine_({source.lattice(), expected_share(), std::nullopt, is_indexed(options)}, sink,
-                scratch, budget, options) {
-    if (checkpoints_ == nullptr) return;
-    engine_.rest_for({.due = [this] { return rests(); }, .save = [this] { save(); }});
-  }
+        checkpoints_(checkpoints) {}
 
   RankMesh run() {
-    with_threads(engine_.threads(), [&] {
+    with_threads(this->threads(), [&] {
       if (checkpoints_ != nullptr) restore();
-      if (engine_.phase() == EnginePhase::kSpill) read();
-      // What was saved in that phase was so at its end, and other ranks may have gone on alone.
-      if (engine_.phase() == EnginePhase::kDivide && !restored_) divide_tiles();
-      options_.begin_phase("triangulate");
-      const std::optional<TileNode<D>> own = engine_.take_nodes();
-      const RankTree<D> tree(division_, own, ranks_);
-      if (tree.nodes().empty()) refuse_empty();
-      const TileNode<D>& all = *tree.nodes().back().tiles;
-      refuse_flat(all.points);
-      run_collective_step(ranks_, [&] { options_.extent_known(plane_of(all.box), all.points); });
-      if (restored_) restore_sink();
-      engine_.begin_phase(EnginePhase::kTriangulate);
-      if constexpr (D == 2) {
-        budget_.set_enough(enough_memory<D>(all.points, options_.record_size) +
-                           all.points * (kMergedBytes + options_.record_size));
-      }
-      RankMerges<D> merges(tree, engine_, budget_, options_, ranks_);
-      if (tree.own_node()) triangulate(tree, merges);
-      collect(tree);
-      options_.end_phase(result_.totals.points);
+      this->walk();
     });
     release_base_case_memory();
     return std::move(result_);
   }
 
  private:
+  using RunStages<D>::engine;
+  using RunStages<D>::setup;
+  using RunStages<D>::stage;
+
   /// The index tells which of several equal points comes first: attributes depend on it, and in the
   /// plane heights.
-  [[nodiscard]] static bool is_indexed(const StreamOptions& options) {
-    return D == 2 || options.input_index || options.record_size > 0;
+  [[nodiscard]] static bool is_indexed(const EngineOptions& options) {
+    return D == 2 || options.asked.input_index || options.record_size > 0;
   }
 
-  [[nodiscard]] std::optional<std::uint64_t> expected_share() const {
-    const std::optional<std::uint64_t> expected = source_.expected();
-    return expected ? std::optional(*expected / static_cast<std::uint64_t>(ranks_.size()))
-                    : std::nullopt;
+  /// What is expected of one rank's points.
+  [[nodiscard]] static ExpectedPoints share_of(const PointSource& points,
+                                               const EngineOptions& options, const Ranks& ranks) {
+    ExpectedPoints share{.lattice = points.lattice(), .ordered_by_index = is_indexed(options)};
+    if (points.expected())
+      share.count = *points.expected() / static_cast<std::uint64_t>(ranks.size());
+    return share;
   }
 
-  void read() {
-    options_.begin_phase("read");
+  void read() override {
     find_pieces();
     const MemoryLease lease(budget_, bytes_under_way(), "points on their way between ranks");
     traffic_ = distributed::traffic();
-    exchange_.emplace(*pieces_, division_, ranks_, most_, is_indexed(options_), engine_.times());
+    exchange_.emplace(*pieces_, division_, ranks_, most_, is_indexed(options_), engine().times());
     if (checkpoints_ != nullptr) exchange_->rest_when([this] { return checkpoints_->due(); });
     if (restored_) {
       (*restored_)(*exchange_);
-      restore_sink();
+      restore_blocks();
     }
-    const auto report = [&] { options_.progress(source_.points_read(), exchange_->fraction()); };
-    engine_.spill({.fetch = [&](SourcePiece& batch) { return exchange_->fetch(batch, report); },
-                   .decode = [&](SourcePiece& batch,
-                                 PointBlock& block) { exchange_->decode(batch, block); }});
+    exchange_->tell_rounds(
+        [this] { setup().progress.tell(source_.points_read(), exchange_->fraction()); });
+    engine().spill(*exchange_);
     count_traffic();
     result_.exchanged_points = exchange_->points_sent();
-    if (options_.input_index && !pieces_->numbered()) {
+    if (options_.asked.input_index && !pieces_->numbered()) {
       records_before_ = exchange_->records_before();
       count_indices_through();
     }
     exchange_.reset();
     pieces_.reset();
-    options_.end_phase(of_all_ranks(source_.points_read()));
-    engine_.begin_phase(EnginePhase::kDivide);
+  }
+
+  void survey() override {
+    const std::optional<TileNode<D>>& own = engine().take_nodes();
+    tree_.emplace(division_, own, ranks_);
+    if (tree_->nodes().empty()) refuse_empty();
+    const TileNode<D>& all = *tree_->nodes().back().tiles;
+    refuse_flat(all.points);
+    run_collective_step(ranks_, [&] { setup().sink.extent_known(plane_of(all.box), all.points); });
+    if (restored_) restore_blocks();
+    if constexpr (D == 2) {
+      budget_.set_enough(enough_memory<D>(all.points, options_.record_size) +
+                         all.points * (kMergedBytes + options_.record_size));
+    }
+  }
+
+  std::uint64_t triangulate() override {
+    RankMerges<D> merges(*tree_, engine(), setup(), ranks_);
+    if (tree_->own_node()) merge_tiles(*tree_, merges);
+    collect(*tree_);
+    return result_.totals.points;
+  }
+
+  [[nodiscard]] std::uint64_t of_all(std::uint64_t count) const override {
+    ranks_.reduce(std::span(&count, 1), Reduction::kSum);
+    return count;
+  }
+
+  /// From the survey on each rank saves its own.
+  [[nodiscard]] bool saves_before(RunStage next) const override {
+    return checkpoints_ != nullptr && next == RunStage::kSurvey;
   }
 
   /// What there is to read, and which rank gets what.
   void find_pieces() {
     if (restored_) {
-      pieces_.emplace(source_, ranks_, engine_.times(), *restored_);
+      pieces_.emplace(source_, ranks_, engine().times(), *restored_);
       return;
     }
     // How much of the reading it is that comes before the exchange is not known.
-    pieces_.emplace(source_, ranks_, scratch_, engine_.times(),
-                    [&] { options_.progress(source_.points_read(), std::nullopt); });
+    pieces_.emplace(source_, ranks_, setup().scratch, engine().times(),
+                    [&] { setup().progress.tell(source_.points_read(), std::nullopt); });
     auto [division, sample] = divide_among_ranks<D>(*pieces_, ranks_);
     division_ = std::move(division);
     const auto cell = division_.cell_of(ranks_.rank());
     if (cell && source_.extent()) {
-      engine_.expect(common_part(*cell, *source_.extent()), std::move(sample));
+      engine().expect(common_part(*cell, *source_.extent()), std::move(sample));
     }
     most_ = round();
   }
@@ -163,26 +173,27 @@ class RankRun {
   /// Indices that name pieces count through all inputs when they are needed.
   void count_indices_through() {
     if (records_before_.empty()) return;
-    engine_.replace_indices(
+    engine().replace_indices(
         [this](std::span<std::uint64_t> index) { count_through(index, records_before_); });
   }
 
   /// Ranks come to rest together while points go from one to another, and each by itself while its
   /// tiles are triangulated.
-  [[nodiscard]] bool rests() const {
+  [[nodiscard]] bool rest_is_due() const override {
+    if (checkpoints_ == nullptr) return false;
     if (exchange_) return exchange_->rests();
-    return engine_.phase() == EnginePhase::kTriangulate && checkpoints_->due();
+    return stage() == RunStage::kTriangulate && checkpoints_->due();
   }
 
-  void save() {
+  void save() override {
     if (exchange_) count_traffic();
     const auto write = [this](StateWriter& state) {
-      this->state(state);
+      transfer(state);
       source_.save_counts(state);
       if (exchange_) state(*pieces_, *exchange_);
-      sink_.save(state);
+      blocks_.save(state);
     };
-    if (engine_.phase() == EnginePhase::kTriangulate) {
+    if (stage() == RunStage::kTriangulate) {
       checkpoints_->save_alone(write);
     } else {
       checkpoints_->save_together(write);
@@ -190,42 +201,29 @@ class RankRun {
     if (exchange_) exchange_->rested();
   }
 
-  /// Of what is there in each phase.
+  /// Of what is there in each stage.
   template <typename State>
-  void state(State& state) {
+  void transfer(State& state) {
     state.section("rank");
     state(division_, most_, records_before_, result_.exchanged_bytes, result_.exchanged_messages,
-          result_.exchanged_points, engine_);
+          result_.exchanged_points);
+    this->state(state);
   }
 
-  /// All but what is made later: pieces, the exchange, and the sink's state, which comes last.
+  /// All but what is made later: pieces, the exchange, and the state of the blocks, which comes
+  /// last.
   void restore() {
     restored_ = checkpoints_->open();
     if (!restored_) return;
-    state(*restored_);
+    transfer(*restored_);
     source_.restore_counts(*restored_);
     count_indices_through();
   }
 
-  void restore_sink() {
-    sink_.restore(*restored_);
+  void restore_blocks() {
+    blocks_.restore(*restored_);
     checkpoints_->restored(*restored_);
     restored_.reset();
-  }
-
-  /// A phase of all ranks if any has tiles that are too large.
-  void divide_tiles() {
-    if (of_all_ranks(engine_.points_to_divide()) > 0) {
-      options_.begin_phase("divide");
-      options_.end_phase(of_all_ranks(engine_.divide_large()));
-    }
-    if (checkpoints_ != nullptr) engine_.save();  // from here on each rank saves its own
-  }
-
-  /// The sum of what each rank counts. Collective.
-  [[nodiscard]] std::uint64_t of_all_ranks(std::uint64_t count) const {
-    ranks_.reduce(std::span(&count, 1), Reduction::kSum);
-    return count;
   }
 
   [[nodiscard]] std::uint64_t piece_bytes() const {
@@ -240,7 +238,7 @@ class RankRun {
     const auto limit = static_cast<double>(budget_.limit());
     std::array<std::uint64_t, 2> most = {
         std::clamp<std::uint64_t>(static_cast<std::uint64_t>(limit * kOwnShare) / piece_bytes(), 1,
-                                  std::max<std::uint64_t>(kUsualPieces, engine_.threads())),
+                                  std::max<std::uint64_t>(kUsualPieces, engine().threads())),
         std::max<std::uint64_t>(
             1, static_cast<std::uint64_t>(limit * kArrivingShare) / arriving_bytes())};
     ranks_.reduce(most, Reduction::kLeast);
@@ -255,8 +253,8 @@ class RankRun {
   /// What the points of all ranks span is what the points of each span, together.
   void refuse_flat(std::uint64_t points) const {
     Packer own;
-    own.put_list(engine_.span().facts().points);
-    own.put(engine_.span().facts().others);
+    own.put_list(engine().span().facts().points);
+    own.put(engine().span().facts().others);
     const auto facts_of_ranks = ranks_.gather(own.bytes(), 0);
     run_collective_step(ranks_, [&] {
       if (ranks_.rank() != 0) return;
@@ -273,13 +271,13 @@ class RankRun {
   }
 
   /// This rank's tiles, and its part in merges.
-  void triangulate(const RankTree<D>& tree, RankMerges<D>& merges) {
+  void merge_tiles(const RankTree<D>& tree, RankMerges<D>& merges) {
     const std::uint32_t own = *tree.own_node();
     const auto& node = tree.nodes()[own];
-    Border<D> border = engine_.triangulate(*node.tiles, node.outside);
+    Border<D> border = engine().triangulate(*node.tiles, node.outside);
     for (BorderVertex<D>& vertex : border.vertices) {
       if (vertex.place.announced()) {
-        vertex.place = shared_place(node.first_section, engine_.number_of(vertex.place));
+        vertex.place = shared_place(node.first_section, engine().number_of(vertex.place));
       }
     }
     merges.run(std::move(border));
@@ -289,8 +287,8 @@ class RankRun {
 
   /// Puts together what all ranks have: the sections of the stream, and the totals.
   void collect(const RankTree<D>& tree) {
-    result_.task_sums = engine_.task_sums();
-    result_.figures = engine_.figures();
+    result_.task_sums = engine().task_sums();
+    result_.figures = engine().figures();
     number_sections(tree);
     for (SectionDraft& draft : drafts_) {
       MergedSection& merged = result_.merged.emplace_back(std::move(draft.section));
@@ -307,7 +305,7 @@ class RankRun {
                                        totals.hull_facets, result_.figures.left_out};
     ranks_.reduce(sums, Reduction::kSum);
     totals = {.points = sums[0], .duplicates = sums[1], .canonical_hash = sums[2]};
-    totals.hull_facets = options_.max_edge ? open_facets() : sums[3];
+    totals.hull_facets = options_.asked.max_edge ? open_facets() : sums[3];
     result_.left_out = sums[4];
     for (const StreamSection& section : result_.sections) {
       totals.vertices += section.vertices;
@@ -357,7 +355,7 @@ class RankRun {
              {.largest_message = largest_message(budget_, ranks_), .received = &received})) {
       for (const auto& facet : some) met.toggle(facet);
     }
-    return of_all_ranks(met.count());
+    return of_all(met.count());
   }
 
   /// Those of this rank alone, in numbers of the whole stream.
@@ -365,7 +363,7 @@ class RankRun {
     OpenFacets<D> own;
     if (result_.own_section) {
       const std::uint64_t first = result_.sections[*result_.own_section].first_vertex;
-      for (auto facet : engine_.open_facets()) {
+      for (auto facet : engine().open_facets()) {
         for (std::uint64_t& v : facet) v += first;
         own.toggle(facet);
       }
@@ -378,10 +376,9 @@ class RankRun {
   }
 
   PointSource& source_;
-  BlockSink& sink_;
-  ScratchFolder& scratch_;
+  BlockSink& blocks_;
+  const EngineOptions& options_;
   MemoryBudget& budget_;
-  const StreamOptions& options_;
   const Ranks& ranks_;
   RankCheckpoints* const checkpoints_;     ///< or null
   std::unique_ptr<StateReader> restored_;  ///< until all of it is read
@@ -391,24 +388,23 @@ class RankRun {
   std::optional<PointExchange> exchange_;
   distributed::Traffic traffic_;               ///< when it was counted last
   std::vector<std::uint64_t> records_before_;  ///< each piece, if indices name pieces
-  TileEngine<D> engine_;
-  std::vector<SectionDraft> drafts_;  ///< before numbers are known
+  std::optional<RankTree<D>> tree_;            ///< once it is surveyed
+  std::vector<SectionDraft> drafts_;           ///< before numbers are known
   RankMesh result_;
 };
 
 }  // namespace
 
 template <int D>
-RankMesh triangulate_over_ranks(PointSource& source, BlockSink& sink, ScratchFolder& scratch,
-                                MemoryBudget& budget, const StreamOptions& options,
+RankMesh triangulate_over_ranks(PointSource& source, BlockSink& blocks, const RunSetup& setup,
                                 const Ranks& ranks, RankCheckpoints* checkpoints) {
-  return RankRun<D>(source, sink, scratch, budget, options, ranks, checkpoints).run();
+  return RankRun<D>(source, blocks, setup, ranks, checkpoints).run();
 }
 
-template RankMesh triangulate_over_ranks<2>(PointSource&, BlockSink&, ScratchFolder&, MemoryBudget&,
-                                            const StreamOptions&, const Ranks&, RankCheckpoints*);
-template RankMesh triangulate_over_ranks<3>(PointSource&, BlockSink&, ScratchFolder&, MemoryBudget&,
-                                            const StreamOptions&, const Ranks&, RankCheckpoints*);
+template RankMesh triangulate_over_ranks<2>(PointSource&, BlockSink&, const RunSetup&, const Ranks&,
+                                            RankCheckpoints*);
+template RankMesh triangulate_over_ranks<3>(PointSource&, BlockSink&, const RunSetup&, const Ranks&,
+                                            RankCheckpoints*);
 
 std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<std::string> paths,
                                                 PointSourceOptions options, const Ranks& ranks) {

@@ -7,11 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "formats/disk/scratch_folder.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/distributed/ranks.h"
-#include "src/runtime/memory_budget.h"
-#include "stream/plan/engine_options.h"
+#include "stream/plan/run_setup.h"
 #include "stream/plan/run_trace.h"
 #include "stream/ranks/rank_checkpoints.h"
 #include "stream/source/point_source.h"
@@ -57,12 +55,11 @@ struct RankMesh {
 /// The pipeline over ranks: they share the reading of `source`, whose points have an index; each
 /// gets the points of its part of space and triangulates them against the boxes of all tiles
 /// everywhere; what is left at the borders between them they merge together. With `checkpoints` it
-/// goes on from the last one. `sink` takes what the tiles of this rank make final, and is not
-/// finished yet; `scratch` and `budget` are those of the rank. Collective. Errors that all ranks
+/// goes on from the last one. `blocks` take what the tiles of this rank make final, and are not
+/// finished yet; the setup is that of the rank. Collective. Errors that all ranks
 /// share are thrown by rank 0, while the others wait to be ended.
 template <int D>
-RankMesh triangulate_over_ranks(PointSource& source, BlockSink& sink, ScratchFolder& scratch,
-                                MemoryBudget& budget, const StreamOptions& options,
+RankMesh triangulate_over_ranks(PointSource& source, BlockSink& blocks, const RunSetup& setup,
                                 const distributed::Ranks& ranks,
                                 RankCheckpoints* checkpoints = nullptr);
 

@@ -7,11 +7,11 @@
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
+#include "stream/points/input_region.h"
 #include "stream/source/piece_sequence.h"
 #include "stream/source/point_filter.h"
 #include "stream/source/source_coordinates.h"
 #include "stream/source/source_facts.h"
-#include "stream/tiles/regions/region_plan.h"
 
 namespace spillway::detail {
 

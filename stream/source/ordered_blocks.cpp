@@ -13,7 +13,7 @@ constexpr std::size_t kSlots = 6;
 
 }  // namespace
 
-void for_each_block(const PointFeed& feed, const std::function<void(PointBlock&)>& take) {
+void for_each_block(PointFeed& feed, const std::function<void(PointBlock&)>& take) {
   struct Slot {
     SourcePiece piece;
     PointBlock block;

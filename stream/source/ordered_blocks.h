@@ -9,6 +9,6 @@ namespace spillway::detail {
 
 /// Reads a feed to its end: decodes pieces on all threads, and calls take() for one block at a time
 /// in the order of the pieces.
-void for_each_block(const PointFeed& feed, const std::function<void(PointBlock&)>& take);
+void for_each_block(PointFeed& feed, const std::function<void(PointBlock&)>& take);
 
 }  // namespace spillway::detail

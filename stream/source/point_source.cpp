@@ -119,11 +119,11 @@ bool PointSource::any_order() const {
   return std::ranges::none_of(facts_.inputs, &SourceFacts::Input::opens_once);
 }
 
-void PointSource::keep_to(const RegionPlan& plan) {
-  positions_.resize(plan.regions.size());
-  for (std::size_t p = 0; p < positions_.size(); ++p) positions_[plan.regions[p]] = p;
+void PointSource::keep_to(const RegionOrder& order) {
+  positions_.resize(order.regions.size());
+  for (std::size_t p = 0; p < positions_.size(); ++p) positions_[order.regions[p]] = p;
   std::vector<ReadingTurn> turns;
-  for (const std::size_t unit : plan.units) turns.push_back(regions_.turns()[unit]);
+  for (const std::size_t unit : order.units) turns.push_back(regions_.turns()[unit]);
   pieces_.read_in_order(std::move(turns));
 }
 
@@ -281,14 +281,21 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
 
 /// The points of all inputs reach the cells in their order.
 void PointSource::thin_inputs() {
-  for_each_block(
-      {.fetch =
-           [this](SourcePiece& piece) {
-             options_.progress(points_read(), fraction_read());
-             return pieces_.fetch(piece);
-           },
-       .decode = [this](SourcePiece& piece, PointBlock& block) { decode_input(piece, block); }},
-      [this](PointBlock& block) { thinning_->add(block); });
+  class InputPoints final : public PointFeed {
+   public:
+    explicit InputPoints(PointSource& source) : source_(source) {}
+    bool fetch(SourcePiece& piece) override {
+      source_.options_.progress(source_.points_read(), source_.fraction_read());
+      return source_.pieces_.fetch(piece);
+    }
+    void decode(SourcePiece& piece, PointBlock& block) override {
+      source_.decode_input(piece, block);
+    }
+
+   private:
+    PointSource& source_;
+  } points(*this);
+  for_each_block(points, [this](PointBlock& block) { thinning_->add(block); });
   thinned_ = true;
 }
 

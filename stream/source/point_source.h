@@ -135,7 +135,7 @@ class PointSource : public PointStream {
   [[nodiscard]] std::span<const InputRegion> regions() const override;
   [[nodiscard]] std::uint64_t known_bytes() const override;
   [[nodiscard]] bool any_order() const override;
-  void keep_to(const RegionPlan& plan) override;
+  void keep_to(const RegionOrder& order) override;
   /// Nothing if a filter is set; or if it may be too large, and points come from a pipe.
   [[nodiscard]] std::optional<Box<2>> told_extent() const override;
   bool read_again(bool as_planned) override;

@@ -8,23 +8,16 @@
 #include "formats/state/state_writer.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
+#include "stream/points/input_region.h"
 #include "stream/points/point_feed.h"
 #include "stream/source/point_filter.h"
-#include "stream/tiles/regions/region_plan.h"
 
 namespace spillway::detail {
 
 /// The points of a run as the pipeline takes them.
-class PointStream {
+/// They are on lattice() if that is set, else in output coordinates.
+class PointStream : public PointFeed {
  public:
-  virtual ~PointStream() = default;
-
-  /// Takes the next piece, in order; false at the end.
-  virtual bool fetch(SourcePiece& piece) = 0;
-  /// Replaces `block` by the points of a piece, which is used up: on lattice() if that is set, else
-  /// in output coordinates. Safe for many threads at a time. A block may be empty before the end.
-  virtual void decode(SourcePiece& piece, PointBlock& block) = 0;
-
   /// The lattice on which all points lie, if there is one.
   [[nodiscard]] virtual const std::optional<Lattice>& lattice() const = 0;
   /// About how many points will come, where that can be told; rather too many.
@@ -41,7 +34,7 @@ class PointStream {
   [[nodiscard]] virtual bool any_order() const { return false; }
   /// From now on pieces come as planned, with their region. decode() throws
   /// FalseHeader for a point outside of it.
-  virtual void keep_to(const RegionPlan& /*plan*/) {}
+  virtual void keep_to(const RegionOrder& /*order*/) {}
   /// The box that all points just fill in x and y, in the coordinates of decode(), if they fill the
   /// boxes that headers tell of; nothing where something is known to keep them from that.
   [[nodiscard]] virtual std::optional<Box<2>> told_extent() const { return std::nullopt; }

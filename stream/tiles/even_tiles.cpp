@@ -1,12 +1,8 @@
-// Tiles of which larger ones can be put together, whatever the order in which the points came.
+#include "stream/tiles/even_tiles.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <optional>
-#include <utility>
-#include <vector>
 
-#include "stream/tiles/tile_tree.h"
+#include "stream/tiles/regions/region_plan.h"
 
 namespace spillway::detail {
 namespace {
@@ -24,68 +20,37 @@ void append_numbers(const CutTree& cuts, CutTree::NodeRef ref,
   for (const CutTree::NodeRef side : cuts.sides(ref)) append_numbers(cuts, side, numbers);
 }
 
-/// The tiles in the order of the tree: their numbers depend on threads.
+/// A plan for the tiles that there are, all of which are complete, in the order of cells.
+RegionPlan plan_of(const TileTable& table, double most_points) {
+  const int dimension = table.options.dimension;
+  std::vector<InputRegion> regions;
+  for (const std::uint32_t number : numbers_in_order(table.cuts)) {
+    const Tile& tile = table.tiles[number];
+    const std::uint64_t points =
+        std::min<std::uint64_t>(tile.points, table.capacity);  // equal ones
+    if (points > 0) regions.push_back({0, tile.box, points});
+  }
+  std::vector<InputRegion> in_order;
+  for (const std::size_t r : nested_order(regions, dimension)) in_order.push_back(regions[r]);
+  return plan_regions(in_order,
+                      {.dimension = dimension, .most_points = most_points, .any_order = false});
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> numbers_in_order(const CutTree& cuts) {
   std::vector<std::uint32_t> numbers;
   append_numbers(cuts, cuts.root(), numbers);
   return numbers;
 }
 
-}  // namespace
-
-/// A plan for the tiles that there are, all of which are complete, in the order of cells.
-RegionPlan TileTree::plan_anew(double most_points) const {
-  std::vector<InputRegion> regions;
-  for (const std::uint32_t number : numbers_in_order(cuts_)) {
-    const Tile& tile = tiles_[number];
-    const std::uint64_t points = std::min<std::uint64_t>(tile.points, capacity_);  // equal ones
-    if (points > 0) regions.push_back({0, tile.box, points});
-  }
-  std::vector<InputRegion> in_order;
-  for (const std::size_t r : nested_order(regions, options_.dimension)) {
-    in_order.push_back(regions[r]);
-  }
-  return plan_regions(
-      in_order, {.dimension = options_.dimension, .most_points = most_points, .any_order = false});
+bool tiles_nest(const TileTable& table) {
+  const double together = kTilesTogether * static_cast<double>(table.capacity);
+  return plan_of(table, together).most_waiting <= kMostWaiting * together;
 }
 
-bool TileTree::nests() const {
-  if (points_ == 0) return true;
-  const double together = kTilesTogether * static_cast<double>(capacity_);
-  return plan_anew(together).most_waiting <= kMostWaiting * together;
-}
-
-void TileTree::divide_evenly() {
-  if (points_ == 0) return;
-  CutTree cuts = plan_anew(kEvenFill * static_cast<double>(capacity_)).cuts;
-  if (cuts.tiles() == 1) return;
-  const std::vector<std::uint32_t> numbers = numbers_in_order(cuts_);
-  std::vector<Tile> old = std::exchange(tiles_, std::vector<Tile>(cuts.tiles()));
-  cuts_ = std::move(cuts);  // no batch is under way
-  ++cuts_made_;
-  std::optional<std::uint64_t> last;
-  for (const std::uint32_t number : numbers) {
-    for (TileSegment& segment : old[number].segments) {
-      last = std::max(last, std::optional(segment.last_arrival()));
-      leave_over(cuts_.root(), std::move(segment));
-    }
-  }
-  for (Tile& tile : tiles_) {
-    tile.cut_at = cuts_made_;
-    tile.last_left_over = last;
-  }
-  for (const std::uint32_t number : numbers) {
-    Batch batch;
-    room_ -= old[number].room();
-    for (HeldPoints& held : old[number].held) {
-      if (held.arrival) held.run = ++runs_;  // points of other tiles may have had the same one
-      deal_held(std::move(held), batch);
-    }
-    if (room_ > most_room()) spill_some(batch);
-    encode(batch);
-    write(batch);
-  }
-  if (left_over_points_ == 0) cut_long();
+CutTree even_cuts(const TileTable& table) {
+  return plan_of(table, kEvenFill * static_cast<double>(table.capacity)).cuts;
 }
 
 }  // namespace spillway::detail

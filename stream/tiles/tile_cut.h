@@ -36,6 +36,9 @@ bool is_clearly_hollow(std::span<const LatticePoint> sample, int dimension);
 /// sample.
 bool some_cut_pays(std::span<const LatticePoint> sample, int dimension);
 
+/// About as many points as the sample of a tile has by which it is cut.
+constexpr std::size_t kCutSamples = 256;
+
 /// Where to cut it: into shares that are not too uneven, and so that few segments lie on both
 /// sides; into sides that are compact, or, if it is hollow, so that few points of the sample have
 /// simplices across the cut. Nothing if all its points are equal. There are points on both sides.

@@ -1,40 +1,36 @@
-// From the filled tree to the points of its tiles.
+#include "stream/tiles/tile_loader.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
 
+#include "formats/state/state_reader.h"
+#include "formats/state/state_writer.h"
 #include "src/parallel/parallel.h"
+#include "stream/points/encoded_points.h"
 #include "stream/tiles/equal_points.h"
-#include "stream/tiles/tile_tree.h"
+#include "stream/tiles/storage/segment_reader.h"
+#include "stream/tiles/tile_cut.h"
 
 namespace spillway::detail {
 namespace {
-
-/// An arrival after all others.
-constexpr std::uint64_t kLast = std::numeric_limits<std::uint64_t>::max();
-
-/// What waits without an arrival came last.
-template <typename Held>
-std::uint64_t arrival_of(const Held& held) {
-  return held.arrival.value_or(kLast - 1);
-}
 
 /// Calls one of the two for each part of a tile, in the order in which they came.
 template <typename OnDisk, typename InMemory>
 void visit_parts(Tile tile, const OnDisk& on_disk, const InMemory& in_memory) {
   std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
-  std::ranges::stable_sort(tile.held, {}, arrival_of<HeldPoints>);
+  std::ranges::stable_sort(tile.held, {}, &HeldPoints::arrival_or_last);
   auto held = tile.held.begin();
   const auto visit_held_before = [&](std::uint64_t arrival) {
-    for (; held != tile.held.end() && arrival_of(*held) < arrival; ++held) in_memory(held->buffer);
+    for (; held != tile.held.end() && held->arrival_or_last() < arrival; ++held)
+      in_memory(held->buffer);
   };
   for (TileSegment& segment : tile.segments) {
     visit_held_before(segment.arrival);
     on_disk(std::move(segment));
   }
-  visit_held_before(kLast);
+  visit_held_before(HeldPoints::kAfterAll);
 }
 
 void append_stored(Tile tile, std::vector<StoredTile::Segment>& stored) {
@@ -89,19 +85,37 @@ StoredTile one_of(Tile tile, int dimension, Heights heights) {
   return stored;
 }
 
+using TakenTiles = std::unordered_map<std::uint32_t, Tile>;
+
+void transfer_taken(StateReader& state, TakenTiles& taken) {
+  std::vector<NumberedTile> tiles;
+  state(tiles);
+  taken.clear();
+  for (NumberedTile& tile : tiles) taken.emplace(tile.number, std::move(tile.tile));
+}
+
+void transfer_taken(StateWriter& state, TakenTiles& taken) {
+  std::uint64_t size = taken.size();
+  state(size);
+  for (auto& [tile_number, tile] : taken) {
+    std::uint32_t number = tile_number;
+    state(number, tile);
+  }
+}
+
 }  // namespace
 
 /// What is below a node: one tile that may be joined with its neighbour, or others.
 template <int D>
-struct TileTree::Joinable {
+struct TileLoader::Joinable {
   std::optional<TileNode<D>> tile{};
   bool others = false;
 };
 
 /// Appends all tiles below a node but the one that is returned.
 template <int D>
-TileTree::Joinable<D> TileTree::join_below(CutTree::NodeRef ref,
-                                           std::vector<TileNode<D>>& tiles) const {
+TileLoader::Joinable<D> TileLoader::join_below(CutTree::NodeRef ref,
+                                               std::vector<TileNode<D>>& tiles) const {
   if (CutTree::is_tile(ref)) {
     const auto taken = taken_.find(CutTree::tile_at(ref));
     if (taken == taken_.end()) return {};
@@ -113,12 +127,12 @@ TileTree::Joinable<D> TileTree::join_below(CutTree::NodeRef ref,
     node.stored = {CutTree::tile_at(ref)};
     return {std::move(node)};
   }
-  const auto refs = cuts_.sides(ref);
+  const auto refs = table_.cuts.sides(ref);
   std::array<Joinable<D>, 2> sides = {join_below<D>(refs[0], tiles), join_below<D>(refs[1], tiles)};
   auto& [below, above] = sides;
   if (!below.tile && !below.others) return std::move(above);
   if (!above.tile && !above.others) return std::move(below);
-  if (below.tile && above.tile && fit_together(*below.tile, *above.tile, capacity_)) {
+  if (below.tile && above.tile && fit_together(*below.tile, *above.tile, table_.capacity)) {
     TileNode<D>& joined = *below.tile;
     joined.box.expand(above.tile->box);
     joined.points += above.tile->points;
@@ -131,44 +145,41 @@ TileTree::Joinable<D> TileTree::join_below(CutTree::NodeRef ref,
   return {.others = true};
 }
 
-/// Of tiles that have been taken.
 template <int D>
-std::optional<TileNode<D>> TileTree::nodes_below(CutTree::NodeRef ref) const {
-  const std::shared_lock cuts_lock(cuts_mutex_);
+std::optional<TileNode<D>> TileLoader::nodes_below(CutTree::NodeRef ref) const {
+  const std::shared_lock cuts_lock(table_.cuts_mutex);
   const std::lock_guard lock(taken_mutex_);
   std::vector<TileNode<D>> tiles;
   Joinable<D> all = join_below<D>(ref, tiles);
   if (all.tile) tiles.push_back(std::move(*all.tile));
   if (tiles.empty()) return std::nullopt;
-  if (tiles.size() > 1 || options_.plan != nullptr) {
+  if (tiles.size() > 1 || table_.options.plan != nullptr) {
     const auto stored = [this](std::uint32_t number) -> const Tile& { return taken_.at(number); };
     isolated([&] {
       parallel_for(tiles.size(), 1, [&](std::size_t, std::size_t t, std::size_t) {
-        sketches_.sketch<D>(tiles[t], stored, points_to_come());
+        sketches_.sketch<D>(tiles[t], stored, table_.points_to_come());
       });
     });
   }
   return tree_over(std::move(tiles));
 }
 
-/// Tiles below a node get no more points. What is known of their segments waits until they are
-/// read, so it is made short.
-void TileTree::take_below(CutTree::NodeRef ref) {
+void TileLoader::take_below(CutTree::NodeRef ref) {
   if (!CutTree::is_tile(ref)) {
-    for (const CutTree::NodeRef side : cuts_.sides(ref)) take_below(side);
+    for (const CutTree::NodeRef side : table_.cuts.sides(ref)) take_below(side);
     return;
   }
   const std::uint32_t number = CutTree::tile_at(ref);
-  Tile tile = std::exchange(tiles_[number], {});
+  Tile tile = std::exchange(table_.tiles[number], {});
   if (tile.points == 0) return;
-  room_ -= tile.room();
-  segments_ -= tile.segments.size();
+  table_.room -= tile.room();
+  table_.segments -= tile.segments.size();
   if (tile.segments.size() > 1) {
     std::ranges::stable_sort(tile.segments, {}, &TileSegment::arrival);
-    const std::lock_guard lock(stretches_mutex_);
+    const std::lock_guard lock(table_.stretches_mutex);
     join_all_segments(tile.segments, [&tile](std::uint64_t before, std::uint64_t after) {
       return std::ranges::any_of(tile.held, [=](const HeldPoints& held) {
-        return arrival_of(held) >= before && arrival_of(held) < after;
+        return held.arrival_or_last() >= before && held.arrival_or_last() < after;
       });
     });
   }
@@ -176,56 +187,21 @@ void TileTree::take_below(CutTree::NodeRef ref) {
   taken_.emplace(number, std::move(tile));
 }
 
-std::uint64_t TileTree::spill_complete() {
-  constexpr std::size_t kTogether = 64;
-  std::uint64_t memory = 0;
-  std::shared_ptr<ScratchFile> file;  // one of all tiles
-  Batch batch;
-  const auto write_some = [&] {
-    parallel_for(batch.spills.size(), 1, [&](std::size_t, std::size_t s, std::size_t) {
-      encode_points(batch.spills[s].points, batch.spills[s].bytes);
-    });
-    write(batch);
-  };
+std::vector<Tile*> TileLoader::waiting() {
+  std::vector<Tile*> tiles;
+  for (auto& [number, tile] : taken_) tiles.push_back(&tile);
+  return tiles;
+}
+
+std::uint64_t TileLoader::held_bytes() const {
+  std::uint64_t bytes = 0;
   const std::lock_guard lock(taken_mutex_);
-  for (auto& [number, tile] : taken_) {
-    memory += tile.held_bytes();
-    for (HeldPoints& held : std::exchange(tile.held, {})) {
-      const std::uint64_t points = held.buffer.size();
-      if (!file) file = folder_.create("complete");
-      auto stretch = std::make_shared<FileStretch>(file);
-      tile.segments.push_back({.stretch = stretch,
-                               .first_spill = tile.spills,
-                               .end_spill = tile.spills + 1,
-                               .points = points,
-                               .arrival = arrival_of(held),
-                               .box = held.box});
-      ++tile.spills;
-      batch.spills.push_back({std::move(held.buffer), std::move(stretch), points, {}, {}});
-      if (batch.spills.size() == kTogether) write_some();
-    }
-  }
-  write_some();
-  return memory;
+  for (const auto& [number, tile] : taken_) bytes += tile.held_bytes();
+  return bytes;
 }
 
 template <int D>
-std::optional<TileNode<D>> TileTree::take_nodes() {
-  take_below(cuts_.root());
-  std::optional<TileNode<D>> root = nodes_below<D>(cuts_.root());
-  // What was known of tiles that were filled would take memory from those that are read.
-  std::vector<Tile>(1).swap(tiles_);
-  cuts_ = CutTree(options_.dimension);
-  return root;
-}
-
-template <int D>
-std::optional<TileNode<D>> TileTree::take_cell(std::uint32_t cell) {
-  return nodes_below<D>(cell_roots_[cell]);
-}
-
-template <int D>
-bool TileTree::on_disk(const TileNode<D>& node) const {
+bool TileLoader::on_disk(const TileNode<D>& node) const {
   const std::lock_guard lock(taken_mutex_);
   return std::ranges::any_of(node.stored, [this](std::uint32_t number) {
     const auto taken = taken_.find(number);
@@ -233,17 +209,18 @@ bool TileTree::on_disk(const TileNode<D>& node) const {
   });
 }
 
-Tile TileTree::take(std::uint32_t number) {
+Tile TileLoader::take(std::uint32_t number) {
   const std::lock_guard lock(taken_mutex_);
   const auto taken = taken_.extract(number);
   return taken.empty() ? Tile{} : std::move(taken.mapped());
 }
 
 template <int D>
-StoredTile TileTree::read(const TileNode<D>& node) {
+StoredTile TileLoader::read(const TileNode<D>& node) {
   StageTimer timer(times_, Stage::kLoad, StepOrder::kInOrder);
-  if (options_.one_of_equal && node.points > capacity_ && node.box.lo == node.box.hi) {
-    return one_of(take(node.stored.front()), options_.dimension, *options_.one_of_equal);
+  if (table_.options.one_of_equal && node.points > table_.capacity && node.box.lo == node.box.hi) {
+    return one_of(take(node.stored.front()), table_.options.dimension,
+                  *table_.options.one_of_equal);
   }
   StoredTile stored;
   stored.points = node.points;
@@ -253,17 +230,17 @@ StoredTile TileTree::read(const TileNode<D>& node) {
 }
 
 template <int D>
-TilePoints<D> TileTree::decode(StoredTile stored) const {
+TilePoints<D> TileLoader::decode(StoredTile stored) const {
   TilePoints<D> result;
   result.left_out = stored.left_out;
-  result.resize(stored.points, options_.index, options_.record_size);
+  result.resize(stored.points, table_.options.index, table_.options.record_size);
   std::size_t position = 0;
   const auto put = [&](std::size_t first, const PointsView& some) {
     for (std::size_t i = 0; i < some.size(); ++i) result.set(first + i, some.points[i]);
     result.set_carried(first, some);
   };
   for (StoredTile::Segment& segment : stored.segments) {
-    const std::vector<TileBlock> blocks = find_blocks(segment.bytes, segment.where);
+    const std::vector<EncodedBlock> blocks = find_blocks(segment.bytes, segment.where);
     std::vector<std::size_t> first(blocks.size());
     for (std::size_t b = 0; b < first.size(); ++b) {
       first[b] = position;
@@ -287,15 +264,21 @@ TilePoints<D> TileTree::decode(StoredTile stored) const {
   return result;
 }
 
-template std::optional<TileNode<2>> TileTree::take_nodes<2>();
-template std::optional<TileNode<3>> TileTree::take_nodes<3>();
-template std::optional<TileNode<2>> TileTree::take_cell<2>(std::uint32_t);
-template std::optional<TileNode<3>> TileTree::take_cell<3>(std::uint32_t);
-template bool TileTree::on_disk<2>(const TileNode<2>&) const;
-template bool TileTree::on_disk<3>(const TileNode<3>&) const;
-template StoredTile TileTree::read<2>(const TileNode<2>&);
-template StoredTile TileTree::read<3>(const TileNode<3>&);
-template TilePoints<2> TileTree::decode<2>(StoredTile) const;
-template TilePoints<3> TileTree::decode<3>(StoredTile) const;
+template std::optional<TileNode<2>> TileLoader::nodes_below<2>(CutTree::NodeRef) const;
+template std::optional<TileNode<3>> TileLoader::nodes_below<3>(CutTree::NodeRef) const;
+template bool TileLoader::on_disk<2>(const TileNode<2>&) const;
+template bool TileLoader::on_disk<3>(const TileNode<3>&) const;
+template StoredTile TileLoader::read<2>(const TileNode<2>&);
+template StoredTile TileLoader::read<3>(const TileNode<3>&);
+template TilePoints<2> TileLoader::decode<2>(StoredTile) const;
+template TilePoints<3> TileLoader::decode<3>(StoredTile) const;
+
+template <typename State>
+void TileLoader::state(State& state) {
+  transfer_taken(state, taken_);
+}
+
+template void TileLoader::state(StateReader&);
+template void TileLoader::state(StateWriter&);
 
 }  // namespace spillway::detail

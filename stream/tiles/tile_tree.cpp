@@ -1,20 +1,15 @@
 #include "stream/tiles/tile_tree.h"
 
 #include <algorithm>
+#include <mutex>
 #include <utility>
 
 #include "src/parallel/parallel.h"
+#include "stream/points/encoded_points.h"
+#include "stream/tiles/even_tiles.h"
 
 namespace spillway::detail {
 namespace {
-
-/// Full buffers are emptied by this share of them.
-constexpr std::size_t kSpillShare = 8;
-/// Most segments of a tile that are told apart.
-constexpr std::size_t kMostSegments = 6;
-/// What a tile and a segment take in memory, in points that wait.
-constexpr std::size_t kTileRoom = 40;
-constexpr std::size_t kSegmentRoom = 12;
 
 /// Blocks that points are decoded into before they are dealt: as many as are decoded at a time.
 class SpareBlocks {
@@ -36,71 +31,113 @@ class SpareBlocks {
   std::vector<PointBlock> blocks_;  // guarded by mutex_
 };
 
+/// Points that need no decoding.
+class ReadyPoints final : public PointFeed {
+ public:
+  explicit ReadyPoints(const std::function<bool(PointBlock&)>& read) : read_(read) {}
+  bool fetch(SourcePiece& piece) override { return read_(piece.raw.decoded); }
+  void decode(SourcePiece& piece, PointBlock& block) override {
+    std::swap(piece.raw.decoded, block);
+  }
+
+ private:
+  const std::function<bool(PointBlock&)>& read_;
+};
+
 }  // namespace
 
-TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times)
-    : options_(options),
-      folder_(folder),
-      times_(times),
-      sketches_(options.dimension, options.sketch_bytes),
-      cuts_(options.dimension),
-      tiles_(1),
-      capacity_(options.capacity) {
-  refuse_large_records(options.record_size);
-  if (options.plan == nullptr) return;
-  cuts_ = options.plan->cuts;
-  tiles_.resize(cuts_.tiles());
-  for (std::uint32_t cell = 0; cell < tiles_.size(); ++cell) {
-    tiles_[cell].cell = cell;
-    cell_roots_.push_back(CutTree::ref_of(cell));
+/// The first steps of a batch whose points come from a feed.
+class TileTree::FeedSteps {
+ public:
+  FeedSteps(TileTree& tree, PointFeed& feed) : tree_(tree), feed_(feed) {}
+
+  bool fetch(PointBatch& batch) {
+    if (!feed_.fetch(batch.piece)) return false;
+    if (tree_.table_.options.plan != nullptr) {
+      batch.arrival = batch.piece.arrival;
+      batch.region = batch.piece.region;
+      batch.run = batch.region + 1;
+    }
+    return true;
   }
-  cell_done_.resize(tiles_.size());
-  runs_ = options.plan->regions.size();  // each is a run
-  divided_ = true;
+  void decode(PointBatch& batch, PointBlock& points) {
+    feed_.decode(batch.piece, points);
+    if (!tree_.table_.options.index) points.index.clear();
+    tree_.watch_.decoded(points);
+  }
+
+ private:
+  TileTree& tree_;
+  PointFeed& feed_;
+};
+
+/// Those of a batch that is read back from the disk.
+class TileTree::StoredSteps {
+ public:
+  StoredSteps(SegmentReader& stored, StageTimes& times, const std::function<void()>& progress)
+      : stored_(stored), times_(times), progress_(progress) {}
+
+  bool fetch(PointBatch& batch) {
+    progress_();
+    if (!stored_.fetch(batch.stored)) return false;
+    batch.arrival = batch.stored.arrival;
+    batch.run = batch.stored.run;
+    return true;
+  }
+  void decode(PointBatch& batch, PointBlock& points) const {
+    const StageTimer timer(times_, Stage::kDeal);
+    decode_all_points(batch.stored.bytes, batch.stored.where, points);
+  }
+
+ private:
+  SegmentReader& stored_;
+  StageTimes& times_;
+  const std::function<void()>& progress_;
+};
+
+TileTree::TileTree(const TileTreeOptions& options, ScratchFolder& folder, StageTimes& times,
+                   DealingWatch& watch)
+    : times_(times),
+      watch_(watch),
+      table_(options),
+      sketches_(options.dimension, options.sketch_bytes),
+      spiller_(table_, sketches_, folder, times),
+      divider_(table_, watch),
+      dealer_(table_, divider_, spiller_, watch, times),
+      loader_(table_, sketches_, times),
+      cell_done_(table_.cell_roots.size()) {
+  refuse_large_records(options.record_size);
 }
 
-void TileTree::fill(const PointFeed& source, const CellDone& done) {
-  run_to_rest(
-      [&](Batch& batch) {
-        if (!source.fetch(batch.piece)) return false;
-        if (options_.plan != nullptr) {
-          batch.arrival = batch.piece.arrival;
-          batch.region = batch.piece.region;
-          batch.run = batch.region + 1;
-        }
-        return true;
-      },
-      [&](Batch& batch, PointBlock& points) {
-        source.decode(batch.piece, points);
-        if (!options_.index) points.index.clear();
-      },
-      done);
-  filled_ = true;
-  if (!divided_ && points_ > capacity_ && !stays_whole()) {
-    Batch batch;  // nothing is spilled
-    divide_first(batch);
+void TileTree::fill(PointFeed& source) {
+  run_to_rest(FeedSteps(*this, source));
+  table_.filled = true;
+  if (!table_.divided && table_.points > table_.capacity && !divider_.stays_whole()) {
+    deal_again(divider_.divide_first());
   }
-  if (divided_) cut_long();
+  if (table_.divided) divider_.cut_long();
 }
 
 void TileTree::fill(const std::function<bool(PointBlock&)>& source) {
-  fill({.fetch = [&](SourcePiece& piece) { return source(piece.raw.decoded); },
-        .decode = [](SourcePiece& piece,
-                     PointBlock& block) { std::swap(piece.raw.decoded, block); }});
+  ReadyPoints points(source);
+  fill(points);
 }
 
-void TileTree::run_batches(const Fetch& fetch, const Decode& decode, const CellDone& done) {
-  std::vector<Batch> batches(options_.batches);
+/// Sends batches through the steps.
+template <typename Steps>
+void TileTree::run_batches(Steps& steps) {
+  std::vector<PointBatch> batches(table_.options.batches);
   SpareBlocks spare;
-  const std::vector<PipelineStep> steps = {
+  bool is_first = true;
+  const std::vector<PipelineStep> pipeline = {
       {.in_order = false,
        .work =
            [&](std::size_t slot) {
              PointBlock& read = batches[slot].piece.raw.decoded;
              const bool is_decoded = read.size() > 0;  // then decode() only moves it
              PointBlock points = is_decoded ? PointBlock() : spare.take();
-             decode(batches[slot], points);
-             deal(batches[slot], points);
+             steps.decode(batches[slot], points);
+             dealer_.deal(batches[slot], points);
              if (is_decoded) {
                read = std::move(points);
              } else {
@@ -108,129 +145,60 @@ void TileTree::run_batches(const Fetch& fetch, const Decode& decode, const CellD
              }
            }},
       {.in_order = true, .work = [&](std::size_t slot) { append(batches[slot]); }},
-      {.in_order = false, .work = [&](std::size_t slot) { encode(batches[slot]); }},
+      {.in_order = false, .work = [&](std::size_t slot) { spiller_.encode(batches[slot]); }},
       {.in_order = true, .work = [&](std::size_t slot) {
-         Batch& batch = batches[slot];
-         write(batch);
+         PointBatch& batch = batches[slot];
+         spiller_.write(batch);
          // Only now everything of these cells is on the disk that has to go there.
-         for (const std::uint32_t cell : std::exchange(batch.cells_done, {})) done(cell);
+         for (const std::uint32_t cell : std::exchange(batch.cells_done, {})) {
+           watch_.cell_done(cell);
+         }
        }}};
   run_pipeline(
-      batches.size(), [&](std::size_t slot) { return fetch(batches[slot]); }, steps);
+      batches.size(),
+      [&](std::size_t slot) {
+        at_rest_ = !std::exchange(is_first, false) && watch_.rest_is_due();
+        return !at_rest_ && steps.fetch(batches[slot]);
+      },
+      pipeline);
 }
 
-/// As run_batches(), which comes to an end each time that a checkpoint is due, and is begun again.
-void TileTree::run_to_rest(const Fetch& fetch, const Decode& decode, const CellDone& done) {
-  for (bool at_rest = true; at_rest;) {
-    at_rest = false;
-    bool is_first = true;
-    run_batches(
-        [&](Batch& batch) {
-          at_rest = !is_first && checkpointing_.due();
-          is_first = false;
-          return !at_rest && fetch(batch);
-        },
-        decode, done);
-    if (at_rest) checkpointing_.save();
+/// The same, which comes to an end each time that a checkpoint is due, and is begun again.
+template <typename Steps>
+void TileTree::run_to_rest(Steps steps) {
+  for (at_rest_ = true; at_rest_;) {
+    at_rest_ = false;
+    run_batches(steps);
+    if (at_rest_) watch_.save();
   }
 }
 
-/// Groups a batch's points by tile.
-void TileTree::deal(Batch& batch, const PointBlock& points) const {
-  const StageTimer timer(times_, Stage::kDeal);
-  const std::shared_lock lock(cuts_mutex_);
-  batch.cuts_made = cuts_made_;
-  batch.dealt.deal(cuts_, points);
-}
-
-/// Puts a batch into the tiles' buffers, and takes out what has to go to the disk.
-void TileTree::append(Batch& batch) {
+void TileTree::append(PointBatch& batch) {
   const StageTimer timer(times_, Stage::kDeal, StepOrder::kInOrder);
-  ++batches_;
-  if (options_.plan != nullptr && !filled_) begin_region(batch.region, batch);
-  if (!filled_) {
-    points_ += batch.dealt.points.size();
-    if (options_.grown_capacity) capacity_ = options_.grown_capacity(points_);
-  }
-  const std::size_t tiles = tiles_.size();
-  append_dealt(std::exchange(batch.dealt, {}), batch);
-  if (room_ > most_room() && !divided_) divide_first(batch);
-  if (tiles_.size() > tiles && options_.tiles_made) options_.tiles_made(tiles_.size());
-  if (room_ > most_room()) spill_some(batch);
-}
-
-void TileTree::append_dealt(const DealtPoints& dealt, Batch& batch) {
-  for (const PointRun& run : dealt.runs) {
-    const PointsView points = dealt.points_of(run);
-    if (tiles_[run.tile].cut_at <= batch.cuts_made) {
-      append_points(run.tile, points, run.box, batch);
-      continue;
-    }
-    PointBlock block;  // the tile has been cut since
-    points.append_to(block);
-    DealtPoints again;
-    again.deal(cuts_, block);
-    Batch now;
-    now.arrival = batch.arrival;
-    now.run = batch.run;
-    now.cuts_made = cuts_made_;
-    append_dealt(again, now);
-    std::ranges::move(now.spills, std::back_inserter(batch.spills));
-  }
-}
-
-void TileTree::append_points(std::uint32_t number, const PointsView& points, const Box<3>& box,
-                             Batch& batch) {
-  Tile& tile = tiles_[number];
-  const bool other_run = !tile.held.empty() && tile.held.back().run != batch.run;
-  if (other_run && options_.plan == nullptr) spill(number, batch);
-  if (other_run || tile.held.empty()) {
-    tile.held.push_back({.arrival = batch.arrival, .run = batch.run});
-  }
-  tile.used = batches_;
-  put(tile.held.back(), tile, points, box);
-  if (filled_) tile.expected = std::max(0.0, tile.expected - static_cast<double>(points.size()));
-  if (divided_ && outgrown(tile)) cut_in_two(number, filled_);
-}
-
-/// Puts points of that box into a buffer of a tile.
-void TileTree::put(HeldPoints& held, Tile& tile, const PointsView& points, const Box<3>& box) {
-  tile.points += points.size();
-  tile.box.expand(box);
-  held.box.expand(box);
-  room_ -= held.buffer.room();
-  held.buffer.append(points);
-  room_ += held.buffer.room();
+  if (table_.options.plan != nullptr && !table_.filled) begin_region(batch.region, batch);
+  dealer_.append(batch);
 }
 
 /// The regions before this one, by its position in the plan, have been read: their last cells are
 /// complete.
-void TileTree::begin_region(std::size_t region, Batch& batch) {
-  const RegionPlan& plan = *options_.plan;
-  for (; regions_begun_ < region; ++regions_begun_) {
-    for (const std::uint32_t cell : plan.done_after[regions_begun_]) finish_cell(cell, batch);
+void TileTree::begin_region(std::size_t region, PointBatch& batch) {
+  const RegionPlan& plan = *table_.options.plan;
+  for (std::size_t& begun = table_.regions_begun; begun < region; ++begun) {
+    for (const std::uint32_t cell : plan.done_after[begun]) finish_cell(cell, batch);
   }
 }
 
-void TileTree::finish_cell(std::uint32_t cell, Batch& batch) {
-  if (left_over_below(cell_roots_[cell])) return;
-  cut_long_below(cell_roots_[cell]);
-  take_below(cell_roots_[cell]);
+void TileTree::finish_cell(std::uint32_t cell, PointBatch& batch) {
+  if (divider_.left_over_below(table_.cell_roots[cell])) return;
+  divider_.cut_long_below(table_.cell_roots[cell]);
+  loader_.take_below(table_.cell_roots[cell]);
   cell_done_[cell] = true;
   batch.cells_done.push_back(cell);
 }
 
-bool TileTree::left_over_below(CutTree::NodeRef ref) const {
-  if (CutTree::is_tile(ref)) return false;
-  const auto cut = static_cast<std::size_t>(ref);
-  if (cut < left_over_.size() && !left_over_[cut].empty()) return true;
-  return std::ranges::any_of(cuts_.sides(ref),
-                             [this](CutTree::NodeRef side) { return left_over_below(side); });
-}
-
 std::vector<std::uint32_t> TileTree::finish() {
-  Batch last;
-  for (const std::vector<std::uint32_t>& cells : options_.plan->done_after) {
+  PointBatch last;
+  for (const std::vector<std::uint32_t>& cells : table_.options.plan->done_after) {
     for (const std::uint32_t cell : cells) {
       if (!cell_done_[cell]) finish_cell(cell, last);
     }
@@ -238,113 +206,87 @@ std::vector<std::uint32_t> TileTree::finish() {
   return std::move(last.cells_done);
 }
 
+std::uint64_t TileTree::divide_large() {
+  std::uint64_t all = dealt_again_ + points_to_divide();
+  double fraction = 0;  // what is found to be too large again does not take it back
+  const std::function<void()> progress = [&] {
+    const std::uint64_t done = dealt_again_ + dealing_again_->points();
+    all = std::max(all, done);
+    fraction = std::max(fraction, static_cast<double>(done) / static_cast<double>(all));
+    watch_.dealt_again(done, std::min(1.0, fraction));
+  };
+  while (is_to_divide()) {
+    if (!dealing_again_) begin_dealing_again();
+    run_to_rest(StoredSteps(*dealing_again_, times_, progress));
+    table_.runs = dealing_again_->last_run();
+    dealt_again_ += dealing_again_->points();
+    dealing_again_.reset();
+    for (Tile& tile : table_.tiles) {
+      tile.expected = 0;
+      tile.expected_box = {};
+    }
+    divider_.cut_long();
+    all += points_to_divide();
+  }
+  return std::exchange(dealt_again_, 0);
+}
+
+/// Divides tiles that are too large; what is on the disk of them is left over, too.
+void TileTree::begin_dealing_again() {
+  for (std::uint32_t t = 0; t < table_.tiles.size(); ++t) {
+    if (divider_.too_large(table_.tiles[t])) deal_again(divider_.divide(t));
+  }
+  dealing_again_.emplace(divider_.take_left_over(), table_.runs);
+}
+
+void TileTree::divide_evenly() {
+  if (points() == 0) return;
+  CutTree cuts = even_cuts(table_);
+  if (cuts.tiles() == 1) return;
+  for (Tile& tile : divider_.replace_tiles(std::move(cuts))) {
+    table_.room -= tile.room();
+    for (HeldPoints& held : tile.held) {
+      if (held.arrival)
+        held.run = ++table_.runs;  // points of other tiles may have had the same one
+    }
+    deal_again(std::move(tile.held));
+    PointBatch batch;
+    spiller_.spill_some(batch);
+    spill(batch);
+  }
+  if (divider_.left_over_points() == 0) divider_.cut_long();
+}
+
+void TileTree::deal_again(std::vector<HeldPoints> held) {
+  PointBatch batch;
+  dealer_.deal_again(std::move(held), batch);
+  spill(batch);
+}
+
+/// No batch is under way.
+void TileTree::spill(PointBatch& batch) {
+  if (batch.spills.empty()) return;
+  spiller_.encode(batch);
+  spiller_.write(batch);
+}
+
+template <int D>
+std::optional<TileNode<D>> TileTree::take_nodes() {
+  loader_.take_below(table_.cuts.root());
+  std::optional<TileNode<D>> root = loader_.nodes_below<D>(table_.cuts.root());
+  // What was known of tiles that were filled would take memory from those that are read.
+  std::vector<Tile>(1).swap(table_.tiles);
+  table_.cuts = CutTree(table_.options.dimension);
+  return root;
+}
+
 std::uint64_t TileTree::held_bytes() const {
-  std::uint64_t bytes = 0;
-  for (const Tile& tile : tiles_) bytes += tile.held_bytes();
-  const std::lock_guard lock(taken_mutex_);
-  for (const auto& [number, tile] : taken_) bytes += tile.held_bytes();
+  std::uint64_t bytes = loader_.held_bytes();
+  for (const Tile& tile : table_.tiles) bytes += tile.held_bytes();
   return bytes;
 }
 
-/// All points, as far as is known.
-std::uint64_t TileTree::points_to_come() const {
-  return std::max<std::uint64_t>({points_, options_.expected.value_or(0), 1});
-}
-
-/// Room for points that wait, besides what the tiles themselves take.
-std::size_t TileTree::most_room() const {
-  const std::size_t taken =
-      std::min(tiles_.size() * kTileRoom + segments_ * kSegmentRoom, options_.buffered_points / 2);
-  return options_.buffered_points - taken;
-}
-
-/// Tiles with larger weights go first: those that wait longest for points to come, and large ones.
-double TileTree::spill_weight(const Tile& tile) const {
-  const std::uint64_t age =
-      options_.plan == nullptr
-          ? batches_ - tile.used
-          : options_.plan->cells[tile.cell].done_after -
-                std::min(regions_begun_, options_.plan->cells[tile.cell].done_after);
-  return static_cast<double>(tile.waiting()) * static_cast<double>(1 + age);
-}
-
-/// Spills the buffers of the tiles that have not been used for long, or by the plan will not be
-/// complete for long, and large ones first.
-void TileTree::spill_some(Batch& batch) {
-  struct Full {
-    double weight;
-    std::uint32_t tile;
-  };
-  std::vector<Full> full;
-  for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
-    if (!tiles_[t].held.empty()) full.push_back({spill_weight(tiles_[t]), t});
-  }
-  std::ranges::sort(full, [this](const Full& a, const Full& b) {
-    if (a.weight != b.weight) return a.weight > b.weight;
-    return tiles_[a.tile].box.lo < tiles_[b.tile].box.lo;  // the numbers depend on threads
-  });
-  const std::size_t enough = most_room() - most_room() / kSpillShare;
-  for (auto next = full.begin(); next != full.end() && room_ > enough; ++next) {
-    spill(next->tile, batch);
-  }
-}
-
-void TileTree::spill(std::uint32_t number, Batch& batch) {
-  Tile& tile = tiles_[number];
-  if (!tile.file) tile.file = folder_.create("tile");
-  room_ -= tile.room();
-  std::vector<HeldPoints> parts = std::exchange(tile.held, {});
-  const bool tiles_are_made = options_.plan == nullptr && options_.expected && options_.extent;
-  if (!filled_ && !tiles_are_made) {  // it may be cut later
-    std::vector<HeldPoints> whole = std::exchange(parts, {});
-    for (HeldPoints& held : whole) {
-      append_segments_of(std::move(held), parts);
-    }
-  }
-  for (HeldPoints& held : parts) {
-    auto stretch = std::make_shared<FileStretch>(tile.file);
-    const std::uint64_t points = held.buffer.size();
-    std::shared_ptr<CellSketch> sketch = sketches_.begin(tile, held, points_to_come());
-    tile.segments.push_back({.stretch = stretch,
-                             .first_spill = tile.spills,
-                             .end_spill = tile.spills + 1,
-                             .points = points,
-                             .arrival = held.arrival.value_or(arrivals_),
-                             .box = held.box});
-    if (sketch) tile.segments.back().sketches.push_back(sketch);
-    if (!held.arrival) arrivals_ += points;
-    ++tile.spills;
-    ++segments_;
-    batch.spills.push_back(
-        {std::move(held.buffer), std::move(stretch), points, {}, std::move(sketch)});
-  }
-  if (tile.segments.size() <= kMostSegments || filled_ || options_.plan != nullptr) return;
-  const std::size_t before = tile.segments.size();
-  const std::lock_guard lock(stretches_mutex_);
-  join_segments(tile.segments, kMostSegments, options_.dimension);
-  segments_ -= before - tile.segments.size();
-}
-
-void TileTree::encode(Batch& batch) {
-  const StageTimer timer(times_, Stage::kSpill);
-  for (Spill& spill : batch.spills) {
-    if (spill.sketch) {
-      spill.points.visit([&](std::span<const LatticePoint> some) { spill.sketch->gather(some); });
-      spill.points.visit([&](std::span<const LatticePoint> some) { spill.sketch->measure(some); });
-    }
-    encode_points(spill.points, spill.bytes);
-  }
-}
-
-void TileTree::write(Batch& batch) {
-  StageTimer timer(times_, Stage::kSpill, StepOrder::kInOrder);
-  for (const Spill& spill : batch.spills) {
-    spill.stretch->append(spill.bytes, stretches_mutex_);
-    timer.move_bytes(spill.bytes.size());
-    bytes_written_ += spill.bytes.size();
-    points_written_ += spill.count;
-  }
-  batch.spills.clear();
-}
+template std::optional<TileNode<2>> TileTree::take_nodes<2>();
+template std::optional<TileNode<3>> TileTree::take_nodes<3>();
 
 }  // namespace spillway::detail

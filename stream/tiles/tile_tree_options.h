@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -17,12 +16,7 @@ namespace spillway::detail {
 /// How a TileTree deals its points.
 struct TileTreeOptions {
   int dimension = 2;
-  std::size_t capacity = 0;  ///< most points of one tile, equal points apart
-  /// If set, the capacity once there are so many points: at least as large, and ascending. What is
-  /// known of tiles takes memory, so there must not be too many.
-  std::function<std::size_t(std::uint64_t points)> grown_capacity{};
-  /// If set, is told how many tiles there are when there are more; may throw.
-  std::function<void(std::size_t tiles)> tiles_made{};
+  std::size_t capacity = 0;                 ///< most points of one tile, equal points apart
   std::size_t buffered_points = 0;          ///< most points waiting in memory
   std::optional<std::uint64_t> expected{};  ///< how many points will come, where that is known
   std::optional<Box<3>> extent{};           ///< where they will lie, where that is known
@@ -35,7 +29,7 @@ struct TileTreeOptions {
   /// So many points in memory may be one tile, though that is more than its capacity, if no cut of
   /// them pays.
   std::size_t largest_undivided = 0;
-  /// If set, read() makes one point of a tile of points that are one vertex, where they are more
+  /// If set, loading makes one point of a tile of points that are one vertex, where they are more
   /// than a tile may have: which one, in the plane, this tells.
   std::optional<Heights> one_of_equal{};
 };

@@ -11,7 +11,8 @@
 #include "src/delaunay/delaunay.h"
 #include "src/delaunay/division/divide.h"
 #include "src/parallel/parallel.h"
-#include "stream/tiles/tile_tree.h"
+#include "stream/tiles/storage/tile_points.h"
+#include "stream/tiles/tile_node.h"
 
 namespace spillway::detail {
 namespace {

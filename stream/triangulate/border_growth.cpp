@@ -1,9 +1,8 @@
 #include "stream/triangulate/border_growth.h"
+#include "stream/tiles/storage/tile_points.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "stream/points/encoded_points.h"
 
 namespace spillway::detail {
 namespace {

@@ -34,33 +34,41 @@ void count_shape(const Box<D>& box, TileShapes& shapes) {
 }  // namespace
 
 template <int D>
-TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& sink, ScratchFolder& scratch,
-                          MemoryBudget& budget, const StreamOptions& options)
-    : options_(options),
-      budget_(budget),
-      plan_(plan_for(options.threads, expected.plan != nullptr)),
-      counts_(budget),
-      held_points_(budget),
-      sketches_(budget),
+TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& blocks, const RunSetup& setup,
+                          Resting& resting)
+    : options_(setup.options),
+      budget_(setup.budget),
+      progress_(setup.progress),
+      resting_(resting),
+      plan_(plan_for(options_.threads, expected.plan != nullptr)),
+      counts_(budget_),
+      held_points_(budget_),
+      sketches_(budget_),
+      sees_extent_(expected.see_extent),
       expected_points_(expected.count.value_or(0)),
-      tree_(tree_options(expected), scratch, counts_.times),
-      sequencer_(sink, budget, {.max_edge = options.max_edge}, counts_.times),
-      context_{.options = tile_options(expected.lattice),
-               .budget = budget,
+      tree_(tree_options(expected), setup.scratch, counts_.times, *this),
+      sequencer_(blocks, budget_, {.max_edge = options_.asked.max_edge}, counts_.times),
+      context_{.asked = options_.asked,
+               .output = {.lattice = expected.lattice,
+                          .max_edge = options_.asked.max_edge,
+                          .input_index = options_.asked.input_index,
+                          .record_size = options_.record_size},
+               .budget = budget_,
                .sequencer = sequencer_,
                .counts = counts_,
                .progress = [this] { report_progress(); }} {
-  if (options.trace != nullptr && options.trace->takes_steps()) {
-    counts_.times.tell_steps([trace = options.trace](const StageStep& step) { trace->step(step); });
+  RunTrace* const trace = options_.asked.trace.get();
+  if (trace != nullptr && trace->takes_steps()) {
+    counts_.times.tell_steps([trace](const StageStep& step) { trace->step(step); });
   }
-  if (options.trace != nullptr) {
+  if (trace != nullptr) {
     const MemoryPlan any = plan_for(kMostThreads, expected.plan != nullptr);
-    options.trace->limits({.batches = any.batches,
-                           .tile_points = plan_.tile_room,
-                           .loaded_points = kTilesAtATime * plan_.tile_room,
-                           .ready_points = kTilesAtATime * plan_.tile_room / Lanes::kReadyShare,
-                           .waiting_bytes = plan_.waiting_bytes,
-                           .threads = any.threads});
+    trace->limits({.batches = any.batches,
+                   .tile_points = plan_.tile_room,
+                   .loaded_points = kTilesAtATime * plan_.tile_room,
+                   .ready_points = kTilesAtATime * plan_.tile_room / Lanes::kReadyShare,
+                   .waiting_bytes = plan_.waiting_bytes,
+                   .threads = any.threads});
   }
   if (expected.plan == nullptr) return;
   cells_.emplace(*expected.plan);
@@ -74,33 +82,19 @@ MemoryPlan TileEngine<D>::plan_for(unsigned threads, bool early) const {
 }
 
 template <int D>
-TileOptions TileEngine<D>::tile_options(const std::optional<Lattice>& lattice) const {
-  TileOptions tile;
-  tile.division = options_.division;
-  tile.children = options_.children;
-  tile.kernel = options_.kernel;
-  tile.heights = options_.heights;
-  tile.output = {lattice, options_.max_edge, options_.input_index, options_.record_size};
-  return tile;
-}
-
-template <int D>
 TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
-  std::function<std::size_t(std::uint64_t)> grown_capacity;
-  if (options_.tile_capacity > 0) {
-    plan_.tile_capacity = options_.tile_capacity;
+  if (options_.asked.tile_points > 0) {
+    plan_.tile_capacity = options_.asked.tile_points;
   } else if (expected.count) {
     plan_.tile_capacity = tile_capacity_for(*expected.count, plan_);
   } else {
-    grown_capacity = [this](std::uint64_t points) { return tile_capacity_for(points, plan_); };
+    grows_capacity_ = true;
   }
   if (options_.buffered_points > 0) plan_.buffered_points = options_.buffered_points;
-  const bool index = options_.input_index || expected.ordered_by_index;
+  const bool index = options_.asked.input_index || expected.ordered_by_index;
   if (index) plan_.buffered_points = plan_.buffered_points * 3 / 4;
   return {.dimension = D,
           .capacity = plan_.tile_capacity,
-          .grown_capacity = std::move(grown_capacity),
-          .tiles_made = [this](std::size_t tiles) { refuse_too_many(tiles); },
           .buffered_points = plan_.buffered_points,
           .expected = expected.count,
           .extent = expected.extent,
@@ -111,12 +105,25 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
           .plan = expected.plan,
           .largest_undivided = std::min(
               plan_.tile_room, largest_undivided<D>(budget_.limit(), options_.record_size)),
-          .one_of_equal = options_.heights};
+          .one_of_equal = options_.asked.heights};
 }
 
-/// What is known of tiles stays in memory until they are triangulated.
 template <int D>
-void TileEngine<D>::refuse_too_many(std::size_t tiles) const {
+void TileEngine<D>::decoded(const PointBlock& points) {
+  budget_.give_back_freed();
+  span_.add(points.points);
+  if (sees_extent_) seen_.add(points);
+}
+
+template <int D>
+std::size_t TileEngine<D>::capacity_for(std::uint64_t points) {
+  return grows_capacity_ ? tile_capacity_for(points, plan_) : 0;
+}
+
+/// What is known of tiles stays in memory until they are triangulated, so there must not be too
+/// many.
+template <int D>
+void TileEngine<D>::tiles_made(std::size_t tiles) {
   constexpr std::uint64_t kTileBytes = 3000;
   constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
   constexpr std::uint64_t kParts = 4;  // of the limit, one of which tiles may take
@@ -133,25 +140,16 @@ void TileEngine<D>::refuse_too_many(std::size_t tiles) const {
 }
 
 template <int D>
-void TileEngine<D>::spill(const PointFeed& feed) {
+void TileEngine<D>::spill(PointFeed& feed) {
   const Stopwatch watch(figures_.read_seconds);
   const MemoryLease buffers(budget_, buffer_bytes(), "points that wait to be spilled");
-  const PointFeed spanned = {.fetch = feed.fetch,
-                             .decode = [&](SourcePiece& piece, PointBlock& block) {
-                               budget_.give_back_freed();
-                               feed.decode(piece, block);
-                               span_.add(block.points);
-                             }};
-  if (!cells_) return tree_.fill(spanned);
+  if (!cells_) return tree_.fill(feed);
   TaskGroup beside;
   beside_ = &beside;
   try {
     add_restored_cells();
     lanes_.work_beside(beside);
-    tree_.fill(spanned, [&](std::uint32_t cell) {
-      add_cell(cell);
-      lanes_.work_beside(beside);
-    });
+    tree_.fill(feed);
     lanes_.come_to_rest(beside);
   } catch (...) {
     lanes_.give_up();
@@ -161,14 +159,22 @@ void TileEngine<D>::spill(const PointFeed& feed) {
 }
 
 template <int D>
+void TileEngine<D>::cell_done(std::uint32_t cell) {
+  add_cell(cell);
+  lanes_.work_beside(*beside_);
+}
+
+template <int D>
 std::uint64_t TileEngine<D>::divide_large() {
   const Stopwatch watch(figures_.divide_seconds);
   const MemoryLease buffers(budget_, buffer_bytes(), "points that wait to be spilled");
-  return figures_.divided_points =
-             tree_.divide_large([this](std::uint64_t points, double fraction) {
-               budget_.give_back_freed();
-               options_.progress(points, fraction);
-             });
+  return figures_.divided_points = tree_.divide_large();
+}
+
+template <int D>
+void TileEngine<D>::dealt_again(std::uint64_t points, double fraction) {
+  budget_.give_back_freed();
+  progress_.tell(points, fraction);
 }
 
 /// What points take that wait to be spilled, and sketches of those that have been, at most.
@@ -185,8 +191,8 @@ void TileEngine<D>::lease_held_points() {
 
 template <int D>
 void TileEngine<D>::begin_triangulating(std::uint64_t points, std::uint64_t all_points) {
-  context_.options.leaf_size =
-      options_.leaf_size > 0 ? options_.leaf_size : leaf_size_for(points, D, plan_);
+  context_.leaf_points =
+      options_.asked.leaf_points > 0 ? options_.asked.leaf_points : leaf_size_for(points, D, plan_);
   sequencer_.tell_first_block([this] { figures_.first_block_read_points = tree_.points(); });
   estimate_shortages(all_points);
 }
@@ -346,11 +352,11 @@ void TileEngine<D>::load(Node& node, const Node* next) {
   if (!node.children.empty()) return;
   sequencer_.wait_for_room(plan_.waiting_bytes, node.number);
   const std::lock_guard lock(load_mutex_);
-  node.stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.read(*node.tree);
-  if (next == nullptr || !next->children.empty() || !tree_.on_disk(*next->tree)) return;
+  node.stored = reading_ahead_.valid() ? reading_ahead_.get() : tree_.loader().read(*node.tree);
+  if (next == nullptr || !next->children.empty() || !tree_.loader().on_disk(*next->tree)) return;
   if (rests_before(*next)) return;
   read_ahead_ = next;
-  reading_ahead_ = in_background([this, tile = next->tree] { return tree_.read(*tile); });
+  reading_ahead_ = in_background([this, tile = next->tree] { return tree_.loader().read(*tile); });
 }
 
 /// Triangulates a tile or merges.
@@ -362,7 +368,7 @@ void TileEngine<D>::work_off(Node& node) {
       const MemoryLease lease(
           budget_, loaded_points(node) * (kLoadedPointBytes + options_.record_size), "a tile");
       held_points_.give_back(node.stored.held_bytes());
-      TilePoints<D> points = tree_.template decode<D>(std::move(node.stored));
+      TilePoints<D> points = tree_.loader().template decode<D>(std::move(node.stored));
       sample_.note(points.points);
       if (replace_indices_) replace_indices_(points.index);
       node.border =
@@ -419,12 +425,13 @@ void TileEngine<D>::merge_node(Node& node) {
 
 template <int D>
 void TileEngine<D>::tell_done(const Node& node, Task task) {
-  if (options_.trace == nullptr || !options_.trace->takes_nodes()) return;
+  RunTrace* const trace = options_.asked.trace.get();
+  if (trace == nullptr || !trace->takes_nodes()) return;
   TaskNode told{.number = node.number, .level = node.level};
   for (const Node* child : node.children) told.children.push_back(child->number);
   told.task = std::move(task);
   const std::lock_guard lock(tell_mutex_);
-  options_.trace->node(told);
+  trace->node(told);
 }
 
 template <int D>
@@ -440,7 +447,7 @@ void TileEngine<D>::report_progress() const {
   if (!tells_progress_) return;
   const std::uint64_t done = counts_.points - points_before_;
   const std::uint64_t all = tree_.points() - points_before_;
-  options_.progress(done, all > 0 ? static_cast<double>(done) / static_cast<double>(all) : 1);
+  progress_.tell(done, all > 0 ? static_cast<double>(done) / static_cast<double>(all) : 1);
 }
 
 template <int D>
@@ -449,11 +456,11 @@ RunFigures TileEngine<D>::figures() {
   figures_.mesh = sequencer_.totals();
   figures_.mesh.points = tree_.points();
   figures_.mesh.duplicates = counts_.duplicates;
-  if (!options_.max_edge) figures_.mesh.hull_facets = counts_.hull_facets;
+  if (!options_.asked.max_edge) figures_.mesh.hull_facets = counts_.hull_facets;
   figures_.left_out = counts_.left_out;
   figures_.leaves = counts_.leaves;
   figures_.tile_capacity = tree_.capacity();
-  figures_.leaf_size = context_.options.leaf_size;
+  figures_.leaf_size = context_.leaf_points;
   figures_.spilled_points = tree_.points_written();
   figures_.spilled_bytes = tree_.bytes_written();
   figures_.final_in_leaves = counts_.final_in_leaves;

@@ -18,9 +18,10 @@
 #include "stream/checkpoint/resting.h"
 #include "stream/output/sequencer.h"
 #include "stream/output/stream_place.h"
-#include "stream/plan/engine_options.h"
 #include "stream/plan/memory_plan.h"
+#include "stream/plan/run_setup.h"
 #include "stream/tiles/point_span.h"
+#include "stream/tiles/seen_extent.h"
 #include "stream/tiles/tile_tree.h"
 #include "stream/triangulate/border_growth.h"
 #include "stream/triangulate/cell_tree.h"
@@ -33,16 +34,14 @@
 
 namespace spillway::detail {
 
-/// The steps of a run that an engine takes.
-enum class EnginePhase : std::uint8_t { kSpill, kDivide, kTriangulate };
-
 /// What is known of the points to come.
 struct ExpectedPoints {
-  std::optional<Lattice> lattice;
-  std::optional<std::uint64_t> count;  ///< about how many
-  std::optional<Box<3>> extent;        ///< where they will lie
-  bool ordered_by_index = false;       ///< they come in any order, with an index that tells
-  const RegionPlan* plan = nullptr;    ///< to which their feed keeps; must outlive the engine
+  std::optional<Lattice> lattice{};
+  std::optional<std::uint64_t> count{};  ///< about how many
+  std::optional<Box<3>> extent{};        ///< where they will lie
+  bool ordered_by_index = false;         ///< they come in any order, with an index that tells
+  const RegionPlan* plan = nullptr;      ///< to which their feed keeps; must outlive the engine
+  bool see_extent = false;               ///< seen_extent() is to be told
 };
 
 /// Takes the points of one process from the feed to the border that is left of them: spill(), then
@@ -50,12 +49,13 @@ struct ExpectedPoints {
 /// tiles as they are complete, and triangulate_rest() the others. All inside of
 /// with_threads(threads()).
 template <int D>
-class TileEngine {
+class TileEngine : private DealingWatch {
  public:
-  /// All but `expected` must outlive it.
-  TileEngine(const ExpectedPoints& expected, BlockSink& sink, ScratchFolder& scratch,
-             MemoryBudget& budget, const StreamOptions& options);
-  ~TileEngine() { budget_.set_estimate({}); }
+  /// What is final goes to `blocks`. All but `expected` must outlive it. It comes to rest when
+  /// `resting` wants it, for state() to be told.
+  TileEngine(const ExpectedPoints& expected, BlockSink& blocks, const RunSetup& setup,
+             Resting& resting);
+  ~TileEngine() override { budget_.set_estimate({}); }
   TileEngine(const TileEngine&) = delete;
   TileEngine& operator=(const TileEngine&) = delete;
 
@@ -67,19 +67,15 @@ class TileEngine {
     tree_.expect(extent, std::move(sample));
   }
 
-  /// From now on the engine comes to rest when a checkpoint is due, for state() to be told.
-  void rest_for(Checkpointing checkpointing);
-  /// Reading it, before any step: of these only those from phase() on are to be called then.
+  /// Reading it, before any step: of these only those from the one on that was under way are to be
+  /// called then.
   template <typename State>
   void state(State& state);
-  /// The step that is under way, or comes next.
-  [[nodiscard]] EnginePhase phase() const { return phase_; }
-  void begin_phase(EnginePhase phase) { phase_ = phase; }
-  /// Comes to rest and saves the state, between two steps or in the midst of one.
-  void save();
+  /// Comes to rest and has the state saved, between two steps or in the midst of one.
+  void save() override;
 
   /// Deals all points of the feed into tiles. With a plan, triangulates tiles that are complete.
-  void spill(const PointFeed& feed);
+  void spill(PointFeed& feed);
 
   /// After spill(): points of tiles that are too large; and their division before take_nodes(),
   /// which returns how many points were dealt again.
@@ -87,8 +83,9 @@ class TileEngine {
   [[nodiscard]] bool is_to_divide() const { return tree_.is_to_divide(); }
   std::uint64_t divide_large();
 
-  /// What the points of the feed span.
+  /// What the points of the feed span, and the box around them.
   [[nodiscard]] const PointSpan<D>& span() const { return span_; }
+  [[nodiscard]] const Box<2>& seen_extent() const { return seen_.box(); }
 
   /// Calls this for the indices of each tile's points when it is loaded: to put others there, which
   /// need not be known before.
@@ -108,7 +105,7 @@ class TileEngine {
   /// The same with a plan, for all that is left. Nothing remains. Returns how many points that was.
   std::uint64_t triangulate_rest();
 
-  [[nodiscard]] const OutputOptions& output() const { return context_.options.output; }
+  [[nodiscard]] const OutputOptions& output() const { return context_.output; }
 
   /// What merges between ranks hold of borders, in place of the border that triangulate() has
   /// returned, or of what was told before; and what they count.
@@ -152,9 +149,13 @@ class TileEngine {
   using Lanes = WorkLanes<Node>;
 
   [[nodiscard]] MemoryPlan plan_for(unsigned threads, bool early) const;
-  [[nodiscard]] TileOptions tile_options(const std::optional<Lattice>& lattice) const;
   TileTreeOptions tree_options(const ExpectedPoints& expected);
-  void refuse_too_many(std::size_t tiles) const;
+  void decoded(const PointBlock& points) override;
+  [[nodiscard]] std::size_t capacity_for(std::uint64_t points) override;
+  void tiles_made(std::size_t tiles) override;
+  void cell_done(std::uint32_t cell) override;
+  void dealt_again(std::uint64_t points, double fraction) override;
+  [[nodiscard]] bool rest_is_due() const override { return resting_.rest_is_due(); }
   [[nodiscard]] std::uint64_t buffer_bytes() const;
   void lease_held_points();
   void begin_triangulating(std::uint64_t points, std::uint64_t all_points);
@@ -177,21 +178,24 @@ class TileEngine {
   void estimate_shortages(std::uint64_t all_points);
   void report_progress() const;
 
-  const StreamOptions& options_;
+  const EngineOptions& options_;
   MemoryBudget& budget_;
+  RunProgress& progress_;
+  Resting& resting_;
   MemoryPlan plan_;
   StreamCounts counts_;
   ShrinkingLease held_points_;  ///< in memory when all are read, until their tile is loaded
   ShrinkingLease sketches_;     ///< of tiles
   PointSpan<D> span_;
+  bool grows_capacity_ = false;  ///< of tiles, with the points that come
+  const bool sees_extent_;
+  SeenExtent seen_;
   const std::uint64_t expected_points_;  ///< 0: not known
   TileTree tree_;
   Sequencer<D> sequencer_;
   TileContext<D> context_;
   Forest forest_;
   Lanes lanes_ = make_lanes();
-  std::atomic<EnginePhase> phase_ = EnginePhase::kSpill;
-  Checkpointing checkpointing_;
   TaskGroup* beside_ = nullptr;  ///< what is triangulated while points are read
   std::optional<TileNode<D>> root_;
   NodesBefore<D> nodes_before_;

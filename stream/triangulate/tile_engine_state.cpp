@@ -8,23 +8,17 @@
 
 namespace spillway::detail {
 
-template <int D>
-void TileEngine<D>::rest_for(Checkpointing checkpointing) {
-  checkpointing_ = std::move(checkpointing);
-  tree_.rest_for({.due = checkpointing_.due, .save = [this] { save(); }});
-}
-
 /// Not before one whose tile has left the tree, nor where blocks of a later one wait for its own.
 template <int D>
 bool TileEngine<D>::rests_before(const Node& node) const {
-  return &node != read_ahead_ && node.number > last_begun_ && checkpointing_.due();
+  return &node != read_ahead_ && node.number > last_begun_ && resting_.rest_is_due();
 }
 
 template <int D>
 void TileEngine<D>::save() {
   if (beside_ != nullptr) lanes_.come_to_rest(*beside_);
   held_points_.give_back(tree_.spill_complete());
-  checkpointing_.save();
+  resting_.save();
   raise(last_begun_, sequencer_.slots_written());  // the next node comes before another rest
   if (beside_ != nullptr) lanes_.work_beside(*beside_);
 }
@@ -52,7 +46,7 @@ template <int D>
 template <typename State>
 void TileEngine<D>::state(State& state) {
   state.section("engine");
-  state(phase_, span_, counts_, figures_.final_by_level, figures_.first_block_read_points,
+  state(span_, seen_, counts_, figures_.final_by_level, figures_.first_block_read_points,
         figures_.divided_points, tree_, sequencer_, root_, complete_cells_);
   if (State::kReads || forest_.empty()) {  // those of before are still to be added
     state(nodes_before_);
@@ -66,14 +60,12 @@ void TileEngine<D>::state(State& state) {
   }
 }
 
-template void TileEngine<2>::rest_for(Checkpointing);
 template bool TileEngine<2>::rests_before(const Node&) const;
 template void TileEngine<2>::save();
 template void TileEngine<2>::take_kept_border(Node&);
 template void TileEngine<2>::add_restored_cells();
 template void TileEngine<2>::state(StateReader&);
 template void TileEngine<2>::state(StateWriter&);
-template void TileEngine<3>::rest_for(Checkpointing);
 template bool TileEngine<3>::rests_before(const Node&) const;
 template void TileEngine<3>::save();
 template void TileEngine<3>::take_kept_border(Node&);

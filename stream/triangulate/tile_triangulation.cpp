@@ -78,7 +78,7 @@ MergedBorder<D> merge_resident(const TileContext<D>& context, std::span<Border<D
   context.budget.give_back_freed();
   const StageTimer timer(context.counts.times, Stage::kMerge);
   MergedBorder<D> merged =
-      merge_borders<D, Tree>(children, of_children, context.budget, task, context.options.kernel);
+      merge_borders<D, Tree>(children, of_children, context.budget, task, context.asked.kernel);
   context.counts.borders.remove(simplices, bytes);
   context.counts.retriangulated += merged.retriangulated;
   return merged;
@@ -173,16 +173,15 @@ class TileRun {
     std::iota(input_index_.begin(), input_index_.end(), VertexId{0});
     {
       const StageTimer timer(counts_.times, Stage::kDivide);
-      const TileOptions& options = context_.options;
       root_ = divide<D>(tile_.points, input_index_,
-                        {.leaf_size = options.leaf_size,
-                         .scheme = options.division,
-                         .children = options.children,
+                        {.leaf_size = context_.leaf_points,
+                         .scheme = context_.asked.division,
+                         .children = context_.asked.children,
                          .stop = {},
                          .fill_leaves = true,
                          .smallest_judged = kSmallestJudged<D>,
                          .largest_undivided = largest_undivided<D>(context_.budget.limit(),
-                                                                   options.output.record_size)},
+                                                                   context_.output.record_size)},
                         division.data());
     }
     counts_.points += tile_.left_out;
@@ -248,17 +247,16 @@ class TileRun {
     const Part<D>& part = *node.tree;
     const auto points = points_of(part);
     WorkingMemory<D> memory(
-        WorkLease(context_.budget,
-                  part.size() * (kLeafBytes<D> + context_.options.output.record_size),
+        WorkLease(context_.budget, part.size() * (kLeafBytes<D> + context_.output.record_size),
                   "the triangulation of a leaf"),
-        context_.options.leaf_size);
+        context_.leaf_points);
     BaseCase<D> leaf = base_case(node, points, memory.lease());
     counts_.points += part.size();
     counts_.duplicates += leaf.duplicates.size();
     ++counts_.leaves;
     raise(counts_.densest_leaf, leaf.corners.size() / part.size() + 1);
     if constexpr (D == 2) {
-      choose_heights(leaf.duplicates, context_.options.heights, input_index_, tile_.heights,
+      choose_heights(leaf.duplicates, context_.asked.heights, input_index_, tile_.heights,
                      tile_.index);
     } else {
       keep_first(leaf.duplicates, input_index_, tile_.index);
@@ -289,7 +287,7 @@ class TileRun {
     if (!node.hollow) told = test_leaf_border<D>(leaf, surroundings_of(node));
     leaf.fates = told.fates;
     leaf.exposure = told.exposure;
-    return settle<D>(leaf, context_.options.output);
+    return settle<D>(leaf, context_.output);
   }
 
   /// Of a leaf that is not hollow its corners, and of a hollow one its simplices.
@@ -300,7 +298,7 @@ class TileRun {
                            .input_index = std::span(input_index_).subspan(part.begin, part.size()),
                            .first_vertex = part.begin,
                            .in_place = true,
-                           .kernel = context_.options.kernel,
+                           .kernel = context_.asked.kernel,
                            .memory = &memory};
     input.clear_box = clear_box_of(node);
     input.corners_only = !node.hollow;
@@ -337,7 +335,7 @@ class TileRun {
   /// A leaf without simplices: all its distinct points.
   [[nodiscard]] Border<D> open_border(const Part<D>& part, const BaseCase<D>& base_case) const {
     const LeafToSettle<D> leaf = leaf_of(part);
-    const std::size_t record_size = context_.options.output.record_size;
+    const std::size_t record_size = context_.output.record_size;
     Border<D> border;
     border.dimension = base_case.dimension;
     auto duplicate = base_case.duplicates.begin();
@@ -386,14 +384,14 @@ class TileRun {
       node.hollow = node.hollow || child->hollow;
     }
     MergedBorder<D> merged = merge_resident<D>(context_, children, *node.tree, node.task);
-    WorkingMemory<D> memory(std::move(merged.memory), context_.options.leaf_size);
+    WorkingMemory<D> memory(std::move(merged.memory), context_.leaf_points);
     const BlockPlace block = place_of(node);
     if (merged.border.open()) {
       memory.give_back();
       return pass_up(context_, std::move(merged.border), block);
     }
-    Settled<D> settled = settle_merged(merged, block, context_.options.output,
-                                       surroundings_of(node), node.tree->size(), counts_.times);
+    Settled<D> settled = settle_merged(merged, block, context_.output, surroundings_of(node),
+                                       node.tree->size(), counts_.times);
     memory.give_back();
     counts_.final_in_tiles += settled.final_simplices;
     return pass_on(context_, std::move(settled), block);
@@ -431,13 +429,13 @@ MergedTiles<D> merge_tiles(const TileContext<D>& context, const MergeInput<D>& i
   MergedBorder<D> merged = merge_resident<D>(context, input.children, input.node, task);
   if (input.outside_shrank) merged.tested = 0;
   // The largest merges are more than leaves.
-  release_base_case_memory_above<D>(context.options.leaf_size);
+  release_base_case_memory_above<D>(context.leaf_points);
   context.budget.give_back_freed();
   Settled<D> settled;
   if (merged.border.open()) {
     settled.border = std::move(merged.border);
   } else {
-    settled = settle_merged<D>(merged, input.place, context.options.output,
+    settled = settle_merged<D>(merged, input.place, context.output,
                                {.levels = {}, .outside = input.outside}, 0, context.counts.times);
   }
   merged.memory = {};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spillway/triangulate.h>
+
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -13,22 +15,13 @@
 #include "stream/output/heights.h"
 #include "stream/output/sequencer.h"
 #include "stream/output/stream_place.h"
-#include "stream/tiles/tile_tree.h"
+#include "stream/tiles/storage/tile_points.h"
+#include "stream/tiles/tile_node.h"
 #include "stream/triangulate/border.h"
 #include "stream/triangulate/settle.h"
 #include "stream/triangulate/surroundings.h"
 
 namespace spillway::detail {
-
-/// How tiles are triangulated.
-struct TileOptions {
-  std::size_t leaf_size = 0;
-  Division division = Division::kLeastBorder;
-  unsigned children = 2;
-  Kernel kernel = Kernel::kSpillway;
-  Heights heights = Heights::kFirst;
-  OutputOptions output;
-};
 
 /// Sets `most` to `now` if that is more; for any thread.
 template <typename Number>
@@ -99,9 +92,11 @@ struct StreamCounts {
 /// What all tiles and merges of a run share; used by many threads at once.
 template <int D>
 struct TileContext {
-  TileOptions options;
-  MemoryBudget& budget;     ///< for the triangulations of borders
-  Sequencer<D>& sequencer;  ///< takes what is final
+  const TriangulateOptions& asked;
+  OutputOptions output;
+  std::size_t leaf_points = 0;  ///< most of a leaf
+  MemoryBudget& budget;         ///< for the triangulations of borders
+  Sequencer<D>& sequencer;      ///< takes what is final
   StreamCounts& counts;
   std::function<void()> progress;  ///< called after each leaf, by any thread
 };

@@ -35,24 +35,20 @@ struct EarlyRun {
   bool is_early = false;
 };
 
-StreamOptions small_tiles() {
-  return {.threads = 2,
-          .tile_capacity = 600,
-          .buffered_points = 1U << 20,
-          .leaf_size = 100,
-          .input_index = true,
-          .early = true};
+EngineOptions small_tiles() {
+  return {.asked = {.input_index = true, .tile_points = 600, .leaf_points = 100},
+          .threads = 2,
+          .buffered_points = 1U << 20};
 }
 
 template <int D>
-EarlyRun run(RegionStream source, const StreamOptions& options = small_tiles()) {
+EarlyRun run(RegionStream source, const EngineOptions& options = small_tiles()) {
   EarlyRun run{{}, KeepingWriter(D)};
-  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  MemoryBudget budget(std::uint64_t{1} << 30);
-  run.figures = triangulate_stream<D>(source, run.mesh, *scratch, budget, options);
+  QuietSetup setup(options);
+  run.figures = triangulate_stream<D>(source, run.mesh, setup);
   run.is_early = source.kept_to_plan;
   EXPECT_EQ(run.mesh.live(), 0U);
-  EXPECT_EQ(budget.used(), 0U);
+  EXPECT_EQ(setup.budget.used(), 0U);
   return run;
 }
 
@@ -92,7 +88,7 @@ TEST(EarlyTriangulation, WritesItsFirstBlockEarlyAndSpillsNothing) {
 
 TEST(EarlyTriangulation, IsTheSameForAnyNumberOfThreads) {
   const Regions regions = survey(7, 15'000, 4, 0.3);
-  StreamOptions options = small_tiles();
+  EngineOptions options = small_tiles();
   std::vector<std::vector<std::uint64_t>> corners;
   for (const unsigned threads : {1U, 2U, 3U, 4U}) {
     options.threads = threads;
@@ -105,9 +101,9 @@ TEST(EarlyTriangulation, IsTheSameForAnyNumberOfThreads) {
 TEST(EarlyTriangulation, TakesEqualPointsOfSeveralInputsInTheInputsOrder) {
   for (const unsigned seed : {5U, 6U, 7U}) {
     const Regions regions = survey(6, 12'000, seed, 0.4, 10);
-    StreamOptions options = small_tiles();
+    EngineOptions options = small_tiles();
     const EarlyRun early = run<2>(RegionStream(regions), options);
-    options.early = false;
+    options.asked.trust_headers = false;
     const EarlyRun late = run<2>(RegionStream(regions), options);
     EXPECT_TRUE(early.is_early);
     EXPECT_FALSE(late.is_early);
@@ -122,7 +118,7 @@ TEST(EarlyTriangulation, TakesEqualPointsOfSeveralInputsInTheInputsOrder) {
 
 TEST(EarlyTriangulation, SpillsPointsThatWaitLongestWhereMemoryIsLittle) {
   const Regions regions = survey(8, 40'000, 8, 0.2);
-  StreamOptions options = small_tiles();
+  EngineOptions options = small_tiles();
   options.buffered_points = 6'000;
   const EarlyRun early = run<2>(RegionStream(regions), options);
   EXPECT_TRUE(early.is_early);
@@ -144,7 +140,7 @@ TEST(EarlyTriangulation, CutsCellsThatGetMoreThanTheyExpect) {
         regions[r].push_back({center[0] + spread(random), center[1] + spread(random), 0});
       }
     }
-    StreamOptions options = small_tiles();
+    EngineOptions options = small_tiles();
     options.buffered_points = buffered;
     const EarlyRun early = run<2>(RegionStream(regions), options);
     EXPECT_TRUE(early.is_early);
@@ -245,7 +241,25 @@ TEST(EarlyTriangulation, ReadsAllFirstWhereThatIsNoGain) {
 }
 
 /// A sink that must know the extent, and what it was told of it.
-struct ExtentRun {
+struct ExtentRun : RunSink {
+  explicit ExtentRun(bool trust, double most) : trusts(trust), tolerance(most) {}
+
+  [[nodiscard]] bool wants_extent() const override { return true; }
+  bool extent_told(const Box<2>& extent, std::uint64_t /*points*/) override {
+    told.push_back(extent);
+    return trusts;
+  }
+  bool extent_holds(const Box<2>& extent) override {
+    return std::abs(extent.lo[0] - told[0].lo[0]) <= tolerance;
+  }
+  void extent_known(const Box<2>& extent, std::uint64_t points) override {
+    EXPECT_EQ(points, 20'000U);
+    known.push_back(extent);
+  }
+  BlockSink* begin_again() override { return &mesh.emplace(2); }
+
+  bool trusts;
+  double tolerance;
   std::vector<Box<2>> told;
   std::vector<Box<2>> known;
   int times_read = 0;
@@ -254,26 +268,12 @@ struct ExtentRun {
 };
 
 ExtentRun run_by_extent(RegionStream source, bool trusts = true, double tolerance = 0) {
-  ExtentRun run;
-  StreamOptions options = small_tiles();
-  options.needs_extent = true;
-  options.extent_told = [&](const Box<2>& extent, std::uint64_t /*points*/) {
-    run.told.push_back(extent);
-    return trusts;
-  };
-  options.extent_holds = [&](const Box<2>& extent) {
-    return std::abs(extent.lo[0] - run.told[0].lo[0]) <= tolerance;
-  };
-  options.extent_known = [&](const Box<2>& extent, std::uint64_t points) {
-    EXPECT_EQ(points, 20'000U);
-    run.known.push_back(extent);
-  };
-  options.begin_again = [&] { return &run.mesh.emplace(2); };
-  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  MemoryBudget budget(std::uint64_t{1} << 30);
-  const RunFigures figures = triangulate_stream<2>(source, *run.mesh, *scratch, budget, options);
+  ExtentRun run(trusts, tolerance);
+  QuietSetup setup(small_tiles());
+  const RunFigures figures = triangulate_stream<2>(
+      source, *run.mesh, {setup.options, *setup.scratch, setup.budget, run, setup.progress});
   EXPECT_EQ(figures.mesh.points, 20'000U);
-  EXPECT_EQ(budget.used(), 0U);
+  EXPECT_EQ(setup.budget.used(), 0U);
   run.times_read = source.times_read;
   run.is_early = source.kept_to_plan;
   return run;
@@ -332,29 +332,30 @@ TEST(EarlyTriangulation, SaysThatPointsCannotBeReadAgain) {
 }
 
 /// A run of which a box is false, and what was told of it.
+/// A sink that takes its blocks back, and what users are told.
 template <int D>
-struct SecondRun {
+struct SecondRun : RunSink, RunProgress {
+  BlockSink* begin_again() override { return &mesh.emplace(D); }
+  void begin_phase(const char* phase) override { phases.emplace_back(phase); }
+  void end_phase(std::uint64_t /*points*/) override { phases.emplace_back("end"); }
+  void warn(std::string_view text) override { warnings.emplace_back(text); }
+
   int times_read = 0;
-  std::vector<std::string> warnings{};
-  std::vector<std::string> phases{};
-  RunFigures figures{};
+  std::vector<std::string> warnings;
+  std::vector<std::string> phases;
+  RunFigures figures;
   std::optional<KeepingWriter> mesh{D};
 };
 
 template <int D>
 SecondRun<D> run_again(RegionStream source) {
   SecondRun<D> run;
-  StreamOptions options = small_tiles();
-  options.begin_again = [&] { return &run.mesh.emplace(D); };
-  options.warn = [&](std::string_view text) { run.warnings.emplace_back(text); };
-  options.begin_phase = [&](const char* phase) { run.phases.emplace_back(phase); };
-  options.end_phase = [&](std::uint64_t /*points*/) { run.phases.emplace_back("end"); };
-  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  MemoryBudget budget(std::uint64_t{1} << 30);
-  run.figures = triangulate_stream<D>(source, *run.mesh, *scratch, budget, options);
+  QuietSetup setup(small_tiles());
+  run.figures = triangulate_stream<D>(source, *run.mesh,
+                                      {setup.options, *setup.scratch, setup.budget, run, run});
   EXPECT_TRUE(source.kept_to_plan);
   EXPECT_EQ(run.mesh->live(), 0U);
-  EXPECT_EQ(budget.used(), 0U);
+  EXPECT_EQ(setup.budget.used(), 0U);
   run.times_read = source.times_read;
   return run;
 }
@@ -438,11 +439,10 @@ class FullSink : public BlockSink {
 TEST(EarlyTriangulation, EndsWithTheErrorOfItsSinkBeforeAllIsRead) {
   RegionStream source(survey(20, 200'000, 17), 100);
   FullSink sink;
-  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  MemoryBudget budget(std::uint64_t{1} << 30);
-  EXPECT_THROW(triangulate_stream<2>(source, sink, *scratch, budget, small_tiles()), Error);
+  QuietSetup setup(small_tiles());
+  EXPECT_THROW(triangulate_stream<2>(source, sink, setup), Error);
   EXPECT_THAT(source.points_read(), Lt(200'000U));
-  EXPECT_EQ(budget.used(), 0U);
+  EXPECT_EQ(setup.budget.used(), 0U);
 }
 
 }  // namespace

@@ -68,9 +68,9 @@ class RegionStream : public PointStream {
   [[nodiscard]] const std::optional<Box<3>>& extent() const override { return extent_; }
   [[nodiscard]] std::span<const InputRegion> regions() const override { return regions_; }
   [[nodiscard]] bool any_order() const override { return true; }
-  void keep_to(const RegionPlan& plan) override {
+  void keep_to(const RegionOrder& order) override {
     kept_to_plan = is_planned_ = true;
-    order_ = plan.regions;
+    order_ = order.regions;
   }
   /// As the told regions have it, one without points among them.
   [[nodiscard]] std::optional<Box<2>> told_extent() const override {

@@ -136,12 +136,16 @@ class StreamFault : public ::testing::TestWithParam<unsigned> {
 
   RunFigures run(BlockSink& writer) {
     PointSource source(files_, {"points.txt"}, {.dimension = 2, .index = true});
-    return triangulate_stream<2>(source, writer, scratch_, budget_,
-                                 {.threads = GetParam(),
-                                  .tile_capacity = 600,
-                                  .buffered_points = 15'000,
-                                  .leaf_size = 200,
-                                  .input_index = true});
+    return triangulate(source, writer,
+                       {.asked = {.input_index = true, .tile_points = 600, .leaf_points = 200},
+                        .threads = GetParam(),
+                        .buffered_points = 15'000});
+  }
+
+  RunFigures triangulate(PointSource& source, BlockSink& writer, const EngineOptions& options) {
+    RunSink sink;
+    RunProgress progress;
+    return triangulate_stream<2>(source, writer, {options, scratch_, budget_, sink, progress});
   }
 
   /// The message of the Error that the run ends with, after which nothing may be left.
@@ -236,8 +240,7 @@ TEST_P(StreamFault, OfTooLittleMemoryNamesTheOptionThatHelps) {
   PointSource source(files_, {"points.txt"}, {.dimension = 2, .index = true});
   FailingWriter writer(FailingWriter::Way::kNever, 0);
   try {
-    triangulate_stream<2>(source, writer, scratch_, budget_,
-                          {.threads = GetParam(), .buffered_points = 100'000'000});
+    triangulate(source, writer, {.threads = GetParam(), .buffered_points = 100'000'000});
     FAIL() << "more was promised than there is";
   } catch (const Error& error) {
     EXPECT_EQ(error.facts().remedy, Remedy::kMemory);

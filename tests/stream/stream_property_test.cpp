@@ -23,23 +23,26 @@ namespace spillway::detail {
 namespace {
 
 /// Tiny tiles that fit into memory, tiny tiles that all go to the disk, one tile of many leaves.
-const std::vector<StreamOptions> kManyWays = {
-    {.threads = 1, .tile_capacity = 20, .leaf_size = 8},
-    {.threads = 2, .tile_capacity = 20, .buffered_points = 50, .leaf_size = 20},
-    {.threads = 4, .tile_capacity = 150, .buffered_points = 400, .leaf_size = 30, .children = 4},
-    {.threads = 2, .leaf_size = 25},
+const std::vector<EngineOptions> kManyWays = {
+    {.asked = {.tile_points = 20, .leaf_points = 8}, .threads = 1},
+    {.asked = {.tile_points = 20, .leaf_points = 20}, .threads = 2, .buffered_points = 50},
+    {.asked = {.tile_points = 150, .leaf_points = 30, .children = 4},
+     .threads = 4,
+     .buffered_points = 400},
+    {.asked = {.leaf_points = 25}, .threads = 2},
 };
 
 template <int D>
 void expect_equal_to_cgal(const std::vector<Point<D>>& points,
-                          const std::vector<StreamOptions>& ways) {
+                          const std::vector<EngineOptions>& ways) {
   const auto expected = cgal_simplices<D>(points);
   const std::size_t hull_facets = cgal_hull_facets<D>(points);
   const std::string path = write_points<D>(points);
-  for (const StreamOptions& options : ways) {
+  for (const EngineOptions& options : ways) {
     SCOPED_TRACE(testing::Message()
-                 << points.size() << " points, tiles of " << options.tile_capacity << ", leaves of "
-                 << options.leaf_size << ", " << options.threads << " threads");
+                 << points.size() << " points, tiles of " << options.asked.tile_points
+                 << ", leaves of " << options.asked.leaf_points << ", " << options.threads
+                 << " threads");
     if (expected.empty()) {
       EXPECT_THROW(run_stream<D>(path, options), Error);
       continue;
@@ -77,9 +80,11 @@ TEST_P(StreamOfFamily, EqualsCgalForLargeSetsThatSpill) {
   const bool slow = GetParam().family == Family::kCollinear;  // CGAL takes quadratic time
   const std::uint64_t n = dense ? 500 : slow ? 2'000 : GetParam().dimension == 2 ? 60'000 : 10'000;
   const GeneratorOptions generate{GetParam().family, n, GetParam().dimension, 7};
-  const std::vector<StreamOptions> ways = {
-      {.threads = 2, .tile_capacity = n / 7, .buffered_points = n / 5, .leaf_size = n / 40},
-      {.threads = 4, .tile_capacity = n / 3, .buffered_points = n / 2}};
+  const std::vector<EngineOptions> ways = {
+      {.asked = {.tile_points = n / 7, .leaf_points = n / 40},
+       .threads = 2,
+       .buffered_points = n / 5},
+      {.asked = {.tile_points = n / 3}, .threads = 4, .buffered_points = n / 2}};
   if (GetParam().dimension == 2) {
     expect_equal_to_cgal<2>(generate_points<2>(generate), ways);
   } else {
@@ -88,7 +93,7 @@ TEST_P(StreamOfFamily, EqualsCgalForLargeSetsThatSpill) {
 }
 
 /// The blocks of a set out of core.
-std::vector<MeshBlock> blocks_of(const GeneratorOptions& generate, const StreamOptions& options) {
+std::vector<MeshBlock> blocks_of(const GeneratorOptions& generate, const EngineOptions& options) {
   if (generate.dimension == 2) {
     const std::string path = write_points<2>(generate_points<2>(generate));
     return run_stream<2>(path, options).mesh.blocks;
@@ -98,7 +103,7 @@ std::vector<MeshBlock> blocks_of(const GeneratorOptions& generate, const StreamO
 }
 
 /// The same for one thread and for several.
-void expect_same_blocks(const GeneratorOptions& generate, StreamOptions options) {
+void expect_same_blocks(const GeneratorOptions& generate, EngineOptions options) {
   options.threads = 1;
   const std::vector<MeshBlock> once = blocks_of(generate, options);
   for (const unsigned threads : {2U, 4U}) {
@@ -117,7 +122,8 @@ void expect_same_blocks(const GeneratorOptions& generate, StreamOptions options)
 TEST_P(StreamOfFamily, GivesTheSameBlocksForAnyThreadCount) {
   const GeneratorOptions generate{GetParam().family, 700, GetParam().dimension, 3};
   try {
-    expect_same_blocks(generate, {.tile_capacity = 90, .buffered_points = 200, .leaf_size = 20});
+    expect_same_blocks(generate,
+                       {.asked = {.tile_points = 90, .leaf_points = 20}, .buffered_points = 200});
   } catch (const Error&) {
     GTEST_SKIP() << "no simplices in this dimension";
   }
@@ -129,8 +135,9 @@ TEST(StreamOfSurface, GivesTheSameBlocksForAnyThreadCountByItsSketches) {
       if (dimension == 2 && family == Family::kScan) continue;
       for (const std::size_t buffered : {4'000, 100'000}) {
         SCOPED_TRACE(testing::Message() << dimension << "D, " << buffered << " points wait");
-        expect_same_blocks({family, 12'000, dimension, 3},
-                           {.tile_capacity = 2'500, .buffered_points = buffered, .leaf_size = 400});
+        expect_same_blocks(
+            {family, 12'000, dimension, 3},
+            {.asked = {.tile_points = 2'500, .leaf_points = 400}, .buffered_points = buffered});
       }
     }
   }
@@ -153,9 +160,8 @@ void expect_written_in(const std::vector<const MeshFormat*>& formats) {
     const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
     const std::string mesh = path + ".mesh";
     const auto writer = open_mesh_stream_writer(disk(), mesh, *format, header, *scratch);
-    MemoryBudget budget(std::uint64_t{1} << 30);
-    const StreamOptions options{.threads = 2, .tile_capacity = 700, .leaf_size = 100};
-    const RunFigures figures = triangulate_stream<D>(source, *writer, *scratch, budget, options);
+    QuietSetup setup({.asked = {.tile_points = 700, .leaf_points = 100}, .threads = 2});
+    const RunFigures figures = triangulate_stream<D>(source, *writer, setup);
     EXPECT_NO_THROW(writer->finish(figures.mesh));
     std::filesystem::remove(mesh);
   }
@@ -177,7 +183,8 @@ void expect_named_memory_is_enough(std::uint64_t points, std::uint64_t memory) {
   ASSERT_GT(enough, memory);
   EXPECT_LE(enough, (D == 2 ? 2'000 : 2'500) * points) << "bytes";
   EXPECT_NO_THROW(run_stream<D>(path, {.threads = 2}, enough));
-  EXPECT_NO_THROW(run_stream<D>(path, {.threads = 2, .tile_capacity = points / 5}, enough));
+  EXPECT_NO_THROW(
+      run_stream<D>(path, {.asked = {.tile_points = points / 5}, .threads = 2}, enough));
   std::filesystem::remove(path);
 }
 

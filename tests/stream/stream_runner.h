@@ -18,6 +18,7 @@
 #include "formats/points/create_points.h"
 #include "stream/pipeline.h"
 #include "stream/source/point_source.h"
+#include "tests/stream/quiet_setup.h"
 
 namespace spillway::detail {
 
@@ -43,7 +44,7 @@ inline void expect_attributes_of(const std::vector<std::uint64_t>& index,
 }
 
 /// Runs on an even number of threads carry attributes, so that both kinds are tried.
-inline bool carries_attributes(const StreamOptions& options) { return options.threads % 2 == 0; }
+inline bool carries_attributes(const EngineOptions& options) { return options.threads % 2 == 0; }
 
 /// Keeps all blocks, and checks on the way that vertices are announced before and finalized after
 /// their last use, once each, and that a block imports what it uses or finalizes, and nothing else;
@@ -125,18 +126,17 @@ struct StreamRun {
 };
 
 template <int D>
-StreamRun run_stream(const std::string& path, StreamOptions options,
+StreamRun run_stream(const std::string& path, EngineOptions options,
                      std::uint64_t memory = std::uint64_t{1} << 30) {
   StreamRun run{{}, KeepingWriter(D)};
-  options.input_index = true;
+  options.asked.input_index = true;
   PointSource source(disk(), {path}, {.dimension = D, .index = true});
   if (carries_attributes(options)) {
     source.carry({.all = true});
     options.record_size = source.attributes().record_size();
   }
-  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
-  MemoryBudget budget(memory);
-  run.figures = triangulate_stream<D>(source, run.mesh, *scratch, budget, options);
+  QuietSetup setup(options, memory);
+  run.figures = triangulate_stream<D>(source, run.mesh, setup);
   EXPECT_EQ(run.mesh.has_attributes, carries_attributes(options));
   return run;
 }

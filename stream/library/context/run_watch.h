@@ -7,22 +7,24 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "src/runtime/run_memory.h"
+#include "stream/plan/run_progress.h"
 
 namespace spillway::detail {
 
 /// Tells a program how far its run is, one call at a time, and ends the run when the program asks
 /// for it. All functions may be called by many threads; what the run keeps (RunMemory) lasts as
 /// long, so the thread that makes it destroys it.
-class RunWatch {
+class RunWatch : public RunProgress {
  public:
   /// `context` must outlive it.
   explicit RunWatch(const Context& context);
 
   /// Throws Interrupted if the run is to be stopped, as do tell() and check().
   void begin(const std::string& phase, const std::string& unit);
-  void tell(std::uint64_t done, std::optional<double> fraction);
+  void tell(std::uint64_t done, std::optional<double> fraction) override;
   /// Stops nothing: what the phase was for is done. Returns how many seconds it took.
   double end(std::uint64_t done);
   /// A phase for all that follows, until close(): phases that begin and end meanwhile are not told.
@@ -33,6 +35,13 @@ class RunWatch {
   void tell_nested(std::uint64_t done, std::optional<double> fraction);
   void end_nested(std::uint64_t done);
   void check() const;
+
+  /// Phases of an engine, which count points.
+  void begin_phase(const char* phase) override { begin(phase, "points"); }
+  void end_phase(std::uint64_t points) override { end(points); }
+  void warn(std::string_view text) override {
+    if (options_.warning) options_.warning(text);
+  }
 
  private:
   struct Phase {

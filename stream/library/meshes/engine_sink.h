@@ -20,6 +20,7 @@
 #include "stream/library/context/run_watch.h"
 #include "stream/library/meshes/public_values.h"
 #include "stream/library/points/attribute_records.h"
+#include "stream/output/run_sink.h"
 #include "stream/sinks/mesh_shares.h"
 #include "stream/source/source_crs.h"
 
@@ -53,11 +54,10 @@ void refuse_without_heights(const MeshStart& start);
 void tell_lost_layers(const VectorFormat& format, const std::string& path, const Context& context);
 
 /// A sink of the library's own, to which the engine writes without a detour over public values.
-/// start() once, extent_known() if it is wanted, then blocks, then complete().
-class EngineSink {
+/// start() once, extent_known() if it is wanted, then blocks, then complete(). Where blocks go
+/// after begin_again() lives as long as it does.
+class EngineSink : public RunSink {
  public:
-  virtual ~EngineSink() = default;
-
   /// Returns where blocks go. That lives as long as the sink. Throws Error(kInvalidArgument) if it
   /// was called before.
   BlockSink& start(const MeshStart& start) {
@@ -87,25 +87,8 @@ class EngineSink {
   [[nodiscard]] virtual bool tells_hash() const { return false; }
   /// By how many of so many threads it can be fed at a time.
   [[nodiscard]] virtual unsigned feeding_threads(unsigned threads) const { return threads; }
-  /// Whether extent_known() is needed: a mesh stream has to be read twice then.
-  [[nodiscard]] virtual bool wants_extent() const { return false; }
   /// Whether it is something else than a mesh, which must have a simplex then.
   [[nodiscard]] virtual bool is_product() const { return true; }
-
-  /// The box around all vertices in x and y, in the coordinates in which they come, and how many
-  /// these are (of points: how many points; 0: not known), before the first block.
-  virtual void extent_known(const Box<2>& /*extent*/, std::uint64_t /*vertices*/) {}
-
-  /// In place of extent_known(), before the first block: what headers tell of the extent. False if
-  /// blocks may not come before it is certain.
-  virtual bool extent_told(const Box<2>& /*extent*/, std::uint64_t /*vertices*/) { return false; }
-  /// After extent_told() and some blocks: whether it makes no difference that this is the extent.
-  virtual bool extent_holds(const Box<2>& /*extent*/) { return false; }
-
-  /// After some blocks, or none: all of them are void, and the mesh comes once more, after
-  /// extent_known() if that is wanted. Returns where blocks go now, as start() does; nullptr if
-  /// they cannot be taken back.
-  virtual BlockSink* begin_again() { return nullptr; }
 
   /// Ends the blocks and completes the output. The report is that of the run so far, to which the
   /// sink adds what it knows.

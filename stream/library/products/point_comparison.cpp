@@ -103,7 +103,8 @@ class TreeComparison {
     std::uint64_t distinct = 0;
     for (const TileNode<D>& child : node.children) distinct += compare(child);
     if (!node.children.empty()) return distinct;
-    distinct = TileComparison<D>(tree_.decode<D>(tree_.read(node)), faults_).run();
+    distinct =
+        TileComparison<D>(tree_.loader().decode<D>(tree_.loader().read(node)), faults_).run();
     done_ += node.points;
     watch_.tell(done_, static_cast<double>(done_) / static_cast<double>(tree_.points()));
     return distinct;
@@ -140,7 +141,7 @@ void PointComparison::put_away() {
   pending_.clear();
   if (!file_) file_ = scratch_.create("vertices");
   std::vector<std::byte> bytes;
-  for (TileBlock block : encode_points(buffer, bytes)) {
+  for (EncodedBlock block : encode_points(buffer, bytes)) {
     block.offset += file_->size();
     blocks_.push_back(block);
   }
@@ -150,13 +151,23 @@ void PointComparison::put_away() {
 void PointComparison::compare(PointStream& input, const CheckOptions& options, CheckReport& report,
                               RunWatch& watch) {
   StageTimes times;
+  class Watch final : public DealingWatch {
+   public:
+    explicit Watch(RunWatch& watch) : watch_(watch) {}
+    void dealt_again(std::uint64_t points, double fraction) override {
+      watch_.tell(points, fraction);
+    }
+
+   private:
+    RunWatch& watch_;
+  } dealing(watch);
   TileTree tree(
       {.dimension = dimension_,
        .capacity = std::max<std::size_t>(1000, memory_ / 2 / kTileBytes),
        .buffered_points = memory_ / 3 / kBufferedBytes,
        .expected = input.expected() ? std::optional(*input.expected() + vertices_) : std::nullopt,
        .index = true},
-      scratch_, times);
+      scratch_, times, dealing);
   Faults faults(report, options.most_faults);
   const std::uint64_t before = faults.count();
   std::uint64_t distinct = 0;
@@ -189,8 +200,7 @@ void PointComparison::compare(PointStream& input, const CheckOptions& options, C
     watch.end(input.points_read());
     if (tree.points_to_divide() > 0) {
       watch.begin("divide", "points");
-      watch.end(tree.divide_large(
-          [&](std::uint64_t points, double fraction) { watch.tell(points, fraction); }));
+      watch.end(tree.divide_large());
     }
     watch.begin("compare", "points");
     distinct = dimension_ == 2 ? TreeComparison<2>(tree, faults, watch).run()

@@ -40,7 +40,7 @@ class PointComparison {
   std::uint64_t vertices_ = 0;
   PointBlock pending_;  ///< vertices that are not yet in the file
   std::unique_ptr<ScratchFile> file_;
-  std::vector<TileBlock> blocks_;
+  std::vector<EncodedBlock> blocks_;
 };
 
 }  // namespace spillway::detail

@@ -58,14 +58,14 @@ void PointExchange::choose_own_pieces() {
   ranks_.reduce(std::span(&rounds_, 1), distributed::Reduction::kMost);
 }
 
-bool PointExchange::fetch(SourcePiece& batch, const std::function<void()>& progress) {
+bool PointExchange::fetch(SourcePiece& batch) {
   batch.raw.clear();
   while (arrived_.empty()) {
     if (rests_) return true;
     if (round_ == rounds_) return false;
     next_round();
     agree_to_rest();
-    progress();
+    round_done_();
   }
   Arrived next = std::move(arrived_.front());
   arrived_.pop_front();
@@ -74,7 +74,7 @@ bool PointExchange::fetch(SourcePiece& batch, const std::function<void()>& progr
   return true;
 }
 
-void PointExchange::decode(SourcePiece& batch, PointBlock& block) const {
+void PointExchange::decode(SourcePiece& batch, PointBlock& block) {
   if (batch.raw.bytes.empty()) {
     std::swap(batch.raw.decoded, block);
   } else {

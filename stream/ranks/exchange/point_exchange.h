@@ -23,7 +23,7 @@ struct ExchangeRound {
 /// what is for others. Each rank reads a stretch of the inputs, so that inputs in spatial order,
 /// too, have points for many ranks in a round. Points come to a rank in any order; their indices
 /// are in the order of the inputs.
-class PointExchange {
+class PointExchange : public PointFeed {
  public:
   /// Collective. `indexed`: points come with their indices. All others must outlive it.
   PointExchange(PieceTable& pieces, const RankDivision& division, const distributed::Ranks& ranks,
@@ -42,12 +42,13 @@ class PointExchange {
     state(next_own_, round_, records_, points_sent_);
   }
 
-  /// Takes the next points of this rank; false at the end. Collective, in that all ranks call it
-  /// until it is false. `progress` is called after each round. Gives none if rests().
-  bool fetch(SourcePiece& batch, const std::function<void()>& progress);
+  /// Calls this after each round.
+  void tell_rounds(std::function<void()> told) { round_done_ = std::move(told); }
 
-  /// Makes points of what fetch() gave; by many threads at a time.
-  void decode(SourcePiece& batch, PointBlock& block) const;
+  /// Takes the next points of this rank. Collective, in that all ranks call it until it is false.
+  /// Gives none if rests().
+  bool fetch(SourcePiece& batch) override;
+  void decode(SourcePiece& batch, PointBlock& block) override;
 
   /// The share of all rounds that is done.
   [[nodiscard]] double fraction() const;
@@ -96,6 +97,7 @@ class PointExchange {
   std::uint64_t points_sent_ = 0;
   std::deque<Arrived> arrived_;
   std::function<bool()> rest_due_;
+  std::function<void()> round_done_ = [] {};
   bool rests_ = false;
 };
 

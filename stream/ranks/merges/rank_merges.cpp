@@ -56,16 +56,16 @@ class WorkTimer {
 }  // namespace
 
 template <int D>
-RankMerges<D>::RankMerges(const RankTree<D>& tree, TileEngine<D>& engine, MemoryBudget& budget,
-                          const StreamOptions& options, const Ranks& ranks)
+RankMerges<D>::RankMerges(const RankTree<D>& tree, TileEngine<D>& engine, const RunSetup& setup,
+                          const Ranks& ranks)
     : tree_(tree),
       engine_(engine),
-      budget_(budget),
-      options_(options),
+      budget_(setup.budget),
+      options_(setup.options),
       output_(engine.output()),
-      kept_(budget) {
+      kept_(budget_) {
   output_.imported_vertices = true;
-  largest_message_ = largest_message(budget, ranks);
+  largest_message_ = largest_message(budget_, ranks);
   const auto own = tree.own_node();
   Ranks group = ranks.split(own ? 0 : 1);
   if (!own) return;
@@ -168,7 +168,7 @@ void RankMerges<D>::merge_halves(const Step& step, ItemLimits limits, Task& task
     const StageTimer timer(engine_.times(), Stage::kMerge);
     const WorkTimer work(figures.triangulation_seconds);
     isolated([&] {
-      mesh = border_delaunay<D>(std::move(slab), options_.kernel, &lease, task.after[1]);
+      mesh = border_delaunay<D>(std::move(slab), options_.asked.kernel, &lease, task.after[1]);
     });
     return mesh;
   };

@@ -6,8 +6,7 @@
 
 #include "src/distributed/merge_halves.h"
 #include "src/distributed/ranks.h"
-#include "src/runtime/memory_budget.h"
-#include "stream/plan/engine_options.h"
+#include "stream/plan/run_setup.h"
 #include "stream/plan/run_trace.h"
 #include "stream/ranks/merges/owned_vertices.h"
 #include "stream/ranks/rank_tree.h"
@@ -22,8 +21,8 @@ template <int D>
 class RankMerges {
  public:
   /// Makes the groups of ranks that merge. All must outlive it. Collective.
-  RankMerges(const RankTree<D>& tree, TileEngine<D>& engine, MemoryBudget& budget,
-             const StreamOptions& options, const distributed::Ranks& ranks);
+  RankMerges(const RankTree<D>& tree, TileEngine<D>& engine, const RunSetup& setup,
+             const distributed::Ranks& ranks);
 
   /// Merges what this rank's tiles have left, whose vertices have their places in the stream of all
   /// ranks, with what those of others have. Collective, of the ranks that have points.
@@ -64,7 +63,7 @@ class RankMerges {
   const RankTree<D>& tree_;
   TileEngine<D>& engine_;
   MemoryBudget& budget_;
-  const StreamOptions& options_;
+  const EngineOptions& options_;
   OutputOptions output_;
   std::size_t largest_message_ = 0;  ///< bytes
   int member_ = 0;

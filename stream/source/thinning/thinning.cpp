@@ -173,7 +173,7 @@ void Thinning::put_aside(const Candidate& candidate, const std::byte* attributes
 void Thinning::write(Bucket& bucket) {
   if (!bucket.file) bucket.file = scratch_.create("thinning");
   std::vector<std::byte> bytes;
-  for (TileBlock block : encode_points(bucket.buffer, bytes)) {
+  for (EncodedBlock block : encode_points(bucket.buffer, bytes)) {
     block.offset += bucket.file->size();
     bucket.blocks.push_back(block);
   }
@@ -198,13 +198,13 @@ void Thinning::run_pass(Bucket bucket) {
   met_.clear();
   slots_.assign(kFewestSlots, {});
   std::size_t count = 0;
-  for (const TileBlock& block : bucket.blocks) count += block.points;
+  for (const EncodedBlock& block : bucket.blocks) count += block.points;
   buckets_.resize(std::min(kBuckets, count / capacity_ + 1));  // such that theirs find room
   level_ = bucket.level;
   passing_ = true;
   PointBlock points;
   std::vector<std::byte> bytes;
-  for (const TileBlock& block : bucket.blocks) {
+  for (const EncodedBlock& block : bucket.blocks) {
     bytes.resize(block.size);
     bucket.file->read(block.offset, bytes);
     decode_points(bytes, {bucket.file->name(), at_byte(block.offset)}, points);

@@ -84,7 +84,7 @@ class Thinning {
   struct Bucket {
     PointBuffer buffer;
     std::unique_ptr<ScratchFile> file;
-    std::vector<TileBlock> blocks;
+    std::vector<EncodedBlock> blocks;
     unsigned level = 0;  ///< passes that its points have been through
   };
 

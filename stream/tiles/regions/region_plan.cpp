@@ -254,18 +254,18 @@ std::vector<std::size_t> order_units(std::span<const InputRegion> regions, const
 
 /// The order in which regions come, if their units are read as planned.
 void order_regions(std::span<const InputRegion> regions, RegionPlan& plan) {
-  std::vector<std::vector<std::size_t>> of_unit(plan.units.size());
+  std::vector<std::vector<std::size_t>> of_unit(plan.order.units.size());
   for (std::size_t r = 0; r < regions.size(); ++r) of_unit[regions[r].unit].push_back(r);
-  for (const std::size_t unit : plan.units) {
-    plan.regions.insert(plan.regions.end(), of_unit[unit].begin(), of_unit[unit].end());
+  for (const std::size_t unit : plan.order.units) {
+    plan.order.regions.insert(plan.order.regions.end(), of_unit[unit].begin(), of_unit[unit].end());
   }
 }
 
 void tell_when_done(const Planner& planner, RegionPlan& plan) {
-  std::vector<std::size_t> position(plan.regions.size());
-  for (std::size_t p = 0; p < position.size(); ++p) position[plan.regions[p]] = p;
+  std::vector<std::size_t> position(plan.order.regions.size());
+  for (std::size_t p = 0; p < position.size(); ++p) position[plan.order.regions[p]] = p;
   plan.cells.resize(planner.by_cell.size());
-  plan.done_after.resize(plan.regions.size());
+  plan.done_after.resize(plan.order.regions.size());
   for (const std::uint32_t c : planner.in_order) {
     RegionPlan::Cell& cell = plan.cells[c];
     const std::vector<Portion>& portions = planner.by_cell[c];
@@ -284,14 +284,14 @@ void expect_waiting(std::span<const InputRegion> regions, RegionPlan& plan) {
   double done = 0;
   double read = 0;
   std::size_t last = 0;
-  for (std::size_t p = 0; p < plan.regions.size(); ++p) {
-    const InputRegion& region = regions[plan.regions[p]];
+  for (std::size_t p = 0; p < plan.order.regions.size(); ++p) {
+    const InputRegion& region = regions[plan.order.regions[p]];
     if (region.box.empty()) continue;
     all += static_cast<double>(region.count);
     last = p;
   }
-  for (std::size_t p = 0; p < plan.regions.size(); ++p) {
-    const InputRegion& region = regions[plan.regions[p]];
+  for (std::size_t p = 0; p < plan.order.regions.size(); ++p) {
+    const InputRegion& region = regions[plan.order.regions[p]];
     if (!region.box.empty()) read += static_cast<double>(region.count);
     plan.most_waiting = std::max(plan.most_waiting, read - done);
     if (p == last) break;
@@ -308,7 +308,7 @@ RegionPlan plan_regions(std::span<const InputRegion> regions, const RegionPlanOp
                   std::max(options.most_points, points_of(portions) / kMostCells));
   planner.cut(0, std::move(portions));
   RegionPlan plan{.cuts = planner.take_cuts()};
-  plan.units = order_units(regions, planner, options.any_order);
+  plan.order.units = order_units(regions, planner, options.any_order);
   order_regions(regions, plan);
   tell_when_done(planner, plan);
   expect_waiting(regions, plan);

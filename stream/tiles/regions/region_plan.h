@@ -7,17 +7,10 @@
 #include <vector>
 
 #include "src/geometry/box.h"
+#include "stream/points/input_region.h"
 #include "stream/tiles/cuts/cut_tree.h"
 
 namespace spillway::detail {
-
-/// A part of the points to come, all of which lie in a box. Regions of one unit come one after the
-/// other: those of an input that can only be read from front to back.
-struct InputRegion {
-  std::size_t unit = 0;
-  Box<3> box;  ///< in the coordinates in which points are dealt
-  std::uint64_t count = 0;
-};
 
 /// Which tiles to begin with, and in which order to read, so that tiles are complete early: decided
 /// by the boxes of regions alone. A tile that is cut later on stays a *cell* of this plan.
@@ -27,11 +20,10 @@ struct RegionPlan {
     double expected = 0;
     std::size_t done_after = 0;  ///< position of the last region that may have points of it
   };
-  CutTree cuts;                        ///< its tiles are the cells
-  std::vector<Cell> cells{};           ///< by tile
-  std::vector<std::size_t> units{};    ///< in the order in which to read them
-  std::vector<std::size_t> regions{};  ///< in the order in which they come then
-  /// By position in `regions`: the cells that are complete when that region has been read.
+  CutTree cuts;               ///< its tiles are the cells
+  std::vector<Cell> cells{};  ///< by tile
+  RegionOrder order{};        ///< in which to read
+  /// By position in `order.regions`: the cells that are complete when that region has been read.
   std::vector<std::vector<std::uint32_t>> done_after{};
   double most_waiting = 0;  ///< points of cells that are not complete, at the most, as expected
   double done_early = 0;    ///< share of points in cells that are complete before the last points

@@ -33,7 +33,7 @@ void SegmentReader::read(const FileStretch& stretch, StoredBlocks& blocks) {
   const std::uint64_t offset = stretch.offset() + done_;
   const std::uint64_t left = stretch.size() - done_;
   blocks.where = {stretch.file().name(), at_byte(offset)};
-  std::vector<TileBlock> found;
+  std::vector<EncodedBlock> found;
   for (std::size_t size = kReadBytes; found.empty(); size *= 2) {
     blocks.bytes.resize(std::min<std::uint64_t>(size, left));
     stretch.file().read(offset, blocks.bytes);

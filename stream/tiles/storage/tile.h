@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -22,6 +23,11 @@ struct HeldPoints {
   Box<3> box{};
   std::optional<std::uint64_t> arrival{};  ///< of the first, if there are later points
   std::uint64_t run = 0;
+
+  /// An arrival after all others, and after that of what came last.
+  static constexpr std::uint64_t kAfterAll = std::numeric_limits<std::uint64_t>::max();
+  /// What waits without an arrival came last.
+  [[nodiscard]] std::uint64_t arrival_or_last() const { return arrival.value_or(kAfterAll - 1); }
 
   template <typename State>
   void state(State& state) {

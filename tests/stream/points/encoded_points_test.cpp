@@ -40,23 +40,7 @@ std::string error_of(std::span<const std::byte> block) {
   return "no error";
 }
 
-TEST(TilePoints, InThePlaneHeightsStandApart) {
-  TilePoints<2> plane;
-  plane.resize(2, true, 3);
-  plane.set(1, {3, 4, 5});
-  EXPECT_EQ(plane.points[1], (Point<2>{3, 4}));
-  EXPECT_EQ(plane.heights[1], 5);
-  EXPECT_EQ(plane.index.size(), 2U);
-  EXPECT_EQ(plane.attributes.size(), 6U);
-  TilePoints<3> space;
-  space.resize(2, false, 0);
-  space.set(0, {3, 4, 5});
-  EXPECT_EQ(space.points[0], (LatticePoint{3, 4, 5}));
-  EXPECT_TRUE(space.heights.empty());
-  EXPECT_TRUE(space.index.empty());
-}
-
-TEST(TileBlock, OneBlockComesBack) {
+TEST(EncodedBlock, OneBlockComesBack) {
   for (const std::size_t count : {std::size_t{0}, std::size_t{1}, kPiece}) {
     const PointBlock points = random_points(count);
     std::vector<std::byte> bytes;
@@ -69,7 +53,7 @@ TEST(TileBlock, OneBlockComesBack) {
   }
 }
 
-TEST(TileBlock, WithoutIndicesAndAttributesNoneComeBack) {
+TEST(EncodedBlock, WithoutIndicesAndAttributesNoneComeBack) {
   const PointBlock points = random_points(100);
   std::vector<std::byte> bytes;
   append_points(bytes, {points.points});
@@ -80,18 +64,18 @@ TEST(TileBlock, WithoutIndicesAndAttributesNoneComeBack) {
   EXPECT_TRUE(back.attributes.empty());
 }
 
-TEST(TileBlock, ABufferBecomesABlockForEachPiece) {
+TEST(EncodedBlock, ABufferBecomesABlockForEachPiece) {
   const PointBlock points = random_points(2 * kPiece + 3);
   PointBuffer buffer;
   buffer.append(PointsView::of(points));
   std::vector<std::byte> bytes(11);  // what stands there already stays
-  const std::vector<TileBlock> blocks = encode_points(buffer, bytes);
+  const std::vector<EncodedBlock> blocks = encode_points(buffer, bytes);
   ASSERT_EQ(blocks.size(), 3U);
   EXPECT_EQ(buffer.size(), 0U);
   EXPECT_EQ(blocks.front().offset, 11U);
   EXPECT_EQ(blocks.back().offset + blocks.back().size, bytes.size());
   PointBlock all;
-  for (const TileBlock& block : blocks) {
+  for (const EncodedBlock& block : blocks) {
     PointBlock some;
     decode_points(std::span(bytes).subspan(block.offset, block.size), {"here"}, some);
     EXPECT_EQ(some.size(), block.points);
@@ -102,7 +86,7 @@ TEST(TileBlock, ABufferBecomesABlockForEachPiece) {
   EXPECT_EQ(all.attributes, points.attributes);
 }
 
-TEST(TileBlock, AnyNumberOfPointsComesBackAsOne) {
+TEST(EncodedBlock, AnyNumberOfPointsComesBackAsOne) {
   for (const std::size_t count : {std::size_t{0}, kPiece, 2 * kPiece + 1}) {
     const PointBlock points = random_points(count);
     std::vector<std::byte> bytes;
@@ -114,7 +98,7 @@ TEST(TileBlock, AnyNumberOfPointsComesBackAsOne) {
   }
 }
 
-TEST(TileBlock, RecordsThatNoPageHoldsAreRefused) {
+TEST(EncodedBlock, RecordsThatNoPageHoldsAreRefused) {
   EXPECT_NO_THROW(refuse_large_records(PointBuffer::kMostRecord));
   try {
     refuse_large_records(5000);
@@ -125,7 +109,7 @@ TEST(TileBlock, RecordsThatNoPageHoldsAreRefused) {
   }
 }
 
-TEST(TileBlock, TruncatedIsRefused) {
+TEST(EncodedBlock, TruncatedIsRefused) {
   const PointBlock points = random_points(100);
   std::vector<std::byte> bytes;
   append_points(bytes, PointsView::of(points));
@@ -135,7 +119,7 @@ TEST(TileBlock, TruncatedIsRefused) {
             "tile 7, byte 0: the block has another size than its head says");
 }
 
-TEST(TileBlock, ChecksumMismatchIsRefused) {
+TEST(EncodedBlock, ChecksumMismatchIsRefused) {
   const PointBlock points = random_points(100);
   std::vector<std::byte> bytes;
   append_points(bytes, PointsView::of(points));
@@ -143,7 +127,7 @@ TEST(TileBlock, ChecksumMismatchIsRefused) {
   EXPECT_THAT(error_of(bytes), HasSubstr("tile 7, byte 0"));
 }
 
-TEST(TileBlock, TooManyPointsAreRefused) {
+TEST(EncodedBlock, TooManyPointsAreRefused) {
   std::vector<std::byte> bytes;
   append_block(bytes, 4 * (kPiece + 1), {});
   EXPECT_EQ(error_of(bytes), "tile 7, byte 0: the block has too many points");

@@ -35,9 +35,9 @@ std::vector<std::array<VertexId, D + 1>> expected_simplices(const std::vector<Po
 /// totals as one process. Collective; all ranks give the same points.
 template <int D>
 void expect_one_mesh(const std::vector<Point<D>>& points, std::size_t files,
-                     const StreamOptions& options) {
+                     const EngineOptions& options) {
   SCOPED_TRACE(testing::Message() << points.size() << " points in " << files << " files, tiles of "
-                                  << options.tile_capacity);
+                                  << options.asked.tile_points);
   const auto expected = expected_simplices<D>(points);
   if (expected.empty()) return;  // refused, by one rank: tested by the command
   std::vector<std::string> paths;

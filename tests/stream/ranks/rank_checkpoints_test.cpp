@@ -13,6 +13,7 @@
 
 #include "formats/meshes/spool/mesh_spool.h"
 #include "stream/ranks/rank_pipeline.h"
+#include "tests/stream/quiet_setup.h"
 #include "tests/stream/ranks/shared_inputs.h"
 
 namespace spillway::detail::testing {
@@ -151,8 +152,8 @@ class InterruptedSink final : public BlockSink {
 TEST_F(RankCheckpointsTest, LeadToTheSameMeshThoughNotAllRanksHaveMadeOneAlone) {
   namespace fs = std::filesystem;
   const auto paths = write_inputs(folder_, points_of_seed(60'000, 7), 2, "npy");
-  const StreamOptions options{
-      .threads = 1, .tile_capacity = 300, .buffered_points = 2000, .leaf_size = 100};
+  const EngineOptions options{
+      .asked = {.tile_points = 300, .leaf_points = 100}, .threads = 1, .buffered_points = 2000};
   const std::string as_killed = path() + ".killed";
   std::vector<std::uint64_t> hashes;
   for (int process = 0; process < 3; ++process) {
@@ -170,10 +171,11 @@ TEST_F(RankCheckpointsTest, LeadToTheSameMeshThoughNotAllRanksHaveMadeOneAlone) 
     MeshSpool spool(header, "mesh", folder->scratch());
     InterruptedSink sink(spool, 10,
                          [&] { fs::copy(path(), as_killed, fs::copy_options::recursive); });
-    MemoryBudget budget(std::uint64_t{1} << 30);
-    hashes.push_back(triangulate_over_ranks<2>(*source, sink, folder->scratch(), budget, options,
-                                               world(), &checkpoints)
-                         .totals.canonical_hash);
+    QuietSetup setup(options);
+    const RankMesh mesh = triangulate_over_ranks<2>(
+        *source, sink, {setup.options, folder->scratch(), setup.budget, setup.sink, setup.progress},
+        world(), &checkpoints);
+    hashes.push_back(mesh.totals.canonical_hash);
   }
   EXPECT_EQ(hashes[1], hashes[0]);
   EXPECT_EQ(hashes[2], hashes[0]);

@@ -29,6 +29,7 @@
 #include "stream/ranks/mesh_output.h"
 #include "tests/distributed/world.h"
 #include "tests/faulty_file_system.h"
+#include "tests/stream/quiet_setup.h"
 #include "tests/stream/ranks/shared_folder.h"
 
 namespace spillway::detail::testing {
@@ -90,16 +91,16 @@ MadeMesh make(const MeshCase& made, const SharedFolder& folder) {
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   const auto source =
       open_shared_source(disk(), {path}, {.dimension = D, .index = made.index}, world());
-  MemoryBudget budget(std::uint64_t{1} << 30);
-  StreamOptions options{.threads = 1, .tile_capacity = 700, .leaf_size = 100};
+  EngineOptions options{.asked = {.tile_points = 700, .leaf_points = 100}, .threads = 1};
   if (made.points > 100'000) options = {.threads = 1};
-  options.input_index = made.index;
+  options.asked.input_index = made.index;
   result.header.dimension = D;
   result.header.has_input_index = made.index;
   result.header.lattice = source->lattice();
   result.header.crs = "EPSG:25832";
   EXPECT_EQ(result.header.lattice.has_value(), made.lattice);
-  result.mesh = triangulate_over_ranks<D>(*source, kept, *scratch, budget, options, world());
+  QuietSetup setup(options);
+  result.mesh = triangulate_over_ranks<D>(*source, kept, setup, world());
   result.blocks = std::move(kept.blocks);
   return result;
 }

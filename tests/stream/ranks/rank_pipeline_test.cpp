@@ -13,7 +13,7 @@ namespace {
 using distributed::world;
 
 void expect_one_mesh(const FamilyCase& family, std::uint64_t count, std::uint64_t seed,
-                     std::size_t files, const StreamOptions& options) {
+                     std::size_t files, const EngineOptions& options) {
   SCOPED_TRACE(testing::Message() << count << " points, seed " << seed);
   const GeneratorOptions generate{family.family, count, family.dimension, seed};
   if (family.dimension == 2) {
@@ -27,8 +27,9 @@ class MeshOfRanks : public testing::TestWithParam<FamilyCase> {};
 
 TEST_P(MeshOfRanks, EqualsThatOfOneProcessForSmallSets) {
   for (const std::uint64_t count : {3, 4, 5, 7, 12, 30, 100}) {
-    expect_one_mesh(GetParam(), count, 1, 3,
-                    {.threads = 2, .tile_capacity = 20, .leaf_size = 8, .gather_below = count % 3});
+    expect_one_mesh(
+        GetParam(), count, 1, 3,
+        {.asked = {.tile_points = 20, .leaf_points = 8}, .threads = 2, .gather_below = count % 3});
   }
 }
 
@@ -36,10 +37,9 @@ TEST_P(MeshOfRanks, EqualsThatOfOneProcessForManyTilesThatSpill) {
   const bool dense = GetParam().dimension == 3 && GetParam().family == Family::kLines;
   const std::uint64_t count = dense ? 200 : GetParam().dimension == 2 ? 4'000 : 1'200;
   expect_one_mesh(GetParam(), count, 2, 11,
-                  {.threads = 1,
-                   .tile_capacity = 90,
+                  {.asked = {.tile_points = 90, .leaf_points = 30},
+                   .threads = 1,
                    .buffered_points = 200,
-                   .leaf_size = 30,
                    .gather_below = 40});
   expect_one_mesh(GetParam(), count, 3, 2, {.threads = 2});
 }
@@ -65,8 +65,8 @@ TEST(RanksInThePipeline, CountOpenFacetsOfAllTogetherWhereLongEdgesAreLeftOut) {
   std::vector<std::string> paths;
   if (world().rank() == 0) paths = write_shared_points<2>(points, 5);
   world().barrier();
-  const StreamOptions options{
-      .threads = 1, .tile_capacity = 200, .leaf_size = 50, .max_edge = 0.03};
+  const EngineOptions options{.asked = {.max_edge = 0.03, .tile_points = 200, .leaf_points = 50},
+                              .threads = 1};
   const RankRunResult run = run_over_ranks<2>(paths, options);
   const std::string path = write_points<2>(points);
   const StreamRun alone = run_stream<2>(path, options);

@@ -42,19 +42,18 @@ struct RankRunResult {
 };
 
 template <int D>
-RankRunResult run_over_ranks(const std::vector<std::string>& paths, StreamOptions options,
+RankRunResult run_over_ranks(const std::vector<std::string>& paths, EngineOptions options,
                              std::uint64_t memory = std::uint64_t{1} << 30) {
   const distributed::Ranks& ranks = distributed::world();
   RankRunResult run{{}, KeepingWriter(D), carries_attributes(options)};
-  options.input_index = true;
-  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  options.asked.input_index = true;
   const auto source = open_shared_source(disk(), paths, {.dimension = D, .index = true}, ranks);
   if (run.carries) {
     source->carry({.all = true});
     options.record_size = source->attributes().record_size();
   }
-  MemoryBudget budget(memory);
-  run.mesh = triangulate_over_ranks<D>(*source, run.own, *scratch, budget, options, ranks);
+  QuietSetup setup(options, memory);
+  run.mesh = triangulate_over_ranks<D>(*source, run.own, setup, ranks);
   return run;
 }
 

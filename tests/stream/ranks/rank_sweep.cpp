@@ -28,15 +28,15 @@ using Random = std::mt19937_64;
 
 std::uint64_t up_to(Random& random, std::uint64_t most) { return random() % (most + 1); }
 
-StreamOptions random_options(Random& random, std::size_t scale) {
-  StreamOptions options;
+EngineOptions random_options(Random& random, std::size_t scale) {
+  EngineOptions options;
   options.threads = 1 + static_cast<unsigned>(up_to(random, 1));
-  options.tile_capacity = scale * (5 + up_to(random, 150));
-  options.leaf_size = scale * (4 + up_to(random, 40));
+  options.asked.tile_points = scale * (5 + up_to(random, 150));
+  options.asked.leaf_points = scale * (4 + up_to(random, 40));
   if (up_to(random, 1) == 0) options.buffered_points = scale * (1 + up_to(random, 300));
   if (up_to(random, 3) > 0) options.gather_below = up_to(random, 60);
-  options.heights = std::array{Heights::kFirst, Heights::kHighest, Heights::kLowest,
-                               Heights::kMean}[up_to(random, 3)];
+  options.asked.heights = std::array{Heights::kFirst, Heights::kHighest, Heights::kLowest,
+                                     Heights::kMean}[up_to(random, 3)];
   return options;
 }
 

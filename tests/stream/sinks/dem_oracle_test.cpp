@@ -263,9 +263,9 @@ TEST(DemOracle, OrdersThreadsAndTilesChangeNoBit) {
       const auto of_mesh = bits(one, 4);
       for (unsigned threads = 1; threads <= 8; ++threads) {
         std::shuffle(cloud.begin(), cloud.end(), random);
-        StreamOptions stream{.threads = threads};
-        if (threads % 2 == 0) stream.leaf_size = 5 + threads;
-        if (threads % 3 == 0) stream.tile_capacity = stream.buffered_points = 10 * threads;
+        EngineOptions stream{.threads = threads};
+        if (threads % 2 == 0) stream.asked.leaf_points = 5 + threads;
+        if (threads % 3 == 0) stream.asked.tile_points = stream.buffered_points = 10 * threads;
         ASSERT_EQ(bits(raster_of(cloud, options, stream), 5), of_points) << threads;
 
         std::shuffle(triangles.begin(), triangles.end(), random);

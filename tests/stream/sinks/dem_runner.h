@@ -61,17 +61,26 @@ inline Rastered finished(Dem& dem, const DemOptions& options) {
 
 /// Points through the whole pipeline.
 inline Rastered raster_of(const std::vector<Point<3>>& points, DemOptions options,
-                          StreamOptions stream = {}) {
+                          EngineOptions stream = {}) {
   if (options.memory == 0) options.memory = kMemory;
   options.threads = stream.threads;
   const std::string path = write_points<3>(points);
   PointSource source(disk(), {path}, {.dimension = 2});
-  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  MemoryBudget budget(kMemory);
-  Dem dem(options, source.lattice(), *scratch);
-  stream.extent_known = [&dem](const Box<2>& extent, std::uint64_t) { dem.begin(extent); };
+  QuietSetup setup(std::move(stream), kMemory);
+  Dem dem(options, source.lattice(), *setup.scratch);
+  class Extents final : public RunSink {
+   public:
+    explicit Extents(Dem& dem) : dem_(dem) {}
+    void extent_known(const Box<2>& extent, std::uint64_t /*points*/) override {
+      dem_.begin(extent);
+    }
+
+   private:
+    Dem& dem_;
+  } extents(dem);
   DemWriter writer(dem);
-  (void)triangulate_stream<2>(source, writer, *scratch, budget, stream);
+  (void)triangulate_stream<2>(
+      source, writer, {setup.options, *setup.scratch, setup.budget, extents, setup.progress});
   return finished(dem, options);
 }
 

@@ -74,10 +74,11 @@ TEST(Dem, TilesThreadsAndLeavesDoNotMatter) {
     DemOptions options = kAllProducts;
     options.grid = {.resolution = 0.5, .bounds = Box<2>{{-0.25, -0.25}, {300.25, 300.25}}};
     const Rastered one = raster_of(points, options);
-    for (const StreamOptions& stream :
-         {StreamOptions{.threads = 2}, StreamOptions{.threads = 1, .leaf_size = 100},
-          StreamOptions{
-              .threads = 2, .tile_capacity = 1500, .buffered_points = 3000, .leaf_size = 200}}) {
+    for (const EngineOptions& stream :
+         {EngineOptions{.threads = 2}, EngineOptions{.asked = {.leaf_points = 100}, .threads = 1},
+          EngineOptions{.asked = {.tile_points = 1500, .leaf_points = 200},
+          .threads = 2,
+          .buffered_points = 3000}}) {
       const Rastered other = raster_of(points, options, stream);
       EXPECT_EQ(other.grid, one.grid);
       for (std::size_t b = 0; b < one.bands.size(); ++b) {
@@ -97,7 +98,7 @@ TEST(Dem, TilesThatAreClosedDoNotMatter) {
                                     DemProduct::kHillshade}};
     options.grid = {.resolution = 0.5, .bounds = Box<2>{{20, -50}, {700, 650}}};
     for (const double max_edge : {1000.0, 22.0}) {
-      StreamOptions stream{.max_edge = max_edge};
+      EngineOptions stream{.asked = {.max_edge = max_edge}};
       options.closes_tiles = false;
       options.memory = 0;
       const Rastered open = raster_of(points, options, stream);
@@ -105,7 +106,7 @@ TEST(Dem, TilesThatAreClosedDoNotMatter) {
       options.closes_tiles = true;
       for (const unsigned threads : {1U, 2U, 4U}) {
         stream.threads = threads;
-        stream.tile_capacity = 1500;
+        stream.asked.tile_points = 1500;
         options.memory = threads == 2 ? kMemory : 2 * RasterStore::least_memory(4, threads);
         const Rastered closed = raster_of(points, options, stream);
         EXPECT_GT(closed.closed, max_edge > 100 ? 15U : 0U);
@@ -175,7 +176,7 @@ TEST(Dem, DensityCountsEveryVertexOnce) {
   DemOptions options{.products = {DemProduct::kDensity}};
   options.grid = {.resolution = 3};
   const auto points = with_heights(square_points(5000, 90, false, 4), rough);
-  const Rastered dem = raster_of(points, options, {.threads = 2, .tile_capacity = 700});
+  const Rastered dem = raster_of(points, options, {.asked = {.tile_points = 700}, .threads = 2});
   double sum = 0;
   for (const float pixel : dem.bands[0]) sum += pixel;
   EXPECT_EQ(sum, 5000);
@@ -187,7 +188,8 @@ TEST(Dem, LongEdgesLeaveNoData) {
   for (std::size_t i = 0; i < points.size(); i += 2) points[i][0] += 100;
   DemOptions options;
   options.grid = {.resolution = 1, .bounds = Box<2>{{0, 0}, {110, 10}}};
-  const Rastered dem = raster_of(with_heights(points, rough), options, {.max_edge = 20.0});
+  const Rastered dem =
+      raster_of(with_heights(points, rough), options, {.asked = {.max_edge = 20.0}});
   for (std::uint32_t column = 20; column < 90; ++column) {
     EXPECT_EQ(dem.bands[0][5 * dem.grid.columns + column], options.nodata);
   }
@@ -275,7 +277,8 @@ TEST(Dem, PixelsThatDoNotFitIntoMemoryGoToTheDiskAndComeBack) {
   const Rastered one = raster_of(points, options);
   EXPECT_EQ(one.spilled, 0U);
   options.memory = RasterStore::least_memory(3, 1) + (1U << 20);
-  const Rastered small = raster_of(points, options, {.tile_capacity = 300, .leaf_size = 50});
+  const Rastered small =
+      raster_of(points, options, {.asked = {.tile_points = 300, .leaf_points = 50}});
   EXPECT_GT(small.spilled, options.memory / 4);
   EXPECT_EQ(small.bands, one.bands);
 }

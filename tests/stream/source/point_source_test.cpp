@@ -184,10 +184,7 @@ TEST_F(PointSourceTest, GivesAllPointsInTheInputsOrderAfterAFalseBox) {
   PointSource source(disk(), {on_disk("a.las", diagonal(70)), on_disk("b.las", diagonal(100))},
                      {.index = true});
   ASSERT_EQ(source.regions().size(), 2U);
-  RegionPlan plan{.cuts = CutTree(2)};
-  plan.regions = {1, 0};
-  plan.units = {1, 0};
-  source.keep_to(plan);
+  source.keep_to({.units = {1, 0}, .regions = {1, 0}});
   PointBlock block;
   EXPECT_THROW(source.read(block), FalseHeader) << "boxes of these files are far away";
   ASSERT_TRUE(source.read_again(false));

@@ -61,6 +61,24 @@ inline std::array<std::byte, 3> carried_by(std::uint64_t number) {
   return {std::byte{7}, static_cast<std::byte>(number), static_cast<std::byte>(number >> 8)};
 }
 
+/// Sees to it that what is told of points that are dealt again ascends.
+class AscendingProgress final : public DealingWatch {
+ public:
+  void dealt_again(std::uint64_t points, double fraction) override {
+    EXPECT_GE(points, told);
+    EXPECT_GE(fraction, share_);
+    EXPECT_LE(fraction, 1);
+    told = points;
+    share_ = fraction;
+  }
+  void begin_again() { told = 0, share_ = 0; }
+
+  std::uint64_t told = 0;
+
+ private:
+  double share_ = 0;
+};
+
 /// Deals points, whose numbers are their indices.
 template <int D>
 DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dealing& dealing) {
@@ -80,7 +98,8 @@ DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dea
   }
   DealtTiles<D> dealt;
   with_threads(dealing.threads, [&] {
-    TileTree tree(options, *scratch, times);
+    AscendingProgress progress;
+    TileTree tree(options, *scratch, times, progress);
     std::size_t next = 0;
     tree.fill([&](PointBlock& block) {
       const std::size_t count = std::min(dealing.block, points.size() - next);
@@ -95,21 +114,14 @@ DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dea
       }
       return count > 0;
     });
-    std::uint64_t told = 0;
-    double share = 0;
     dealt.left_over = tree.points_to_divide();
-    dealt.divided = tree.divide_large([&](std::uint64_t done, double fraction) {
-      EXPECT_GE(done, told);
-      EXPECT_GE(fraction, share);
-      EXPECT_LE(fraction, 1);
-      told = done;
-      share = fraction;
-    });
-    EXPECT_LE(told, dealt.divided);
+    dealt.divided = tree.divide_large();
+    EXPECT_LE(progress.told, dealt.divided);
     dealt.nest_at_first = tree.nests();
     if (dealing.evenly) {
       tree.divide_evenly();
-      dealt.divided += tree.divide_large([](std::uint64_t /*done*/, double /*fraction*/) {});
+      progress.begin_again();
+      dealt.divided += tree.divide_large();
     }
     dealt.nest = tree.nests();
     EXPECT_EQ(tree.points_to_divide(), 0U);
@@ -117,8 +129,8 @@ DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dea
     const auto visit = [&](const auto& self, const TileNode<D>& node) -> void {
       for (const auto& child : node.children) self(self, child);
       if (!node.leaf()) return;
-      dealt.tiles.push_back(
-          {node.box, node.stored.size(), node.sketch, tree.decode<D>(tree.read(node))});
+      dealt.tiles.push_back({node.box, node.stored.size(), node.sketch,
+                             tree.loader().decode<D>(tree.loader().read(node))});
       EXPECT_EQ(dealt.tiles.back().points.points.size(), node.points);
     };
     if (const auto root = tree.take_nodes<D>()) visit(visit, *root);

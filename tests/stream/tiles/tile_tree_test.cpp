@@ -410,13 +410,14 @@ TEST(TileTree, SurvivesAHeaderThatLies) {
   options.extent = Box<3>{};
   options.extent->expand(LatticePoint{1000, 1000, 0});
   with_threads(2, [&] {
-    TileTree tree(options, *scratch, times);
+    DealingWatch nobody;
+    TileTree tree(options, *scratch, times, nobody);
     bool given = false;
     tree.fill([&](PointBlock& block) {
       block.points = given ? Points() : points;
       return !std::exchange(given, true);
     });
-    tree.divide_large([](std::uint64_t, double) {});
+    tree.divide_large();
     const std::optional<TileNode<2>> root = tree.take_nodes<2>();
     ASSERT_TRUE(root);
     EXPECT_EQ(root->points, points.size());
@@ -431,7 +432,8 @@ std::uint64_t dealt_again(const Points& points, const Points& sample) {
   options.expected = points.size();
   std::uint64_t divided = 0;
   with_threads(2, [&] {
-    TileTree tree(options, *scratch, times);
+    DealingWatch nobody;
+    TileTree tree(options, *scratch, times, nobody);
     Box<3> extent;
     for (const LatticePoint& p : points) extent.expand(p);
     tree.expect(extent, sample);
@@ -440,7 +442,7 @@ std::uint64_t dealt_again(const Points& points, const Points& sample) {
       block.points = given ? Points() : points;
       return !std::exchange(given, true);
     });
-    divided = tree.divide_large([](std::uint64_t, double) {});
+    divided = tree.divide_large();
     const std::optional<TileNode<2>> root = tree.take_nodes<2>();
     ASSERT_TRUE(root);
     EXPECT_EQ(root->points, points.size());
@@ -464,15 +466,16 @@ TEST(TileTree, SaysWhenTheDiskIsFull) {
   StageTimes times;
   const Points points = make_points(Order::kRandom, 300'000);
   with_threads(2, [&] {
+    DealingWatch nobody;
     TileTree tree({.dimension = 2, .capacity = kCapacity, .buffered_points = kBuffered}, *scratch,
-                  times);
+                  times, nobody);
     bool given = false;
     try {
       tree.fill([&](PointBlock& block) {
         block.points = given ? Points() : points;
         return !std::exchange(given, true);
       });
-      tree.divide_large([](std::uint64_t, double) {});
+      tree.divide_large();
       FAIL() << "the cap was not kept";
     } catch (const Error& error) {
       EXPECT_EQ(error.facts().remedy, Remedy::kScratchLimit) << error.what();

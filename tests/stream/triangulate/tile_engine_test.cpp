@@ -25,7 +25,7 @@ using testing::random_points;
 using testing::triangulated;
 
 /// Gives points in batches, with indices from `first_index` on.
-class Feed {
+class Feed : public PointFeed {
  public:
   template <std::size_t D>
   explicit Feed(const std::vector<std::array<double, D>>& points, std::uint64_t first_index = 0)
@@ -36,19 +36,17 @@ class Feed {
     }
   }
 
-  PointFeed feed() {
-    return {.fetch =
-                [this](SourcePiece& piece) {
-                  piece.raw.clear();
-                  PointBlock& block = piece.raw.decoded;
-                  for (; next_ < points_.size() && block.size() < 777; ++next_) {
-                    block.points.push_back(points_[next_]);
-                    block.index.push_back(first_index_ + next_);
-                  }
-                  return block.size() > 0;
-                },
-            .decode = [](SourcePiece& piece,
-                         PointBlock& block) { std::swap(piece.raw.decoded, block); }};
+  bool fetch(SourcePiece& piece) override {
+    piece.raw.clear();
+    PointBlock& block = piece.raw.decoded;
+    for (; next_ < points_.size() && block.size() < 777; ++next_) {
+      block.points.push_back(points_[next_]);
+      block.index.push_back(first_index_ + next_);
+    }
+    return block.size() > 0;
+  }
+  void decode(SourcePiece& piece, PointBlock& block) override {
+    std::swap(piece.raw.decoded, block);
   }
 
  private:
@@ -60,16 +58,16 @@ class Feed {
 /// An engine and all that it needs.
 template <int D>
 struct EngineRun {
-  explicit EngineRun(const StreamOptions& of = small()) : options(of) {}
+  explicit EngineRun(const EngineOptions& of = small()) : setup(of) {}
 
-  static StreamOptions small() {
-    return {.threads = 2, .tile_capacity = 400, .leaf_size = 80, .input_index = true};
+  static EngineOptions small() {
+    return {.asked = {.input_index = true, .tile_points = 400, .leaf_points = 80}, .threads = 2};
   }
 
   void spill(const std::vector<Point<D>>& points, std::uint64_t first_index = 0) {
     Feed feed(points, first_index);
     with_threads(engine.threads(), [&] {
-      engine.spill(feed.feed());
+      engine.spill(feed);
       engine.divide_large();
     });
     root = engine.take_nodes();
@@ -80,12 +78,10 @@ struct EngineRun {
     return border;
   }
 
-  const StreamOptions options;
-  std::unique_ptr<ScratchFolder> scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  MemoryBudget budget{std::uint64_t{1} << 30};
+  QuietSetup setup;
   KeepingWriter mesh{D};
   std::optional<TileNode<D>> root;
-  TileEngine<D> engine{{}, mesh, *scratch, budget, options};
+  TileEngine<D> engine{{}, mesh, setup, setup.resting};
 };
 
 template <typename Dimension>
@@ -119,8 +115,8 @@ TYPED_TEST(TileEngineTest, TellsEachNodeOnceAfterItsChildren) {
   constexpr int kD = TypeParam::value;
   KeptTrace trace;
   const std::vector<TaskNode>& told = trace.nodes;
-  StreamOptions options = EngineRun<kD>::small();
-  options.trace = &trace;
+  EngineOptions options = EngineRun<kD>::small();
+  options.asked.trace = std::shared_ptr<RunTrace>(std::shared_ptr<void>(), &trace);
   EngineRun<kD> run(options);
   run.spill(random_points<kD>(5000, 1));
   run.triangulate();
@@ -159,7 +155,7 @@ TYPED_TEST(TileEngineTest, TellsEachNodeOnceAfterItsChildren) {
 }
 
 TYPED_TEST(TileEngineTest, AFailureOfWhoIsToldOfTasksEndsTheRun) {
-  StreamOptions options = EngineRun<TypeParam::value>::small();
+  EngineOptions options = EngineRun<TypeParam::value>::small();
   class Failing : public RunTrace {
    public:
     [[nodiscard]] bool takes_nodes() const override { return true; }
@@ -167,7 +163,7 @@ TYPED_TEST(TileEngineTest, AFailureOfWhoIsToldOfTasksEndsTheRun) {
       if (node.number > 3) throw InvalidArgument("enough of it");
     }
   } trace;
-  options.trace = &trace;
+  options.asked.trace = std::shared_ptr<RunTrace>(std::shared_ptr<void>(), &trace);
   EngineRun<TypeParam::value> run(options);
   run.spill(random_points<TypeParam::value>(5000, 1));
   EXPECT_THROW(run.triangulate(), InvalidArgument);
@@ -196,12 +192,11 @@ TYPED_TEST(TileEngineTest, PutsOtherIndicesInPlaceOfThoseThatCame) {
 
 TEST(TileEngine, DividesTilesAgainThatBecameTooLarge) {
   const std::vector<Point<2>> points = random_points<2>(300'000, 4);
-  EngineRun<2> run({.threads = 2,
-                    .tile_capacity = 1000,
-                    .buffered_points = 40 * PointBuffer::kChunk,
-                    .input_index = true});
+  EngineRun<2> run({.asked = {.input_index = true, .tile_points = 1000},
+                    .threads = 2,
+                    .buffered_points = 40 * PointBuffer::kChunk});
   Feed feed(points);
-  with_threads(2, [&] { run.engine.spill(feed.feed()); });
+  with_threads(2, [&] { run.engine.spill(feed); });
   EXPECT_GT(run.engine.points_to_divide(), 0U);
   std::uint64_t divided = 0;
   with_threads(2, [&] { divided = run.engine.divide_large(); });
@@ -226,16 +221,14 @@ class FullSink : public BlockSink {
 };
 
 TEST(TileEngine, EndsWithTheErrorOfItsSink) {
-  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  MemoryBudget budget(std::uint64_t{1} << 30);
-  const StreamOptions options = EngineRun<2>::small();
+  QuietSetup setup(EngineRun<2>::small());
   {
     FullSink sink;
-    TileEngine<2> engine({}, sink, *scratch, budget, options);
+    TileEngine<2> engine({}, sink, setup, setup.resting);
     Feed feed(random_points<2>(20'000, 5));
     std::string message;
     with_threads(2, [&] {
-      engine.spill(feed.feed());
+      engine.spill(feed);
       try {
         engine.triangulate(*engine.take_nodes(), {});
       } catch (const Error& error) {
@@ -244,15 +237,13 @@ TEST(TileEngine, EndsWithTheErrorOfItsSink) {
     });
     EXPECT_EQ(message, "the disk is full");
   }
-  EXPECT_EQ(budget.used(), 0U) << "all leases are given back";
+  EXPECT_EQ(setup.budget.used(), 0U) << "all leases are given back";
 }
 
 TEST(TileEngine, RefusesALimitThatIsTooSmall) {
-  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  MemoryBudget budget(1000);
+  QuietSetup setup({}, 1000);
   KeepingWriter mesh(2);
-  const StreamOptions options;
-  EXPECT_THROW(TileEngine<2>({}, mesh, *scratch, budget, options), InvalidArgument);
+  EXPECT_THROW(TileEngine<2>({}, mesh, setup, setup.resting), InvalidArgument);
 }
 
 }  // namespace

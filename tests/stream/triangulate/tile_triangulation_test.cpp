@@ -29,9 +29,9 @@ using testing::triangulated;
 template <int D>
 class Bench {
  public:
-  explicit Bench(std::size_t leaf_size = 60) {
-    context.options.leaf_size = leaf_size;
-    context.options.output.input_index = true;
+  explicit Bench(std::size_t leaf_points = 60) {
+    context.leaf_points = leaf_points;
+    context.output.input_index = true;
   }
 
   /// Runs a tile of points whose indices count from `first` on.
@@ -57,7 +57,9 @@ class Bench {
   KeepingWriter mesh{D};
   Sequencer<D> sequencer{mesh, budget, {}, counts.times};
   std::atomic<int> leaves_told = 0;
-  TileContext<D> context{.options = {},
+  TriangulateOptions asked;
+  TileContext<D> context{.asked = asked,
+                         .output = {},
                          .budget = budget,
                          .sequencer = sequencer,
                          .counts = counts,
@@ -189,7 +191,7 @@ TEST(TileTriangulation, OfThePlaneChoosesHeights) {
   points.heights = {1, 2, 3, 9, 7};
   points.index = {50, 40, 30, 20, 10};
   Bench<2> lowest;
-  lowest.context.options.heights = Heights::kHighest;
+  lowest.asked.heights = Heights::kHighest;
   lowest.tile(0, points, {});
   std::vector<std::pair<double, std::uint64_t>> chosen;
   for (std::size_t v = 0; v < lowest.mesh.vertices.size(); ++v) {

@@ -51,12 +51,12 @@ Arrivals expect_arrival(Road& road, const ExchangeRound& most,
   double share = exchange.fraction();
   SourcePiece batch;
   PointBlock block;
-  const auto progress = [&] {
+  exchange.tell_rounds([&] {
     ++arrivals.rounds;
     EXPECT_GT(exchange.fraction(), share);
     share = exchange.fraction();
-  };
-  while (exchange.fetch(batch, progress)) {
+  });
+  while (exchange.fetch(batch)) {
     exchange.decode(batch, block);
     EXPECT_EQ(block.points.size(), block.index.size());
     here.insert(here.end(), block.points.begin(), block.points.end());
@@ -95,7 +95,7 @@ TEST(PointExchange, GoesOnAfterARoundAtWhichAllRanksCameToRest) {
     SourcePiece batch;
     PointBlock block;
     while (!exchange.rests()) {
-      if (!exchange.fetch(batch, [] {})) return false;
+      if (!exchange.fetch(batch)) return false;
       exchange.decode(batch, block);
       arrived += block.points.size();
     }
@@ -162,7 +162,7 @@ TEST(PointExchange, DropsIndicesThatNobodyWants) {
   SourcePiece batch;
   PointBlock block;
   std::uint64_t points = 0;
-  while (exchange.fetch(batch, [] {})) {
+  while (exchange.fetch(batch)) {
     exchange.decode(batch, block);
     EXPECT_TRUE(block.index.empty());
     points += block.size();

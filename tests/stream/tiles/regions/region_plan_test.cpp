@@ -44,7 +44,8 @@ void expect_to_hold(const RegionPlan& plan, const std::vector<InputRegion>& regi
                     int dimension) {
   ASSERT_EQ(plan.cells.size(), plan.cuts.tiles());
   std::vector<std::size_t> position(regions.size());
-  for (std::size_t p = 0; p < plan.regions.size(); ++p) position.at(plan.regions[p]) = p;
+  for (std::size_t p = 0; p < plan.order.regions.size(); ++p)
+    position.at(plan.order.regions[p]) = p;
   std::mt19937 random(1);
   for (std::size_t r = 0; r < regions.size(); ++r) {
     const Box<3>& box = regions[r].box;
@@ -107,8 +108,8 @@ TEST(RegionPlan, UnitsComeSoThatFewPointsWait) {
   const RegionPlan as_named = plan_regions(regions, {.most_points = 2000, .any_order = false});
   expect_to_hold(as_named, regions, 2);
   EXPECT_THAT(as_named.most_waiting, Gt(120'000));
-  EXPECT_THAT(as_named.units.front(), 0U);
-  EXPECT_TRUE(std::ranges::is_sorted(as_named.units));
+  EXPECT_THAT(as_named.order.units.front(), 0U);
+  EXPECT_TRUE(std::ranges::is_sorted(as_named.order.units));
 }
 
 TEST(RegionPlan, KeepsTheRegionsOfOneUnitInTheirOrder) {
@@ -116,8 +117,8 @@ TEST(RegionPlan, KeepsTheRegionsOfOneUnitInTheirOrder) {
   for (InputRegion& region : regions) region.unit = 0;
   const RegionPlan plan = plan_regions(regions, {.most_points = 1500});
   expect_to_hold(plan, regions, 2);
-  EXPECT_THAT(plan.units, ElementsAre(0U));
-  EXPECT_TRUE(std::ranges::is_sorted(plan.regions));
+  EXPECT_THAT(plan.order.units, ElementsAre(0U));
+  EXPECT_TRUE(std::ranges::is_sorted(plan.order.regions));
   EXPECT_TRUE(pays(plan));
 }
 
@@ -134,7 +135,7 @@ TEST(RegionPlan, OfRegionsWithoutPointsHasOneCell) {
   const RegionPlan plan = plan_regions(regions, {.most_points = 10});
   EXPECT_EQ(plan.cells.size(), 1U);
   EXPECT_TRUE(plan.cells[0].box.empty());
-  EXPECT_THAT(plan.units, ElementsAre(0U, 1U));
+  EXPECT_THAT(plan.order.units, ElementsAre(0U, 1U));
   EXPECT_FALSE(pays(plan));
 }
 
