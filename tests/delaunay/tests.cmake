@@ -2,12 +2,15 @@ add_library(cgal_oracle STATIC delaunay/cgal_oracle.cpp)
 target_link_libraries(cgal_oracle PUBLIC spillway_build PRIVATE CGAL::CGAL)
 
 spillway_test(delaunay_unit_test unit
-  SOURCES delaunay/acceptance_test.cpp delaunay/base_case_test.cpp delaunay/cut_judgement_test.cpp
-          delaunay/divide_test.cpp delaunay/exposure_test.cpp delaunay/filled_share_test.cpp
-          delaunay/find_border_test.cpp
-          delaunay/hilbert_order_test.cpp delaunay/parallel_test.cpp delaunay/point_search_test.cpp
-          delaunay/run_boxes_test.cpp delaunay/schedule_test.cpp
-          delaunay/working_memory_test.cpp
+  SOURCES delaunay/base_case/affine_basis_test.cpp delaunay/base_case/base_case_test.cpp
+          delaunay/border/acceptance_test.cpp delaunay/border/exposure_test.cpp
+          delaunay/border/find_border_test.cpp delaunay/border/point_search_test.cpp
+          delaunay/border/run_boxes_test.cpp
+          delaunay/common/hash_test.cpp delaunay/common/schedule_test.cpp
+          delaunay/common/working_memory_test.cpp
+          delaunay/division/cut_judgement_test.cpp delaunay/division/divide_test.cpp
+          delaunay/division/filled_share_test.cpp
+          delaunay/kernel_common/hilbert_order_test.cpp
   LIBS spillway_delaunay)
 
 spillway_test(delaunay_property_test property
@@ -20,13 +23,13 @@ target_link_libraries(kernel_sets PUBLIC spillway_delaunay spillway_generators
                       PRIVATE cgal_oracle fmt::fmt)
 
 spillway_test(kernel_2d_test property
-  SOURCES delaunay/kernel_2d_test.cpp delaunay/kernel_2d_predicates_test.cpp
+  SOURCES delaunay/kernel_2d/kernel_2d_test.cpp delaunay/kernel_2d/predicates_test.cpp
   LIBS kernel_sets
   TIMEOUT 300)
 
 spillway_test(kernel_3d_test property
-  SOURCES delaunay/kernel_3d_test.cpp delaunay/kernel_3d_predicates_test.cpp
-          delaunay/kernel_clear_box_test.cpp
+  SOURCES delaunay/kernel_3d/kernel_3d_test.cpp delaunay/kernel_3d/predicates_test.cpp
+          delaunay/kernel_common/clear_box_test.cpp
   LIBS kernel_sets
   TIMEOUT 300)
 

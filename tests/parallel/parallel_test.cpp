@@ -2,15 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
+#include <span>
 #include <stdexcept>
 #include <thread>
-
-#include "src/delaunay/common/hash.h"
-#include "src/parallel/thread_demand.h"
+#include <vector>
 
 namespace spillway::detail {
 namespace {
@@ -84,81 +81,6 @@ TEST_P(Parallel, GroupsInsideOfATaskAreDoneThoughAnotherTaskFails) {
   };
   EXPECT_THROW(with_threads(GetParam(), work), std::runtime_error);
   EXPECT_EQ(done_when_it_returned, kTasks);
-}
-
-TEST_P(Parallel, IndexFindsAllItemsInsertedAtOnceInspiteOfEqualHashes) {
-  with_threads(GetParam(), [] {
-    constexpr std::size_t kCount = 20'000;
-    ConcurrentIndex index(kCount);
-    const auto hash = [](std::size_t i) { return mix64(i / 3); };
-    parallel_for(kCount, 100, [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        index.insert(hash(i), static_cast<std::uint32_t>(i));
-      }
-    });
-    for (std::uint32_t i = 0; i < kCount; ++i) {
-      EXPECT_EQ(index.find(hash(i), [&](std::uint32_t item) { return item == i; }), i);
-    }
-    EXPECT_EQ(index.find(hash(0), [](std::uint32_t) { return false; }), ConcurrentIndex::kNotFound);
-  });
-}
-
-TEST(ThreadDemands, HighestOfThoseBesideEachOtherCounts) {
-  const unsigned least = available_threads();
-  const ThreadDemand few(1);
-  EXPECT_EQ(ThreadDemand::limit(), least);
-  {
-    const ThreadDemand many(least + 5);
-    EXPECT_EQ(ThreadDemand::limit(), least + 5);
-    const ThreadDemand more(least + 9);
-    EXPECT_EQ(ThreadDemand::limit(), least + 9);
-    { const ThreadDemand fewer(2); }
-    EXPECT_EQ(ThreadDemand::limit(), least + 9);
-  }
-  EXPECT_EQ(ThreadDemand::limit(), least);
-}
-
-TEST(ThreadDemands, CallersBesideEachOtherKeepTheirOwnNumbers) {
-  std::atomic<int> wrong = 0;
-  const auto work = [&](unsigned threads) {
-    for (int round = 0; round < 20; ++round) {
-      std::atomic<unsigned> now = 0, most = 0;
-      with_threads(threads, [&] {
-        parallel_for(200, 1, [&](std::size_t, std::size_t, std::size_t) {
-          const unsigned here = ++now;
-          unsigned before = most;
-          while (before < here && !most.compare_exchange_weak(before, here)) {
-          }
-          --now;
-        });
-      });
-      wrong += most > threads ? 1 : 0;
-    }
-  };
-  std::jthread other([&] { work(1); });
-  std::jthread third([&] { work(5); });
-  work(3);
-  other.join();
-  third.join();
-  EXPECT_EQ(wrong, 0);
-}
-
-TEST(SimplexHash, SimplexesAreTheSameUpToEvenPermutationsOnly) {
-  const std::array<VertexId, 4> simplex{7, 3, kInfiniteVertex, 0};
-  std::array<int, 4> places{0, 1, 2, 3};
-  do {
-    int inversions = 0;
-    std::array<VertexId, 4> other{};
-    for (int i = 0; i < 4; ++i) {
-      other[i] = simplex[places[i]];
-      for (int j = 0; j < i; ++j) inversions += places[j] > places[i] ? 1 : 0;
-    }
-    EXPECT_EQ(same_simplex(simplex, other), inversions % 2 == 0);
-    EXPECT_EQ(simplex_hash(simplex), simplex_hash(other));
-    EXPECT_EQ(SortedVertices<4>(other).vertices,
-              (std::array<VertexId, 4>{0, 3, 7, kInfiniteVertex}));
-  } while (std::next_permutation(places.begin(), places.end()));
-  EXPECT_FALSE(same_simplex<4>(simplex, {7, 3, kInfiniteVertex, 1}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 4));
