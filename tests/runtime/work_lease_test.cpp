@@ -132,19 +132,5 @@ TEST(WorkLease, ARefusalIsToldWhatIsForecast) {
   EXPECT_EQ(told, 1600) << "four times the points, by the square";
 }
 
-TEST(ShrinkingLease, GivesBackNoMoreThanItHas) {
-  MemoryBudget budget(100);
-  {
-    ShrinkingLease lease(budget);
-    lease.take(60, "all");
-    lease.give_back(20);
-    EXPECT_EQ(budget.used(), 40U);
-    lease.give_back(50);
-    EXPECT_EQ(budget.used(), 0U);
-    lease.take(10, "more");
-  }
-  EXPECT_EQ(budget.used(), 0U);
-}
-
 }  // namespace
 }  // namespace spillway::detail

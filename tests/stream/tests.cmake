@@ -1,6 +1,5 @@
 spillway_test(stream_unit_test unit
-  SOURCES runtime/page_pool_test.cpp runtime/run_memory_test.cpp runtime/work_lease_test.cpp
-          stream/output/heights_test.cpp stream/output/open_facets_test.cpp
+  SOURCES stream/output/heights_test.cpp stream/output/open_facets_test.cpp
           stream/output/sequencer_test.cpp stream/plan/memory_plan_test.cpp
           stream/sinks/contour_shares_test.cpp stream/sinks/contour_test.cpp stream/sinks/raster_store_test.cpp
           stream/sinks/tetrahedron_writers_test.cpp
