@@ -40,6 +40,7 @@ void SampleForecast<D>::note(std::span<const Point<D>> tile) {
 template <int D>
 WorkForecast SampleForecast<D>::forecast() const {
   const std::lock_guard lock(mutex_);
+  if (sample_.empty()) return {};
   return WorkForecast::of(
       {.points = sample_.size() / kPart, .simplices = count_simplices<D>(sample_, kPart)},
       {.points = sample_.size(), .simplices = count_simplices<D>(sample_, 1)}, kBytesOfSimplex);

@@ -17,7 +17,8 @@ class SampleForecast {
   /// Keeps some points of a tile, if it is larger than those before.
   void note(std::span<const Point<D>> tile);
 
-  /// Triangulates what was kept; takes some milliseconds.
+  /// Triangulates what was kept; takes some milliseconds. Of nothing it is nothing: a process that
+  /// goes on with merges, or makes those of others, may have loaded no tile.
   [[nodiscard]] WorkForecast forecast() const;
 
  private:

@@ -13,7 +13,8 @@ spillway_test(stream_unit_test unit
           stream/triangulate/border_growth_test.cpp stream/triangulate/border_test.cpp
           stream/triangulate/leaf_border_test.cpp
           stream/triangulate/cell_tree_test.cpp stream/triangulate/merge_forest_test.cpp stream/triangulate/merge_tree_test.cpp
-          stream/triangulate/settle_test.cpp stream/triangulate/task_sums_test.cpp
+          stream/triangulate/sample_forecast_test.cpp stream/triangulate/settle_test.cpp
+          stream/triangulate/task_sums_test.cpp
           stream/triangulate/tile_engine_test.cpp
           stream/triangulate/tile_triangulation_test.cpp
           stream/triangulate/work_lanes_test.cpp
