@@ -8,11 +8,13 @@ spillway_test(stream_unit_test unit
           stream/points/encoded_points_test.cpp stream/tiles/tile_cut_test.cpp
           stream/tiles/tile_node_test.cpp stream/tiles/storage/tile_points_test.cpp stream/tiles/storage/tile_segment_test.cpp
           stream/tiles/tile_tree_test.cpp stream/tiles/cuts/cut_lookup_test.cpp
-          stream/tiles/cuts/cut_tree_test.cpp stream/tiles/cuts/sample_division_test.cpp
+          stream/tiles/cuts/cut_tree_test.cpp stream/tiles/cuts/dealt_points_test.cpp
+          stream/tiles/cuts/sample_division_test.cpp stream/tiles/cuts/sample_mesh_test.cpp
           stream/tiles/regions/reading_order_test.cpp stream/tiles/regions/region_plan_test.cpp
           stream/triangulate/border_growth_test.cpp stream/triangulate/border_test.cpp
           stream/triangulate/leaf_border_test.cpp
           stream/triangulate/cell_tree_test.cpp stream/triangulate/merge_forest_test.cpp stream/triangulate/merge_tree_test.cpp
+          stream/triangulate/nodes_before_test.cpp
           stream/triangulate/sample_forecast_test.cpp stream/triangulate/settle_test.cpp
           stream/triangulate/task_sums_test.cpp
           stream/triangulate/tile_engine_test.cpp
