@@ -13,7 +13,6 @@
 #include "src/error.h"
 #include "src/terrain/isolines.h"
 #include "stream/sinks/contour_writer.h"
-#include "stream/sinks/line_joiner.h"
 
 namespace spillway::detail {
 namespace {
@@ -224,41 +223,6 @@ TEST(Levels, RefuseWhatMakesNoSense) {
   EXPECT_THROW(Levels::every(NAN, 0), InvalidArgument);
   EXPECT_THROW(Levels::of_list({}), InvalidArgument);
   EXPECT_THROW(static_cast<void>(Levels::every(1e-300, 0).between(5, 6)), Error);
-}
-
-TEST(LineJoiner, AFigureEightThroughItsLeastPointBeginsAlikeInEveryOrder) {
-  // Two loops from (0, 0); also one in which both loops are alike for some points.
-  for (const Line& ring : {Line{{0, 0}, {2, 1}, {2, 2}, {0, 0}, {2, -2}, {2, -1}},
-                           Line{{0, 0}, {1, 0}, {2, 5}, {0, 0}, {1, 0}, {2, 4}},
-                           Line{{0, 0}, {1, 0}, {0, 0}, {1, 0}}, Line{{0, 0}, {1, 0}}}) {
-    std::vector<IsoSegment> segments;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const std::size_t next = (i + 1) % ring.size();
-      segments.push_back({{{i, 100}, 0}, {{next, 100}, 0}, ring[i], ring[next]});
-    }
-    Line closed = ring;
-    closed.push_back(ring.front());
-    std::mt19937 random(4);
-    for (int turn = 0; turn < 50; ++turn) {
-      std::shuffle(segments.begin(), segments.end(), random);
-      const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
-      std::vector<Line> lines;
-      LineJoiner joiner([&](std::span<const Point<2>> points,
-                            std::int64_t) { lines.emplace_back(points.begin(), points.end()); },
-                        1 << 20, *scratch);
-      for (const IsoSegment& segment : segments) joiner.add(segment);
-      joiner.finish();
-      EXPECT_EQ(lines, std::vector<Line>(1, least_rotation(closed)));
-    }
-  }
-}
-
-TEST(LineJoiner, RefusesTrianglesThatDoNotFitTogether) {
-  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
-  LineJoiner joiner([](auto, auto) {}, 1 << 20, *scratch);
-  const IsoSegment segment{{{1, 2}, 0}, {{2, 3}, 0}, {0, 0}, {1, 1}};
-  joiner.add(segment);
-  EXPECT_THROW(joiner.add(segment), Error);
 }
 
 }  // namespace
