@@ -17,7 +17,7 @@ spillway_test(stream_unit_test unit
           stream/triangulate/cell_tree_test.cpp stream/triangulate/merge_forest_test.cpp stream/triangulate/merge_tree_test.cpp
           stream/triangulate/nodes_before_test.cpp
           stream/triangulate/sample_forecast_test.cpp stream/triangulate/settle_test.cpp
-          stream/triangulate/task_sums_test.cpp
+          stream/triangulate/surroundings_test.cpp stream/triangulate/task_sums_test.cpp
           stream/triangulate/tile_engine_test.cpp
           stream/triangulate/tile_triangulation_test.cpp
           stream/triangulate/work_lanes_test.cpp
@@ -33,7 +33,8 @@ spillway_test(stream_fault_test fault
   LIBS spillway_stream spillway_generators)
 
 spillway_test(point_input_test unit
-  SOURCES stream/source/common_lattice_test.cpp stream/source/condition_test.cpp
+  SOURCES stream/source/changed_input_test.cpp stream/source/common_lattice_test.cpp
+          stream/source/condition_test.cpp
           stream/source/header_survey_test.cpp
           stream/source/input_crs_test.cpp stream/source/input_regions_test.cpp
           stream/source/ordered_blocks_test.cpp stream/source/piece_sequence_test.cpp

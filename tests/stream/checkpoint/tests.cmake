@@ -1,6 +1,7 @@
 # Runs that are killed and go on.
 spillway_test(checkpoint_test unit
-  SOURCES stream/checkpoint/checkpoint_folder_test.cpp formats/state/state_test.cpp formats/disk/kept_scratch_test.cpp
+  SOURCES stream/checkpoint/checkpoint_folder_test.cpp stream/checkpoint/run_identity_test.cpp
+          formats/state/state_test.cpp formats/disk/kept_scratch_test.cpp
           stream/library/resumable_run_test.cpp
   LIBS spillway_stream)
 
