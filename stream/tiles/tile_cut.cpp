@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "src/delaunay/division/cut_judgement.h"
+#include "src/delaunay/division/cut_rule.h"
 #include "src/delaunay/division/filled_share.h"
 #include "stream/tiles/cuts/sample_mesh.h"
 
@@ -63,16 +64,17 @@ bool some_cut_pays_in(std::span<const LatticePoint> sample) {
   return !judgement.known() || judgement.some_cut_pays();
 }
 
-/// Of a hollow tile, the share of the sample that has simplices across a cut; else nothing.
+/// The share of a sample that has simplices across a cut.
 class Crossing {
  public:
-  explicit Crossing(const CrowdedTile& tile) {
-    if (!tile.hollow) return;
-    if (tile.dimension == 2) {
-      plane_.emplace(mesh_points<2>(tile.sample));
-    } else {
-      space_.emplace(mesh_points<3>(tile.sample));
+  Crossing(std::span<const Point<3>> sample, int dimension) {
+    if (dimension == 3) {
+      space_.emplace(std::vector<Point<3>>(sample.begin(), sample.end()));
+      return;
     }
+    std::vector<Point<2>> points;
+    for (const Point<3>& p : sample) points.push_back({p[0], p[1]});
+    plane_.emplace(points);
   }
 
   /// Of a cut with so many points of the sample below it.
@@ -89,40 +91,38 @@ class Crossing {
 /// The cuts of one axis.
 class Axis {
  public:
-  Axis(const CrowdedTile& tile, int axis) : tile_(tile), axis_(axis) {
-    for (const LatticePoint& p : tile.sample) values_.push_back(p[axis]);
+  Axis(const PointsToCut<3>& points, int axis) : points_(points), axis_(axis) {
+    for (const Point<3>& p : points.sample) values_.push_back(p[axis]);
     std::sort(values_.begin(), values_.end());
-    for (const TileSegment& segment : tile.segments) {
-      points_ += static_cast<double>(segment.points);
-    }
-    points_ += tile.weight * static_cast<double>(values_.size());
+    for (const CountedBox<3>& part : points.boxes) all_ += part.count;
+    all_ += points.weight * static_cast<double>(values_.size());
   }
 
   /// Values that are worth a look, each above the lowest coordinate.
   [[nodiscard]] std::vector<double> candidates() const {
     std::vector<double> values;
     const auto add = [&](double value) {
-      if (value > tile_.box.lo[axis_] && value <= tile_.box.hi[axis_]) values.push_back(value);
+      if (value > points_.box.lo[axis_] && value <= points_.box.hi[axis_]) values.push_back(value);
     };
-    for (const TileSegment& segment : tile_.segments) {
-      add(segment.box.lo[axis_]);
-      add(above(segment.box.hi[axis_]));
+    for (const CountedBox<3>& part : points_.boxes) {
+      add(part.box.lo[axis_]);
+      add(above(part.box.hi[axis_]));
     }
     for (std::size_t i = 1; i <= kTriedSamples && !values_.empty(); ++i) {
       add(values_[values_.size() * i / (kTriedSamples + 1)]);
     }
     add(median());
-    if (values.empty()) add(above(tile_.box.lo[axis_]));
+    if (values.empty()) add(above(points_.box.lo[axis_]));
     return values;
   }
 
   /// The share of all points that a cut leaves below.
   [[nodiscard]] double share(double value) const {
-    double below = tile_.weight * static_cast<double>(sampled_below(value));
-    for (const TileSegment& segment : tile_.segments) {
-      below += static_cast<double>(segment.points) * share_below(segment.box, {axis_, value});
+    double below = points_.weight * static_cast<double>(sampled_below(value));
+    for (const CountedBox<3>& part : points_.boxes) {
+      below += part.count * share_below(part.box, Cut{axis_, value});
     }
-    return below / points_;
+    return below / all_;
   }
 
   /// How many points of the sample a cut leaves below.
@@ -130,20 +130,20 @@ class Axis {
     return static_cast<std::size_t>(std::ranges::lower_bound(values_, value) - values_.begin());
   }
 
-  /// The share of all points that lies in segments on both sides.
+  /// The share of all points that lies in boxes on both sides.
   [[nodiscard]] double split_share(double value) const {
     double split = 0;
-    for (const TileSegment& segment : tile_.segments) {
-      if (!side_of(segment.box, {axis_, value})) split += static_cast<double>(segment.points);
+    for (const CountedBox<3>& part : points_.boxes) {
+      if (!side_of(part.box, Cut{axis_, value})) split += part.count;
     }
-    return split / points_;
+    return split / all_;
   }
 
  private:
   /// By bisection: enough for a candidate.
   [[nodiscard]] double median() const {
-    double lo = tile_.box.lo[axis_];
-    double hi = tile_.box.hi[axis_];
+    double lo = points_.box.lo[axis_];
+    double hi = points_.box.hi[axis_];
     for (int step = 0; step < 20; ++step) {
       const double middle = lo + (hi - lo) / 2;
       (share(middle) < 0.5 ? lo : hi) = middle;
@@ -151,10 +151,53 @@ class Axis {
     return hi;
   }
 
-  const CrowdedTile& tile_;
+  const PointsToCut<3>& points_;
   const int axis_;
   std::vector<double> values_;  ///< of the sample, sorted
-  double points_ = 0;
+  double all_ = 0;              ///< points
+};
+
+/// Cuts a tile into shares that are not too uneven, so that few boxes lie on both sides; and into
+/// sides that are compact, or, if it is hollow, so that few simplices cross the cut.
+class CompactSidesRule final : public CutRule<3> {
+ public:
+  explicit CompactSidesRule(const CrowdedTile& tile) : tile_(tile) {}
+
+  [[nodiscard]] std::optional<Cut> choose(const PointsToCut<3>& points) const override {
+    std::optional<Crossing> crossing;
+    if (tile_.hollow) crossing.emplace(points.sample, tile_.dimension);
+    std::optional<Cut> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < tile_.dimension; ++k) {
+      if (points.box.extent(k) == 0) continue;
+      const Axis axis(points, k);
+      for (const double value : axis.candidates()) {
+        const Cut cut{k, value};
+        const double uneven = std::abs(axis.share(value) - 0.5);
+        const double too_uneven = std::max(0.0, uneven - (0.5 - kLeastShare));
+        const double crossed = crossing ? crossing->share(k, axis.sampled_below(value)) : 0;
+        const double cost = axis.split_share(value) + kImbalanceCost * uneven + 10 * too_uneven +
+                            shape_cost(cut, 0) + shape_cost(cut, 1) + kCrossingCost * crossed;
+        if (cost >= least) continue;
+        least = cost;
+        best = cut;
+      }
+    }
+    return best;
+  }
+
+ private:
+  [[nodiscard]] double shape_cost(const Cut& cut, int side) const {
+    if (tile_.hollow) return 0;
+    Box<3> reach = tile_.box;
+    reach.expand(tile_.expected);
+    const double too_long_cost = tile_.complete ? kTooLongAtEndCost : kTooLongCost;
+    const double times = std::min(aspect(part_of(reach, cut, side), tile_.dimension), kLongest);
+    return kLongCost * std::max(0.0, std::log2(times / 2)) +
+           too_long_cost * std::max(0.0, std::log2(times / kMostAspect));
+  }
+
+  const CrowdedTile& tile_;
 };
 
 }  // namespace
@@ -174,30 +217,6 @@ double aspect_by_cuts(const Box<3>& box, const Box<3>& cell, int dimension) {
 bool too_long(double points, double aspect, std::size_t capacity) {
   const double parts = aspect / kMostAspect;
   return parts > 1 && points >= parts * kLeastCompactShare * static_cast<double>(capacity);
-}
-
-double share_below(const Box<3>& box, const TileCut& cut) {
-  const double lo = box.lo[cut.axis];
-  const double hi = box.hi[cut.axis];
-  if (cut.value <= lo) return 0;
-  return cut.value > hi ? 1 : (cut.value - lo) / (hi - lo);
-}
-
-Box<3> part_of(const Box<3>& box, const TileCut& cut, int side) {
-  Box<3> part = box;
-  if (side == 0) {
-    const double below = std::nextafter(cut.value, -std::numeric_limits<double>::infinity());
-    part.hi[cut.axis] = std::min(part.hi[cut.axis], below);
-  } else {
-    part.lo[cut.axis] = std::max(part.lo[cut.axis], cut.value);
-  }
-  return part.lo[cut.axis] <= part.hi[cut.axis] ? part : Box<3>{};
-}
-
-std::optional<int> side_of(const Box<3>& box, const TileCut& cut) {
-  if (box.hi[cut.axis] < cut.value) return 0;
-  if (box.lo[cut.axis] >= cut.value) return 1;
-  return std::nullopt;
 }
 
 std::optional<LatticePoint> heavy_place(const CrowdedTile& tile) {
@@ -221,10 +240,10 @@ std::optional<LatticePoint> heavy_place(const CrowdedTile& tile) {
   return static_cast<double>(most) >= least ? place : std::nullopt;
 }
 
-std::optional<TileCut> cut_beside(const Box<3>& box, const LatticePoint& place, int dimension) {
+std::optional<Cut> cut_beside(const Box<3>& box, const LatticePoint& place, int dimension) {
   for (int k = 0; k < dimension; ++k) {
     for (const double value : {place[k], above(place[k])}) {
-      if (value > box.lo[k] && value <= box.hi[k]) return TileCut{k, value};
+      if (value > box.lo[k] && value <= box.hi[k]) return Cut{k, value};
     }
   }
   return std::nullopt;
@@ -239,35 +258,15 @@ bool some_cut_pays(std::span<const LatticePoint> sample, int dimension) {
   return dimension == 2 ? some_cut_pays_in<2>(sample) : some_cut_pays_in<3>(sample);
 }
 
-std::optional<TileCut> choose_cut(const CrowdedTile& tile) {
-  Box<3> reach = tile.box;
-  reach.expand(tile.expected);
-  const double too_long_cost = tile.complete ? kTooLongAtEndCost : kTooLongCost;
-  const Crossing crossing(tile);
-  const auto shape_cost = [&](const TileCut& cut, int side) {
-    if (tile.hollow) return 0.0;
-    const double times = std::min(aspect(part_of(reach, cut, side), tile.dimension), kLongest);
-    return kLongCost * std::max(0.0, std::log2(times / 2)) +
-           too_long_cost * std::max(0.0, std::log2(times / kMostAspect));
-  };
-  std::optional<TileCut> best;
-  double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < tile.dimension; ++k) {
-    if (tile.box.extent(k) == 0) continue;
-    const Axis axis(tile, k);
-    for (const double value : axis.candidates()) {
-      const TileCut cut{k, value};
-      const double uneven = std::abs(axis.share(value) - 0.5);
-      const double too_uneven = std::max(0.0, uneven - (0.5 - kLeastShare));
-      const double cost = axis.split_share(value) + kImbalanceCost * uneven + 10 * too_uneven +
-                          shape_cost(cut, 0) + shape_cost(cut, 1) +
-                          kCrossingCost * crossing.share(k, axis.sampled_below(value));
-      if (cost >= least) continue;
-      least = cost;
-      best = cut;
-    }
+std::optional<Cut> choose_cut(const CrowdedTile& tile) {
+  std::vector<Point<3>> sample;
+  for (const LatticePoint& p : tile.sample) sample.emplace_back(p);
+  std::vector<CountedBox<3>> boxes;
+  for (const TileSegment& segment : tile.segments) {
+    boxes.push_back({segment.box, static_cast<double>(segment.points)});
   }
-  return best;
+  return CompactSidesRule(tile).choose(
+      {.sample = sample, .weight = tile.weight, .boxes = boxes, .box = tile.box});
 }
 
 }  // namespace spillway::detail

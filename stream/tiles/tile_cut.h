@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "src/delaunay/division/cut.h"
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
 #include "stream/tiles/cuts/cut_tree.h"
@@ -42,17 +43,13 @@ constexpr std::size_t kCutSamples = 256;
 /// Where to cut it: into shares that are not too uneven, and so that few segments lie on both
 /// sides; into sides that are compact, or, if it is hollow, so that few points of the sample have
 /// simplices across the cut. Nothing if all its points are equal. There are points on both sides.
-std::optional<TileCut> choose_cut(const CrowdedTile& tile);
+std::optional<Cut> choose_cut(const CrowdedTile& tile);
 
 /// Where a large share of the sample's points are equal; nothing if that is nowhere.
 std::optional<LatticePoint> heavy_place(const CrowdedTile& tile);
 
 /// A cut of `box` between that place and others; nothing if there are no others.
-std::optional<TileCut> cut_beside(const Box<3>& box, const LatticePoint& place, int dimension);
-
-/// The share of the points of `box` that lies below a cut, if they lie evenly. It may be 1 where a
-/// few lie on the cut or above.
-double share_below(const Box<3>& box, const TileCut& cut);
+std::optional<Cut> cut_beside(const Box<3>& box, const LatticePoint& place, int dimension);
 
 /// A box is compact if its longest side is at most so many times as long as the shortest one.
 constexpr double kMostAspect = 4;
@@ -76,12 +73,5 @@ double aspect_by_cuts(const Box<3>& box, const Box<3>& cell, int dimension);
 /// Whether a tile of that capacity and aspect is not compact though its points are not thin
 /// themselves: in compact boxes, they would be a sixteenth of the capacity each, or more.
 bool too_long(double points, double aspect, std::size_t capacity);
-
-/// The part of a box on one side of a cut, 0 for below; empty if it lies on the other.
-Box<3> part_of(const Box<3>& box, const TileCut& cut, int side);
-
-/// On which side of a cut all points of `box` lie: 0 is below. Nothing if that may be both; the box
-/// is tight.
-std::optional<int> side_of(const Box<3>& box, const TileCut& cut);
 
 }  // namespace spillway::detail

@@ -143,15 +143,12 @@ std::vector<HeldPoints> TileDivider::divide(std::uint32_t number, std::vector<La
   const CutTree::NodeRef first_cut = cuts.cuts();
   const auto first_new = static_cast<std::ptrdiff_t>(tiles.size());
   const bool hollow = representative && is_clearly_hollow(sample, dimension);
-  const std::vector<DivisionCut> judged =
-      hollow ? divide_sample(sample, tile_count, dimension) : std::vector<DivisionCut>{};
+  const std::vector<DivisionCut> division =
+      hollow ? divide_sample(sample, tile_count, dimension)
+             : divide_sample_evenly(sample, tile_count, dimension);
   {
     const std::unique_lock lock(table_.cuts_mutex);
-    if (hollow) {
-      cuts.split(number, judged);
-    } else {
-      cuts.split(number, sample, tile_count);
-    }
+    cuts.split(number, division);
     if (cuts.tiles() == tiles.size()) {
       const auto cut = choose_cut({.dimension = dimension,
                                    .box = whole.box,
@@ -291,13 +288,13 @@ void TileDivider::cut_in_two(std::uint32_t number, bool complete) {
   const auto cut_beside_heavy = [&](const Tile& tile) {
     return heavy ? cut_beside(box_with_expected(tile), *heavy, dimension) : std::nullopt;
   };
-  std::optional<TileCut> chosen = cut_beside_heavy(whole);
+  std::optional<Cut> chosen = cut_beside_heavy(whole);
   if (!chosen) chosen = choose_cut(crowded);
   if (!chosen) {  // all points so far are equal
     tiles[number] = std::move(whole);
     return;
   }
-  const TileCut cut = *chosen;
+  const Cut cut = *chosen;
   CutTree::NodeRef ref = 0;
   {
     const std::unique_lock lock(table_.cuts_mutex);
@@ -332,7 +329,7 @@ void TileDivider::cut_in_two(std::uint32_t number, bool complete) {
 }
 
 /// Segments go to the half that they lie in, and are left over if they lie in both.
-void TileDivider::deal_segments(Tile& whole, CutTree::NodeRef ref, const TileCut& cut,
+void TileDivider::deal_segments(Tile& whole, CutTree::NodeRef ref, const Cut& cut,
                                 const std::array<std::uint32_t, 2>& halves) {
   bool follows = false;
   for (TileSegment& segment : whole.segments) {
@@ -359,7 +356,7 @@ void TileDivider::deal_segments(Tile& whole, CutTree::NodeRef ref, const TileCut
   }
 }
 
-void TileDivider::deal_held(HeldPoints held, const TileCut& cut,
+void TileDivider::deal_held(HeldPoints held, const Cut& cut,
                             const std::array<std::uint32_t, 2>& halves) {
   std::vector<HeldPoints> parts = part_points(std::move(held), cut, {kNoCut, kNoCut});
   for (const int side : {0, 1}) {

@@ -67,9 +67,9 @@ class TileDivider {
   [[nodiscard]] bool is_too_long(std::uint32_t number) const;
   [[nodiscard]] bool to_be_cut(std::uint32_t number, bool complete) const;
   void cut_in_two(std::uint32_t number, bool complete);
-  void deal_segments(Tile& whole, CutTree::NodeRef ref, const TileCut& cut,
+  void deal_segments(Tile& whole, CutTree::NodeRef ref, const Cut& cut,
                      const std::array<std::uint32_t, 2>& halves);
-  void deal_held(HeldPoints held, const TileCut& cut, const std::array<std::uint32_t, 2>& halves);
+  void deal_held(HeldPoints held, const Cut& cut, const std::array<std::uint32_t, 2>& halves);
   void leave_over(CutTree::NodeRef cut, TileSegment segment);
   void append_left_over(CutTree::NodeRef ref, std::vector<TileSegment>& segments);
 

@@ -105,8 +105,8 @@ void TileSpiller::append_segments_of(HeldPoints held, std::vector<HeldPoints>& s
   PointSample sample(std::max<std::size_t>(1, held.buffer.size() / kCutSamples));
   held.buffer.visit([&](std::span<const LatticePoint> some) { sample.add(some); });
   crowded.sample = sample.take();
-  const TileCut first = choose_cut(crowded).value_or(kNoCut);
-  std::array<TileCut, 2> second = {kNoCut, kNoCut};
+  const Cut first = choose_cut(crowded).value_or(kNoCut);
+  std::array<Cut, 2> second = {kNoCut, kNoCut};
   for (const int side : {0, 1}) {
     CrowdedTile half{.dimension = dimension};
     for (const LatticePoint& p : crowded.sample) {

@@ -4,13 +4,15 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "src/delaunay/common/hash.h"
 #include "src/delaunay/common/schedule.h"
 #include "src/delaunay/common/working_memory.h"
-#include "src/delaunay/division/cut_judgement.h"
-#include "src/delaunay/division/filled_share.h"
+#include "src/delaunay/division/axis_rule.h"
+#include "src/delaunay/division/least_border_rule.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
@@ -42,11 +44,25 @@ struct Piece {
   [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
+/// The rule of that scheme.
+template <int D>
+std::unique_ptr<CutRule<D>> rule_of(const DivideOptions& options) {
+  if (options.scheme != Division::kLeastBorder) {
+    return std::make_unique<AxisRule<D>>(options.scheme);
+  }
+  // Leaves that are to be filled, and more than two parts, need cuts at certain places.
+  return std::make_unique<LeastBorderRule<D>>(
+      LeastBorderOptions{.smallest_judged = options.smallest_judged,
+                         .largest_undivided = options.largest_undivided,
+                         .movable = !options.fill_leaves && options.children == 2});
+}
+
 template <int D>
 class Divider {
  public:
-  Divider(std::span<Point<D>> points, std::span<VertexId> input_index, const DivideOptions& options)
-      : points_(points), input_index_(input_index), options_(options) {}
+  Divider(std::span<Point<D>> points, std::span<VertexId> input_index, const DivideOptions& options,
+          const CutRule<D>& rule)
+      : points_(points), input_index_(input_index), options_(options), rule_(rule) {}
 
   /// Divides a piece down to its leaves.
   Part<D> divide(const Piece<D>& piece, std::size_t depth, Task& task) const {
@@ -102,13 +118,16 @@ class Divider {
       if (box.lo != box.hi) {
         const unsigned low_count = count / 2;
         const std::size_t whole = std::max<std::size_t>(count, leaves_of(piece));
-        Cut where{cut_axis(box, depth), whole * low_count / count, whole};
-        if (options_.scheme == Division::kLeastBorder && piece.size() >= options_.smallest_judged &&
-            !judge(piece, box, where)) {
+        const std::optional<Cut> where = rule_.choose({.sample = piece.sample,
+                                                       .box = box,
+                                                       .share = {whole * low_count / count, whole},
+                                                       .count = piece.size(),
+                                                       .depth = depth});
+        if (!where) {
           pieces.push_back(piece);
           return;
         }
-        const auto [low, high] = cut(piece, where);
+        const auto [low, high] = cut(piece, *where);
         split(low, low_count, depth, pieces, samples);
         split(high, count - low_count, depth, pieces, samples);
         return;
@@ -158,51 +177,12 @@ class Divider {
     return all;
   }
 
-  [[nodiscard]] int cut_axis(const Box<D>& box, std::size_t depth) const {
-    int axis = box.longest_axis();
-    if (options_.scheme == Division::kCyclingAxis) axis = static_cast<int>(depth % D);
-    if (options_.scheme == Division::kConstantAxis) axis = 0;
-    return box.lo[axis] < box.hi[axis] ? axis : box.longest_axis();
-  }
-
-  /// Where a piece is cut: about below/all of its points lie below.
-  struct Cut {
-    int axis;
-    std::size_t below;
-    std::size_t all;
-  };
-
-  /// Looks for a better cut of a piece that is hollow. Returns false if none pays and the piece may
-  /// stay as it is.
-  [[nodiscard]] bool judge(const Piece<D>& piece, const Box<D>& box, Cut& where) const {
-    const std::vector<Point<D>> sample = judged_sample<D>(piece.sample);
-    const std::size_t count = sample.size();
-    if (!is_hollow<D>(sample, box)) return true;  // the longest axis is the best one
-    const CutJudgement<D> judgement(sample);
-    if (!judgement.known()) return true;
-    // Leaves that are to be filled, and more than two parts, need cuts at certain places.
-    const bool movable = !options_.fill_leaves && options_.children == 2;
-    const JudgedCut best =
-        judgement.best_cut(where.axis, count * where.below / where.all, movable ? count / 8 : 0);
-    if (best.share > kLargestCrossing && piece.size() <= options_.largest_undivided) return false;
-    if (movable) {
-      where = {best.axis, best.below, count};
-    } else {
-      where.axis = best.axis;
-    }
-    return true;
-  }
-
   /// Moves the points below a cut to the front, and the sample likewise. Not all points are equal
   /// on the axis. Neither half is empty.
   [[nodiscard]] std::array<Piece<D>, 2> cut(const Piece<D>& piece, const Cut& where) const {
     const std::span<Point<D>> sample = piece.sample;
     const int axis = where.axis;
-    const auto rank =
-        sample.begin() + static_cast<std::ptrdiff_t>(sample.size() * where.below / where.all);
-    std::nth_element(sample.begin(), rank, sample.end(),
-                     [axis](const Point<D>& a, const Point<D>& b) { return a[axis] < b[axis]; });
-    const double value = (*rank)[axis];
+    const double value = where.value;
     const auto halves = [&](const auto& below) -> std::array<Piece<D>, 2> {
       const VertexId middle = partition(piece, below);
       const auto sampled = std::partition(sample.begin(), sample.end(), below) - sample.begin();
@@ -310,6 +290,7 @@ class Divider {
   std::span<Point<D>> points_;
   std::span<VertexId> input_index_;
   const DivideOptions& options_;
+  const CutRule<D>& rule_;
 };
 
 template <int D>
@@ -324,7 +305,8 @@ template <int D>
 Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
                const DivideOptions& options, Task* task) {
   Task unused;
-  Part<D> root = Divider<D>(points, input_index, options)
+  const std::unique_ptr<CutRule<D>> rule = rule_of<D>(options);
+  Part<D> root = Divider<D>(points, input_index, options, *rule)
                      .divide({.begin = 0, .end = static_cast<VertexId>(points.size())}, 0,
                              task == nullptr ? unused : *task);
   std::uint32_t next = 0;

@@ -10,7 +10,7 @@ namespace spillway::detail {
 
 /// A cut of space: below `value` on `axis`, and not below. On each side there is another cut or a
 /// tile, told by a reference: the cut's number, or -1 - the tile's.
-struct Cut {
+struct CutNode {
   double value = 0;
   int axis = 0;
   std::array<std::int32_t, 2> sides{};
@@ -29,7 +29,7 @@ class CutLookup {
   /// Of cells that fill space, as cuts of it leave them.
   CutLookup(std::vector<TileCell> cells, int dimension);
 
-  [[nodiscard]] const std::vector<Cut>& cuts() const { return cuts_; }
+  [[nodiscard]] const std::vector<CutNode>& cuts() const { return cuts_; }
   [[nodiscard]] std::int32_t root() const { return root_; }
   /// Steps to the farthest tile.
   [[nodiscard]] int depth() const { return depth_; }
@@ -38,7 +38,7 @@ class CutLookup {
   std::int32_t add(std::vector<TileCell> cells, const Box<3>& region, int depth);
 
   int dimension_;
-  std::vector<Cut> cuts_;
+  std::vector<CutNode> cuts_;
   std::int32_t root_ = 0;
   int depth_ = 0;
 };

@@ -12,23 +12,6 @@ constexpr std::uint32_t kTilesPerCutSince = 8;
 /// Points whose tiles are looked for side by side.
 constexpr std::size_t kTogether = 8;
 
-/// The axis on which the points lie farthest apart.
-int longest_axis(const LatticePoint* begin, const LatticePoint* end, int dimension,
-                 double& lowest) {
-  int longest = 0;
-  double most = -1;
-  for (int k = 0; k < dimension; ++k) {
-    const auto [lo, hi] = std::minmax_element(
-        begin, end, [k](const LatticePoint& a, const LatticePoint& b) { return a[k] < b[k]; });
-    if ((*hi)[k] - (*lo)[k] > most) {
-      most = (*hi)[k] - (*lo)[k];
-      longest = k;
-      lowest = (*lo)[k];
-    }
-  }
-  return longest;
-}
-
 }  // namespace
 
 CutTree::CutTree(int dimension)
@@ -94,12 +77,12 @@ unsigned CutTree::is_in_cell(const LatticePoint& point, std::uint32_t tile) cons
 template <std::size_t kPoints>
 void CutTree::walk(const LatticePoint* points, std::uint32_t* tiles,
                    std::integral_constant<std::size_t, kPoints> /*count*/) const {
-  const Cut* const lookup = lookup_.cuts().data();
+  const CutNode* const lookup = lookup_.cuts().data();
   std::array<NodeRef, kPoints> refs;
   refs.fill(lookup_.root());
   for (int step = 0; step < lookup_.depth(); ++step) {
     for (std::size_t i = 0; i < kPoints; ++i) {
-      const Cut& cut = lookup[std::max(refs[i], 0)];
+      const CutNode& cut = lookup[std::max(refs[i], 0)];
       const NodeRef next = cut.sides[points[i][cut.axis] >= cut.value ? 1 : 0];
       refs[i] = refs[i] >= 0 ? next : refs[i];
     }
@@ -107,7 +90,7 @@ void CutTree::walk(const LatticePoint* points, std::uint32_t* tiles,
   for (std::size_t i = 0; i < kPoints; ++i) {
     NodeRef ref = since_[tile_at(refs[i])];
     while (ref >= 0) {
-      const Cut& cut = cuts_[ref];
+      const CutNode& cut = cuts_[ref];
       ref = cut.sides[points[i][cut.axis] >= cut.value ? 1 : 0];
     }
     tiles[i] = tile_at(ref);
@@ -131,45 +114,12 @@ CutTree::NodeRef CutTree::cut(std::uint32_t tile, int axis, double value) {
   return ref;
 }
 
-void CutTree::split(std::uint32_t tile, std::vector<LatticePoint>& sample, std::size_t parts) {
-  split_sample(tile, sample.data(), sample.data() + sample.size(), std::min(parts, sample.size()));
-  renew_lookup();
-}
-
 void CutTree::split(std::uint32_t tile, std::span<const DivisionCut> cuts) {
   const std::uint32_t next = tiles_;
   for (const DivisionCut& cut : cuts) {
     make_cut(cut.part == 0 ? tile : next + cut.part - 1, cut.where.axis, cut.where.value);
   }
   renew_lookup();
-}
-
-void CutTree::split_sample(std::uint32_t tile, LatticePoint* begin, LatticePoint* end,
-                           std::size_t parts) {
-  if (parts < 2 || end - begin < 2) return;
-  double lowest = 0;
-  const int axis = longest_axis(begin, end, dimension_, lowest);
-  const std::size_t low_parts = parts / 2;
-  LatticePoint* const middle =
-      begin +
-      static_cast<std::ptrdiff_t>(static_cast<std::size_t>(end - begin) * low_parts / parts);
-  const auto below = [axis](const LatticePoint& a, const LatticePoint& b) {
-    return a[axis] < b[axis];
-  };
-  std::nth_element(begin, middle, end, below);
-  double value = (*middle)[axis];
-  if (value == lowest) {  // the next value, if there is any
-    LatticePoint* const next =
-        std::partition(begin, end, [=](const LatticePoint& p) { return p[axis] == lowest; });
-    if (next == end) return;
-    value = (*std::min_element(next, end, below))[axis];
-  }
-  LatticePoint* const high =
-      std::partition(begin, end, [=](const LatticePoint& p) { return p[axis] < value; });
-  make_cut(tile, axis, value);
-  const std::uint32_t other = tiles_ - 1;
-  split_sample(tile, begin, high, low_parts);
-  split_sample(other, high, end, parts - low_parts);
 }
 
 }  // namespace spillway::detail

@@ -7,22 +7,17 @@
 #include <type_traits>
 #include <vector>
 
+#include "src/delaunay/division/cut.h"
 #include "src/geometry/framed_point.h"
 #include "stream/tiles/cuts/cut_lookup.h"
 
 namespace spillway::detail {
 
-/// A cut in two: below `value` on `axis`, and not below.
-struct TileCut {
-  int axis = 0;
-  double value = 0;
-};
-
 /// A cut of a part that came of the cuts before it, numbered from 0 on: each leaves its number to
 /// what is below, and what is not gets the next one.
 struct DivisionCut {
   std::uint32_t part = 0;
-  TileCut where;
+  Cut where{};
 };
 
 /// Which tile a point belongs to: a k-d tree of cuts whose cells reach to infinity, so that it
@@ -41,11 +36,7 @@ class CutTree {
 
   [[nodiscard]] std::uint32_t tiles() const { return tiles_; }
 
-  /// Divides a tile into about `parts` that would get equal shares of `sample` (points of that
-  /// tile, which are put into another order). The tile keeps its number for one of them, the others
-  /// get new ones. Fewer parts come out where the sample's points are equal.
-  void split(std::uint32_t tile, std::vector<LatticePoint>& sample, std::size_t parts);
-  /// Divides a tile by cuts that are known: it keeps its number for part 0, the others follow.
+  /// Divides a tile by some cuts: it keeps its number for part 0, the others get new ones in order.
   void split(std::uint32_t tile, std::span<const DivisionCut> cuts);
 
   /// Cuts a tile in two: it keeps its number for what is below `value` on `axis`. Returns the cut.
@@ -79,7 +70,6 @@ class CutTree {
   }
 
  private:
-  void split_sample(std::uint32_t tile, LatticePoint* begin, LatticePoint* end, std::size_t parts);
   /// 1 or 0.
   [[nodiscard]] unsigned is_in_cell(const LatticePoint& point, std::uint32_t tile) const;
   template <std::size_t kPoints>
@@ -89,7 +79,7 @@ class CutTree {
   int dimension_;
   NodeRef root_ = ref_of(0);
   std::uint32_t tiles_ = 1;
-  std::vector<Cut> cuts_;
+  std::vector<CutNode> cuts_;
   std::vector<NodeRef> parents_{-1};             ///< by tile: the cut above it, or -1
   std::vector<Box<3>> cells_{whole_space<3>()};  ///< by tile
   /// Finds the tile as it was when this was made; of that tile `since_` has what it is now.

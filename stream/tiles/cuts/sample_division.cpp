@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
 
+#include "src/delaunay/division/axis_rule.h"
 #include "src/delaunay/division/cut_judgement.h"
+#include "src/delaunay/division/cut_rule.h"
 #include "src/geometry/box.h"
 #include "stream/tiles/cuts/sample_mesh.h"
 
@@ -25,9 +28,10 @@ constexpr std::size_t kRoomForCrossing = 50;
 constexpr std::size_t kRoomForGap = 128;
 
 /// The least coordinate that is larger than `value`.
-std::optional<double> next_value(std::span<const LatticePoint> sample, int axis, double value) {
+template <int D>
+std::optional<double> next_value(std::span<const Point<D>> sample, int axis, double value) {
   std::optional<double> next;
-  for (const LatticePoint& p : sample) {
+  for (const Point<D>& p : sample) {
     if (p[axis] > value && (!next || p[axis] < *next)) next = p[axis];
   }
   return next;
@@ -36,16 +40,17 @@ std::optional<double> next_value(std::span<const LatticePoint> sample, int axis,
 /// The value of a cut across `axis` with about `below` points below it: in the middle of a wide gap
 /// near there, so that what is apart stays apart. Where points near there are equal on the axis it
 /// is their value, or the next one if nothing is lower. None if all points are equal on it.
-std::optional<double> value_near(std::span<LatticePoint> sample, int axis, std::size_t below) {
-  const auto on_axis = [axis](const LatticePoint& p) { return p[axis]; };
+template <int D>
+std::optional<double> value_near(std::span<Point<D>> sample, int axis, std::size_t below) {
+  const auto on_axis = [axis](const Point<D>& p) { return p[axis]; };
   const std::size_t room = sample.size() / kRoomForGap;
   below = std::clamp<std::size_t>(below, 1, sample.size() - 1);
   const std::size_t first = below - std::min(room, below - 1) - 1;
   const std::size_t last = std::min(below + room, sample.size() - 1);
   std::ranges::nth_element(sample, sample.begin() + static_cast<std::ptrdiff_t>(first), {},
                            on_axis);
-  const std::span<LatticePoint> not_below = sample.subspan(first);
-  const std::span<LatticePoint> near = not_below.first(last - first + 1);
+  const std::span<Point<D>> not_below = sample.subspan(first);
+  const std::span<Point<D>> near = not_below.first(last - first + 1);
   std::ranges::nth_element(not_below, near.end() - 1, {}, on_axis);
   std::ranges::sort(near, {}, on_axis);
   double widest = 0;
@@ -64,55 +69,22 @@ std::optional<double> value_near(std::span<LatticePoint> sample, int axis, std::
   if (value) return value;
   const double equal = near.front()[axis];
   const bool lowest = std::ranges::min(sample, {}, on_axis)[axis] == equal;
-  return lowest ? next_value(sample, axis, equal) : std::optional(equal);
+  return lowest ? next_value<D>(sample, axis, equal) : std::optional(equal);
 }
 
+/// Cuts across the longest side of a cell, unless the triangulation of some of its points says that
+/// another cut is crossed by fewer simplices; and in a wide gap near there.
 template <int D>
-class SampleDivider {
+class SampleMeshRule final : public CutRule<D> {
  public:
-  std::vector<DivisionCut> divide(std::span<LatticePoint> sample, std::size_t parts) {
-    if (parts > 1) {
-      const std::size_t triangulated = std::min(kTriangulatedPerPart * parts, kMostTriangulated);
-      divide_tile(0, sample, triangulate_sample<D>(sample, triangulated), parts);
-    }
-    return std::move(cuts_);
-  }
+  explicit SampleMeshRule(SampleMesh<D> mesh) : mesh_(std::move(mesh)) {}
 
- private:
-  void divide_tile(std::uint32_t tile, std::span<LatticePoint> sample, SampleMesh<D> mesh,
-                   std::size_t parts) {
-    if (parts < 2 || sample.size() < 2) return;
-    const std::size_t low_parts = parts / 2;
-    const std::optional<TileCut> cut = place(sample, mesh, {low_parts, parts});
-    if (!cut) return;
-    cuts_.push_back({tile, *cut});
-    const auto other = static_cast<std::uint32_t>(cuts_.size());
-    const auto high = std::partition(sample.begin(), sample.end(), [&](const LatticePoint& p) {
-      return p[cut->axis] < cut->value;
-    });
-    const auto below = static_cast<std::size_t>(high - sample.begin());
-    std::array<SampleMesh<D>, 2> sides = mesh.sides(*cut);
-    mesh = {};
-    divide_tile(tile, sample.first(below), std::move(sides[0]), low_parts);
-    divide_tile(other, sample.subspan(below), std::move(sides[1]), parts - low_parts);
-  }
-
-  /// How much of a cell is to lie below a cut: so many parts of so many.
-  struct Share {
-    std::size_t below;
-    std::size_t all;
-
-    [[nodiscard]] std::size_t of(std::size_t points) const { return points * below / all; }
-  };
-
-  static std::optional<TileCut> place(std::span<LatticePoint> sample, const SampleMesh<D>& mesh,
-                                      Share share) {
-    Box<D> box;
-    for (const LatticePoint& p : sample) box.expand(mesh_point<D>(p));
-    int axis = box.longest_axis();
-    const std::size_t count = mesh.points.size();
-    if (count >= kFewestToTell && !mesh.simplices.empty()) {
-      const CutJudgement<D> judgement(mesh.points, mesh.weights, mesh.simplices);
+  [[nodiscard]] std::optional<Cut> choose(const PointsToCut<D>& points) const override {
+    int axis = points.box.longest_axis();
+    CutShare share = points.share;
+    const std::size_t count = mesh_.points.size();
+    if (count >= kFewestToTell && !mesh_.simplices.empty()) {
+      const CutJudgement<D> judgement(mesh_.points, mesh_.weights, mesh_.simplices);
       const std::size_t room = count / kRoomForCrossing;
       axis = judgement.best_cut(axis, share.of(count), room).axis;
       // Again, as another place on the new axis must be better than its middle.
@@ -120,27 +92,101 @@ class SampleDivider {
       axis = best.axis;
       if (best.below != share.of(count)) share = {best.below, count};
     }
-    const std::optional<double> value = value_near(sample, axis, share.of(sample.size()));
-    return value ? std::optional(TileCut{axis, *value}) : std::nullopt;
+    const auto value = value_near<D>(points.sample, axis, share.of(points.sample.size()));
+    return value ? std::optional(Cut{axis, *value}) : std::nullopt;
+  }
+
+  [[nodiscard]] std::array<std::unique_ptr<CutRule<D>>, 2> for_sides(
+      const Cut& cut) const override {
+    std::array<SampleMesh<D>, 2> sides = mesh_.sides(cut);
+    return {std::make_unique<SampleMeshRule>(std::move(sides[0])),
+            std::make_unique<SampleMeshRule>(std::move(sides[1]))};
+  }
+
+ private:
+  SampleMesh<D> mesh_;
+};
+
+/// Divides a sample by a rule.
+template <int D>
+class SampleDivider {
+ public:
+  using Rule = std::shared_ptr<const CutRule<D>>;
+
+  std::vector<DivisionCut> divide(std::span<const LatticePoint> sample, std::size_t parts,
+                                  Rule rule) {
+    std::vector<Point<D>> points;
+    points.reserve(sample.size());
+    for (const LatticePoint& p : sample) points.push_back(mesh_point<D>(p));
+    divide_part(0, points, parts, std::move(rule));
+    return std::move(cuts_);
+  }
+
+ private:
+  void divide_part(std::uint32_t part, std::span<Point<D>> sample, std::size_t parts, Rule rule) {
+    if (parts < 2 || sample.size() < 2) return;
+    PointsToCut<D> points{.sample = sample, .share = {parts / 2, parts}};
+    for (const Point<D>& p : sample) points.box.expand(p);
+    std::optional<Cut> cut = rule->choose(points);
+    if (!cut) return;
+    std::size_t below = part_below(sample, *cut);
+    if (below == 0) {
+      const std::optional<double> next = next_value<D>(sample, cut->axis, cut->value);
+      if (!next) return;  // all are equal
+      cut->value = *next;
+      below = part_below(sample, *cut);
+    }
+    cuts_.push_back({part, *cut});
+    const auto other = static_cast<std::uint32_t>(cuts_.size());
+    auto [low, high] = rule->for_sides(*cut);
+    Rule for_low = low ? std::move(low) : rule;
+    Rule for_high = high ? std::move(high) : rule;
+    rule.reset();
+    divide_part(part, sample.first(below), parts / 2, std::move(for_low));
+    divide_part(other, sample.subspan(below), parts - parts / 2, std::move(for_high));
+  }
+
+  /// Puts the points below a cut to the front, and returns how many these are.
+  static std::size_t part_below(std::span<Point<D>> sample, const Cut& cut) {
+    const auto high = std::partition(sample.begin(), sample.end(),
+                                     [&](const Point<D>& p) { return p[cut.axis] < cut.value; });
+    return static_cast<std::size_t>(high - sample.begin());
   }
 
   std::vector<DivisionCut> cuts_;
 };
 
+template <int D>
+std::vector<DivisionCut> divide_longest_axes(std::span<const LatticePoint> sample,
+                                             std::size_t parts) {
+  return SampleDivider<D>().divide(sample, std::min(parts, sample.size()),
+                                   std::make_shared<AxisRule<D>>());
+}
+
 }  // namespace
 
 template <int D>
-std::vector<DivisionCut> divide_sample(std::vector<LatticePoint> sample, std::size_t parts) {
-  return SampleDivider<D>().divide(sample, std::min(parts, sample.size()));
+std::vector<DivisionCut> divide_sample(std::span<const LatticePoint> sample, std::size_t parts) {
+  parts = std::min(parts, sample.size());
+  if (parts < 2) return {};
+  const std::size_t triangulated = std::min(kTriangulatedPerPart * parts, kMostTriangulated);
+  return SampleDivider<D>().divide(
+      sample, parts,
+      std::make_shared<SampleMeshRule<D>>(triangulate_sample<D>(sample, triangulated)));
 }
 
-std::vector<DivisionCut> divide_sample(std::vector<LatticePoint> sample, std::size_t parts,
+std::vector<DivisionCut> divide_sample(std::span<const LatticePoint> sample, std::size_t parts,
                                        int dimension) {
-  return dimension == 2 ? divide_sample<2>(std::move(sample), parts)
-                        : divide_sample<3>(std::move(sample), parts);
+  return dimension == 2 ? divide_sample<2>(sample, parts) : divide_sample<3>(sample, parts);
 }
 
-template std::vector<DivisionCut> divide_sample<2>(std::vector<LatticePoint>, std::size_t);
-template std::vector<DivisionCut> divide_sample<3>(std::vector<LatticePoint>, std::size_t);
+std::vector<DivisionCut> divide_sample_evenly(std::span<const LatticePoint> sample,
+                                              std::size_t parts, int dimension) {
+  return dimension == 2 ? divide_longest_axes<2>(sample, parts)
+                        : divide_longest_axes<3>(sample, parts);
+}
+
+template std::vector<DivisionCut> divide_sample<2>(std::span<const LatticePoint>, std::size_t);
+template std::vector<DivisionCut> divide_sample<3>(std::span<const LatticePoint>, std::size_t);
 
 }  // namespace spillway::detail

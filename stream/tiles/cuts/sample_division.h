@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "src/geometry/framed_point.h"
@@ -22,10 +23,15 @@ namespace spillway::detail {
 /// that is nearly the same for all points, but where lines and curves are. There all that is cut is
 /// border, and to divide it costs more than it balances.
 template <int D>
-std::vector<DivisionCut> divide_sample(std::vector<LatticePoint> sample, std::size_t parts);
+std::vector<DivisionCut> divide_sample(std::span<const LatticePoint> sample, std::size_t parts);
 
 /// The same in a dimension that is not known before.
-std::vector<DivisionCut> divide_sample(std::vector<LatticePoint> sample, std::size_t parts,
+std::vector<DivisionCut> divide_sample(std::span<const LatticePoint> sample, std::size_t parts,
                                        int dimension);
+
+/// The cuts that divide space into about `parts` parts with equally many points of a sample, each
+/// across the longest side of a cell. Fewer come out where the sample's points are equal.
+std::vector<DivisionCut> divide_sample_evenly(std::span<const LatticePoint> sample,
+                                              std::size_t parts, int dimension);
 
 }  // namespace spillway::detail

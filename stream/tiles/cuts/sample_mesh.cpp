@@ -44,7 +44,7 @@ Point<D> mesh_point(const LatticePoint& point) {
 }
 
 template <int D>
-std::array<SampleMesh<D>, 2> SampleMesh<D>::sides(const TileCut& cut) const {
+std::array<SampleMesh<D>, 2> SampleMesh<D>::sides(const Cut& cut) const {
   std::array<SampleMesh, 2> sides;
   std::vector<std::size_t> side_of(points.size());
   std::vector<VertexId> number(points.size());

@@ -20,7 +20,7 @@ struct SampleMesh {
   std::vector<std::array<VertexId, D + 1>> simplices{};  ///< by the numbers of their corners
 
   /// What is below a cut, and what is not. Simplices across it are in neither.
-  [[nodiscard]] std::array<SampleMesh, 2> sides(const TileCut& cut) const;
+  [[nodiscard]] std::array<SampleMesh, 2> sides(const Cut& cut) const;
 };
 
 /// Triangulates `most` points of a sample, spread over it; fewer where they have many simplices,

@@ -6,8 +6,10 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <utility>
 
+#include "src/delaunay/division/cut_rule.h"
 #include "stream/tiles/regions/reading_order.h"
 
 namespace spillway::detail {
@@ -34,43 +36,43 @@ constexpr double kLeastEarly = 0.25;
 /// The part of a region in a cell.
 struct Portion {
   std::size_t region = 0;
-  Box<3> box;
-  double points = 0;
-
-  [[nodiscard]] double share_below(int axis, double value) const {
-    if (box.hi[axis] < value) return 1;
-    if (box.lo[axis] >= value) return 0;
-    const double extent = box.hi[axis] - box.lo[axis];
-    return extent > 0 ? (value - box.lo[axis]) / extent : 0;
-  }
+  CountedBox<3> points{};
 };
 
-double points_below(const std::vector<Portion>& portions, int axis, double value) {
+using Boxes = std::span<const CountedBox<3>>;
+
+double points_below(Boxes boxes, const Cut& cut) {
   double points = 0;
-  for (const Portion& portion : portions)
-    points += portion.points * portion.share_below(axis, value);
+  for (const CountedBox<3>& some : boxes) points += some.count * share_below(some.box, cut);
   return points;
 }
 
-double points_of(const std::vector<Portion>& portions) {
+double points_of(Boxes boxes) {
   double points = 0;
-  for (const Portion& portion : portions) points += portion.points;
+  for (const CountedBox<3>& some : boxes) points += some.count;
   return points;
 }
 
-Box<3> box_around(const std::vector<Portion>& portions) {
+std::vector<CountedBox<3>> boxes_of(const std::vector<Portion>& portions) {
+  std::vector<CountedBox<3>> boxes;
+  boxes.reserve(portions.size());
+  for (const Portion& portion : portions) boxes.push_back(portion.points);
+  return boxes;
+}
+
+Box<3> box_around(Boxes boxes) {
   Box<3> box;
-  for (const Portion& portion : portions) box.expand(portion.box);
+  for (const CountedBox<3>& some : boxes) box.expand(some.box);
   return box;
 }
 
-/// The least value with about that share of the points below it.
-double quantile(const std::vector<Portion>& portions, int axis, const Box<3>& box, double points) {
+/// The least value with so many points below it, about.
+double quantile(Boxes boxes, int axis, const Box<3>& box, double points) {
   double lo = box.lo[axis];
   double hi = box.hi[axis];
   for (int step = 0; step < kBisections; ++step) {
     const double middle = lo + (hi - lo) / 2;
-    (points_below(portions, axis, middle) < points ? lo : hi) = middle;
+    (points_below(boxes, {axis, middle}) < points ? lo : hi) = middle;
   }
   return hi;
 }
@@ -86,15 +88,14 @@ struct CutValue {
 };
 
 /// The sides of regions between two values, and one value more.
-std::vector<CutValue> cut_values(const std::vector<Portion>& portions, int axis, double least,
-                                 double most, double middle) {
+std::vector<CutValue> cut_values(Boxes boxes, int axis, double least, double most, double middle) {
   std::vector<std::pair<double, double>> begins;  // points begin to be parted above the side ...
   std::vector<std::pair<double, double>> ends;    // ... and are not any more above this one
   std::vector<CutValue> values = {{middle}};
-  for (const Portion& portion : portions) {
-    begins.emplace_back(portion.box.lo[axis], portion.points);
-    ends.emplace_back(portion.box.hi[axis], portion.points);
-    for (const double value : {portion.box.lo[axis], portion.box.hi[axis]}) {
+  for (const CountedBox<3>& some : boxes) {
+    begins.emplace_back(some.box.lo[axis], some.count);
+    ends.emplace_back(some.box.hi[axis], some.count);
+    for (const double value : {some.box.lo[axis], some.box.hi[axis]}) {
       if (value > least && value < most) values.push_back({value});
     }
   }
@@ -112,43 +113,54 @@ std::vector<CutValue> cut_values(const std::vector<Portion>& portions, int axis,
   return values;
 }
 
-/// Where to cut a cell: across its longest side, at the sides of regions if that parts the points
-/// evenly enough. Nothing if all lies at one place.
-std::optional<TileCut> best_cut(const std::vector<Portion>& portions, int dimension) {
-  const double all = points_of(portions);
-  const Box<3> box = box_around(portions);
-  int axis = 0;
-  for (int k = 1; k < dimension; ++k) {
-    if (box.extent(k) > box.extent(axis)) axis = k;
+/// Cuts a cell across its longest side, at the sides of regions if that parts the points evenly
+/// enough.
+class RegionSidesRule final : public CutRule<3> {
+ public:
+  explicit RegionSidesRule(int dimension) : dimension_(dimension) {}
+
+  [[nodiscard]] std::optional<Cut> choose(const PointsToCut<3>& points) const override {
+    const Boxes boxes = points.boxes;
+    const double all = points_of(boxes);
+    int axis = 0;
+    for (int k = 1; k < dimension_; ++k) {
+      if (points.box.extent(k) > points.box.extent(axis)) axis = k;
+    }
+    if (!(points.box.extent(axis) > 0)) return std::nullopt;
+    const auto at = [&](double share) { return quantile(boxes, axis, points.box, share * all); };
+    std::vector<CutValue> values =
+        cut_values(boxes, axis, at(kLeastShare), at(kMostShare), at(0.5));
+    const std::size_t looked_at = std::min(values.size(), kMostValues);
+    std::partial_sort(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(looked_at),
+                      values.end());
+    values.resize(looked_at);
+    const auto cost = [&](const CutValue& value) {
+      const double uneven = std::abs(points_below(boxes, {axis, value.value}) / all - 0.5);
+      return value.parted / all + kUnevenCost * uneven;
+    };
+    return Cut{axis, std::ranges::min_element(values, {}, cost)->value};
   }
-  if (!(box.extent(axis) > 0)) return std::nullopt;
-  const auto at = [&](double share) { return quantile(portions, axis, box, share * all); };
-  std::vector<CutValue> values =
-      cut_values(portions, axis, at(kLeastShare), at(kMostShare), at(0.5));
-  const std::size_t looked_at = std::min(values.size(), kMostValues);
-  std::partial_sort(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(looked_at),
-                    values.end());
-  values.resize(looked_at);
-  const auto cost = [&](const CutValue& value) {
-    const double uneven = std::abs(points_below(portions, axis, value.value) / all - 0.5);
-    return value.parted / all + kUnevenCost * uneven;
-  };
-  return TileCut{axis, std::ranges::min_element(values, {}, cost)->value};
-}
+
+ private:
+  int dimension_;
+};
 
 /// Appends regions in the order of cells with one region each.
-void append_nested(std::vector<Portion> portions, int dimension, std::vector<std::size_t>& order) {
-  const auto cut = portions.size() > 1 ? best_cut(portions, dimension) : std::nullopt;
+void append_nested(std::vector<Portion> portions, const CutRule<3>& rule,
+                   std::vector<std::size_t>& order) {
+  const std::vector<CountedBox<3>> boxes = boxes_of(portions);
+  const auto cut =
+      portions.size() > 1 ? rule.choose({.boxes = boxes, .box = box_around(boxes)}) : std::nullopt;
   std::array<std::vector<Portion>, 2> sides;
   for (const Portion& portion : portions) {
-    const bool above = cut && portion.share_below(cut->axis, cut->value) <= 0.5;
+    const bool above = cut && share_below(portion.points.box, *cut) <= 0.5;
     sides[above ? 1 : 0].push_back(portion);
   }
   const bool parts = !sides[0].empty() && !sides[1].empty();
   portions = {};
   for (std::vector<Portion>& side : sides) {
     if (parts) {
-      append_nested(std::move(side), dimension, order);
+      append_nested(std::move(side), rule, order);
     } else {
       for (const Portion& portion : side) order.push_back(portion.region);
     }
@@ -161,7 +173,7 @@ std::vector<Portion> portions_of(std::span<const InputRegion> regions) {
   for (std::size_t r = 0; r < regions.size(); ++r) {
     const InputRegion& region = regions[r];
     if (region.box.empty()) continue;
-    portions.push_back({r, region.box, static_cast<double>(region.count)});
+    portions.push_back({r, {region.box, static_cast<double>(region.count)}});
   }
   return portions;
 }
@@ -169,16 +181,19 @@ std::vector<Portion> portions_of(std::span<const InputRegion> regions) {
 /// Cuts the plane or space into cells, and keeps what each has of the regions.
 class Planner {
  public:
-  Planner(int dimension, double most_points) : dimension_(dimension), most_points_(most_points) {}
+  Planner(int dimension, double most_points)
+      : most_points_(most_points), rule_(dimension), cuts_(dimension) {}
 
   void cut(std::uint32_t tile, std::vector<Portion> portions) {
-    const double points = points_of(portions);
-    const std::optional<TileCut> best =
-        points > most_points_ ? best_cut(portions, dimension_) : std::nullopt;
+    const std::vector<CountedBox<3>> boxes = boxes_of(portions);
+    const double points = points_of(boxes);
+    const std::optional<Cut> best = points > most_points_
+                                        ? rule_.choose({.boxes = boxes, .box = box_around(boxes)})
+                                        : std::nullopt;
     if (best) {
-      const double below = points_below(portions, best->axis, best->value);
+      const double below = points_below(boxes, *best);
       if (std::min(below, points - below) >= kLeastSide * points) {
-        return cut_at(tile, std::move(portions), best->axis, best->value);
+        return cut_at(tile, std::move(portions), *best);
       }
     }
     if (by_cell.size() <= tile) by_cell.resize(tile + 1);
@@ -195,36 +210,27 @@ class Planner {
   std::vector<std::uint32_t> in_order;  ///< cells, neighbours soon after each other
 
  private:
-  void cut_at(std::uint32_t tile, std::vector<Portion> portions, int axis, double value) {
+  void cut_at(std::uint32_t tile, std::vector<Portion> portions, const Cut& where) {
     const std::uint32_t other = cuts_.tiles();
-    cuts_.make_cut(tile, axis, value);
-    std::vector<Portion> below;
-    std::vector<Portion> above;
+    cuts_.make_cut(tile, where.axis, where.value);
+    std::array<std::vector<Portion>, 2> sides;
     for (const Portion& portion : portions) {
-      const double share = portion.share_below(axis, value);
-      if (portion.box.lo[axis] < value) {
+      const double below = share_below(portion.points.box, where);
+      for (const int side : {0, 1}) {
         Portion part = portion;
-        // Points on the cut go up.
-        const double next = std::nextafter(value, -std::numeric_limits<double>::infinity());
-        part.box.hi[axis] = std::min(part.box.hi[axis], next);
-        part.points *= share;
-        below.push_back(part);
-      }
-      if (portion.box.hi[axis] >= value) {
-        Portion part = portion;
-        part.box.lo[axis] = std::max(part.box.lo[axis], value);
-        part.points *= 1 - share;
-        above.push_back(part);
+        part.points.box = part_of(portion.points.box, where, side);
+        part.points.count *= side == 0 ? below : 1 - below;
+        if (!part.points.box.empty()) sides[side].push_back(part);
       }
     }
     portions = {};
-    cut(tile, std::move(below));
-    cut(other, std::move(above));
+    cut(tile, std::move(sides[0]));
+    cut(other, std::move(sides[1]));
   }
 
-  int dimension_;
   double most_points_;
-  CutTree cuts_{dimension_};
+  RegionSidesRule rule_;
+  CutTree cuts_;
 };
 
 /// Units in their own order, or so that few points wait.
@@ -244,7 +250,7 @@ std::vector<std::size_t> order_units(std::span<const InputRegion> regions, const
   for (const std::uint32_t c : planner.in_order) {
     WaitingCell& cell = cells.emplace_back();
     for (const Portion& portion : planner.by_cell[c]) {
-      cell.points += portion.points;
+      cell.points += portion.points.count;
       const std::size_t unit = regions[portion.region].unit;
       if (cell.units.empty() || cell.units.back() != unit) cell.units.push_back(unit);
     }
@@ -269,8 +275,9 @@ void tell_when_done(const Planner& planner, RegionPlan& plan) {
   for (const std::uint32_t c : planner.in_order) {
     RegionPlan::Cell& cell = plan.cells[c];
     const std::vector<Portion>& portions = planner.by_cell[c];
-    cell.box = box_around(portions);
-    cell.expected = points_of(portions);
+    const std::vector<CountedBox<3>> boxes = boxes_of(portions);
+    cell.box = box_around(boxes);
+    cell.expected = points_of(boxes);
     for (const Portion& portion : portions) {
       cell.done_after = std::max(cell.done_after, position[portion.region]);
     }
@@ -305,7 +312,7 @@ void expect_waiting(std::span<const InputRegion> regions, RegionPlan& plan) {
 RegionPlan plan_regions(std::span<const InputRegion> regions, const RegionPlanOptions& options) {
   std::vector<Portion> portions = portions_of(regions);
   Planner planner(options.dimension,
-                  std::max(options.most_points, points_of(portions) / kMostCells));
+                  std::max(options.most_points, points_of(boxes_of(portions)) / kMostCells));
   planner.cut(0, std::move(portions));
   RegionPlan plan{.cuts = planner.take_cuts()};
   plan.order.units = order_units(regions, planner, options.any_order);
@@ -317,7 +324,7 @@ RegionPlan plan_regions(std::span<const InputRegion> regions, const RegionPlanOp
 
 std::vector<std::size_t> nested_order(std::span<const InputRegion> regions, int dimension) {
   std::vector<std::size_t> order;
-  append_nested(portions_of(regions), dimension, order);
+  append_nested(portions_of(regions), RegionSidesRule(dimension), order);
   return order;
 }
 

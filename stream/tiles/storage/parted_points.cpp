@@ -6,8 +6,8 @@
 
 namespace spillway::detail {
 
-std::vector<HeldPoints> part_points(HeldPoints held, const TileCut& first,
-                                    const std::array<TileCut, 2>& second) {
+std::vector<HeldPoints> part_points(HeldPoints held, const Cut& first,
+                                    const std::array<Cut, 2>& second) {
   constexpr std::size_t kParts = 4;
   std::vector<HeldPoints> parts(kParts);
   for (HeldPoints& part : parts) {
@@ -25,7 +25,7 @@ std::vector<HeldPoints> part_points(HeldPoints held, const TileCut& first,
     for (std::size_t i = 0; i < some.size(); ++i) {
       const LatticePoint& point = some.points[i];
       const std::size_t side = point[first.axis] >= first.value ? 1 : 0;
-      const TileCut& next = second[side];
+      const Cut& next = second[side];
       const std::size_t part = 2 * side + (point[next.axis] >= next.value ? 1 : 0);
       const std::size_t place = part * kMost + counts[part]++;
       dealt.points[place] = point;

@@ -10,12 +10,12 @@
 namespace spillway::detail {
 
 /// A cut that all points lie below.
-constexpr TileCut kNoCut{.axis = 0, .value = std::numeric_limits<double>::infinity()};
+constexpr Cut kNoCut{.axis = 0, .value = std::numeric_limits<double>::infinity()};
 
 /// The points of a buffer on both sides of a cut, or of a second one on each side of the first:
 /// four parts, empty ones among them, those below first. Each has the arrival and the run of the
 /// buffer.
-std::vector<HeldPoints> part_points(HeldPoints held, const TileCut& first,
-                                    const std::array<TileCut, 2>& second);
+std::vector<HeldPoints> part_points(HeldPoints held, const Cut& first,
+                                    const std::array<Cut, 2>& second);
 
 }  // namespace spillway::detail

@@ -2,6 +2,7 @@
 // its members and everything else outside.
 
 #include "stream/ranks/rank_tree.h"
+#include "stream/tiles/cuts/sample_division.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ RankDivision division_of(int ranks) {
   RankDivision division{CutTree(2), {}};
   std::vector<LatticePoint> sample;
   for (int i = 0; i < 100 * ranks; ++i) sample.push_back({i / 100.0, 0, 0});
-  division.cuts.split(0, sample, static_cast<std::size_t>(ranks));
+  division.cuts.split(0, divide_sample_evenly(sample, static_cast<std::size_t>(ranks), 2));
   division.rank_of_tile.resize(division.cuts.tiles());
   for (int rank = 0; rank < ranks; ++rank) {
     const LatticePoint middle{rank + 0.5, 0, 0};

@@ -16,7 +16,7 @@ namespace {
 std::int32_t find(const CutLookup& lookup, const LatticePoint& point) {
   std::int32_t ref = lookup.root();
   while (ref >= 0) {
-    const Cut& cut = lookup.cuts()[ref];
+    const CutNode& cut = lookup.cuts()[ref];
     ref = cut.sides[point[cut.axis] >= cut.value ? 1 : 0];
   }
   return ref;

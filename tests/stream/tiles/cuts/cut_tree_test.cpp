@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "stream/tiles/cuts/sample_division.h"
+
 namespace spillway::detail {
 namespace {
 
@@ -55,8 +57,7 @@ TEST(CutTree, PointsOnACutGoUp) {
 TEST(CutTree, SplitsASampleIntoEqualShares) {
   CutTree cuts(3);
   const std::vector<LatticePoint> points = random_points(7000, 2);
-  std::vector<LatticePoint> sample = points;
-  cuts.split(0, sample, 7);
+  cuts.split(0, divide_sample_evenly(points, 7, 3));
   EXPECT_EQ(cuts.tiles(), 7U);
   std::vector<int> share(7);
   for (const std::uint32_t tile : tiles_of(cuts, points)) ++share[tile];
@@ -67,7 +68,7 @@ TEST(CutTree, CutsOnlyTheFirstAxes) {
   CutTree cuts(2);
   std::vector<LatticePoint> sample = random_points(100, 3);
   for (LatticePoint& point : sample) point[2] *= 1000;
-  cuts.split(0, sample, 8);
+  cuts.split(0, divide_sample_evenly(sample, 8, 2));
   for (LatticePoint point : sample) {
     const std::uint32_t tile = tiles_of(cuts, {point})[0];
     point[2] = -point[2];
@@ -78,11 +79,11 @@ TEST(CutTree, CutsOnlyTheFirstAxes) {
 TEST(CutTree, EqualPointsStayTogether) {
   CutTree cuts(2);
   std::vector<LatticePoint> equal(50, LatticePoint{1, 2, 3});
-  cuts.split(0, equal, 4);
+  cuts.split(0, divide_sample_evenly(equal, 4, 2));
   EXPECT_EQ(cuts.tiles(), 1U);
   std::vector<LatticePoint> two(50, LatticePoint{1, 2, 3});
   two.push_back({1, 7, 3});
-  cuts.split(0, two, 4);
+  cuts.split(0, divide_sample_evenly(two, 4, 2));
   EXPECT_EQ(cuts.tiles(), 2U);
   EXPECT_THAT(tiles_of(cuts, {{1, 2, 3}, {1, 7, 3}}), ElementsAre(0, 1));
 }

@@ -101,7 +101,7 @@ TYPED_TEST(SampleMeshTest, SidesHaveTheirPointsAndTheSimplicesThatDoNotCross) {
   constexpr int kD = TypeParam::value;
   const auto mesh = triangulate_sample<kD>(even_points(400), 10'000);
   for (int axis = 0; axis < kD; ++axis) {
-    const TileCut cut{.axis = axis, .value = mesh.points[7][axis]};
+    const Cut cut{.axis = axis, .value = mesh.points[7][axis]};
     const auto sides = mesh.sides(cut);
     EXPECT_EQ(sides[0].points.size() + sides[1].points.size(), mesh.points.size());
     for (int side = 0; side < 2; ++side) {
