@@ -37,7 +37,7 @@ Insertion<kLattice>::Insertion(const WorkingPoints& points, TriangleArray triang
     triangles_.join(Triangles::handle(1 + i, 1), Triangles::handle(1 + (i + 2) % 3, 2));
   }
   for (std::uint32_t i = 0; i < triangle_count_; ++i) {
-    Triangle& triangle = triangles_.at_first(Triangles::handle(i, 0));
+    Triangle& triangle = triangles_.record(i);
     std::fill_n(triangle.centre, 2, 0);
     triangle.inner = triangle.outer = std::numeric_limits<double>::quiet_NaN();
   }

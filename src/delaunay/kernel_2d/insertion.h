@@ -29,7 +29,8 @@ class Insertion {
   void insert(VertexId point, VertexId next);
 
   /// Triangles so far, the infinite ones included; they fill the array from its beginning.
-  [[nodiscard]] std::uint32_t triangle_count() const { return triangle_count_; }
+  [[nodiscard]] std::uint32_t simplex_count() const { return triangle_count_; }
+  [[nodiscard]] const TriangleArray& simplices() const { return triangles_; }
   [[nodiscard]] const std::vector<kernel::Repetition>& repetitions() const { return repetitions_; }
 
  private:

@@ -62,6 +62,10 @@ class TriangleArray {
   [[nodiscard]] Triangle& at_first(Handle first) const {
     return *reinterpret_cast<Triangle*>(numbers_ + std::size_t{first});
   }
+  /// The triangle of this number.
+  [[nodiscard]] Triangle& record(std::uint32_t triangle) const {
+    return at_first(handle(triangle, 0));
+  }
   [[nodiscard]] Triangle& at(Handle h) const { return at_first(first_handle(h)); }
 
  private:

@@ -7,6 +7,7 @@
 
 #include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_common/insertion_rounds.h"
+#include "src/delaunay/kernel_common/scaled_points.h"
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
@@ -16,16 +17,15 @@ using kernel::kFirstPoint;
 using kernel::kInfinite;
 
 /// One base case's points, by the kernel's vertex numbers.
-struct WorkingPoints {
+struct WorkingPoints : kernel::ScaledPoints<2> {
+  /// What there is for each vertex.
+  using Row = Point<2>;
+
   /// NaN for the infinite vertex, so that every comparison with it decides nothing. If `lattice`,
   /// integers of less than 2^53: the points minus a lattice point, over the lattice's unit. If not,
   /// the points times a power of two that brings the longer side of their box into [1, 2), each
   /// rounded by at most 2^-1075.
   const Point<2>* scaled = nullptr;
-  const Point<2>* originals = nullptr;  ///< those the caller gave, from kFirstPoint on
-  bool lattice = false;
-  double largest = 0;                 ///< magnitude of a scaled coordinate
-  std::optional<Box<2>> clear_box{};  ///< scaled
 
   [[nodiscard]] const Point<2>& original(VertexId v) const { return originals[v - kFirstPoint]; }
 };

@@ -84,6 +84,8 @@ class CellArray {
   [[nodiscard]] Cell& at_cell(Handle cell) const {
     return *reinterpret_cast<Cell*>(bytes_ + std::size_t{cell} * 4);
   }
+  /// The cell of this number.
+  [[nodiscard]] Cell& record(std::uint32_t number) const { return at_cell(cell(number)); }
   /// The cell of a facet.
   [[nodiscard]] Cell& at(Handle facet) const { return at_cell(cell_of(facet)); }
   /// The neighbour at a facet.

@@ -43,7 +43,7 @@ Insertion<kHasOrderKeys>::Insertion(const WorkingPoints& points, CellMemory memo
   for (std::uint32_t k = 0; k < 4; ++k) {
     // The infinite cell beyond the facet opposite v[k].
     const auto& places = kPlaces[k];
-    Cell& cell = cells_.at_cell(CellArray::cell(1 + k));
+    Cell& cell = cells_.record(1 + k);
     cell.vertices[0] = v[places[1]];
     cell.vertices[1] = kInfinite;
     cell.vertices[2] = v[places[2]];
@@ -259,7 +259,7 @@ void Insertion<kHasOrderKeys>::close_gaps() {
   std::size_t next_free = 0;
   const std::size_t count = cell_count_ - free_count_;
   for (std::uint32_t from = cell_count_; from > count; --from) {
-    const Cell& cell = cells_.at_cell(CellArray::cell(from - 1));
+    const Cell& cell = cells_.record(from - 1);
     if ((cell.vertices[3] & kMark) != 0) continue;
     const Handle to = free_[next_free++];
     Cell& moved = cells_.at_cell(to);

@@ -47,15 +47,15 @@ class Insertion {
   /// So many points, spread evenly over all, are inserted now, or all but the last one of them.
   void end_round(std::size_t points) { before_ = std::exchange(sample_, {points, cell_count_}); }
 
-  /// Moves the last cells to where cells are free, so that those that are left, cell_count() of
-  /// them, infinite ones included, fill the array from its beginning.
+  /// Moves the last cells to where cells are free, so that those that are left, simplex_count()
+  /// of them, infinite ones included, fill the array from its beginning.
   void close_gaps();
 
   /// Of the cells' memory, by the samples that the rounds have left.
   [[nodiscard]] WorkForecast forecast() const;
 
-  [[nodiscard]] std::uint32_t cell_count() const { return cell_count_; }
-  [[nodiscard]] const CellArray& cells() const { return cells_; }
+  [[nodiscard]] std::uint32_t simplex_count() const { return cell_count_; }
+  [[nodiscard]] const CellArray& simplices() const { return cells_; }
   [[nodiscard]] const std::vector<kernel::Repetition>& repetitions() const { return repetitions_; }
 
  private:

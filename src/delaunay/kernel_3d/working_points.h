@@ -1,12 +1,14 @@
 #pragma once
 // The points as the 3D kernel computes with them.
 
+#include <array>
 #include <optional>
 #include <span>
 
 #include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_3d/cells.h"
 #include "src/delaunay/kernel_common/insertion_rounds.h"
+#include "src/delaunay/kernel_common/scaled_points.h"
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
@@ -15,12 +17,13 @@ namespace spillway::detail::kernel_3d {
 using kernel::kFirstPoint;
 
 /// One base case's points, by the kernel's vertex numbers.
-struct WorkingPoints {
+struct WorkingPoints : kernel::ScaledPoints<3> {
+  /// What there is for each vertex.
+  using Row = std::array<double, 4>;
+
   /// Four numbers for each vertex: the coordinates that CoordinateScaling makes, and an order key.
   /// NaN for the infinite vertex, so that every comparison with it decides nothing.
   const double* coordinates = nullptr;
-  const Point<3>* originals = nullptr;  ///< those the caller gave, from kFirstPoint on
-  bool lattice = false;
   /// Whether the order keys are in lexicographic order. They are integers below 2^53, on a lattice
   /// whose box has fewer places, and sides up to 2^40; else they are all 0.
   bool has_order_keys = false;
@@ -29,9 +32,7 @@ struct WorkingPoints {
   bool tiny = false;
   /// A power of two, at least the distance between any two of the scaled points.
   double extent = 0;
-  double largest = 0;               ///< magnitude of a scaled coordinate
-  std::size_t count = 0;            ///< of vertices, the infinite one included
-  std::optional<Box<3>> clear_box;  ///< scaled
+  std::size_t count = 0;  ///< of vertices, the infinite one included
 
   [[nodiscard]] const double* at(VertexRef v) const { return coordinates + v; }
   [[nodiscard]] const Point<3>& original(VertexRef v) const {

@@ -1,0 +1,112 @@
+#pragma once
+// A base case of the own kernels, from the points to the list of simplices: what is the same in the
+// plane and in space.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "src/delaunay/common/working_memory.h"
+#include "src/delaunay/kernel_common/insertion_rounds.h"
+#include "src/delaunay/kernel_common/kernel.h"
+#include "src/delaunay/kernel_common/lane_width.h"
+#include "src/delaunay/kernel_common/simplex_listing.h"
+#include "src/error.h"
+#include "src/runtime/work_lease.h"
+
+namespace spillway::detail::kernel {
+
+/// Lists what an insertion has made: in the slab where its records lie, which it is done with, or
+/// in memory of its own. `usual` records are what there was room for at first.
+template <typename Traits, int D, typename Insertion>
+BaseCase<D> list_base_case(const BaseCaseInput<D>& input, const Insertion& insertion,
+                           const std::optional<Box<D>>& clear_box, std::size_t usual,
+                           Slab& memory) {
+  BaseCase<D> result;
+  result.dimension = D;
+  const std::uint32_t count = insertion.simplex_count();
+  if constexpr (requires { insertion.forecast(); }) {
+    if (input.memory != nullptr && !input.in_place && count > usual) {
+      // The list, and what a merge makes of it.
+      const std::uint64_t bytes = 2 * (count - usual) * sizeof(Simplex<D>);
+      input.memory->grow(bytes, insertion.forecast());
+    }
+  }
+  const auto list_as = [&](const auto& number, auto* made) {
+    list_simplices<D>(result, count, clear_box.has_value(),
+                      [&](std::uint32_t begin, std::uint32_t end, ListingNotes<D>& notes) {
+                        list_range<Traits, D>(insertion.simplices(), begin, end, number, clear_box,
+                                              made, notes);
+                      });
+  };
+  const auto list = [&](const auto& number) {
+    if (input.corners_only) {
+      result.corners = make_corners<D>(memory, count);
+      list_as(number, result.corners.data());
+      if (count > usual) result.corners.release_rest();  // for what is made of them
+    } else {
+      result.simplices = make_list<D>(input, memory, count);
+      list_as(number, result.simplices.data());
+    }
+  };
+  constexpr std::uint32_t kUnit = Traits::kVertexUnit;
+  const VertexId shift = input.first_vertex - kFirstPoint;
+  if (insertion.repetitions().empty()) {
+    list([shift](Words& v) { v = v / kUnit + shift; });
+  } else {
+    const std::vector<VertexId> kept = choose_kept<D>(input, insertion.repetitions());
+    list([&](Words& v) {
+      for (int i = 0; i < 4; ++i) v[i] = kept[v[i] / kUnit] + shift;
+    });
+    result.duplicates = list_duplicates(insertion.repetitions(), kept, input.first_vertex);
+  }
+  return result;
+}
+
+/// Triangulates points that span D dimensions; `basis` has the places of D+1 affinely independent
+/// ones. What a kernel has of its own are its `Traits`:
+/// - `kDimension`, and the `kRounds` of its insertion;
+/// - `kMostPoints`, which it can number; more are refused;
+/// - `WorkingPoints` (with `Row`, what a vertex takes), and make_points() to fill a slab with them;
+/// - `Array`, its records by number: `Record`s with vertices, neighbours and a sphere of four
+///   numbers, the `centre` first; room for usual_records() of so many points is made at first;
+/// - `kVertexUnit`: records name a vertex by so many times its number;
+/// - `Insertion<bool>` into an array that array_in() makes of a slab, and by_variant(), which
+///   calls a function with std::true_type or std::false_type, what points ask for;
+/// - least_gap_squared() of two spheres, records of four numbers: what the square of the distance
+///   from the computed centre to something must exceed if it is certainly beyond the true sphere.
+template <typename Traits>
+auto incremental_base_case(const BaseCaseInput<Traits::kDimension>& input,
+                           std::span<const VertexId> basis) {
+  constexpr int kDimension = Traits::kDimension;
+  const std::size_t count = input.points.size();
+  if (count > Traits::kMostPoints) {
+    throw Error(fmt::format("a base case of {} points is more than can be numbered; choose base "
+                            "cases of at most {} points",
+                            count, Traits::kMostPoints),
+                ErrorCode::kTooLarge);
+  }
+  BorrowedSlab point_memory(SlabUse::kPoints,
+                            (count + kFirstPoint) * sizeof(typename Traits::WorkingPoints::Row));
+  const auto points = Traits::make_points(input.points, *point_memory, input.clear_box);
+  const std::size_t usual = Traits::usual_records(count);
+  const std::size_t bytes = usual * sizeof(typename Traits::Record);
+  BorrowedSlab records(SlabUse::kSimplices, bytes);
+  records->reserve(bytes);
+  std::array<VertexId, kDimension + 1> first;
+  for (std::size_t i = 0; i < first.size(); ++i) first[i] = basis[i] + kFirstPoint;
+  return Traits::by_variant(points, [&](auto variant) {
+    typename Traits::template Insertion<decltype(variant)::value> insertion(
+        points, Traits::array_in(*records, usual, input.memory), first, lane_width());
+    insert_in_rounds(insertion, count, basis, Traits::kRounds);
+    if constexpr (requires { insertion.close_gaps(); }) insertion.close_gaps();
+    return list_base_case<Traits, kDimension>(input, insertion, points.clear_box, usual, *records);
+  });
+}
+
+}  // namespace spillway::detail::kernel
