@@ -148,8 +148,7 @@ class Run {
     surface.dimension = leaf.dimension;
     surface.open = leaf.dimension < D;
     for (const std::uint32_t i : leaf.hull) surface.hull.push_back({part.list, i});
-    marks_[part.list] =
-        ListMarks(leaf.simplices.size(), leaf.not_inside ? Mark::kFinal : Mark::kInterior);
+    marks_[part.list] = ListMarks(leaf.simplices.size(), Mark::kFinal);
     if (leaf.not_inside) {
       for (const std::uint32_t i : *leaf.not_inside) marks_[part.list][i] = Mark::kInterior;
       surface.changeable = std::move(leaf.not_inside);

@@ -14,14 +14,19 @@
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "src/delaunay/base_case/base_case.h"
 #include "src/delaunay/common/hash.h"
 #include "src/error.h"
+#include "src/geometry/constructions/circumsphere.h"
 
 namespace spillway::detail {
 namespace {
@@ -137,6 +142,48 @@ class Inserter {
   std::vector<Duplicate> drops_;  ///< in order of insertion; `kept` may itself be dropped later
 };
 
+/// BaseCase::not_inside: the infinite simplices, those near the sides of the clear box, and some
+/// that are flat.
+template <int D>
+std::vector<std::uint32_t> list_not_inside(std::span<const Simplex<D>> simplices,
+                                           const BaseCaseInput<D>& input) {
+  std::vector<std::uint32_t> not_inside;
+  SimplexBatch<D> batch{};
+  const auto count = static_cast<std::uint32_t>(simplices.size());
+  for (std::uint32_t begin = 0; begin < count; begin += batch.kSize) {
+    const std::uint32_t end = std::min<std::uint32_t>(begin + batch.kSize, count);
+    for (std::uint32_t s = begin; s < end; ++s) {
+      // An infinite one becomes a point, of which the test of a batch knows nothing.
+      const bool infinite = simplices[s].infinite();
+      batch.set(s - begin, [&](int i) {
+        return input.points[infinite ? 0 : simplices[s].vertices[i] - input.first_vertex];
+      });
+    }
+    const auto inside = well_inside<D>(batch, *input.clear_box);
+    for (std::uint32_t s = begin; s < end; ++s) {
+      if (!inside[s - begin]) not_inside.push_back(s);
+    }
+  }
+  return not_inside;
+}
+
+/// Makes corners of the simplices, in memory of their own, and lists the open ones if they are few.
+template <int D>
+void keep_corners(BaseCase<D>& base_case) {
+  using Corners = std::array<VertexId, D + 1>;
+  SlabArray<Simplex<D>> simplices = std::move(base_case.simplices);
+  const std::size_t count = simplices.size();
+  base_case.corners = {kept_or_new_slab(SlabUse::kSimplices, count * sizeof(Corners)), count};
+  std::transform(simplices.begin(), simplices.end(), base_case.corners.begin(),
+                 [](const Simplex<D>& simplex) { return simplex.vertices; });
+  if (base_case.not_inside && base_case.not_inside->size() <= count / kFewestForOneOpen) {
+    for (const std::uint32_t s : *base_case.not_inside) {
+      base_case.open_simplices.push_back(simplices[s]);
+    }
+  }
+  recycle(std::move(simplices));
+}
+
 }  // namespace
 
 template <int D>
@@ -174,6 +221,8 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
     }
     if (simplex.infinite()) result.hull.push_back(cell->info());
   }
+  if (input.clear_box) result.not_inside = list_not_inside<D>(result.simplices.span(), input);
+  if (input.corners_only) keep_corners(result);
   return result;
 }
 

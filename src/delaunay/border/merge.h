@@ -23,7 +23,7 @@ struct PartSurface {
   std::vector<SimplexId> hull;     ///< its infinite simplices; none if open
   std::vector<VertexId> vertices;  ///< all its distinct vertices, sorted, if open
   /// The numbers, ascending, of all simplices that points of other parts may change, and perhaps
-  /// more, the hull among them. Known only of leaves, and only if their kernel tells.
+  /// more, the hull among them. Known only of leaves.
   std::optional<std::vector<std::uint32_t>> changeable;
 };
 

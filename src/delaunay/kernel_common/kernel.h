@@ -31,14 +31,18 @@ struct BaseCaseInput {
   /// nothing is copied, and at the peak less memory is used. For results that are soon recycled,
   /// or few.
   bool in_place = false;
-  /// Asks for BaseCase::corners instead of its simplices, in place, and for open_simplices if there
-  /// is a clear box: half as much to write and to read. Kernels may give simplices nevertheless.
+  /// Asks for BaseCase::corners instead of its simplices, in place where the kernel can, and for
+  /// open_simplices if there is a clear box: half as much to write and to read.
   bool corners_only = false;
   Kernel kernel = Kernel::kSpillway;
   /// If set, grows by what the kernel's own records and the list of simplices take beyond what is
   /// usual for so many points; grow() may throw.
   WorkLease* memory = nullptr;
 };
+
+/// Where more than one simplex of so many is open they are not listed: that would take more memory
+/// than it saves time.
+inline constexpr std::size_t kFewestForOneOpen = 8;
 
 /// The triangulation of one base case: a single simplex list, its neighbours all inside it.
 template <int D>
@@ -49,11 +53,12 @@ struct BaseCase {
   std::vector<std::uint32_t> hull;    ///< indices of the infinite simplices
   std::vector<Duplicate> duplicates;  ///< sorted
   int dimension = -1;                 ///< of the points' affine hull
-  /// If there was a clear box to ask about and the kernel can tell without much work: the indices,
-  /// ascending, of all simplices but those that are finite and whose closed circumsphere certainly
-  /// lies inside the box and touches no side.
+  /// If there are simplices and there was a clear box to ask about: the indices, ascending, of all
+  /// simplices but those that are finite and whose closed circumsphere certainly lies inside the
+  /// box and touches no side.
   std::optional<std::vector<std::uint32_t>> not_inside;
-  std::vector<Simplex<D>> open_simplices;  ///< these, if there are `corners` and they are few
+  /// These, if there are `corners` and they are few: see kFewestForOneOpen.
+  std::vector<Simplex<D>> open_simplices;
 };
 
 /// For kernels: a list of simplices to be filled, at the beginning of a slab that the kernel is
@@ -66,7 +71,7 @@ SlabArray<Simplex<D>> make_list(const BaseCaseInput<D>& input, Slab& memory, std
   return {std::move(memory), count};
 }
 
-/// For kernels: the same of BaseCase::corners, always in place.
+/// For kernels: the same of BaseCase::corners, in place.
 template <int D>
 SlabArray<std::array<VertexId, D + 1>> make_corners(Slab& memory, std::size_t count) {
   memory.reserve(count * sizeof(std::array<VertexId, D + 1>));

@@ -28,10 +28,6 @@ struct ListingNotes {
   bool lists_open = true;  ///< whether open_simplices are wanted
 };
 
-/// Where more than one simplex of so many is open they are not listed: that would take more memory
-/// than it saves time.
-constexpr std::size_t kFewestForOneOpen = 8;
-
 /// Fills the simplices of a result, or their corners, and hull, and, if `asked`, not_inside and
 /// open_simplices by calls of list(begin, end, notes) for grains of the `count` simplices. After a
 /// first one come ranges as long as all before them, whose grains are worked on at the same time by
