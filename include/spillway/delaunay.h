@@ -59,8 +59,7 @@ class Delaunay {
  public:
   /// Triangulates the points, of which a copy is kept. Throws Error:
   ///   kInvalidArgument  a coordinate is infinite or not a number (the text has the point's
-  ///   number),
-  ///                     or there are more than 4,096 threads
+  ///                     number), or there are more than 4,096 threads
   ///   kDegenerateInput  there are no points, or all lie on one line (D = 3: one plane), as fewer
   ///                     than D+1 do
   ///   kTooLarge         more points or cells than an Index can number, or more than 4,294,967,293

@@ -44,8 +44,7 @@ using BorderTriangulator =
 ///      stays open, without vertices yet.
 ///   2. The vertices of all borders are triangulated.
 ///   3. Of that triangulation a simplex is accepted if it spans children, or if its own child's
-///   border
-///      has it too, facing the same way; border simplices that it does not have are removed.
+///      border has it too, facing the same way; border simplices that it does not have are removed.
 ///   4. Neighbours across the seams are linked, found by the hash of the facet they share.
 /// New simplices go to list part.list, which must be empty; children's lists stay where they
 /// are. `boxes` has, by list, those of leaves. Returns the part's own surface. `task` gets the

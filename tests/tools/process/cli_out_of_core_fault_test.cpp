@@ -155,8 +155,8 @@ TEST_F(OutOfCoreFault, MoreTilesThanThereIsMemoryForAreRefused) {
   generate("in.las", 1500000);
   const std::string command = "spillway triangulate -q --tile 100 in.las -o mesh.spm --memory ";
   const std::string message = work_.run(command + "32M").err;
-  EXPECT_THAT(message, AllOf(HasSubstr("tiles of at most 100 points"),
-                             HasSubstr("M may be enough")));
+  EXPECT_THAT(message,
+              AllOf(HasSubstr("tiles of at most 100 points"), HasSubstr("M may be enough")));
   work_.succeed(command + size_after(message, "--memory "));
 }
 
