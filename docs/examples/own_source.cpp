@@ -11,8 +11,8 @@ class Dome : public spillway::PointSource {
     points.clear();
     if (row_ == kSide) return false;
     for (int column = 0; column < kSide; ++column) {
-      const double x = column - kSide / 2;
-      const double y = row_ - kSide / 2;
+      const double x = column - kMiddle;
+      const double y = row_ - kMiddle;
       points.push_back({x, y, 1000 - 0.01 * (x * x + y * y)});
     }
     ++row_;
@@ -21,6 +21,7 @@ class Dome : public spillway::PointSource {
 
  private:
   static constexpr int kSide = 401;
+  static constexpr int kMiddle = kSide / 2;
   int row_ = 0;
 };
 
