@@ -13,7 +13,24 @@ constexpr int kDeepest = 1000;
 
 }  // namespace
 
+Json::Json() = default;
+Json::Json(std::nullptr_t) {}
+Json::Json(bool value) : value_(value) {}
+Json::Json(double value) : value_(value) {}
+Json::Json(const char* value) : value_(std::string(value)) {}
+Json::Json(std::string_view value) : value_(std::string(value)) {}
+Json::Json(std::string value) : value_(std::move(value)) {}
 Json::Json(std::initializer_list<Member> members) : value_(Object(members)) {}
+
+void Json::set_integer(bool negative, std::uint64_t bits) {
+  if (negative) {
+    value_ = static_cast<std::int64_t>(bits);
+  } else {
+    value_ = bits;
+  }
+}
+
+void Json::set_elements(Array elements) { value_ = std::move(elements); }
 
 Json Json::array(std::initializer_list<Json> values) {
   Json json;

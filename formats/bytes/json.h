@@ -23,26 +23,24 @@ class Json {
   using Array = std::vector<Json>;
   using Object = std::vector<Member>;
 
-  Json() = default;
-  Json(std::nullptr_t) {}
-  Json(bool value) : value_(value) {}
-  Json(double value) : value_(value) {}
-  Json(const char* value) : value_(std::string(value)) {}
-  Json(std::string_view value) : value_(std::string(value)) {}
-  Json(std::string value) : value_(std::move(value)) {}
+  // Values are set where Member is complete.
+  Json();
+  Json(std::nullptr_t);
+  Json(bool value);
+  Json(double value);
+  Json(const char* value);
+  Json(std::string_view value);
+  Json(std::string value);
   /// Integers that are equal are equal values, whatever their types.
   template <std::integral Integer>
   Json(Integer value) {
-    if (std::cmp_less(value, 0)) {
-      value_ = static_cast<std::int64_t>(value);
-    } else {
-      value_ = static_cast<std::uint64_t>(value);
-    }
+    set_integer(std::cmp_less(value, 0), static_cast<std::uint64_t>(value));
   }
   /// An array of the values of a container.
   template <std::ranges::forward_range Values>
-  requires(!std::convertible_to<Values, std::string_view>) Json(const Values& values)
-      : value_(Array(values.begin(), values.end())) {}
+  requires(!std::convertible_to<Values, std::string_view>) Json(const Values& values) {
+    set_elements(Array(values.begin(), values.end()));
+  }
   /// An object: {{"name", value}, ...}.
   Json(std::initializer_list<Member> members);
 
@@ -81,6 +79,8 @@ class Json {
 
  private:
   friend class JsonConversion;
+  void set_integer(bool negative, std::uint64_t bits);
+  void set_elements(Array elements);
   template <typename T>
   [[nodiscard]] bool holds() const {
     return std::holds_alternative<T>(value_);

@@ -37,7 +37,7 @@ struct WorkLease::Held {
 WorkLease::WorkLease() = default;
 
 WorkLease::WorkLease(MemoryBudget& budget, std::uint64_t bytes, const char* purpose)
-    : held_(std::make_unique<Held>(budget, purpose)) {
+    : held_(std::make_unique<Held>(Held{.budget = budget, .purpose = purpose})) {
   WorkUnderWay& work = budget.work();
   std::unique_lock lock(work.mutex);
   held_->take_when_there_is(bytes, 0, nullptr, lock);

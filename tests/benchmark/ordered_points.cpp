@@ -133,7 +133,8 @@ void sort_along_curve(std::span<Place> points, const CurveSquare& square) {
   const std::size_t a = square.axis;
   const std::size_t b = 1 - a;
   const std::int64_t half = square.side / 2;
-  const auto [up_a, up_b] = std::pair(square.ascending[a], square.ascending[b]);
+  const bool up_a = square.ascending[a];
+  const bool up_b = square.ascending[b];
   const auto quarter = [&](bool second_a, bool second_b, std::size_t axis, bool turned_round) {
     CurveSquare part{square.lo, half, axis, square.ascending};
     if (second_a == up_a) part.lo[a] += half;

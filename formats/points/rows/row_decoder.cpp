@@ -85,7 +85,8 @@ bool RowDecoder::decode_alike(const std::byte* rows, PointBlock& block) const {
   if (layout_.coordinates() == 2) {
     for (LatticePoint& point : block.points) {
       const T values[] = {load<T>(x), load<T>(y)};
-      valid &= representable(values[0]) & representable(values[1]);
+      valid &= representable(values[0]);
+      valid &= representable(values[1]);
       point = {static_cast<double>(values[0]), static_cast<double>(values[1]), 0};
       x += step;
       y += step;
@@ -95,7 +96,7 @@ bool RowDecoder::decode_alike(const std::byte* rows, PointBlock& block) const {
   const std::byte* z = rows + layout_.coordinate(2).at;
   for (LatticePoint& point : block.points) {
     const T values[] = {load<T>(x), load<T>(y), load<T>(z)};
-    valid &= representable(values[0]) & representable(values[1]) & representable(values[2]);
+    for (const T value : values) valid &= representable(value);
     point = {static_cast<double>(values[0]), static_cast<double>(values[1]),
              static_cast<double>(values[2])};
     x += step;

@@ -191,10 +191,10 @@ TEST(Glb, NodesTurnUprightAndKeepTheOffsetInDouble) {
   const nlohmann::json json = json_of(bytes_as("tin.glb", kilometre("EPSG:32632")));
   EXPECT_EQ(json["asset"]["version"], "2.0");
   EXPECT_EQ(json["asset"]["extras"]["crs"], "EPSG:32632");
-  EXPECT_EQ(json["scenes"][0]["nodes"], nlohmann::json({0}));
+  EXPECT_EQ(json["scenes"][0]["nodes"], nlohmann::json::array({0}));
   EXPECT_EQ(json["nodes"][0]["matrix"],
             nlohmann::json({1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}));
-  EXPECT_EQ(json["nodes"][0]["children"], nlohmann::json({1}));
+  EXPECT_EQ(json["nodes"][0]["children"], nlohmann::json::array({1}));
   EXPECT_NEAR(json["nodes"][1]["translation"][0].get<double>(), 547000, 20);
   EXPECT_NEAR(json["nodes"][1]["translation"][1].get<double>(), 5280000, 20);
   EXPECT_EQ(json["nodes"][1]["mesh"], 0);

@@ -46,7 +46,7 @@ void expect_polygons(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.corners.size(); i += 3) {
     std::array<std::uint64_t, 3> triangle = {mesh.corners[i], mesh.corners[i + 1],
                                              mesh.corners[i + 2]};
-    std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+    std::rotate(triangle.begin(), std::ranges::min_element(triangle), triangle.end());
     triangles.push_back(triangle);
   }
   EXPECT_THAT(triangles,

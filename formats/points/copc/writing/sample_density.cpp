@@ -39,8 +39,7 @@ unsigned SampleDensity::sample_bits(const OctreeCube& cube, std::uint64_t most_p
       met.push_back(cube.sample_cell_of(cube.place_of(point), 0, bits));
     }
     std::ranges::sort(met);
-    const auto repeated = std::ranges::unique(met);
-    return static_cast<double>(met.size() - repeated.size());
+    return static_cast<double>(std::unique(met.begin(), met.end()) - met.begin());
   };
   if (kept_.empty()) return OctreeCube::kFinestBits;
   double sample = cells(kLeast);

@@ -25,7 +25,7 @@ std::set<std::array<Point<2>, 3>> cut(const Outline& outline) {
   std::set<std::array<Point<2>, 3>> triangles;
   for (const auto& [a, b, c] : cutter.cut(outline)) {
     std::array<Point<2>, 3> triangle = {outline[a], outline[b], outline[c]};
-    std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+    std::rotate(triangle.begin(), std::ranges::min_element(triangle), triangle.end());
     triangles.insert(triangle);
   }
   return triangles;
@@ -101,7 +101,7 @@ void expect_laws(const Outline& outline) {
 void expect_no_beginning(Outline outline) {
   const auto triangles = cut(outline);
   for (std::size_t i = 0; i < std::min<std::size_t>(outline.size(), 12); ++i) {
-    std::ranges::rotate(outline, outline.begin() + 1);
+    std::rotate(outline.begin(), outline.begin() + 1, outline.end());
     ASSERT_EQ(cut(outline), triangles);
   }
   std::ranges::reverse(outline);
