@@ -27,7 +27,7 @@ struct Traits {
   template <bool kLattice>
   using Insertion = kernel_2d::Insertion<kLattice>;
 
-  static constexpr auto make_points = make_working_points;
+  static constexpr auto kMakePoints = make_working_points;
 
   /// All there can be.
   static std::size_t usual_records(std::size_t points) { return 2 * points + 2; }

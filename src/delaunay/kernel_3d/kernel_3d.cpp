@@ -29,7 +29,7 @@ struct Traits {
   template <bool kHasOrderKeys>
   using Insertion = kernel_3d::Insertion<kHasOrderKeys>;
 
-  static constexpr auto make_points = make_working_points;
+  static constexpr auto kMakePoints = make_working_points;
 
   /// Scattered points have 6.8 cells each.
   static std::size_t usual_records(std::size_t points) { return 7 * points; }

@@ -72,7 +72,7 @@ BaseCase<D> list_base_case(const BaseCaseInput<D>& input, const Insertion& inser
 /// ones. What a kernel has of its own are its `Traits`:
 /// - `kDimension`, and the `kRounds` of its insertion;
 /// - `kMostPoints`, which it can number; more are refused;
-/// - `WorkingPoints` (with `Row`, what a vertex takes), and make_points() to fill a slab with them;
+/// - `WorkingPoints` (with `Row`, what a vertex takes), and `kMakePoints` to fill a slab with them;
 /// - `Array`, its records by number: `Record`s with vertices, neighbours and a sphere of four
 ///   numbers, the `centre` first; room for usual_records() of so many points is made at first;
 /// - `kVertexUnit`: records name a vertex by so many times its number;
@@ -93,7 +93,7 @@ auto incremental_base_case(const BaseCaseInput<Traits::kDimension>& input,
   }
   BorrowedSlab point_memory(SlabUse::kPoints,
                             (count + kFirstPoint) * sizeof(typename Traits::WorkingPoints::Row));
-  const auto points = Traits::make_points(input.points, *point_memory, input.clear_box);
+  const auto points = Traits::kMakePoints(input.points, *point_memory, input.clear_box);
   const std::size_t usual = Traits::usual_records(count);
   const std::size_t bytes = usual * sizeof(typename Traits::Record);
   BorrowedSlab records(SlabUse::kSimplices, bytes);
