@@ -16,7 +16,7 @@ namespace spillway::detail {
 
 /// The output of triangulate_over_ranks(). One of:
 /// - spm and formats with records (binary PLY) in a file: all ranks write to it, each at its
-/// places;
+///   places;
 /// - one file otherwise: rank 0 writes what the others send, some MiB at a time;
 /// - parts: each rank has a file of its own, a mesh that stands for itself, in which vertices of
 ///   other ranks are repeated; for VTU also an index NAME.pvtu (docs/formats-meshes.md, "Parts").

@@ -302,11 +302,7 @@ class TileRun {
                            .memory = &memory};
     input.clear_box = clear_box_of(node);
     input.corners_only = !node.hollow;
-    BaseCase<D> base_case = triangulate_base_case<D>(input);
-    if (!node.hollow && !base_case.simplices.empty()) {
-      tell_corners(base_case, points, part.begin, *input.clear_box);
-    }
-    return base_case;
+    return triangulate_base_case<D>(input);
   }
 
   /// The box around a leaf that has nothing in common with the box of any other part.
@@ -350,31 +346,6 @@ class TileRun {
       }
     }
     return border;
-  }
-
-  /// Lists corners where the kernel gave simplices, and those of these whose circumspheres are not
-  /// known to lie in the clear box: infinite ones, those near its sides, and some that are flat.
-  static void tell_corners(BaseCase<D>& leaf, std::span<const Point<D>> points,
-                           VertexId first_vertex, const Box<D>& clear_box) {
-    const auto count = static_cast<std::uint32_t>(leaf.simplices.size());
-    leaf.corners = SlabArray<std::array<VertexId, D + 1>>(count);
-    std::vector<std::uint32_t>& open = leaf.not_inside.emplace();
-    SimplexBatch<D> batch{};
-    for (std::uint32_t begin = 0; begin < count; begin += batch.kSize) {
-      const std::uint32_t end = std::min<std::uint32_t>(begin + batch.kSize, count);
-      for (std::uint32_t s = begin; s < end; ++s) {
-        // An infinite one becomes a point, of which the test of a batch knows nothing.
-        const bool infinite = leaf.simplices[s].infinite();
-        const std::array<VertexId, D + 1>& corners = leaf.simplices[s].vertices;
-        leaf.corners[s] = corners;
-        batch.set(s - begin,
-                  [&](int i) { return points[infinite ? 0 : corners[i] - first_vertex]; });
-      }
-      const auto found = well_inside<D>(batch, clear_box);
-      for (std::uint32_t s = begin; s < end; ++s) {
-        if (!found[s - begin]) open.push_back(s);
-      }
-    }
   }
 
   Border<D> merge_node(Node& node) {

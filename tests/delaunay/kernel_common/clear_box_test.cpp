@@ -31,16 +31,22 @@ struct Count {
 
 /// The base case of the points, which is asked about the clear box.
 template <int D>
-BaseCase<D> asked(const Points<D>& points, const Box<D>& clear_box) {
+BaseCase<D> asked(const Points<D>& points, const Box<D>& clear_box,
+                  Kernel kernel = Kernel::kSpillway, bool corners_only = false) {
   std::vector<VertexId> index(points.size());
   std::iota(index.begin(), index.end(), VertexId{0});
-  return triangulate_base_case<D>({.points = points, .input_index = index, .clear_box = clear_box});
+  return triangulate_base_case<D>({.points = points,
+                                   .input_index = index,
+                                   .clear_box = clear_box,
+                                   .corners_only = corners_only,
+                                   .kernel = kernel});
 }
 
 /// Expects that nothing is claimed that is not true; every `step`-th simplex is looked at.
 template <int D>
-Count expect_true_claims(const Points<D>& points, const Box<D>& clear_box, std::size_t step = 1) {
-  const BaseCase<D> base_case = asked<D>(points, clear_box);
+Count expect_true_claims(const Points<D>& points, const Box<D>& clear_box, std::size_t step = 1,
+                         Kernel kernel = Kernel::kSpillway) {
+  const BaseCase<D> base_case = asked<D>(points, clear_box, kernel);
   Count count;
   if (base_case.dimension < D) return count;
   std::vector<bool> not_inside(base_case.simplices.size());
@@ -90,6 +96,34 @@ template <typename Dimension>
 class KernelClearBox : public ::testing::Test {};
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(KernelClearBox, Dimensions);
+
+/// The sorted corners of the simplices that a base case lists.
+template <int D>
+std::vector<std::array<VertexId, D + 1>> sorted_corners(const BaseCase<D>& base_case) {
+  std::vector<std::array<VertexId, D + 1>> all(base_case.corners.begin(), base_case.corners.end());
+  for (auto& corners : all) std::ranges::sort(corners);
+  std::ranges::sort(all);
+  return all;
+}
+
+/// Whichever kernel makes a base case, its caller gets the same lists.
+TYPED_TEST(KernelClearBox, CgalsBaseCaseAnswersLikeTheOwnOne) {
+  constexpr int D = TypeParam::value;
+  Random random(43);
+  for (const FamilyCase& tested : all_family_cases()) {
+    if (tested.dimension != D) continue;
+    SCOPED_TRACE(family_names()[static_cast<std::size_t>(tested.family)]);
+    const Points<D> points =
+        generate_points<D>({.family = tested.family, .count = 150, .dimension = D, .seed = 6});
+    const Box<D> clear_box = random_clear_box<D>(points, random);
+    expect_true_claims<D>(points, clear_box, 2, Kernel::kCgal);
+    const BaseCase<D> own = asked<D>(points, clear_box, Kernel::kSpillway, true);
+    const BaseCase<D> cgal = asked<D>(points, clear_box, Kernel::kCgal, true);
+    EXPECT_EQ(cgal.dimension, own.dimension);
+    EXPECT_EQ(cgal.not_inside.has_value(), own.not_inside.has_value());
+    EXPECT_EQ(sorted_corners<D>(cgal), sorted_corners<D>(own));
+  }
+}
 
 TYPED_TEST(KernelClearBox, ClaimsOnlyWhatIsTrueOfAllFamilies) {
   constexpr int D = TypeParam::value;
