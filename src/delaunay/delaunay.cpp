@@ -121,23 +121,23 @@ class Run {
   }
 
  private:
-  /// `clear_box` is a box around the part that has nothing in common with the boxes of others
+  /// `safe_box` is a box around the part that has nothing in common with the boxes of others
   /// beside it.
-  PartSurface triangulate_part(const Part<D>& part, const Box<D>& clear_box, Task& task) {
+  PartSurface triangulate_part(const Part<D>& part, const Box<D>& safe_box, Task& task) {
     if (options_.stop.stop_requested()) throw Interrupted();
     task.points = part.size();
-    return part.leaf() ? triangulate_leaf(part, clear_box, task)
-                       : triangulate_node(part, clear_box, task);
+    return part.leaf() ? triangulate_leaf(part, safe_box, task)
+                       : triangulate_node(part, safe_box, task);
   }
 
-  PartSurface triangulate_leaf(const Part<D>& part, const Box<D>& clear_box, Task& task) {
+  PartSurface triangulate_leaf(const Part<D>& part, const Box<D>& safe_box, Task& task) {
     task.kind = TaskKind::kBaseCase;
     const Stopwatch watch(task.seconds);
     BaseCase<D> leaf = triangulate_base_case<D>(
         {.points = std::span(result_.points).subspan(part.begin, part.size()),
          .input_index = std::span(result_.input_index).subspan(part.begin, part.size()),
          .first_vertex = part.begin,
-         .clear_box = clear_box,
+         .safe_box = safe_box,
          .in_place = in_place_,
          .kernel = options_.kernel,
          .memory = options_.memory});
@@ -161,18 +161,18 @@ class Run {
     return surface;
   }
 
-  PartSurface triangulate_node(const Part<D>& part, const Box<D>& clear_box, Task& task) {
+  PartSurface triangulate_node(const Part<D>& part, const Box<D>& safe_box, Task& task) {
     task.kind = TaskKind::kNode;
     task.children.resize(part.children.size());
     std::vector<PartSurface> surfaces(part.children.size());
     TaskGroup group;
     for (std::size_t c = 0; c < part.children.size(); ++c) {
-      Box<D> child_clear_box = clear_box;
+      Box<D> child_safe_box = safe_box;
       for (const Part<D>& other : part.children) {
-        if (&other != &part.children[c]) cut_back(child_clear_box, part.children[c].box, other.box);
+        if (&other != &part.children[c]) cut_back(child_safe_box, part.children[c].box, other.box);
       }
-      group.run([&, c, child_clear_box] {
-        surfaces[c] = triangulate_part(part.children[c], child_clear_box, task.children[c]);
+      group.run([&, c, child_safe_box] {
+        surfaces[c] = triangulate_part(part.children[c], child_safe_box, task.children[c]);
       });
     }
     group.wait();

@@ -300,19 +300,19 @@ class TileRun {
                            .in_place = true,
                            .kernel = context_.asked.kernel,
                            .memory = &memory};
-    input.clear_box = clear_box_of(node);
+    input.safe_box = safe_box_of(node);
     input.corners_only = !node.hollow;
     return triangulate_base_case<D>(input);
   }
 
   /// The box around a leaf that has nothing in common with the box of any other part.
-  [[nodiscard]] Box<D> clear_box_of(const Node& node) const {
-    Box<D> clear_box = whole_space<D>();
+  [[nodiscard]] Box<D> safe_box_of(const Node& node) const {
+    Box<D> safe_box = whole_space<D>();
     for (const Part<D>* part : tree_->siblings_up(node)) {
-      cut_back_from(clear_box, node.tree->box, *part);
+      cut_back_from(safe_box, node.tree->box, *part);
     }
-    for (const TileNode<D>* tile : outside_) cut_back_from(clear_box, node.tree->box, *tile);
-    return clear_box;
+    for (const TileNode<D>* tile : outside_) cut_back_from(safe_box, node.tree->box, *tile);
+    return safe_box;
   }
 
   /// What can be settled of a leaf, but for its simplices.

@@ -31,7 +31,7 @@ spillway_test(kernel_2d_test property
 
 spillway_test(kernel_3d_test property
   SOURCES delaunay/kernel_3d/kernel_3d_test.cpp delaunay/kernel_3d/predicates_test.cpp
-          delaunay/kernel_common/clear_box_test.cpp
+          delaunay/kernel_common/safe_box_test.cpp
   LIBS kernel_sets
   TIMEOUT 300)
 

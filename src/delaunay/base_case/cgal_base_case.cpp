@@ -142,7 +142,7 @@ class Inserter {
   std::vector<Duplicate> drops_;  ///< in order of insertion; `kept` may itself be dropped later
 };
 
-/// BaseCase::not_inside: the infinite simplices, those near the sides of the clear box, and some
+/// BaseCase::not_inside: the infinite simplices, those near the sides of the safe box, and some
 /// that are flat.
 template <int D>
 std::vector<std::uint32_t> list_not_inside(std::span<const Simplex<D>> simplices,
@@ -159,7 +159,7 @@ std::vector<std::uint32_t> list_not_inside(std::span<const Simplex<D>> simplices
         return input.points[infinite ? 0 : simplices[s].vertices[i] - input.first_vertex];
       });
     }
-    const auto inside = well_inside<D>(batch, *input.clear_box);
+    const auto inside = well_inside<D>(batch, *input.safe_box);
     for (std::uint32_t s = begin; s < end; ++s) {
       if (!inside[s - begin]) not_inside.push_back(s);
     }
@@ -221,7 +221,7 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
     }
     if (simplex.infinite()) result.hull.push_back(cell->info());
   }
-  if (input.clear_box) result.not_inside = list_not_inside<D>(result.simplices.span(), input);
+  if (input.safe_box) result.not_inside = list_not_inside<D>(result.simplices.span(), input);
   if (input.corners_only) keep_corners(result);
   return result;
 }

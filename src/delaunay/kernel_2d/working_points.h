@@ -32,8 +32,8 @@ struct WorkingPoints : kernel::ScaledPoints<2> {
 
 /// Scales points that are not all collinear. A lattice is any set of points that all are integers
 /// below 2^53 times one power of two: LiDAR's integers as well as quarters of a metre. Scales
-/// BaseCaseInput::clear_box with them.
+/// BaseCaseInput::safe_box with them.
 WorkingPoints make_working_points(std::span<const Point<2>> points, Slab& memory,
-                                  const std::optional<Box<2>>& clear_box = std::nullopt);
+                                  const std::optional<Box<2>>& safe_box = std::nullopt);
 
 }  // namespace spillway::detail::kernel_2d

@@ -8,7 +8,7 @@
 namespace spillway::detail::kernel_3d {
 
 WorkingPoints make_working_points(std::span<const Point<3>> points, Slab& memory,
-                                  const std::optional<Box<3>>& clear_box) {
+                                  const std::optional<Box<3>>& safe_box) {
   constexpr double kMostOrderKeys = 0x1p53;
   constexpr double kLongestWithOrderKeys = 0x1p40;
   constexpr double kTiny = 100'000;
@@ -22,7 +22,7 @@ WorkingPoints make_working_points(std::span<const Point<3>> points, Slab& memory
                               (extent[0] + 1) * rows * columns <= kMostOrderKeys;
   WorkingPoints result;
   result.coordinates =
-      kernel::scale_points<Row, 3>(scaling, points, clear_box, memory, result,
+      kernel::scale_points<Row, 3>(scaling, points, safe_box, memory, result,
                                    [=](const Point<3>& p) {
                                      const double key = (p[0] * rows + p[1]) * columns + p[2];
                                      return Row{p[0], p[1], p[2], has_order_keys ? key : 0};

@@ -42,8 +42,8 @@ struct WorkingPoints : kernel::ScaledPoints<3> {
 
 inline constexpr VertexRef ref(VertexId number) { return 4 * number; }
 
-/// Scales points that are not all coplanar, and BaseCaseInput::clear_box with them.
+/// Scales points that are not all coplanar, and BaseCaseInput::safe_box with them.
 WorkingPoints make_working_points(std::span<const Point<3>> points, Slab& memory,
-                                  const std::optional<Box<3>>& clear_box = std::nullopt);
+                                  const std::optional<Box<3>>& safe_box = std::nullopt);
 
 }  // namespace spillway::detail::kernel_3d

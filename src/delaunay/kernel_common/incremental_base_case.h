@@ -25,8 +25,7 @@ namespace spillway::detail::kernel {
 /// in memory of its own. `usual` records are what there was room for at first.
 template <typename Traits, int D, typename Insertion>
 BaseCase<D> list_base_case(const BaseCaseInput<D>& input, const Insertion& insertion,
-                           const std::optional<Box<D>>& clear_box, std::size_t usual,
-                           Slab& memory) {
+                           const std::optional<Box<D>>& safe_box, std::size_t usual, Slab& memory) {
   BaseCase<D> result;
   result.dimension = D;
   const std::uint32_t count = insertion.simplex_count();
@@ -38,9 +37,9 @@ BaseCase<D> list_base_case(const BaseCaseInput<D>& input, const Insertion& inser
     }
   }
   const auto list_as = [&](const auto& number, auto* made) {
-    list_simplices<D>(result, count, clear_box.has_value(),
+    list_simplices<D>(result, count, safe_box.has_value(),
                       [&](std::uint32_t begin, std::uint32_t end, ListingNotes<D>& notes) {
-                        list_range<Traits, D>(insertion.simplices(), begin, end, number, clear_box,
+                        list_range<Traits, D>(insertion.simplices(), begin, end, number, safe_box,
                                               made, notes);
                       });
   };
@@ -93,7 +92,7 @@ auto incremental_base_case(const BaseCaseInput<Traits::kDimension>& input,
   }
   BorrowedSlab point_memory(SlabUse::kPoints,
                             (count + kFirstPoint) * sizeof(typename Traits::WorkingPoints::Row));
-  const auto points = Traits::kMakePoints(input.points, *point_memory, input.clear_box);
+  const auto points = Traits::kMakePoints(input.points, *point_memory, input.safe_box);
   const std::size_t usual = Traits::usual_records(count);
   const std::size_t bytes = usual * sizeof(typename Traits::Record);
   BorrowedSlab records(SlabUse::kSimplices, bytes);
@@ -105,7 +104,7 @@ auto incremental_base_case(const BaseCaseInput<Traits::kDimension>& input,
         points, Traits::array_in(*records, usual, input.memory), first, lane_width());
     insert_in_rounds(insertion, count, basis, Traits::kRounds);
     if constexpr (requires { insertion.close_gaps(); }) insertion.close_gaps();
-    return list_base_case<Traits, kDimension>(input, insertion, points.clear_box, usual, *records);
+    return list_base_case<Traits, kDimension>(input, insertion, points.safe_box, usual, *records);
   });
 }
 

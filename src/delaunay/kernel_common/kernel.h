@@ -26,13 +26,13 @@ struct BaseCaseInput {
   std::span<const Point<D>> points;
   std::span<const VertexId> input_index;
   VertexId first_vertex = 0;
-  std::optional<Box<D>> clear_box{};  ///< asks for BaseCase::not_inside; its sides may be infinite
+  std::optional<Box<D>> safe_box{};  ///< asks for BaseCase::not_inside; its sides may be infinite
   /// Leaves the simplices in the kernel's working memory, of which they use at most half:
   /// nothing is copied, and at the peak less memory is used. For results that are soon recycled,
   /// or few.
   bool in_place = false;
   /// Asks for BaseCase::corners instead of its simplices, in place where the kernel can, and for
-  /// open_simplices if there is a clear box: half as much to write and to read.
+  /// open_simplices if there is a safe box: half as much to write and to read.
   bool corners_only = false;
   Kernel kernel = Kernel::kSpillway;
   /// If set, grows by what the kernel's own records and the list of simplices take beyond what is
@@ -53,7 +53,7 @@ struct BaseCase {
   std::vector<std::uint32_t> hull;    ///< indices of the infinite simplices
   std::vector<Duplicate> duplicates;  ///< sorted
   int dimension = -1;                 ///< of the points' affine hull
-  /// If there are simplices and there was a clear box to ask about: the indices, ascending, of all
+  /// If there are simplices and there was a safe box to ask about: the indices, ascending, of all
   /// simplices but those that are finite and whose closed circumsphere certainly lies inside the
   /// box and touches no side.
   std::optional<std::vector<std::uint32_t>> not_inside;

@@ -95,14 +95,14 @@ SPILLWAY_INLINE std::uint32_t inside_by_more(const Records<2>& spheres, const Re
 /// `Traits` are those of incremental_base_case().
 template <typename Traits, int D, typename Number, typename Made>
 void list_range(const typename Traits::Array& records, std::uint32_t begin, std::uint32_t end,
-                const Number& number, const std::optional<Box<D>>& clear_box, Made* made,
+                const Number& number, const std::optional<Box<D>>& safe_box, Made* made,
                 ListingNotes<D>& notes) {
   constexpr std::uint32_t kAhead = 16;  // records are fetched so many ahead
   static_assert(sizeof(records.record(0)) >= 2 * sizeof(Simplex<D>),
                 "they are listed over records");
   constexpr bool kCornersOnly = !std::is_same_v<Made, Simplex<D>>;
-  const bool asked = clear_box.has_value();
-  const WideBox<D> box(clear_box.value_or(Box<D>{}));
+  const bool asked = safe_box.has_value();
+  const WideBox<D> box(safe_box.value_or(Box<D>{}));
   const auto store_simplex = [](const Words& vertices, const Words& neighbours,
                                 Simplex<D>& simplex) {
     std::memcpy(simplex.vertices.data(), &vertices, sizeof simplex.vertices);

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "stream/library/points/file_points.h"
+#include "stream/library/points/opened_points.h"
 
 namespace spillway::detail {
 namespace {
@@ -17,7 +17,7 @@ std::string text_of(const Returns& returns) {
 
 }  // namespace
 
-bool FilePoints::identify(RunIdentity& identity) const {
+bool OpenedPoints::identify(RunIdentity& identity) const {
   const auto add = [&](const char* name, auto&& value) {
     identity.add(name, fmt::format("{}", std::forward<decltype(value)>(value)));
   };

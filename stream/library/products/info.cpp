@@ -12,7 +12,7 @@
 #include "stream/library/context/run_watch.h"
 #include "stream/library/meshes/opened_mesh.h"
 #include "stream/library/meshes/whole_mesh.h"
-#include "stream/library/points/file_points.h"
+#include "stream/library/points/opened_points.h"
 #include "stream/source/input_regions.h"
 
 namespace spillway::detail {
@@ -119,7 +119,7 @@ PointsInfo describe_points(const std::string& path, const PointOptions& options,
   }
   RunWatch watch(context);
   watch.check();
-  FilePoints points({path}, options, context);
+  OpenedPoints points({path}, options, context);
   points.begin(watch, false);
   detail::PointSource& source = points.input();
   const PointHeader header = source.headers().front();

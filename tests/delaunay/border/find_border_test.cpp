@@ -139,10 +139,10 @@ PickedBorder<D> expect_all_destroyed(const std::vector<Point<D>>& points, const 
   std::iota(index.begin(), index.end(), VertexId{0});
   Box<D> box;
   for (const Point<D>& p : points) box.expand(p);
-  Box<D> clear_box = whole_space<D>();
-  cut_back(clear_box, box, sibling.box);
+  Box<D> safe_box = whole_space<D>();
+  cut_back(safe_box, box, sibling.box);
   BaseCase<D> leaf =
-      triangulate_base_case<D>({.points = points, .input_index = index, .clear_box = clear_box});
+      triangulate_base_case<D>({.points = points, .input_index = index, .safe_box = safe_box});
   Triangulation<D> triangulation;
   triangulation.points = SlabArray<Point<D>>(points.size());
   std::copy(points.begin(), points.end(), triangulation.points.begin());

@@ -91,11 +91,11 @@ class Merges {
     part.list = lists++;
   }
 
-  PartSurface triangulate(const Part<D>& part, const Box<D>& clear_box) {
-    if (part.leaf()) return triangulate_leaf(part, clear_box);
+  PartSurface triangulate(const Part<D>& part, const Box<D>& safe_box) {
+    if (part.leaf()) return triangulate_leaf(part, safe_box);
     std::vector<PartSurface> surfaces;
     for (const Part<D>& child : part.children) {
-      Box<D> box = clear_box;
+      Box<D> box = safe_box;
       for (const Part<D>& other : part.children) {
         if (&other != &child) cut_back(box, child.box, other.box);
       }
@@ -113,12 +113,12 @@ class Merges {
                     choices_.may_stay_open && &part == &root_, triangulate_border, task_);
   }
 
-  PartSurface triangulate_leaf(const Part<D>& part, const Box<D>& clear_box) {
+  PartSurface triangulate_leaf(const Part<D>& part, const Box<D>& safe_box) {
     const std::span<const Point<D>> points = mesh_.points.span().subspan(part.begin, part.size());
     BaseCaseInput<D> input{.points = points,
                            .input_index = mesh_.input_index.span().subspan(part.begin, part.size()),
                            .first_vertex = part.begin};
-    if (choices_.kernel_tells) input.clear_box = clear_box;
+    if (choices_.kernel_tells) input.safe_box = safe_box;
     BaseCase<D> leaf = triangulate_base_case<D>(input);
     boxes_[part.list] = RunBoxes<D>(points);
     marks_[part.list] =

@@ -1,4 +1,4 @@
-// What the own kernels say about circumspheres inside a clear box, against rational arithmetic.
+// What the own kernels say about circumspheres inside a safe box, against rational arithmetic.
 
 #include <gtest/gtest.h>
 
@@ -29,24 +29,24 @@ struct Count {
   std::size_t inside = 0;
 };
 
-/// The base case of the points, which is asked about the clear box.
+/// The base case of the points, which is asked about the safe box.
 template <int D>
-BaseCase<D> asked(const Points<D>& points, const Box<D>& clear_box,
+BaseCase<D> asked(const Points<D>& points, const Box<D>& safe_box,
                   Kernel kernel = Kernel::kSpillway, bool corners_only = false) {
   std::vector<VertexId> index(points.size());
   std::iota(index.begin(), index.end(), VertexId{0});
   return triangulate_base_case<D>({.points = points,
                                    .input_index = index,
-                                   .clear_box = clear_box,
+                                   .safe_box = safe_box,
                                    .corners_only = corners_only,
                                    .kernel = kernel});
 }
 
 /// Expects that nothing is claimed that is not true; every `step`-th simplex is looked at.
 template <int D>
-Count expect_true_claims(const Points<D>& points, const Box<D>& clear_box, std::size_t step = 1,
+Count expect_true_claims(const Points<D>& points, const Box<D>& safe_box, std::size_t step = 1,
                          Kernel kernel = Kernel::kSpillway) {
-  const BaseCase<D> base_case = asked<D>(points, clear_box, kernel);
+  const BaseCase<D> base_case = asked<D>(points, safe_box, kernel);
   Count count;
   if (base_case.dimension < D) return count;
   std::vector<bool> not_inside(base_case.simplices.size());
@@ -61,7 +61,7 @@ Count expect_true_claims(const Points<D>& points, const Box<D>& clear_box, std::
     }
     std::array<Point<D>, D + 1> corners;
     for (int i = 0; i <= D; ++i) corners[i] = points[simplex.vertices[i]];
-    const bool inside = testing::ExactSphere<D>(corners).inside(clear_box);
+    const bool inside = testing::ExactSphere<D>(corners).inside(safe_box);
     count.inside += inside ? 1 : 0;
     count.claimed += claimed ? 1 : 0;
     EXPECT_TRUE(inside || !claimed);
@@ -71,10 +71,10 @@ Count expect_true_claims(const Points<D>& points, const Box<D>& clear_box, std::
 
 /// Some of the box of the points, or more; some sides are infinite, some at a point.
 template <int D>
-Box<D> random_clear_box(const Points<D>& points, Random& random) {
+Box<D> random_safe_box(const Points<D>& points, Random& random) {
   Box<D> box;
   for (const Point<D>& p : points) box.expand(p);
-  Box<D> clear_box = box;
+  Box<D> safe_box = box;
   for (int k = 0; k < D; ++k) {
     const auto side = [&](double from, double to) {
       switch (random.integer(0, 4)) {
@@ -86,16 +86,16 @@ Box<D> random_clear_box(const Points<D>& points, Random& random) {
           return from + (to - from) * random.uniform(-0.3, 0.4);
       }
     };
-    clear_box.lo[k] = side(box.lo[k], box.hi[k]);
-    clear_box.hi[k] = side(box.hi[k], box.lo[k]);
+    safe_box.lo[k] = side(box.lo[k], box.hi[k]);
+    safe_box.hi[k] = side(box.hi[k], box.lo[k]);
   }
-  return clear_box;
+  return safe_box;
 }
 
 template <typename Dimension>
-class KernelClearBox : public ::testing::Test {};
+class KernelSafeBox : public ::testing::Test {};
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(KernelClearBox, Dimensions);
+TYPED_TEST_SUITE(KernelSafeBox, Dimensions);
 
 /// The sorted corners of the simplices that a base case lists.
 template <int D>
@@ -107,7 +107,7 @@ std::vector<std::array<VertexId, D + 1>> sorted_corners(const BaseCase<D>& base_
 }
 
 /// Whichever kernel makes a base case, its caller gets the same lists.
-TYPED_TEST(KernelClearBox, CgalsBaseCaseAnswersLikeTheOwnOne) {
+TYPED_TEST(KernelSafeBox, CgalsBaseCaseAnswersLikeTheOwnOne) {
   constexpr int D = TypeParam::value;
   Random random(43);
   for (const FamilyCase& tested : all_family_cases()) {
@@ -115,17 +115,17 @@ TYPED_TEST(KernelClearBox, CgalsBaseCaseAnswersLikeTheOwnOne) {
     SCOPED_TRACE(family_names()[static_cast<std::size_t>(tested.family)]);
     const Points<D> points =
         generate_points<D>({.family = tested.family, .count = 150, .dimension = D, .seed = 6});
-    const Box<D> clear_box = random_clear_box<D>(points, random);
-    expect_true_claims<D>(points, clear_box, 2, Kernel::kCgal);
-    const BaseCase<D> own = asked<D>(points, clear_box, Kernel::kSpillway, true);
-    const BaseCase<D> cgal = asked<D>(points, clear_box, Kernel::kCgal, true);
+    const Box<D> safe_box = random_safe_box<D>(points, random);
+    expect_true_claims<D>(points, safe_box, 2, Kernel::kCgal);
+    const BaseCase<D> own = asked<D>(points, safe_box, Kernel::kSpillway, true);
+    const BaseCase<D> cgal = asked<D>(points, safe_box, Kernel::kCgal, true);
     EXPECT_EQ(cgal.dimension, own.dimension);
     EXPECT_EQ(cgal.not_inside.has_value(), own.not_inside.has_value());
     EXPECT_EQ(sorted_corners<D>(cgal), sorted_corners<D>(own));
   }
 }
 
-TYPED_TEST(KernelClearBox, ClaimsOnlyWhatIsTrueOfAllFamilies) {
+TYPED_TEST(KernelSafeBox, ClaimsOnlyWhatIsTrueOfAllFamilies) {
   constexpr int D = TypeParam::value;
   Random random(41);
   for (const FamilyCase& tested : all_family_cases()) {
@@ -134,12 +134,12 @@ TYPED_TEST(KernelClearBox, ClaimsOnlyWhatIsTrueOfAllFamilies) {
     const Points<D> points =
         generate_points<D>({.family = tested.family, .count = 200, .dimension = D, .seed = 5});
     for (int trial = 0; trial < 3; ++trial) {
-      expect_true_claims<D>(points, random_clear_box<D>(points, random), 3);
+      expect_true_claims<D>(points, random_safe_box<D>(points, random), 3);
     }
   }
 }
 
-TYPED_TEST(KernelClearBox, ClaimsOnlyWhatIsTrueOfSmallHardSets) {
+TYPED_TEST(KernelSafeBox, ClaimsOnlyWhatIsTrueOfSmallHardSets) {
   constexpr int D = TypeParam::value;
   Random random(42);
   std::size_t claims = 0;
@@ -147,14 +147,14 @@ TYPED_TEST(KernelClearBox, ClaimsOnlyWhatIsTrueOfSmallHardSets) {
     SCOPED_TRACE(seed);
     const Points<D> points = hard_set<D>(seed);
     if (points.empty()) continue;
-    const Box<D> clear_box = random_clear_box<D>(points, random);
-    if (asked<D>(points, clear_box).dimension < D) continue;
-    claims += expect_true_claims<D>(points, clear_box).claimed;
+    const Box<D> safe_box = random_safe_box<D>(points, random);
+    if (asked<D>(points, safe_box).dimension < D) continue;
+    claims += expect_true_claims<D>(points, safe_box).claimed;
   }
   EXPECT_GT(claims, 300U);
 }
 
-TYPED_TEST(KernelClearBox, ClaimsOnlyWhatIsTrueOfTouchingSpheres) {
+TYPED_TEST(KernelSafeBox, ClaimsOnlyWhatIsTrueOfTouchingSpheres) {
   constexpr int D = TypeParam::value;
   // Cubes of the unit lattice: their spheres come within half a diagonal and half an edge of a
   // corner, and many cells share each of them.
@@ -171,10 +171,10 @@ TYPED_TEST(KernelClearBox, ClaimsOnlyWhatIsTrueOfTouchingSpheres) {
       for (double& c : p) c *= scale;
     }
     for (const double room : {-1e-9, -1e-15, 0.0, 1e-15, 1e-9}) {
-      Box<D> clear_box;
-      clear_box.lo.fill((1 - reach - room) * scale);
-      clear_box.hi.fill((4 + reach + room) * scale);
-      const Count count = expect_true_claims<D>(scaled, clear_box, D == 2 ? 1 : 5);
+      Box<D> safe_box;
+      safe_box.lo.fill((1 - reach - room) * scale);
+      safe_box.hi.fill((4 + reach + room) * scale);
+      const Count count = expect_true_claims<D>(scaled, safe_box, D == 2 ? 1 : 5);
       if (scale == 1 && room == 1e-9) {
         EXPECT_GT(count.claimed, 0U);
       }
@@ -182,7 +182,7 @@ TYPED_TEST(KernelClearBox, ClaimsOnlyWhatIsTrueOfTouchingSpheres) {
   }
 }
 
-TYPED_TEST(KernelClearBox, ClaimsNearlyAllThatIsTrueOfScatteredPoints) {
+TYPED_TEST(KernelSafeBox, ClaimsNearlyAllThatIsTrueOfScatteredPoints) {
   constexpr int D = TypeParam::value;
   Points<D> points =
       generate_points<D>({.family = Family::kUniform, .count = 2000, .dimension = D, .seed = 6});
@@ -190,16 +190,16 @@ TYPED_TEST(KernelClearBox, ClaimsNearlyAllThatIsTrueOfScatteredPoints) {
     for (Point<D>& p : points) p[1] += offset;
     Box<D> box;
     for (const Point<D>& p : points) box.expand(p);
-    Box<D> clear_box = box;
-    for (int k = 0; k < D; ++k) clear_box.hi[k] -= 0.2 * box.extent(k);
-    clear_box.lo[0] = -kInfinity;
-    const Count count = expect_true_claims<D>(points, clear_box, 3);
+    Box<D> safe_box = box;
+    for (int k = 0; k < D; ++k) safe_box.hi[k] -= 0.2 * box.extent(k);
+    safe_box.lo[0] = -kInfinity;
+    const Count count = expect_true_claims<D>(points, safe_box, 3);
     EXPECT_GT(count.inside, 300U);
     EXPECT_GE(static_cast<double>(count.claimed), 0.999 * static_cast<double>(count.inside));
   }
 }
 
-TYPED_TEST(KernelClearBox, ListsTheSameInPlaceAndApartWithOneAndWithSeveralThreads) {
+TYPED_TEST(KernelSafeBox, ListsTheSameInPlaceAndApartWithOneAndWithSeveralThreads) {
   constexpr int D = TypeParam::value;
   constexpr std::size_t kCount = D == 2 ? 50'000 : 15'001;  // simplices for several ranges
   Points<D> points =
@@ -208,15 +208,15 @@ TYPED_TEST(KernelClearBox, ListsTheSameInPlaceAndApartWithOneAndWithSeveralThrea
     points.insert(points.end(), points.begin(), points.begin() + repeated);
     std::vector<VertexId> index(points.size());
     std::iota(index.begin(), index.end(), VertexId{0});
-    Box<D> clear_box;
-    for (const Point<D>& p : points) clear_box.expand(p);
-    clear_box.hi[0] = (clear_box.lo[0] + clear_box.hi[0]) / 2;
+    Box<D> safe_box;
+    for (const Point<D>& p : points) safe_box.expand(p);
+    safe_box.hi[0] = (safe_box.lo[0] + safe_box.hi[0]) / 2;
     const auto listed = [&](unsigned threads, bool in_place, bool corners_only = false) {
       BaseCase<D> base_case;
       with_threads(threads, [&] {
         base_case = triangulate_base_case<D>({.points = points,
                                               .input_index = index,
-                                              .clear_box = clear_box,
+                                              .safe_box = safe_box,
                                               .in_place = in_place,
                                               .corners_only = corners_only});
       });
@@ -249,8 +249,8 @@ TYPED_TEST(KernelClearBox, ListsTheSameInPlaceAndApartWithOneAndWithSeveralThrea
     for (const unsigned threads : {1, 4}) {
       EXPECT_TRUE(expect_same_corners(threads, expected).empty()) << "too many to be listed";
     }
-    clear_box.lo.fill(-kInfinity);
-    clear_box.hi.fill(kInfinity);
+    safe_box.lo.fill(-kInfinity);
+    safe_box.hi.fill(kInfinity);
     const BaseCase<D> wide = listed(1, false);
     for (const unsigned threads : {1, 4}) {
       const std::vector<Simplex<D>> open = expect_same_corners(threads, wide);
@@ -264,7 +264,7 @@ TYPED_TEST(KernelClearBox, ListsTheSameInPlaceAndApartWithOneAndWithSeveralThrea
   }
 }
 
-TYPED_TEST(KernelClearBox, SaysNothingUnasked) {
+TYPED_TEST(KernelSafeBox, SaysNothingUnasked) {
   constexpr int D = TypeParam::value;
   const Points<D> points =
       generate_points<D>({.family = Family::kUniform, .count = 50, .dimension = D, .seed = 7});

@@ -1,4 +1,4 @@
-#include "stream/library/points/file_points.h"
+#include "stream/library/points/opened_points.h"
 
 #include <spillway/input.h>
 
@@ -138,8 +138,8 @@ void check_levels(const std::vector<PointHeader>& headers, const ContextOptions&
 
 }  // namespace
 
-FilePoints::FilePoints(const std::vector<std::string>& paths, const PointOptions& options,
-                       const Context& context)
+OpenedPoints::OpenedPoints(const std::vector<std::string>& paths, const PointOptions& options,
+                           const Context& context)
     : options_(options),
       name_(paths.empty() ? "" : paths.front()),
       scratch_(context.state().scratch(context)),
@@ -165,7 +165,8 @@ FilePoints::FilePoints(const std::vector<std::string>& paths, const PointOptions
   input_->carry(attribute_choice(options.attributes));
 }
 
-PointSourceOptions FilePoints::source_options(const PointOptions& options, const Context& context) {
+PointSourceOptions OpenedPoints::source_options(const PointOptions& options,
+                                                const Context& context) {
   PointSourceOptions how;
   how.dimension = options.dimension;
   how.index = true;
@@ -205,7 +206,7 @@ PointSourceOptions FilePoints::source_options(const PointOptions& options, const
   return how;
 }
 
-void FilePoints::check_input(const PointOptions& options, const Context& context) const {
+void OpenedPoints::check_input(const PointOptions& options, const Context& context) const {
   if (!options.columns.empty()) check_columns(input_->headers());
   if (options.resolution > 0) check_levels(input_->headers(), context.options());
   const bool by_height = options.thin && (options.thin->choice == spillway::ThinChoice::kLowest ||
@@ -217,13 +218,13 @@ void FilePoints::check_input(const PointOptions& options, const Context& context
   if (!options.attributes.empty()) refuse_unknown_names(options.attributes, offered());
 }
 
-AttributeLayout FilePoints::offered() const {
+AttributeLayout OpenedPoints::offered() const {
   std::vector<AttributeLayout> layouts;
   for (const PointHeader& header : input_->headers()) layouts.push_back(header.attributes);
   return joined(layouts);
 }
 
-PointsHeader FilePoints::header() const {
+PointsHeader OpenedPoints::header() const {
   PointsHeader header;
   header.coordinates = input_->has_heights() ? 3 : 2;
   header.count = input_->expected();
@@ -234,14 +235,14 @@ PointsHeader FilePoints::header() const {
   return header;
 }
 
-bool FilePoints::read(std::vector<spillway::Point<3>>& points) {
+bool OpenedPoints::read(std::vector<spillway::Point<3>>& points) {
   spillway::PointsBlock block;
   if (!read(block)) return false;
   points = std::move(block.points);
   return true;
 }
 
-bool FilePoints::read(spillway::PointsBlock& block) {
+bool OpenedPoints::read(spillway::PointsBlock& block) {
   refuse_taken_points(is_taken_);
   PointBlock own;
   if (!input_->read(own)) return false;
@@ -250,9 +251,9 @@ bool FilePoints::read(spillway::PointsBlock& block) {
   return true;
 }
 
-void FilePoints::settle_crs(CrsNeed need) { input_->settle_crs(need); }
+void OpenedPoints::settle_crs(CrsNeed need) { input_->settle_crs(need); }
 
-RunPoints FilePoints::begin(RunWatch& watch, bool index) {
+RunPoints OpenedPoints::begin(RunWatch& watch, bool index) {
   refuse_taken_points(std::exchange(is_taken_, true));
   watch_ = &watch;
   input_->carry(choice());
@@ -282,7 +283,7 @@ std::vector<std::string> names_in_condition(const std::string& condition) {
 
 std::unique_ptr<PointSource> open_points(const std::vector<std::string>& paths,
                                          const PointOptions& options, const Context& context) {
-  return std::make_unique<detail::FilePoints>(paths, options, context);
+  return std::make_unique<detail::OpenedPoints>(paths, options, context);
 }
 
 }  // namespace spillway

@@ -13,10 +13,10 @@
 namespace spillway::detail {
 
 /// The points of files. Inside of the library they are taken as the pipeline does.
-class FilePoints final : public spillway::PointSource, public EnginePoints {
+class OpenedPoints final : public spillway::PointSource, public EnginePoints {
  public:
-  FilePoints(const std::vector<std::string>& paths, const PointOptions& options,
-             const Context& context);
+  OpenedPoints(const std::vector<std::string>& paths, const PointOptions& options,
+               const Context& context);
 
   [[nodiscard]] PointsHeader header() const override;
   bool read(std::vector<spillway::Point<3>>& points) override;
