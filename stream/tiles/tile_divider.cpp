@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "stream/points/encoded_points.h"
+#include "stream/points/point_sample.h"
 #include "stream/tiles/cuts/sample_division.h"
 #include "stream/tiles/even_tiles.h"
-#include "stream/tiles/point_sample.h"
 #include "stream/tiles/storage/parted_points.h"
 #include "stream/tiles/storage/segment_reader.h"
 

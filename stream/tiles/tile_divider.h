@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "stream/tiles/cuts/cut_tree.h"
+#include "stream/tiles/cuts/tile_cut.h"
 #include "stream/tiles/dealing_watch.h"
 #include "stream/tiles/storage/tile.h"
-#include "stream/tiles/tile_cut.h"
 #include "stream/tiles/tile_table.h"
 
 namespace spillway::detail {

@@ -9,9 +9,9 @@
 #include "formats/state/state_writer.h"
 #include "src/parallel/parallel.h"
 #include "stream/points/encoded_points.h"
-#include "stream/tiles/equal_points.h"
+#include "stream/points/equal_points.h"
+#include "stream/tiles/cuts/tile_cut.h"
 #include "stream/tiles/storage/segment_reader.h"
-#include "stream/tiles/tile_cut.h"
 
 namespace spillway::detail {
 namespace {

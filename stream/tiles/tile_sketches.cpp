@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "stream/tiles/point_sample.h"
-#include "stream/tiles/tile_cut.h"
+#include "stream/points/point_sample.h"
+#include "stream/tiles/cuts/tile_cut.h"
 
 namespace spillway::detail {
 namespace {

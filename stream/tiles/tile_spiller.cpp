@@ -8,9 +8,9 @@
 
 #include "src/parallel/parallel.h"
 #include "stream/points/encoded_points.h"
-#include "stream/tiles/point_sample.h"
+#include "stream/points/point_sample.h"
+#include "stream/tiles/cuts/tile_cut.h"
 #include "stream/tiles/storage/parted_points.h"
-#include "stream/tiles/tile_cut.h"
 
 namespace spillway::detail {
 namespace {

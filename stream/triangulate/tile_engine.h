@@ -20,8 +20,8 @@
 #include "stream/output/stream_place.h"
 #include "stream/plan/memory_plan.h"
 #include "stream/plan/run_setup.h"
-#include "stream/tiles/point_span.h"
-#include "stream/tiles/seen_extent.h"
+#include "stream/points/point_span.h"
+#include "stream/points/seen_extent.h"
 #include "stream/tiles/tile_tree.h"
 #include "stream/triangulate/border_growth.h"
 #include "stream/triangulate/cell_tree.h"
@@ -77,9 +77,8 @@ class TileEngine : private DealingWatch {
   /// Deals all points of the feed into tiles. With a plan, triangulates tiles that are complete.
   void spill(PointFeed& feed);
 
-  /// After spill(): points of tiles that are too large; and their division before take_nodes(),
-  /// which returns how many points were dealt again.
-  [[nodiscard]] std::uint64_t points_to_divide() const { return tree_.points_to_divide(); }
+  /// After spill(): whether tiles are too large; before take_nodes() their division, which returns
+  /// how many points were dealt again.
   [[nodiscard]] bool is_to_divide() const { return tree_.is_to_divide(); }
   std::uint64_t divide_large();
 
@@ -87,8 +86,7 @@ class TileEngine : private DealingWatch {
   [[nodiscard]] const PointSpan<D>& span() const { return span_; }
   [[nodiscard]] const Box<2>& seen_extent() const { return seen_.box(); }
 
-  /// Calls this for the indices of each tile's points when it is loaded: to put others there, which
-  /// need not be known before.
+  /// Calls this for the indices of each tile's points when it is loaded, to put others there.
   void replace_indices(std::function<void(std::span<std::uint64_t> index)> replace) {
     replace_indices_ = std::move(replace);
   }
@@ -129,8 +127,7 @@ class TileEngine : private DealingWatch {
   [[nodiscard]] std::vector<TaskSum> task_sums() const { return tasks_.sums(); }
 
  private:
-  /// Keeps what `Outside` points to.
-  struct Surroundings {
+  struct Surroundings {  ///< keeps what `Outside` points to
     std::shared_ptr<const TileNode<D>> root;
     std::vector<std::shared_ptr<TileNode<D>>> outside;
   };

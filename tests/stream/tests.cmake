@@ -4,9 +4,9 @@ spillway_test(stream_unit_test unit
           stream/sinks/contour_shares_test.cpp stream/sinks/contour_test.cpp
           stream/sinks/line_joiner_test.cpp stream/sinks/raster_store_test.cpp
           stream/sinks/tetrahedron_writers_test.cpp
-          stream/tiles/equal_points_test.cpp stream/tiles/storage/cell_sketch_test.cpp stream/points/point_buffer_test.cpp stream/tiles/point_sample_test.cpp
-          stream/tiles/point_span_test.cpp stream/tiles/storage/segment_reader_test.cpp
-          stream/points/encoded_points_test.cpp stream/tiles/tile_cut_test.cpp
+          stream/points/equal_points_test.cpp stream/tiles/storage/cell_sketch_test.cpp stream/points/point_buffer_test.cpp stream/points/point_sample_test.cpp
+          stream/points/point_span_test.cpp stream/tiles/storage/segment_reader_test.cpp
+          stream/points/encoded_points_test.cpp stream/tiles/cuts/tile_cut_test.cpp
           stream/tiles/tile_node_test.cpp stream/tiles/storage/tile_points_test.cpp stream/tiles/storage/tile_segment_test.cpp
           stream/tiles/tile_sketches_test.cpp stream/tiles/tile_tree_test.cpp stream/tiles/cuts/cut_lookup_test.cpp
           stream/tiles/cuts/cut_tree_test.cpp stream/tiles/cuts/dealt_points_test.cpp

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "stream/tiles/cuts/cut_tree.h"
+#include "src/delaunay/division/cut.h"
 #include "stream/tiles/storage/tile.h"
 
 namespace spillway::detail {

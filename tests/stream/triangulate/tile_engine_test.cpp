@@ -175,7 +175,7 @@ TYPED_TEST(TileEngineTest, HasNoTilesWithoutPoints) {
   run.spill({});
   EXPECT_FALSE(run.root);
   EXPECT_EQ(run.engine.points(), 0U);
-  EXPECT_EQ(run.engine.points_to_divide(), 0U);
+  EXPECT_FALSE(run.engine.is_to_divide());
 }
 
 TYPED_TEST(TileEngineTest, PutsOtherIndicesInPlaceOfThoseThatCame) {
@@ -197,11 +197,11 @@ TEST(TileEngine, DividesTilesAgainThatBecameTooLarge) {
                     .buffered_points = 40 * PointBuffer::kChunk});
   Feed feed(points);
   with_threads(2, [&] { run.engine.spill(feed); });
-  EXPECT_GT(run.engine.points_to_divide(), 0U);
+  EXPECT_TRUE(run.engine.is_to_divide());
   std::uint64_t divided = 0;
   with_threads(2, [&] { divided = run.engine.divide_large(); });
   EXPECT_GT(divided, 0U);
-  EXPECT_EQ(run.engine.points_to_divide(), 0U);
+  EXPECT_FALSE(run.engine.is_to_divide());
   EXPECT_EQ(run.engine.take_nodes()->points, points.size());
   const RunFigures figures = run.engine.figures();
   EXPECT_EQ(figures.divided_points, divided);

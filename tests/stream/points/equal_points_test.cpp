@@ -1,4 +1,4 @@
-#include "stream/tiles/equal_points.h"
+#include "stream/points/equal_points.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What points span, told while they come: by many threads, in any order, exactly.
 
-#include "stream/tiles/point_span.h"
+#include "stream/points/point_span.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

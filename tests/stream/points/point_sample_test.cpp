@@ -1,6 +1,6 @@
 // Samples of points that come in spans, and points that stand for those to come.
 
-#include "stream/tiles/point_sample.h"
+#include "stream/points/point_sample.h"
 
 #include <gtest/gtest.h>
 

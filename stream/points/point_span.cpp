@@ -1,4 +1,4 @@
-#include "stream/tiles/point_span.h"
+#include "stream/points/point_span.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "stream/tiles/tile_cut.h"
+#include "stream/tiles/cuts/tile_cut.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Where a tile is cut that has become too large.
 
-#include "stream/tiles/tile_cut.h"
+#include "stream/tiles/cuts/tile_cut.h"
 
 #include <gtest/gtest.h>
 
