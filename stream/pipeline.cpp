@@ -10,7 +10,8 @@
 #include "src/geometry/lattice_check.h"
 #include "src/parallel/parallel.h"
 #include "stream/plan/memory_plan.h"
-#include "stream/run_stages.h"
+#include "stream/plan/run_trace.h"
+#include "stream/run_phases.h"
 #include "stream/source/false_header.h"
 #include "stream/tiles/regions/region_plan.h"
 
@@ -95,10 +96,10 @@ class TimedPoints final : public PointFeed {
 /// A run in one process. With a plan it triangulates while it reads, and throws FalseHeader if a
 /// point lies elsewhere, or if all together do not have the extent on which blocks rely.
 template <int D>
-class RunHere final : public RunStages<D> {
+class RunHere final : public RunPhases<D> {
  public:
   RunHere(PointStream& points, BlockSink& blocks, const RunSetup& with, Trust& trust)
-      : RunStages<D>(points,
+      : RunPhases<D>(points,
                      {.lattice = points.lattice(),
                       .count = points.expected(),
                       .extent = points.extent(),
@@ -122,9 +123,9 @@ class RunHere final : public RunStages<D> {
   }
 
  private:
-  using RunStages<D>::engine;
-  using RunStages<D>::source;
-  using RunStages<D>::stage;
+  using RunPhases<D>::engine;
+  using RunPhases<D>::source;
+  using RunPhases<D>::phase;
 
   [[nodiscard]] const EngineOptions& options() const { return this->setup().options; }
 
@@ -158,7 +159,7 @@ class RunHere final : public RunStages<D> {
     if (!root) refuse_empty_input(source().counts());
     refuse_flat_points(engine().span(), engine().points());
     // A sink that went on has it already.
-    if (stage() != RunStage::kTriangulate) {
+    if (phase() != RunPhase::kTriangulate) {
       this->setup().sink.extent_known(plane_of(root->box), root->points);
     }
     set_enough(root->points);
@@ -170,13 +171,13 @@ class RunHere final : public RunStages<D> {
     return engine().points();
   }
 
-  [[nodiscard]] bool saves_before(RunStage next) const override {
-    return next != RunStage::kSurvey && options().checkpoints != nullptr &&
+  [[nodiscard]] bool saves_before(RunPhase next) const override {
+    return next != RunPhase::kSurvey && options().checkpoints != nullptr &&
            options().checkpoints->due_at_end_of_phase();
   }
   /// Points that do not come again are read to their end before there is a checkpoint.
   [[nodiscard]] bool rest_is_due() const override {
-    return options().checkpoints != nullptr && (again_ || stage() != RunStage::kRead) &&
+    return options().checkpoints != nullptr && (again_ || phase() != RunPhase::kRead) &&
            options().checkpoints->due();
   }
   void save() override {
@@ -211,14 +212,13 @@ void restore_trust(StateReader& state, PointStream& source, Trust& trust) {
 /// are gone for good.
 BlockSink* begin_again(const FalseHeader& found, PointStream& source, const RunSetup& setup,
                        Trust& trust) {
-  const std::uint64_t read = source.points_read();
+  setup.progress.end_phase(source.points_read());
   const bool boxes_hold = found.extent().has_value();
   if (!source.read_again(boxes_hold)) return nullptr;
   BlockSink* const blocks = setup.sink.begin_again();
   if (blocks == nullptr) return nullptr;
   if (const auto& trace = setup.options.asked.trace) trace->begin_again();
   release_base_case_memory();
-  setup.progress.end_phase(read);
   setup.progress.warn(fmt::format("{}: all points are read again{}", found.finding(),
                                   boxes_hold ? "" : " before any is triangulated"));
   if (boxes_hold) {

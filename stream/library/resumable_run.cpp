@@ -46,7 +46,7 @@ constexpr int kStateVersion = 2;
 
 void refuse_what_cannot_go_on(const Run& run) {
   if (run.points.files == nullptr) refuse("its points are a program's, not of files");
-  const RunTrace* const trace = run.options.trace.get();
+  const RunTrace* const trace = run.engine.asked.trace.get();
   if (trace != nullptr && (trace->takes_nodes() || trace->takes_steps())) {
     refuse("its tasks are to be told, of which some may be done by another process");
   }
@@ -65,7 +65,7 @@ RunIdentity identity_of(const Run& run, const EnginePoints& points) {
   const auto add = [&](const char* name, const auto& value) {
     identity.add(name, fmt::format("{}", value));
   };
-  const TriangulateOptions& options = run.options;
+  const TriangulateOptions& options = run.engine.asked;
   add("version", fmt::format("{} (state {})", SPILLWAY_VERSION_TEXT, kStateVersion));
   if (!points.identify(identity)) refuse("another process does not read the same points");
   add("dimension", options.dimension);
@@ -124,7 +124,7 @@ class MeshInFolder final : public RunSink {
 
  private:
   FileSystem& files_;
-  const std::string& path_;
+  const std::string path_;
   const MeshStreamHeader header_;
   std::unique_ptr<MeshStreamWriter> writer_;
 };
@@ -134,8 +134,9 @@ class ResumableRun {
  public:
   explicit ResumableRun(Run& run)
       : run_(run),
-        folder_(run.options.resume_folder, *run.identity, own_files(), run.context.scratch_limit()),
-        checkpoints_(folder_, run.options.checkpoint_seconds) {
+        folder_(run.engine.asked.resume_folder, *run.identity, own_files(),
+                run.context.scratch_limit()),
+        checkpoints_(folder_, run.engine.asked.checkpoint_seconds) {
     run.engine.checkpoints = &checkpoints_;
   }
 
@@ -272,12 +273,12 @@ class ResumableRun {
   }
 
   void make_product(const std::string& path, BlockSink& blocks, Report& report) {
-    if (run_.sink.wants_extent() && run_.options.dimension == 2) {
+    if (run_.sink.wants_extent() && run_.engine.asked.dimension == 2) {
       const VertexExtent extent = find_vertices(*open_mesh(path), run_.watch);
       run_.sink.extent_known(extent.box, extent.vertices);
     }
     const std::unique_ptr<MeshStreamReader> reader = open_mesh(path);
-    const char* const simplices = simplices_of(run_.options.dimension);
+    const char* const simplices = simplices_of(run_.engine.asked.dimension);
     run_.watch.begin(simplices, simplices);
     run_.watch.end(pass_mesh(*reader, reader->header().attributes, blocks, run_.watch,
                              run_.sink.feeding_threads(run_.context.threads())));

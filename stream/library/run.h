@@ -18,7 +18,6 @@ namespace spillway::detail {
 /// A triangulation that is about to begin.
 struct Run {
   const Context& context;
-  const TriangulateOptions& options;
   RunWatch& watch;
   RunPoints points;
   EngineSink& sink;

@@ -65,7 +65,7 @@ Report triangulate_here(Run& run) {
 Report triangulate_to(BlockSink& blocks, const RunSetup& setup, Run& run) {
   PointStream& points = *run.points.stream;
   Report report;
-  static_cast<RunFigures&>(report) = run.options.dimension == 2
+  static_cast<RunFigures&>(report) = run.engine.asked.dimension == 2
                                          ? triangulate_stream<2>(points, blocks, setup)
                                          : triangulate_stream<3>(points, blocks, setup);
   if (report.threads < run.engine.threads && run.context.options().detail) {
@@ -73,18 +73,18 @@ Report triangulate_to(BlockSink& blocks, const RunSetup& setup, Run& run) {
         fmt::format("{} of {} threads used: more of them need a larger memory limit",
                     report.threads, run.engine.threads));
   }
-  report.dimension = run.options.dimension;
+  report.dimension = run.engine.asked.dimension;
   report.points = points.counts();
   if (run.points.files != nullptr) report.skipped_files = run.points.files->skipped();
   report.on_lattice = points.lattice().has_value();
-  refuse_empty_mesh(report, run.options.max_edge);
+  refuse_empty_mesh(report, run.engine.asked.max_edge);
   return report;
 }
 
 MeshStart Run::start() const {
   MeshStart start;
-  start.header.dimension = options.dimension;
-  start.header.has_input_index = options.input_index;
+  start.header.dimension = engine.asked.dimension;
+  start.header.has_input_index = engine.asked.input_index;
   start.header.lattice = points.stream->lattice();
   start.header.points = points.records;
   start.header.crs = points.crs;
@@ -119,7 +119,6 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   // Processes tell by the index which of several equal points comes first.
   const bool index = options.input_index || executor != nullptr;
   Run run{.context = context,
-          .options = options,
           .watch = watch,
           .points = points->begin(watch, index),
           .sink = *target,

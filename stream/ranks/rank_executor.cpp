@@ -40,7 +40,7 @@ class RankExecutor final : public Executor {
   }
 
   Report triangulate(Run& run) override {
-    const RunTrace* const trace = run.options.trace.get();
+    const RunTrace* const trace = run.engine.asked.trace.get();
     if (trace != nullptr && (trace->takes_nodes() || trace->takes_steps())) {
       throw InvalidArgument("the tasks of a run over ranks are told as sums only");
     }
@@ -71,7 +71,7 @@ class RankExecutor final : public Executor {
   RankMesh triangulate(Run& run, detail::PointSource& source, BlockSink& blocks,
                        RankCheckpoints* checkpoints) const {
     const auto triangulate_shared =
-        run.options.dimension == 2 ? triangulate_over_ranks<2> : triangulate_over_ranks<3>;
+        run.engine.asked.dimension == 2 ? triangulate_over_ranks<2> : triangulate_over_ranks<3>;
     return triangulate_shared(source, blocks, run.setup(), ranks_, checkpoints);
   }
 
@@ -94,11 +94,11 @@ class RankExecutor final : public Executor {
     tell_notices(run, source);
     Report report = shared_report(mesh, source.counts(), ranks_);
     const RunSums sums = shared_sums(mesh, ranks_);
-    if (run.options.trace) run.options.trace->end(sums);
-    report.dimension = run.options.dimension;
+    if (run.engine.asked.trace) run.engine.asked.trace->end(sums);
+    report.dimension = run.engine.asked.dimension;
     report.skipped_files = source.skipped();
     report.on_lattice = source.lattice().has_value();
-    run_collective_step(ranks_, [&] { refuse_empty_mesh(report, run.options.max_edge); });
+    run_collective_step(ranks_, [&] { refuse_empty_mesh(report, run.engine.asked.max_edge); });
     return report;
   }
 
@@ -107,7 +107,7 @@ class RankExecutor final : public Executor {
     const auto output = open_mesh_output(disk(), target, run.start().header, *run.scratch, ranks_);
     RankMesh mesh = triangulate(run, source, output->writer(), checkpoints);
     Report report = this->report(run, source, mesh);
-    run.watch.begin("write", simplices_of(run.options.dimension));
+    run.watch.begin("write", simplices_of(run.engine.asked.dimension));
     report.output_format = target.format->name;
     report.output_bytes = output->finish(mesh);
     report.write_seconds = run.watch.end(report.mesh.simplices);
@@ -149,7 +149,7 @@ class RankExecutor final : public Executor {
     MeshSpool spool(header, run.points.name, *run.scratch);
     RankMesh mesh = triangulate(run, source, spool, &checkpoints);
     finish_own_blocks(spool, mesh);
-    const char* const simplices = simplices_of(run.options.dimension);
+    const char* const simplices = simplices_of(run.engine.asked.dimension);
     run.watch.begin(simplices, simplices);
     run_collective_step(ranks_, [&] {
       run.watch.end(pass_mesh(*spool.open(), header.attributes, blocks, run.watch,

@@ -20,7 +20,7 @@
 #include "stream/ranks/exchange/rank_division.h"
 #include "stream/ranks/merges/rank_merges.h"
 #include "stream/ranks/rank_tree.h"
-#include "stream/run_stages.h"
+#include "stream/run_phases.h"
 
 namespace spillway::detail {
 namespace {
@@ -42,11 +42,11 @@ constexpr std::uint64_t kUsualPieces = 4;
 constexpr std::uint64_t kMergedBytes = 300;
 
 template <int D>
-class RankRun final : public RunStages<D> {
+class RankRun final : public RunPhases<D> {
  public:
   RankRun(PointSource& points, BlockSink& blocks, const RunSetup& with, const Ranks& ranks,
           RankCheckpoints* checkpoints)
-      : RunStages<D>(points, share_of(points, with.options, ranks), blocks, with),
+      : RunPhases<D>(points, share_of(points, with.options, ranks), blocks, with),
         source_(points),
         blocks_(blocks),
         options_(with.options),
@@ -64,9 +64,9 @@ class RankRun final : public RunStages<D> {
   }
 
  private:
-  using RunStages<D>::engine;
-  using RunStages<D>::setup;
-  using RunStages<D>::stage;
+  using RunPhases<D>::engine;
+  using RunPhases<D>::setup;
+  using RunPhases<D>::phase;
 
   /// The index tells which of several equal points comes first: attributes depend on it, and in the
   /// plane heights.
@@ -122,8 +122,9 @@ class RankRun final : public RunStages<D> {
 
   std::uint64_t triangulate() override {
     RankMerges<D> merges(*tree_, engine(), setup(), ranks_);
-    if (tree_->own_node()) merge_tiles(*tree_, merges);
-    collect(*tree_);
+    if (tree_->own_node()) merge_tiles(merges);
+    collect();
+    tree_.reset();
     return result_.totals.points;
   }
 
@@ -133,8 +134,8 @@ class RankRun final : public RunStages<D> {
   }
 
   /// From the survey on each rank saves its own.
-  [[nodiscard]] bool saves_before(RunStage next) const override {
-    return checkpoints_ != nullptr && next == RunStage::kSurvey;
+  [[nodiscard]] bool saves_before(RunPhase next) const override {
+    return checkpoints_ != nullptr && next == RunPhase::kSurvey;
   }
 
   /// What there is to read, and which rank gets what.
@@ -182,7 +183,7 @@ class RankRun final : public RunStages<D> {
   [[nodiscard]] bool rest_is_due() const override {
     if (checkpoints_ == nullptr) return false;
     if (exchange_) return exchange_->rests();
-    return stage() == RunStage::kTriangulate && checkpoints_->due();
+    return phase() == RunPhase::kTriangulate && checkpoints_->due();
   }
 
   void save() override {
@@ -193,7 +194,7 @@ class RankRun final : public RunStages<D> {
       if (exchange_) state(*pieces_, *exchange_);
       blocks_.save(state);
     };
-    if (stage() == RunStage::kTriangulate) {
+    if (phase() == RunPhase::kTriangulate) {
       checkpoints_->save_alone(write);
     } else {
       checkpoints_->save_together(write);
@@ -201,7 +202,7 @@ class RankRun final : public RunStages<D> {
     if (exchange_) exchange_->rested();
   }
 
-  /// Of what is there in each stage.
+  /// Of what is there in each phase.
   template <typename State>
   void transfer(State& state) {
     state.section("rank");
@@ -271,7 +272,8 @@ class RankRun final : public RunStages<D> {
   }
 
   /// This rank's tiles, and its part in merges.
-  void merge_tiles(const RankTree<D>& tree, RankMerges<D>& merges) {
+  void merge_tiles(RankMerges<D>& merges) {
+    const RankTree<D>& tree = *tree_;
     const std::uint32_t own = *tree.own_node();
     const auto& node = tree.nodes()[own];
     Border<D> border = engine().triangulate(*node.tiles, node.outside);
@@ -286,10 +288,10 @@ class RankRun final : public RunStages<D> {
   }
 
   /// Puts together what all ranks have: the sections of the stream, and the totals.
-  void collect(const RankTree<D>& tree) {
+  void collect() {
     result_.task_sums = engine().task_sums();
     result_.figures = engine().figures();
-    number_sections(tree);
+    number_sections();
     for (SectionDraft& draft : drafts_) {
       MergedSection& merged = result_.merged.emplace_back(std::move(draft.section));
       for (const StreamPlace& place : std::exchange(draft.imported, {})) {
@@ -313,7 +315,8 @@ class RankRun final : public RunStages<D> {
     }
   }
 
-  void number_sections(const RankTree<D>& tree) {
+  void number_sections() {
+    const RankTree<D>& tree = *tree_;
     std::vector<std::uint64_t> sizes(2 * std::size_t{tree.sections()});
     if (const auto own = tree.own_node()) {
       const std::size_t section = tree.nodes()[*own].first_section;

@@ -24,7 +24,7 @@ std::string folder_of_rank(const std::string& run_folder, int rank) {
 }  // namespace
 
 ResumableShare::ResumableShare(Run& run, const distributed::Ranks& ranks)
-    : run_(run), ranks_(ranks), run_folder_(run.options.resume_folder) {
+    : run_(run), ranks_(ranks), run_folder_(run.engine.asked.resume_folder) {
   run_collective_step(ranks_, [&] { make_run_folder(); });
   // What is refused is so before any rank makes a folder.
   const std::string own = folder_of_rank(run_folder_, ranks_.rank());
@@ -34,7 +34,7 @@ ResumableShare::ResumableShare(Run& run, const distributed::Ranks& ranks)
   run_collective_step(ranks_, [&] {
     if (!folder_) take_folder();
   });
-  checkpoints_.emplace(*folder_, run.options.checkpoint_seconds, ranks_);
+  checkpoints_.emplace(*folder_, run.engine.asked.checkpoint_seconds, ranks_);
   if (is_first()) tell();
 }
 

@@ -15,7 +15,7 @@
 namespace spillway::detail {
 
 /// The points of a run as the pipeline takes them.
-/// They are on lattice() if that is set, else in output coordinates.
+/// decode() gives them on lattice() if that is set, else in output coordinates.
 class PointStream : public PointFeed {
  public:
   /// The lattice on which all points lie, if there is one.

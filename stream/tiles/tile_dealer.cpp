@@ -23,7 +23,7 @@ void TileDealer::append(PointBatch& batch) {
   const std::size_t tiles = table_.tiles.size();
   append_dealt(std::exchange(batch.dealt, {}), batch);
   if (table_.room > table_.most_room() && !table_.divided) {
-    deal_again(divider_.divide_first(), batch);
+    deal_waiting(divider_.divide_first(), batch);
   }
   if (table_.tiles.size() > tiles) watch_.tiles_made(table_.tiles.size());
   spiller_.spill_some(batch);
@@ -65,7 +65,7 @@ void TileDealer::append_points(std::uint32_t number, const PointsView& points, c
   if (table_.divided) divider_.cut_outgrown(number);
 }
 
-void TileDealer::deal_again(std::vector<HeldPoints> held, PointBatch& batch) {
+void TileDealer::deal_waiting(std::vector<HeldPoints> held, PointBatch& batch) {
   for (HeldPoints& some : held) {
     PointBatch dealt;
     dealt.arrival = some.arrival;

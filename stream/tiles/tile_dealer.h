@@ -30,7 +30,7 @@ class TileDealer {
 
   /// Deals points that wait to the tiles there are now. What has to go to the disk is put into
   /// `batch`.
-  void deal_again(std::vector<HeldPoints> held, PointBatch& batch);
+  void deal_waiting(std::vector<HeldPoints> held, PointBatch& batch);
 
  private:
   void append_dealt(const DealtPoints& dealt, PointBatch& batch);

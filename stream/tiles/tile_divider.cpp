@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -319,7 +320,7 @@ void TileDivider::cut_in_two(std::uint32_t number, bool complete) {
   tiles[number].spills = whole.spills;
   deal_segments(whole, ref, cut, halves);
   table_.room -= whole.room();
-  for (HeldPoints& held : whole.held) deal_held(std::move(held), cut, halves);
+  for (HeldPoints& held : whole.held) deal_to_halves(std::move(held), cut, halves);
   for (const int side : {0, 1}) {
     const bool has_heavy = heavy && ((*heavy)[cut.axis] >= cut.value) == (side == 1);
     if ((has_heavy && cut_beside_heavy(tiles[halves[side]])) || to_be_cut(halves[side], complete)) {
@@ -356,8 +357,8 @@ void TileDivider::deal_segments(Tile& whole, CutTree::NodeRef ref, const Cut& cu
   }
 }
 
-void TileDivider::deal_held(HeldPoints held, const Cut& cut,
-                            const std::array<std::uint32_t, 2>& halves) {
+void TileDivider::deal_to_halves(HeldPoints held, const Cut& cut,
+                                 const std::array<std::uint32_t, 2>& halves) {
   std::vector<HeldPoints> parts = part_points(std::move(held), cut, {kNoCut, kNoCut});
   for (const int side : {0, 1}) {
     HeldPoints& points = parts[2 * static_cast<std::size_t>(side)];

@@ -69,7 +69,7 @@ class TileDivider {
   void cut_in_two(std::uint32_t number, bool complete);
   void deal_segments(Tile& whole, CutTree::NodeRef ref, const Cut& cut,
                      const std::array<std::uint32_t, 2>& halves);
-  void deal_held(HeldPoints held, const Cut& cut, const std::array<std::uint32_t, 2>& halves);
+  void deal_to_halves(HeldPoints held, const Cut& cut, const std::array<std::uint32_t, 2>& halves);
   void leave_over(CutTree::NodeRef cut, TileSegment segment);
   void append_left_over(CutTree::NodeRef ref, std::vector<TileSegment>& segments);
 

@@ -48,7 +48,8 @@ class TileLoader {
   /// What points take that wait in memory.
   [[nodiscard]] std::uint64_t held_bytes() const;
 
-  /// All that have been taken and not been read, while no other thread is at work.
+  /// All that have been taken and not been read. For it and state() no other thread is at work, so
+  /// that they need no lock.
   [[nodiscard]] std::vector<Tile*> waiting();
 
   /// Writes or reads all of them.

@@ -15,7 +15,8 @@
 namespace spillway::detail {
 
 /// The tiles that points are dealt into, and what is known of all of them: what those who deal,
-/// spill and divide share. For one thread at a time, but for what says otherwise.
+/// spill, divide and load share. For the one thread that deals, but for what says otherwise; it
+/// alone writes the cuts, and reads them without their mutex.
 struct TileTable {
   explicit TileTable(const TileTreeOptions& of);
 
@@ -54,7 +55,9 @@ struct TileTable {
   std::mutex stretches_mutex;
   std::uint64_t batches = 0;  ///< that have come
   std::uint64_t runs = 0;     ///< handed out so far
-  std::size_t capacity = 0;   ///< most points of one tile, as many points as have come so far
+  /// Most points of one tile, as many points as have come so far. With a plan it stays as it is, so
+  /// that other threads may read it.
+  std::size_t capacity = 0;
   std::atomic<std::uint64_t> points = 0;  ///< that have come
   std::size_t room = 0;                   ///< that all tiles' buffers take, in points
   std::size_t segments = 0;               ///< of all tiles, and those left over

@@ -6,7 +6,6 @@
 
 #include "src/parallel/parallel.h"
 #include "stream/points/encoded_points.h"
-#include "stream/tiles/even_tiles.h"
 
 namespace spillway::detail {
 namespace {
@@ -113,7 +112,7 @@ void TileTree::fill(PointFeed& source) {
   run_to_rest(FeedSteps(*this, source));
   table_.filled = true;
   if (!table_.divided && table_.points > table_.capacity && !divider_.stays_whole()) {
-    deal_again(divider_.divide_first());
+    deal_waiting(divider_.divide_first());
   }
   if (table_.divided) divider_.cut_long();
 }
@@ -123,12 +122,13 @@ void TileTree::fill(const std::function<bool(PointBlock&)>& source) {
   fill(points);
 }
 
-/// Sends batches through the steps.
+/// Sends batches through the steps. Returns whether it came to an end since a checkpoint is due.
 template <typename Steps>
-void TileTree::run_batches(Steps& steps) {
+bool TileTree::run_batches(Steps& steps) {
   std::vector<PointBatch> batches(table_.options.batches);
   SpareBlocks spare;
   bool is_first = true;
+  bool at_rest = false;
   const std::vector<PipelineStep> pipeline = {
       {.in_order = false,
        .work =
@@ -157,20 +157,17 @@ void TileTree::run_batches(Steps& steps) {
   run_pipeline(
       batches.size(),
       [&](std::size_t slot) {
-        at_rest_ = !std::exchange(is_first, false) && watch_.rest_is_due();
-        return !at_rest_ && steps.fetch(batches[slot]);
+        at_rest = !std::exchange(is_first, false) && watch_.rest_is_due();
+        return !at_rest && steps.fetch(batches[slot]);
       },
       pipeline);
+  return at_rest;
 }
 
 /// The same, which comes to an end each time that a checkpoint is due, and is begun again.
 template <typename Steps>
 void TileTree::run_to_rest(Steps steps) {
-  for (at_rest_ = true; at_rest_;) {
-    at_rest_ = false;
-    run_batches(steps);
-    if (at_rest_) watch_.save();
-  }
+  while (run_batches(steps)) watch_.save();
 }
 
 void TileTree::append(PointBatch& batch) {
@@ -234,7 +231,7 @@ std::uint64_t TileTree::divide_large() {
 /// Divides tiles that are too large; what is on the disk of them is left over, too.
 void TileTree::begin_dealing_again() {
   for (std::uint32_t t = 0; t < table_.tiles.size(); ++t) {
-    if (divider_.too_large(table_.tiles[t])) deal_again(divider_.divide(t));
+    if (divider_.too_large(table_.tiles[t])) deal_waiting(divider_.divide(t));
   }
   dealing_again_.emplace(divider_.take_left_over(), table_.runs);
 }
@@ -249,7 +246,7 @@ void TileTree::divide_evenly() {
       if (held.arrival)
         held.run = ++table_.runs;  // points of other tiles may have had the same one
     }
-    deal_again(std::move(tile.held));
+    deal_waiting(std::move(tile.held));
     PointBatch batch;
     spiller_.spill_some(batch);
     spill(batch);
@@ -257,9 +254,9 @@ void TileTree::divide_evenly() {
   if (divider_.left_over_points() == 0) divider_.cut_long();
 }
 
-void TileTree::deal_again(std::vector<HeldPoints> held) {
+void TileTree::deal_waiting(std::vector<HeldPoints> held) {
   PointBatch batch;
-  dealer_.deal_again(std::move(held), batch);
+  dealer_.deal_waiting(std::move(held), batch);
   spill(batch);
 }
 

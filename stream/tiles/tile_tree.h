@@ -116,14 +116,14 @@ class TileTree {
   class FeedSteps;
   class StoredSteps;
   template <typename Steps>
-  void run_batches(Steps& steps);
+  [[nodiscard]] bool run_batches(Steps& steps);
   template <typename Steps>
   void run_to_rest(Steps steps);
   void append(PointBatch& batch);
   void begin_region(std::size_t region, PointBatch& batch);
   void finish_cell(std::uint32_t cell, PointBatch& batch);
   void begin_dealing_again();
-  void deal_again(std::vector<HeldPoints> held);
+  void deal_waiting(std::vector<HeldPoints> held);
   void spill(PointBatch& batch);
 
   StageTimes& times_;
@@ -137,7 +137,6 @@ class TileTree {
   std::vector<bool> cell_done_;                 ///< by cell of the plan
   std::optional<SegmentReader> dealing_again_;  ///< what is being dealt once more
   std::uint64_t dealt_again_ = 0;               ///< points, before these
-  bool at_rest_ = false;                        ///< batches have come to an end for a checkpoint
 };
 
 }  // namespace spillway::detail

@@ -1,8 +1,9 @@
 #include "stream/triangulate/border_growth.h"
-#include "stream/tiles/storage/tile_points.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "stream/tiles/storage/tile_points.h"
 
 namespace spillway::detail {
 namespace {

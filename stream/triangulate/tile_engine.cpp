@@ -153,6 +153,7 @@ void TileEngine<D>::spill(PointFeed& feed) {
     lanes_.come_to_rest(beside);
   } catch (...) {
     lanes_.give_up();
+    beside_ = nullptr;
     throw;
   }
   beside_ = nullptr;

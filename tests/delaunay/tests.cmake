@@ -10,7 +10,8 @@ spillway_test(delaunay_unit_test unit
           delaunay/border/run_boxes_test.cpp delaunay/border/simplex_index_test.cpp
           delaunay/common/hash_test.cpp delaunay/common/schedule_test.cpp
           delaunay/common/working_memory_test.cpp
-          delaunay/division/cut_judgement_test.cpp delaunay/division/divide_test.cpp
+          delaunay/division/cut_judgement_test.cpp delaunay/division/cut_rule_test.cpp
+          delaunay/division/divide_test.cpp
           delaunay/division/filled_share_test.cpp
           delaunay/kernel_common/hilbert_order_test.cpp delaunay/verify.cpp
   LIBS spillway_delaunay cgal_oracle)

@@ -7,11 +7,12 @@ spillway_test(stream_unit_test unit
           stream/points/equal_points_test.cpp stream/tiles/storage/cell_sketch_test.cpp stream/points/point_buffer_test.cpp stream/points/point_sample_test.cpp
           stream/points/point_span_test.cpp stream/tiles/storage/segment_reader_test.cpp
           stream/points/encoded_points_test.cpp stream/tiles/cuts/tile_cut_test.cpp
-          stream/tiles/tile_node_test.cpp stream/tiles/storage/tile_points_test.cpp stream/tiles/storage/tile_segment_test.cpp
+          stream/tiles/tile_node_test.cpp stream/tiles/storage/parted_points_test.cpp stream/tiles/storage/tile_points_test.cpp stream/tiles/storage/tile_segment_test.cpp
           stream/tiles/tile_sketches_test.cpp stream/tiles/tile_tree_test.cpp stream/tiles/cuts/cut_lookup_test.cpp
           stream/tiles/cuts/cut_tree_test.cpp stream/tiles/cuts/dealt_points_test.cpp
           stream/tiles/cuts/sample_division_test.cpp stream/tiles/cuts/sample_mesh_test.cpp
           stream/tiles/regions/reading_order_test.cpp stream/tiles/regions/region_plan_test.cpp
+          stream/run_phases_test.cpp
           stream/triangulate/border_growth_test.cpp stream/triangulate/border_test.cpp
           stream/triangulate/leaf_border_test.cpp
           stream/triangulate/cell_tree_test.cpp stream/triangulate/merge_forest_test.cpp stream/triangulate/merge_tree_test.cpp

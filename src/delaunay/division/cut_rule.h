@@ -33,15 +33,15 @@ struct PointsToCut {
   std::size_t depth = 0;                   ///< cuts that have led to them
 };
 
-/// A rule that says where to cut points. In memory (divide), tiles (TileDivider), plans of regions
-/// (plan_regions) and ranks (divide_among_ranks) ask one. For any thread.
+/// A rule that says where to cut points: whoever divides points, in memory, into tiles, by plans or
+/// among ranks, asks one. For any thread.
 template <int D>
 class CutRule {
  public:
   virtual ~CutRule() = default;
 
-  /// Where to cut; nothing if no cut pays, or if all points are equal. Not all points of the sample
-  /// lie below the cut; there need not be any below.
+  /// Where to cut; nothing if no cut pays. Some of the sample, if there is one, are not below the
+  /// cut; those that are below may be none, as where all points are equal.
   [[nodiscard]] virtual std::optional<Cut> choose(const PointsToCut<D>& points) const = 0;
 
   /// The rules for what is below and for what is not, where they are others: a rule may know more

@@ -58,8 +58,8 @@ void PointExchange::choose_own_pieces() {
   ranks_.reduce(std::span(&rounds_, 1), distributed::Reduction::kMost);
 }
 
-bool PointExchange::fetch(SourcePiece& batch) {
-  batch.raw.clear();
+bool PointExchange::fetch(SourcePiece& piece) {
+  piece.raw.clear();
   while (arrived_.empty()) {
     if (rests_) return true;
     if (round_ == rounds_) return false;
@@ -69,17 +69,17 @@ bool PointExchange::fetch(SourcePiece& batch) {
   }
   Arrived next = std::move(arrived_.front());
   arrived_.pop_front();
-  batch.raw.decoded = std::move(next.block);
-  batch.raw.bytes = std::move(next.bytes);
+  piece.raw.decoded = std::move(next.block);
+  piece.raw.bytes = std::move(next.bytes);
   return true;
 }
 
-void PointExchange::decode(SourcePiece& batch, PointBlock& block) {
-  if (batch.raw.bytes.empty()) {
-    std::swap(batch.raw.decoded, block);
+void PointExchange::decode(SourcePiece& piece, PointBlock& block) {
+  if (piece.raw.bytes.empty()) {
+    std::swap(piece.raw.decoded, block);
   } else {
     const StageTimer timer(times_, Stage::kExchange);
-    decode_all_points(batch.raw.bytes, {"points from another rank"}, block);
+    decode_all_points(piece.raw.bytes, {"points from another rank"}, block);
   }
 }
 

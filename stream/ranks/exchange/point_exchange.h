@@ -46,9 +46,9 @@ class PointExchange : public PointFeed {
   void tell_rounds(std::function<void()> told) { round_done_ = std::move(told); }
 
   /// Takes the next points of this rank. Collective, in that all ranks call it until it is false.
-  /// Gives none if rests().
-  bool fetch(SourcePiece& batch) override;
-  void decode(SourcePiece& batch, PointBlock& block) override;
+  /// True, but without points, if rests().
+  bool fetch(SourcePiece& piece) override;
+  void decode(SourcePiece& piece, PointBlock& block) override;
 
   /// The share of all rounds that is done.
   [[nodiscard]] double fraction() const;

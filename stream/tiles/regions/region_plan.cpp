@@ -145,12 +145,16 @@ class RegionSidesRule final : public CutRule<3> {
   int dimension_;
 };
 
+/// Where a rule cuts what a cell has of regions.
+std::optional<Cut> choose_cut(const std::vector<Portion>& portions, const CutRule<3>& rule) {
+  const std::vector<CountedBox<3>> boxes = boxes_of(portions);
+  return rule.choose({.boxes = boxes, .box = box_around(boxes)});
+}
+
 /// Appends regions in the order of cells with one region each.
 void append_nested(std::vector<Portion> portions, const CutRule<3>& rule,
                    std::vector<std::size_t>& order) {
-  const std::vector<CountedBox<3>> boxes = boxes_of(portions);
-  const auto cut =
-      portions.size() > 1 ? rule.choose({.boxes = boxes, .box = box_around(boxes)}) : std::nullopt;
+  const auto cut = portions.size() > 1 ? choose_cut(portions, rule) : std::nullopt;
   std::array<std::vector<Portion>, 2> sides;
   for (const Portion& portion : portions) {
     const bool above = cut && share_below(portion.points.box, *cut) <= 0.5;
@@ -185,17 +189,8 @@ class Planner {
       : most_points_(most_points), rule_(dimension), cuts_(dimension) {}
 
   void cut(std::uint32_t tile, std::vector<Portion> portions) {
-    const std::vector<CountedBox<3>> boxes = boxes_of(portions);
-    const double points = points_of(boxes);
-    const std::optional<Cut> best = points > most_points_
-                                        ? rule_.choose({.boxes = boxes, .box = box_around(boxes)})
-                                        : std::nullopt;
-    if (best) {
-      const double below = points_below(boxes, *best);
-      if (std::min(below, points - below) >= kLeastSide * points) {
-        return cut_at(tile, std::move(portions), *best);
-      }
-    }
+    const std::optional<Cut> best = cut_of(portions);
+    if (best) return cut_at(tile, std::move(portions), *best);
     if (by_cell.size() <= tile) by_cell.resize(tile + 1);
     in_order.push_back(tile);
     by_cell[tile] = std::move(portions);
@@ -210,6 +205,17 @@ class Planner {
   std::vector<std::uint32_t> in_order;  ///< cells, neighbours soon after each other
 
  private:
+  /// None for a cell that is small enough, or that has nearly all points on one side.
+  [[nodiscard]] std::optional<Cut> cut_of(const std::vector<Portion>& portions) const {
+    const std::vector<CountedBox<3>> boxes = boxes_of(portions);
+    const double points = points_of(boxes);
+    if (points <= most_points_) return std::nullopt;
+    const std::optional<Cut> best = rule_.choose({.boxes = boxes, .box = box_around(boxes)});
+    if (!best) return std::nullopt;
+    const double below = points_below(boxes, *best);
+    return std::min(below, points - below) >= kLeastSide * points ? best : std::nullopt;
+  }
+
   void cut_at(std::uint32_t tile, std::vector<Portion> portions, const Cut& where) {
     const std::uint32_t other = cuts_.tiles();
     cuts_.make_cut(tile, where.axis, where.value);

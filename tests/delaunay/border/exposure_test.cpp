@@ -78,8 +78,7 @@ TYPED_TEST(ExposureOfSimplices, IsWhatTheirRegionsSayOneByOne) {
   with_threads(2, [&] {
     EXPECT_EQ((exposure_by_tree<kD, Boxes<kD>>(simplices, points, trees, 0)), expected);
     std::vector<std::uint8_t> marks(simplices.size());
-    find_exposed<kD, Boxes<kD>>(simplices, points, trees,
-                                [&marks](std::size_t s) { ++marks[s]; });
+    find_exposed<kD, Boxes<kD>>(simplices, points, trees, [&marks](std::size_t s) { ++marks[s]; });
     for (std::size_t s = 0; s < marks.size(); ++s) {
       ASSERT_EQ(marks[s], expected[s] != 0 ? 1 : 0) << "each at most once";
     }

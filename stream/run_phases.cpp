@@ -1,36 +1,36 @@
-#include "stream/run_stages.h"
+#include "stream/run_phases.h"
 
 namespace spillway::detail {
 
 template <int D>
-void RunStages<D>::walk() {
+void RunPhases<D>::walk() {
   RunProgress& progress = setup_.progress;
-  if (stage_ == RunStage::kRead) {
+  if (phase_ == RunPhase::kRead) {
     progress.begin_phase("read");
     read();
     progress.end_phase(of_all(source_.points_read()));
-    begin(RunStage::kDivide);
+    begin(RunPhase::kDivide);
   }
-  if (stage_ == RunStage::kDivide) {
+  if (phase_ == RunPhase::kDivide) {
     if (of_all(engine_.is_to_divide() ? 1 : 0) > 0) {
       progress.begin_phase("divide");
       progress.end_phase(of_all(engine_.divide_large()));
     }
-    begin(RunStage::kSurvey);
+    begin(RunPhase::kSurvey);
   }
   progress.begin_phase("triangulate");
   survey();
-  if (stage_ == RunStage::kSurvey) begin(RunStage::kTriangulate);
+  if (phase_ == RunPhase::kSurvey) begin(RunPhase::kTriangulate);
   progress.end_phase(triangulate());
 }
 
 template <int D>
-void RunStages<D>::begin(RunStage next) {
-  stage_ = next;
+void RunPhases<D>::begin(RunPhase next) {
+  phase_ = next;
   if (saves_before(next)) engine_.save();
 }
 
-template class RunStages<2>;
-template class RunStages<3>;
+template class RunPhases<2>;
+template class RunPhases<3>;
 
 }  // namespace spillway::detail

@@ -10,29 +10,29 @@
 
 namespace spillway::detail {
 
-/// The stages of a run, in their order.
-enum class RunStage : std::uint8_t {
+/// The phases of a run, in their order.
+enum class RunPhase : std::uint8_t {
   kRead,         ///< all points are dealt into tiles
   kDivide,       ///< tiles that are too large are divided
   kSurvey,       ///< all points are looked at as a whole: whether there are enough, and where
   kTriangulate,  ///< tiles are triangulated, and what is left of them is merged
 };
 
-/// Walks the stages, in one process or in several. A run that goes on begins with the stage in
+/// Walks the phases, in one process or in several. A run that goes on begins with the phase in
 /// which it was, but surveys in any case.
 template <int D>
-class RunStages : protected Resting {
+class RunPhases : protected Resting {
  public:
-  RunStages(const RunStages&) = delete;
-  RunStages& operator=(const RunStages&) = delete;
-  virtual ~RunStages() = default;
+  RunPhases(const RunPhases&) = delete;
+  RunPhases& operator=(const RunPhases&) = delete;
+  virtual ~RunPhases() = default;
 
   /// Inside of with_threads(threads()).
   void walk();
   [[nodiscard]] unsigned threads() const { return engine_.threads(); }
 
  protected:
-  RunStages(PointStream& source, const ExpectedPoints& expected, BlockSink& blocks,
+  RunPhases(PointStream& source, const ExpectedPoints& expected, BlockSink& blocks,
             const RunSetup& setup)
       : source_(source), setup_(setup), engine_(expected, blocks, setup, *this) {}
 
@@ -43,10 +43,10 @@ class RunStages : protected Resting {
   virtual std::uint64_t triangulate() = 0;
   /// The sum over all processes of what each counts.
   [[nodiscard]] virtual std::uint64_t of_all(std::uint64_t count) const { return count; }
-  /// Whether there is to be a checkpoint between two stages.
-  [[nodiscard]] virtual bool saves_before(RunStage next) const = 0;
+  /// Whether there is to be a checkpoint before that phase.
+  [[nodiscard]] virtual bool saves_before(RunPhase next) const = 0;
 
-  [[nodiscard]] RunStage stage() const { return stage_; }
+  [[nodiscard]] RunPhase phase() const { return phase_; }
   [[nodiscard]] PointStream& source() { return source_; }
   [[nodiscard]] const RunSetup& setup() const { return setup_; }
   [[nodiscard]] TileEngine<D>& engine() { return engine_; }
@@ -55,16 +55,16 @@ class RunStages : protected Resting {
   template <typename State>
   void state(State& state) {
     state.section("run");
-    state(stage_, engine_);
+    state(phase_, engine_);
   }
 
  private:
-  void begin(RunStage next);
+  void begin(RunPhase next);
 
   PointStream& source_;
   const RunSetup setup_;
   TileEngine<D> engine_;
-  std::atomic<RunStage> stage_ = RunStage::kRead;
+  std::atomic<RunPhase> phase_ = RunPhase::kRead;
 };
 
 }  // namespace spillway::detail
