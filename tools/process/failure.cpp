@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <new>
 #include <string>
 #include <string_view>
@@ -18,6 +19,20 @@
 
 namespace spillway::detail {
 namespace {
+
+/// Ends the process with exit code 1 where there is not even memory for an exception, which would
+/// end it by a signal. Before anything else of the program, as what is made before main may throw.
+[[gnu::constructor(101)]] void refuse_to_run_without_memory() {
+  // What exceptions take, with room. Freed, it stays with the heap: more would be mapped apart.
+  constexpr std::size_t kLeast = std::size_t{96} << 10;
+  void* const volatile some = std::malloc(kLeast);  // volatile: not to be left out
+  if (some != nullptr) return std::free(some);
+  constexpr std::string_view kText =
+      "spillway: error: no memory to begin with: the limit of memory is reached (ulimit -v); raise "
+      "it\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kText.data(), kText.size());
+  _exit(kExitFailed);
+}
 
 /// The limit of a resource in words that end in `unit`, or nothing if there is none.
 std::string limit_of(int resource, std::string_view option, std::uint64_t unit) {
