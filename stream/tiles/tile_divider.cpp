@@ -49,21 +49,23 @@ bool can_be_cut(const Box<3>& box, int dimension) {
   return false;
 }
 
-/// About every `stride`-th point of some buffers.
-std::vector<LatticePoint> sample_of(const std::vector<HeldPoints>& held, std::size_t stride) {
-  PointSample sample(stride);
+void add_held(const std::vector<HeldPoints>& held, PointSample& sample) {
   for (const HeldPoints& some : held) {
     some.buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
   }
+}
+
+/// About every `stride`-th point of some buffers.
+std::vector<LatticePoint> sample_of(const std::vector<HeldPoints>& held, std::size_t stride) {
+  PointSample sample(stride);
+  add_held(held, sample);
   return sample.take();
 }
 
 /// A sample of all points of a tile, also of those on the disk.
 std::vector<LatticePoint> sample_of_all(const Tile& tile, std::size_t stride) {
   PointSample sample(stride);
-  for (const HeldPoints& held : tile.held) {
-    held.buffer.visit([&](std::span<const LatticePoint> points) { sample.add(points); });
-  }
+  add_held(tile.held, sample);
   SegmentReader reader(tile.segments);
   StoredBlocks blocks;
   PointBlock points;

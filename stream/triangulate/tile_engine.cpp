@@ -261,26 +261,26 @@ template <int D>
 void TileEngine<D>::add_cell(std::uint32_t cell, std::optional<TileNode<D>> tiles) {
   if (options_.checkpoints != nullptr) complete_cells_.push_back({cell, tiles});
   auto complete = cells_->complete(cell, std::move(tiles));
-  const auto surrounded = [](const auto& part) {
-    return std::make_shared<const Surroundings>(Surroundings{part.node, part.outside});
+  const auto kept_of = [](const auto& part) {
+    return std::make_shared<const KeptTrees<D>>(KeptTrees<D>{part.node, part.outside});
   };
-  const auto outside_of = [](const Surroundings& surroundings) {
+  const auto outside_of = [](const KeptTrees<D>& kept) {
     Outside<D> outside;
-    for (const auto& other : surroundings.outside) outside.push_back(other.get());
+    for (const auto& other : kept.outside) outside.push_back(other.get());
     return outside;
   };
   if (complete.node) {
-    const auto surroundings = surrounded(complete);
-    parts_[complete.part] = add_nodes(*surroundings->root, outside_of(*surroundings), surroundings);
+    const auto kept = kept_of(complete);
+    parts_[complete.part] = add_nodes(*kept->root, outside_of(*kept), kept);
     top_ = parts_[complete.part];
   }
   for (const auto& join : complete.joins) {
-    const auto surroundings = surrounded(join);
+    const auto kept = kept_of(join);
     std::vector<Node*> below;
     for (const std::size_t part : join.below) below.push_back(parts_[part]);
-    parts_[join.part] = add_node({.tree = surroundings->root.get(),
-                                  .outside = outside_of(*surroundings),
-                                  .surroundings = surroundings,
+    parts_[join.part] = add_node({.tree = kept->root.get(),
+                                  .outside = outside_of(*kept),
+                                  .kept = kept,
                                   .outside_shrank = true},
                                  std::move(below));
     top_ = parts_[join.part];
@@ -291,14 +291,14 @@ void TileEngine<D>::add_cell(std::uint32_t cell, std::optional<TileNode<D>> tile
 template <int D>
 typename TileEngine<D>::Node* TileEngine<D>::add_nodes(
     const TileNode<D>& tree, const Outside<D>& outside,
-    const std::shared_ptr<const Surroundings>& surroundings) {
+    const std::shared_ptr<const KeptTrees<D>>& kept) {
   std::vector<Node*> children;
   for (const TileNode<D>& child : tree.children) {
     Outside<D> others = outside;
     for (const TileNode<D>& other : tree.children) {
       if (&other != &child) others.push_back(&other);
     }
-    children.push_back(add_nodes(child, others, surroundings));
+    children.push_back(add_nodes(child, others, kept));
   }
   if (tree.leaf()) {
     ++figures_.tiles;
@@ -307,12 +307,11 @@ typename TileEngine<D>::Node* TileEngine<D>::add_nodes(
       sketches_.take(PointSketch<D>::bytes_of(tree.sketch->plates.size()), "sketches of tiles");
     }
   }
-  return add_node({.tree = &tree, .outside = outside, .surroundings = surroundings},
-                  std::move(children));
+  return add_node({.tree = &tree, .outside = outside, .kept = kept}, std::move(children));
 }
 
 template <int D>
-typename TileEngine<D>::Node* TileEngine<D>::add_node(NodeState state,
+typename TileEngine<D>::Node* TileEngine<D>::add_node(EngineNode<D> state,
                                                       std::vector<Node*> children) {
   for (const Node* child : children) state.level = std::max(state.level, child->level + 1);
   const auto [node, ready] = forest_.add(std::move(state), std::move(children));
@@ -418,7 +417,7 @@ void TileEngine<D>::merge_node(Node& node) {
   tasks_.add_merge(TaskScope::kBetweenTiles, node.level, task);
   tell_done(node, std::move(task));
   node.outside = {};
-  node.surroundings = {};
+  node.kept = {};
   const std::lock_guard lock(figures_mutex_);
   if (figures_.final_by_level.size() < node.level) figures_.final_by_level.resize(node.level);
   figures_.final_by_level[node.level - 1] += merged.final_simplices;

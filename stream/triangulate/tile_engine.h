@@ -25,6 +25,7 @@
 #include "stream/tiles/tile_tree.h"
 #include "stream/triangulate/border_growth.h"
 #include "stream/triangulate/cell_tree.h"
+#include "stream/triangulate/engine_node.h"
 #include "stream/triangulate/merge_forest.h"
 #include "stream/triangulate/nodes_before.h"
 #include "stream/triangulate/sample_forecast.h"
@@ -127,21 +128,7 @@ class TileEngine : private DealingWatch {
   [[nodiscard]] std::vector<TaskSum> task_sums() const { return tasks_.sums(); }
 
  private:
-  struct Surroundings {  ///< keeps what `Outside` points to
-    std::shared_ptr<const TileNode<D>> root;
-    std::vector<std::shared_ptr<TileNode<D>>> outside;
-  };
-  /// What a node has, which is a tile or a merge of tiles. Its number is its slot of the stream.
-  struct NodeState {
-    const TileNode<D>* tree = nullptr;
-    Outside<D> outside;
-    std::shared_ptr<const Surroundings> surroundings;  ///< that the two point to, or none
-    bool outside_shrank = false;                       ///< as in MergeInput
-    std::uint32_t level = 0;                           ///< merges below, at most
-    StoredTile stored{};                               ///< of a tile that is being worked off
-    Border<D> border{};                                ///< once it is done
-  };
-  using Forest = MergeForest<NodeState>;
+  using Forest = MergeForest<EngineNode<D>>;
   using Node = typename Forest::Node;
   using Lanes = WorkLanes<Node>;
 
@@ -161,8 +148,8 @@ class TileEngine : private DealingWatch {
   void add_restored_cells();
   [[nodiscard]] bool rests_before(const Node& node) const;
   Node* add_nodes(const TileNode<D>& tree, const Outside<D>& outside,
-                  const std::shared_ptr<const Surroundings>& surroundings);
-  Node* add_node(NodeState state, std::vector<Node*> children);
+                  const std::shared_ptr<const KeptTrees<D>>& kept);
+  Node* add_node(EngineNode<D> state, std::vector<Node*> children);
   void take_kept_border(Node& node);
   [[nodiscard]] Lanes make_lanes();
   [[nodiscard]] std::uint64_t loaded_points(const Node& node) const;

@@ -29,7 +29,7 @@ void TileEngine<D>::take_kept_border(Node& node) {
   node.border = nodes_before_.take_border(node.number);
   counts_.borders.add(node.border.simplices.size(), node.border.bytes());
   node.outside = {};
-  if (!node.children.empty()) node.surroundings = {};
+  if (!node.children.empty()) node.kept = {};
   forest_.done(node);
 }
 
